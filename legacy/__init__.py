@@ -1,0 +1,1 @@
+"""The 1988 program as published: listing as printed and restored, printouts, errata, tables."""

@@ -1,0 +1,29 @@
+"""impact88: Brach's 1988 planar impact program, digit for digit, and the same mechanics made fast.
+
+The public functions are imported on first use, so that running the 1988 program does not pay for
+numpy.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+_LAZY = {
+    "Scene": "scene",
+    "sample": "scene",
+    "run": "run",
+}
+"""Public name -> the module that holds it."""
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LAZY:
+        return getattr(import_module(f".{_LAZY[name]}", __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_LAZY])

@@ -1,0 +1,1 @@
+"""Benchmarks: run time against error, measured in one run on one machine."""

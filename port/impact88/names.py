@@ -1,0 +1,101 @@
+"""The one table of names: what each quantity is called, means and is measured in.
+
+A scene's numbers carry the names the 1988 listing gives them, everywhere in this project. Every
+template, table heading, help text and error message takes symbol, meaning and unit from here.
+
+Units: the listing is "independent of units" (User's Information): any consistent set will do,
+except that angles are typed and printed in degrees and spins are always radians per unit of time.
+So a unit here is a rule ("mass·length²"), not a unit.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Quantity(NamedTuple):
+    """One row of the table.
+
+    ``name``: the listing's variable, or this project's name for what the listing leaves unnamed;
+    ``symbol``: the chapter's symbol (List of Symbols); ``meaning``: in words; ``unit``: the unit
+    rule; ``line``: the listing line that sets or asks for it (scene) or prints it (results; 0 when
+    the listing has no such value).
+    """
+
+    name: str
+    symbol: str
+    meaning: str
+    unit: str
+    line: int
+
+
+_VELOCITY = "length/time"
+_SPIN = "rad/time"
+
+SCENE: dict[str, Quantity] = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("E", "e", "coefficient of restitution", "1", 280),
+        Quantity("MU", "μ", "equivalent friction coefficient; -10 makes a pivot", "1", 280),
+        Quantity("EM", "e_m", "moment coefficient of restitution", "1", 280),
+        Quantity("DA", "d_a", "distance from A's center of gravity to the impact point", "length", 290),
+        Quantity("DB", "d_b", "distance from B's center of gravity to the impact point", "length", 290),
+        Quantity("GA", "Γ", "angle of the impact surface from the y axis", "degree", 290),
+        Quantity("PA", "φ_a", "angle from A's length axis to its impact point", "degree", 290),
+        Quantity("PB", "φ_b", "angle from B's length axis to its impact point", "degree", 290),
+        Quantity("TA", "θ_a", "heading angle of A from the x axis", "degree", 290),
+        Quantity("TB", "θ_b", "heading angle of B from the x axis", "degree", 290),
+        Quantity("MA", "m_a", "mass of A", "mass", 310),
+        Quantity("MB", "m_b", "mass of B", "mass", 310),
+        Quantity("IA", "I_a", "yaw moment of inertia of A", "mass·length²", 310),
+        Quantity("IB", "I_b", "yaw moment of inertia of B", "mass·length²", 310),
+        Quantity("UX", "v_ax", "initial x velocity of A", _VELOCITY, 210),
+        Quantity("UY", "v_ay", "initial y velocity of A", _VELOCITY, 210),
+        Quantity("WA", "ω_a", "initial spin of A", _SPIN, 210),
+        Quantity("VX", "v_bx", "initial x velocity of B", _VELOCITY, 230),
+        Quantity("VY", "v_by", "initial y velocity of B", _VELOCITY, 230),
+        Quantity("WB", "ω_b", "initial spin of B", _SPIN, 230),
+        Quantity("M", "M", "number of equations: 6, or 4 for point masses", "1", 350),
+    )
+}
+"""What a scene is made of, in the listing's order."""
+
+RESULTS: dict[str, Quantity] = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("VAX", "V_ax", "final x velocity of A", _VELOCITY, 730),
+        Quantity("VAY", "V_ay", "final y velocity of A", _VELOCITY, 730),
+        Quantity("VBX", "V_bx", "final x velocity of B", _VELOCITY, 740),
+        Quantity("VBY", "V_by", "final y velocity of B", _VELOCITY, 740),
+        Quantity("WAF", "Ω_a", "final spin of A", _SPIN, 760),
+        Quantity("WBF", "Ω_b", "final spin of B", _SPIN, 760),
+        Quantity("XA", "v_Cax", "x velocity of A's contact point before impact", _VELOCITY, 660),
+        Quantity("YA", "v_Cay", "y velocity of A's contact point before impact", _VELOCITY, 660),
+        Quantity("XB", "v_Cbx", "x velocity of B's contact point before impact", _VELOCITY, 670),
+        Quantity("YB", "v_Cby", "y velocity of B's contact point before impact", _VELOCITY, 670),
+        Quantity("XAF", "V_Cax", "x velocity of A's contact point after impact", _VELOCITY, 730),
+        Quantity("YAF", "V_Cay", "y velocity of A's contact point after impact", _VELOCITY, 730),
+        Quantity("XBF", "V_Cbx", "x velocity of B's contact point after impact", _VELOCITY, 740),
+        Quantity("YBF", "V_Cby", "y velocity of B's contact point after impact", _VELOCITY, 740),
+        Quantity("KI", "T", "kinetic energy before impact", "mass·length²/time²", 690),
+        Quantity("KF", "T'", "kinetic energy after impact", "mass·length²/time²", 0),
+        Quantity("LOSS", "100 ΔT", "kinetic energy lost", "percent", 690),
+        Quantity("DVA", "ΔV_a", "size of A's velocity change", _VELOCITY, 0),
+        Quantity("DVB", "ΔV_b", "size of B's velocity change", _VELOCITY, 0),
+        Quantity("PN", "P_n", "normal impulse on A", "mass·length/time", 0),
+        Quantity("PT", "P_t", "tangential impulse on A", "mass·length/time", 0),
+        Quantity("PM", "M", "moment impulse on A", "mass·length²/time", 0),
+        Quantity("MUP", "μ", "friction coefficient as printed: signed, -10 for a pivot", "1", 680),
+        Quantity("MUC", "μ_c", "critical friction coefficient: P_t/P_n of the pivot", "1", 0),
+        Quantity("COND", "κ", "condition number of the equilibrated equations, estimated", "1", 0),
+        Quantity("STATUS", "", "sum of the warning bits, see impact88.status", "bits", 0),
+    )
+}
+"""What an impact yields, in this project's order: the six final velocities first."""
+
+FINAL_VELOCITIES = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
+VELOCITIES = ("UX", "UY", "WA", "VX", "VY", "WB")
+"""The six values lines 210 and 230 ask for, in that order."""
+
+DEFAULT_M = "6"
+"""M where a scene does not give it: the published listing's line 350."""

@@ -1,0 +1,1 @@
+"""The listing's Applesoft arithmetic over arrays, bit for bit."""
