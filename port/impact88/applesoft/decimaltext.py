@@ -1,0 +1,124 @@
+"""Decimal text to real and back, as Applesoft reads constants, INPUT and VAL, and writes PRINT.
+
+Reading works digit by digit in the machine's own arithmetic, so the digits typed matter beyond
+their value: 90315.8817 and 90315.88170 differ in their last bit. Writing looks at the extension of
+a value in flight, so PRINT can show more than the variable would hold.
+"""
+
+from __future__ import annotations
+
+import re
+
+from .errors import overflow
+from .real import ZERO, Real, compare, integer, to_integer
+
+_NUMBER = re.compile(
+    r"(?: *([+-]))?((?: *\d)*)(?: *(\.)((?: *\d)*))?(?: *(E)(?: *([+-]))?((?: *\d)*))?"
+)
+"""Blanks may stand anywhere; every part may be missing, so this matches any text."""
+
+TEN = integer(10)
+HALF = Real.from_stored("8000000000")
+BILLION = Real.from_stored("9E6E6B2800")
+NINE_DIGITS = Real.from_stored("9E6E6B27FD")
+"""999,999,999: above it a number has to be divided by ten before its nine digits are taken."""
+EIGHT_DIGITS = Real.from_stored("9B3EBC1FFD")
+"""99,999,999.9: not above it, a number has to be multiplied by ten."""
+
+
+def times_ten(x: Real) -> Real:
+    """MUL10: x rounded, as (4x + x) doubled. Raises OVERFLOW."""
+    x = x.rounded()
+    if not x.e:
+        return ZERO
+    if x.e + 2 > 255:
+        raise overflow()
+    t = Real(x.e + 2, x.m, x.s) + x
+    if t.e + 1 > 255:
+        raise overflow()
+    return Real(t.e + 1, t.m, t.s)
+
+
+def over_ten(x: Real) -> Real:
+    """DIV10: |x| rounded, divided by ten."""
+    return abs(x).rounded() / TEN
+
+
+def read(text: str, start: int = 0) -> tuple[Real, int]:
+    """The number that begins at ``start``, and where it ends; no number at all reads as zero.
+
+    Blanks are passed over. Raises OVERFLOW.
+    """
+    match = _NUMBER.match(text, start)
+    assert match is not None  # the pattern matches the empty text
+    sign, whole, _, decimals, _, exponent_sign, exponent_digits = match.groups(default="")
+    value = ZERO
+    whole = whole.replace(" ", "")
+    decimals = decimals.replace(" ", "")
+    for digit in whole + decimals:
+        value = times_ten(value).rounded() + integer(int(digit))
+    steps = _exponent(exponent_sign, exponent_digits) - len(decimals)
+    for _ in range(steps):
+        value = times_ten(value)
+    for _ in range(-steps):
+        value = over_ten(value)
+    return (-value if sign == "-" else value), match.end()
+
+
+def _exponent(sign: str, digits: str) -> int:
+    """The exponent after E; a third digit is one too many, whatever the first two are worth."""
+    exponent = 0
+    for digit in digits.replace(" ", ""):
+        if exponent >= 10:
+            if sign != "-":
+                raise overflow()
+            exponent = 100
+        else:
+            exponent = 10 * exponent + int(digit)
+    return -exponent if sign == "-" else exponent
+
+
+def is_number(text: str) -> bool:
+    """Whether INPUT takes the whole of ``text`` for one number."""
+    return _NUMBER.fullmatch(text.rstrip(" ")) is not None and bool(text.strip(" "))
+
+
+def number(text: str) -> Real:
+    """The real that the whole of ``text`` is. Raises ValueError if it is not one number."""
+    if not is_number(text):
+        raise ValueError(f"{text!r} is no number that Applesoft reads")
+    return read(text)[0]
+
+
+def write(x: Real) -> str:
+    """The characters PRINT and STR$ make of ``x``: at most nine digits, extension counted."""
+    if not x.e:
+        return "0"
+    sign = "-" if x.s else ""
+    digits, d = _nine_digits(abs(x))
+    text = str(digits)
+    if 0 <= d + 10 < 11:
+        point = d + 9
+        text = text[:point] + "." + text[point:] if point >= 0 else ".0" + text
+        exponent = ""
+    else:
+        text = text[0] + "." + text[1:]
+        exponent = f"E{'-' if d + 8 < 0 else '+'}{abs(d + 8):02d}"
+    return sign + text.rstrip("0").rstrip(".") + exponent
+
+
+def _nine_digits(x: Real) -> tuple[int, int]:
+    """The nine digits N written for x > 0, and d with x = N * 10^d."""
+    d = 0
+    if x.e <= 128:
+        x = BILLION * x
+        d = -9
+    while (order := compare(NINE_DIGITS, x)) > 0:
+        x = over_ten(x)
+        d += 1
+    if order:
+        while compare(EIGHT_DIGITS, x) <= 0:
+            x = times_ten(x)
+            d -= 1
+        x = HALF + x
+    return to_integer(x), d

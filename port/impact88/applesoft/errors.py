@@ -1,0 +1,66 @@
+"""Applesoft's seventeen error messages, with the codes ONERR finds in location 222."""
+
+from __future__ import annotations
+
+CODES: dict[str, int] = {
+    "NEXT WITHOUT FOR": 0,
+    "SYNTAX": 16,
+    "RETURN WITHOUT GOSUB": 22,
+    "OUT OF DATA": 42,
+    "ILLEGAL QUANTITY": 53,
+    "OVERFLOW": 69,
+    "OUT OF MEMORY": 77,
+    "UNDEF'D STATEMENT": 90,
+    "BAD SUBSCRIPT": 107,
+    "REDIM'D ARRAY": 120,
+    "DIVISION BY ZERO": 133,
+    "ILLEGAL DIRECT": 149,
+    "TYPE MISMATCH": 163,
+    "STRING TOO LONG": 176,
+    "FORMULA TOO COMPLEX": 191,
+    "CAN'T CONTINUE": 210,
+    "UNDEF'D FUNCTION": 224,
+}
+"""Kind -> code; the message is ``?KIND ERROR``."""
+
+
+class ApplesoftError(Exception):
+    """An error the ROM reports.
+
+    ``kind`` is a key of `CODES`; ``line`` is the number of the BASIC line it happened in, set by
+    whoever runs the program (None: no program line, so no `` IN n``).
+    """
+
+    def __init__(self, kind: str, line: int | None = None) -> None:
+        super().__init__(kind)
+        self.kind = kind
+        self.line = line
+
+    @property
+    def code(self) -> int:
+        """What ``PEEK (222)`` shows after ONERR."""
+        return CODES[self.kind]
+
+    @property
+    def message(self) -> str:
+        """The message as displayed, without the bell: ``?OVERFLOW ERROR IN 210``."""
+        place = "" if self.line is None else f" IN {self.line}"
+        return f"?{self.kind} ERROR{place}"
+
+    def __str__(self) -> str:
+        return self.message
+
+
+def overflow() -> ApplesoftError:
+    """``?OVERFLOW ERROR``: a result past 1.70141183E+38."""
+    return ApplesoftError("OVERFLOW")
+
+
+def division_by_zero() -> ApplesoftError:
+    """``?DIVISION BY ZERO ERROR``, for 0 / 0 too."""
+    return ApplesoftError("DIVISION BY ZERO")
+
+
+def illegal_quantity() -> ApplesoftError:
+    """``?ILLEGAL QUANTITY ERROR``: an argument outside a function's domain."""
+    return ApplesoftError("ILLEGAL QUANTITY")
