@@ -1,1 +1,10 @@
-"""The 1988 program as published: listing as printed and restored, printouts, errata, tables."""
+"""The 1988 program as published, R. M. Brach's: listing, printouts, tables, and an account of them.
+
+The listing, the printouts and the tables are from Raymond M. Brach's chapter "Vehicle Collision
+Analysis" in *Automotive Engineering and Litigation* (Garland Law Publishing, New York, 1988).
+
+``listing-as-printed.txt`` is the Appendix's listing as the chapter's text carries it, and
+``impact.bas`` the same listing restored so that it runs. ``run1-as-printed.txt``,
+``run2-as-printed.txt`` and ``table3-as-printed.txt`` are the three published printouts.
+``ERRATA.md`` tells every difference, its evidence, and what cannot be restored.
+"""
