@@ -1,0 +1,45 @@
+"""Golden files: pytest-regressions, with its data folder in golden/.
+
+``pytest --force-regen`` writes anew the golden printouts that differ, and fails, so that somebody
+looks at the difference before committing it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from pytest_regressions.file_regression import FileRegressionFixture
+
+from captures import ROOT
+
+
+@pytest.fixture(scope="module")
+def original_datadir() -> Path:
+    """Where pytest-regressions keeps its files; the plugin's way of choosing the folder."""
+    return ROOT / "golden" / "printouts"
+
+
+def _same_characters(obtained: Path, expected: Path) -> None:
+    assert obtained.read_bytes().decode() == expected.read_bytes().decode()
+
+
+@pytest.fixture
+def golden_printout(file_regression: FileRegressionFixture) -> Callable[[str, str], None]:
+    """``golden_printout(text, name)``: the text is golden/printouts/NAME.txt, every character.
+
+    Compared as bytes: a printout holds form feeds, which a comparison by lines would take for
+    line ends.
+    """
+
+    def check(printout: str, name: str) -> None:
+        file_regression.check(
+            printout.encode(),
+            binary=True,
+            extension=".txt",
+            basename=name,
+            check_fn=_same_characters,
+        )
+
+    return check

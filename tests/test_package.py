@@ -1,0 +1,98 @@
+"""The house is complete: nothing stands outside it, and nothing in it is left out of a wheel."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from fnmatch import fnmatch
+from importlib import import_module
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import impact88
+from captures import ROOT
+
+HOUSE = {"pyproject.toml", "legacy", "port", "tests", "golden", "README.md"}
+"""All that the top level holds, besides dot files."""
+
+
+@pytest.fixture(scope="module")
+def project() -> dict[str, Any]:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def ignored(name: str) -> bool:
+    """Whether .gitignore leaves this name out (its patterns here are plain names and globs)."""
+    patterns = (ROOT / ".gitignore").read_text(encoding="utf-8").split()
+    return any(fnmatch(name, pattern.rstrip("/")) for pattern in patterns)
+
+
+def kept(folder: Path) -> list[Path]:
+    """The files under a folder that are not ignored, relative to it."""
+    paths = [path.relative_to(folder) for path in folder.rglob("*") if path.is_file()]
+    return [path for path in paths if not any(map(ignored, path.parts))]
+
+
+def test_top_level_holds_the_house_and_nothing_else() -> None:
+    there = {path.name for path in ROOT.iterdir() if not path.name.startswith(".")}
+    assert {name for name in there if not ignored(name)} == HOUSE
+
+
+def test_every_package_folder_is_listed(project: dict[str, Any]) -> None:
+    setuptools = project["tool"]["setuptools"]
+    folders = {".".join(p.parent.parts) for p in kept(ROOT / "port") if p.suffix == ".py"}
+    elsewhere = {name: folder for name, folder in setuptools["package-dir"].items() if name}
+    assert set(setuptools["packages"]) == folders | set(elsewhere)
+    for folder in [ROOT / "port" / f.replace(".", "/") for f in folders]:
+        assert (folder / "__init__.py").is_file(), f"{folder} has modules and is no package"
+    for folder in elsewhere.values():
+        assert (ROOT / folder / "__init__.py").is_file()
+
+
+@pytest.mark.parametrize("package", ["impact88", "impact88.legacy", "impact88.golden"])
+def test_every_data_file_matches_a_pattern_of_package_data(
+    project: dict[str, Any], package: str
+) -> None:
+    setuptools = project["tool"]["setuptools"]
+    folder = setuptools["package-dir"].get(package, "port/" + package.replace(".", "/"))
+    patterns = setuptools["package-data"][package]
+    data = [path for path in kept(ROOT / folder) if path.suffix != ".py"]
+    assert data
+    # setuptools' * stays within a folder, as glob's does and fnmatch's does not
+    missed = [
+        path
+        for path in data
+        if not any(
+            len(path.parts) == len(Path(pattern).parts) and path.match(pattern)
+            for pattern in patterns
+        )
+    ]
+    assert not missed
+
+
+@pytest.mark.parametrize(
+    ("package", "name"),
+    [
+        ("impact88.legacy", "impact.bas"),
+        ("impact88.legacy", "ERRATA.md"),
+        ("impact88.golden", "scenes.jsonl.gz"),
+        ("impact88.golden", "arithmetic/add.tsv.gz"),
+    ],
+)
+def test_data_is_found_as_a_resource_of_the_package(package: str, name: str) -> None:
+    assert files(package).joinpath(name).is_file()
+
+
+def test_version_stands_in_one_number(project: dict[str, Any]) -> None:
+    assert project["project"]["version"] == impact88.__version__
+    assert re.fullmatch(r"\d+\.\d+\.\d+", impact88.__version__)
+
+
+@pytest.mark.parametrize("name", sorted(impact88._LAZY))
+def test_every_public_name_is_there_whatever_was_imported_before(name: str) -> None:
+    """Also where a module has its function's name: importing it must not hide the function."""
+    module = import_module(f"impact88.{impact88._LAZY[name]}")
+    assert getattr(impact88, name) == getattr(module, name)
