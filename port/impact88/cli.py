@@ -77,12 +77,32 @@ def _dispatch(arguments: Sequence[str]) -> int:
     return int(module.main(parser.parse_args(rest)))
 
 
+def _open_closed_streams() -> None:
+    """A stream the shell closed (``<&-``, ``2>&-``) is None in Python; make it read or write nothing.
+
+    Raises UserError when standard output is closed: the result would be lost without a word.
+    """
+    if sys.stdin is None:
+        sys.stdin = open(os.devnull)
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, "w")
+        raise UserError("standard output is closed; expected somewhere to print the result")
+
+
+def _drop_output() -> None:
+    """Let stdout lead nowhere: the interpreter would complain again when it flushes on its way out."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
     status = 2
     try:
         try:
+            _open_closed_streams()
             status = _dispatch(arguments)
         except UserError as error:
             command = arguments[0] if arguments and arguments[0] in COMMANDS else None
@@ -94,7 +114,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:
-        # the interpreter would complain again when it flushes stdout on its way out
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return BROKEN_PIPE
+    except OSError as error:  # a full disk, most likely
+        print(f"impact88: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
+        _drop_output()
+        return 2
     return status

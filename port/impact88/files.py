@@ -98,3 +98,17 @@ def _take_usual_mode(beside: str, path: str) -> None:
         os.umask(mask)
         mode = 0o666 & ~mask
     os.chmod(beside, mode)
+
+
+def packaged_bytes(package: str, name: str) -> bytes:
+    """A data file that is installed with this project, such as legacy's listing."""
+    from importlib import import_module
+
+    module = import_module(package)
+    folder = os.path.dirname(module.__file__ or "")
+    return module.__loader__.get_data(os.path.join(folder, name))  # type: ignore[union-attr]
+
+
+def packaged_text(package: str, name: str) -> str:
+    """The text of a data file that is installed with this project."""
+    return decode(packaged_bytes(package, name), name)

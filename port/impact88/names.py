@@ -38,8 +38,12 @@ SCENE: dict[str, Quantity] = {
         Quantity("E", "e", "coefficient of restitution", "1", 280),
         Quantity("MU", "μ", "equivalent friction coefficient; -10 makes a pivot", "1", 280),
         Quantity("EM", "e_m", "moment coefficient of restitution", "1", 280),
-        Quantity("DA", "d_a", "distance from A's center of gravity to the impact point", "length", 290),
-        Quantity("DB", "d_b", "distance from B's center of gravity to the impact point", "length", 290),
+        Quantity(
+            "DA", "d_a", "distance from A's center of gravity to the impact point", "length", 290
+        ),
+        Quantity(
+            "DB", "d_b", "distance from B's center of gravity to the impact point", "length", 290
+        ),
         Quantity("GA", "Γ", "angle of the impact surface from the y axis", "degree", 290),
         Quantity("PA", "φ_a", "angle from A's length axis to its impact point", "degree", 290),
         Quantity("PB", "φ_b", "angle from B's length axis to its impact point", "degree", 290),

@@ -8,12 +8,13 @@ a value in flight, so PRINT can show more than the variable would hold.
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 from .errors import overflow
 from .real import ZERO, Real, compare, integer, to_integer
 
 _NUMBER = re.compile(
-    r"(?: *([+-]))?((?: *\d)*)(?: *(\.)((?: *\d)*))?(?: *(E)(?: *([+-]))?((?: *\d)*))?"
+    r"(?: *([+-]))?((?: *[0-9])*)(?: *\.((?: *[0-9])*))?(?: *E(?: *([+-]))?((?: *[0-9])*))?"
 )
 """Blanks may stand anywhere; every part may be missing, so this matches any text."""
 
@@ -44,25 +45,40 @@ def over_ten(x: Real) -> Real:
     return abs(x).rounded() / TEN
 
 
+class Numeral(NamedTuple):
+    """The parts of a number's text, blanks taken out, and where it ends."""
+
+    sign: str
+    whole: str
+    decimals: str
+    exponent_sign: str
+    exponent_digits: str
+    end: int
+
+
+def scan(text: str, start: int = 0) -> Numeral:
+    """The parts of the number that begins at ``start``; no number at all has empty parts."""
+    match = _NUMBER.match(text, start)
+    assert match is not None  # the pattern matches the empty text
+    parts = (part.replace(" ", "") for part in match.groups(default=""))
+    return Numeral(*parts, end=match.end())
+
+
 def read(text: str, start: int = 0) -> tuple[Real, int]:
     """The number that begins at ``start``, and where it ends; no number at all reads as zero.
 
     Blanks are passed over. Raises OVERFLOW.
     """
-    match = _NUMBER.match(text, start)
-    assert match is not None  # the pattern matches the empty text
-    sign, whole, _, decimals, _, exponent_sign, exponent_digits = match.groups(default="")
+    numeral = scan(text, start)
     value = ZERO
-    whole = whole.replace(" ", "")
-    decimals = decimals.replace(" ", "")
-    for digit in whole + decimals:
+    for digit in numeral.whole + numeral.decimals:
         value = times_ten(value).rounded() + integer(int(digit))
-    steps = _exponent(exponent_sign, exponent_digits) - len(decimals)
+    steps = _exponent(numeral.exponent_sign, numeral.exponent_digits) - len(numeral.decimals)
     for _ in range(steps):
         value = times_ten(value)
     for _ in range(-steps):
         value = over_ten(value)
-    return (-value if sign == "-" else value), match.end()
+    return (-value if numeral.sign == "-" else value), numeral.end
 
 
 def _exponent(sign: str, digits: str) -> int:
@@ -94,9 +110,13 @@ def write(x: Real) -> str:
     """The characters PRINT and STR$ make of ``x``: at most nine digits, extension counted."""
     if not x.e:
         return "0"
-    sign = "-" if x.s else ""
     digits, d = _nine_digits(abs(x))
-    text = str(digits)
+    return lay_out("-" if x.s else "", str(digits), d)
+
+
+def lay_out(sign: str, text: str, d: int) -> str:
+    """Nine digits times ten to the d, as PRINT sets them: no leading zero before the point, no
+    trailing zeros after it, an exponent below .01 and from 1E+09 on."""
     if 0 <= d + 10 < 11:
         point = d + 9
         text = text[:point] + "." + text[point:] if point >= 0 else ".0" + text

@@ -224,13 +224,11 @@ class Real:
 
     def __eq__(self, right: object) -> bool:
         if not isinstance(right, Real):
-            return NotImplemented
+            raise TypeError(f"a real compares with reals only, not with {right!r}")
         return compare(self.rounded(), right) == 0
 
     def __ne__(self, right: object) -> bool:
-        if not isinstance(right, Real):
-            return NotImplemented
-        return compare(self.rounded(), right) != 0
+        return not self == right
 
     def __bool__(self) -> bool:
         """Whether an IF on this value succeeds: anything but zero."""

@@ -1,0 +1,55 @@
+"""Arrays of numbers: subscripts from 0, checked as the ROM checks them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from .errors import ApplesoftError, illegal_quantity
+from .real import Real
+
+SUBSCRIPT_LIMIT = 32768
+
+
+def subscript(x: Any) -> int:
+    """A subscript as the machine takes it: rounded down, 0 ... 32767.
+
+    Raises ILLEGAL QUANTITY for a negative or larger one, however small its fraction.
+    """
+    if x.__class__ is Real:
+        if x.s or x.e > 143:
+            raise illegal_quantity()
+        return int(x.m >> 168 - x.e)
+    if not 0 <= x < SUBSCRIPT_LIMIT:
+        raise illegal_quantity()
+    return int(x)
+
+
+class Array:
+    """``DIM NAME(m, n)``, or of one dimension: elements from (0, 0), all zero to begin with.
+
+    ``store`` is what happens to a value that is stored. ``data`` holds the elements with the first
+    subscript fastest, as the machine lays them out; ``sizes`` counts them per dimension. Raises
+    BAD SUBSCRIPT beyond the dimensions.
+    """
+
+    def __init__(self, sizes: Sequence[Any], store: Any, zero: Any) -> None:
+        self.sizes = [subscript(last) + 1 for last in sizes]
+        self._store = store
+        self._rows, self._columns = (*self.sizes, 1)[:2]
+        self.data = [zero] * (self._rows * self._columns)
+
+    def _place(self, i: Any, j: Any) -> int:
+        if i.__class__ is not int:
+            i = subscript(i)
+        if j.__class__ is not int:
+            j = subscript(j)
+        if i >= self._rows or j >= self._columns:
+            raise ApplesoftError("BAD SUBSCRIPT")
+        return int(i + self._rows * j)
+
+    def __getitem__(self, place: tuple[Any, Any]) -> Any:
+        return self.data[self._place(*place)]
+
+    def __setitem__(self, place: tuple[Any, Any], value: Any) -> None:
+        self.data[self._place(*place)] = self._store(value)

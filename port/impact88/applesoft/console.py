@@ -1,0 +1,204 @@
+"""Keyboard and screen: the character stream, INPUT's manners, the disk system and the printer.
+
+Characters go out with the high bit dropped and RETURN as newline. The disk operating system sits
+between the program and the screen: a line that starts with control-D is a command to it, taken and
+not shown; ``PR#n`` among them switches the output to slot n, 0 being the screen. Without a disk
+system such a line is text like any other.
+
+Devices are arguments: a keyboard is a function that returns the next line typed (None at the end),
+the screen and the printer are functions that take text.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import Generic, TypeVar
+
+CONTROL_C = "\x03"
+CONTROL_D = "\x04"
+CONTROL_H = "\x08"
+CONTROL_X = "\x18"
+PROMPT = "\0"
+"""The prompt character Applesoft gives the monitor's line reader: it is sent, and shows nothing."""
+LINE_LIMIT = 239
+"""What INPUT keeps of a line."""
+PRINTER_SLOT = 1
+
+Keyboard = Callable[[], "str | None"]
+Device = Callable[[str], object]
+Number = TypeVar("Number")
+Read = Callable[[str, int], "tuple[Number, int]"]
+
+_SLOT_COMMAND = re.compile(r" *PR *# *([0-7])", re.IGNORECASE)
+
+
+class EndOfInput(Exception):
+    """The keyboard has no more lines and the program asks for one."""
+
+
+class Console:
+    """A screen, a keyboard, and what stands between them and a program.
+
+    ``echo``: whether typed lines go into the output (False where a terminal has shown them).
+    """
+
+    def __init__(
+        self,
+        keyboard: Keyboard,
+        screen: Device,
+        printer: Device | None = None,
+        *,
+        dos: bool = True,
+        echo: bool = True,
+    ) -> None:
+        self.keyboard = keyboard
+        self.screen = screen
+        self.printer = printer or screen
+        self.dos = dos
+        self.echo = echo
+        self.slot = 0
+        self._line_begins = True
+        self._command: str | None = None
+
+    # --- output ----------------------------------------------------------------------------------
+
+    def put(self, text: str) -> None:
+        """Send characters on their way: to the disk system, or to the selected slot's device."""
+        if not text:
+            return
+        if not self.dos:
+            self._show(text)
+            return
+        for line in text.splitlines(keepends=True) if "\n" in text else (text,):
+            self._put_piece(line)
+
+    def _put_piece(self, piece: str) -> None:
+        """A piece of one line, its newline at most at the end."""
+        if self._command is None and self._line_begins and piece[0] == CONTROL_D:
+            self._command = ""
+            piece = piece[1:]
+        ends = piece.endswith("\n")
+        self._line_begins = ends
+        if self._command is None:
+            self._show(piece)
+            return
+        self._command += piece
+        if ends:
+            command, self._command = self._command, None
+            self.disk_command(command.rstrip("\n"))
+
+    def disk_command(self, command: str) -> None:
+        """What the disk system does with a command line; only PR# concerns a program's output."""
+        match = _SLOT_COMMAND.match(command)
+        if match:
+            self.slot = int(match.group(1))
+
+    def _show(self, text: str) -> None:
+        if self.slot == 0:
+            self.screen(text)
+        elif self.slot == PRINTER_SLOT:
+            self.printer(text)
+
+    # --- input -----------------------------------------------------------------------------------
+
+    def read_line(self) -> str:
+        """One line from the keyboard as the monitor reads it: upper case, edited, echoed.
+
+        Control-H takes back a character, control-X the line. Raises EndOfInput, and
+        KeyboardInterrupt for control-C at the start of the line.
+        """
+        while True:
+            self.put(PROMPT)
+            typed = self.keyboard()
+            if typed is None:
+                raise EndOfInput
+            typed = typed.upper()
+            if typed.startswith(CONTROL_C):
+                raise KeyboardInterrupt
+            kept, cancelled, rest = typed.rpartition(CONTROL_X)
+            if cancelled:
+                self._echo(kept.replace(CONTROL_X, CONTROL_X + "\\\n" + PROMPT))
+                self._echo(CONTROL_X + "\\\n" + PROMPT)
+                typed = rest
+            self._echo(typed + "\n")
+            return _edited(typed)[:LINE_LIMIT]
+
+    def _echo(self, text: str) -> None:
+        if self.echo:
+            self.put(text)
+
+    def input(self, read: Read[Number], zero: Number) -> Iterator[Reply[Number]]:
+        """INPUT of numbers: one Reply per attempt, to be called once for each variable.
+
+        Too few values are asked for with ``??``; a value that is no number gets ``?REENTER`` and a
+        new attempt; values left over get ``?EXTRA IGNORED``. Values stored before a bad one stay
+        stored, as in the ROM.
+        """
+        while True:
+            self.put("?")
+            reply = Reply(self, read, zero, self.read_line())
+            yield reply
+            if not reply.refused:
+                break
+            self.put("?REENTER\n")
+        if reply.has_more:
+            self.put("?EXTRA IGNORED\n")
+
+
+class Reply(Generic[Number]):
+    """The values of one reply to INPUT; calling it yields the next one."""
+
+    def __init__(self, console: Console, read: Read[Number], zero: Number, line: str) -> None:
+        self._console = console
+        self._read = read
+        self._zero = zero
+        self._line = line
+        self._position = 0
+        self._started = False
+        self.refused = False
+
+    def __call__(self, old: Number | None) -> Number:
+        """The next value; ``old``, the variable's value so far, if this reply has been refused.
+
+        A variable that INPUT only names comes into being as zero. Raises ApplesoftError OVERFLOW
+        and EndOfInput.
+        """
+        kept = self._zero if old is None else old
+        if self.refused:
+            return kept
+        if self._started:
+            if self._at_end():
+                self._console.put("??")
+                self._line = self._console.read_line()
+                self._position = 0
+            else:
+                self._position += 1  # the comma
+        self._started = True
+        value, self._position = self._read(self._line, self._position)
+        while self._line.startswith(" ", self._position):
+            self._position += 1
+        self.refused = not (self._at_end() or self._line[self._position] == ",")
+        return kept if self.refused else value
+
+    def _at_end(self) -> bool:
+        """A colon ends a reply as it ends a statement."""
+        return self._position >= len(self._line) or self._line[self._position] == ":"
+
+    @property
+    def has_more(self) -> bool:
+        """Whether anything was typed beyond the values asked for."""
+        return self._position < len(self._line)
+
+
+def _edited(typed: str) -> str:
+    """The line after its backspaces."""
+    if CONTROL_H not in typed:
+        return typed
+    kept: list[str] = []
+    for character in typed:
+        if character != CONTROL_H:
+            kept.append(character)
+        elif kept:
+            kept.pop()
+    return "".join(kept)

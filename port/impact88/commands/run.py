@@ -1,0 +1,158 @@
+"""With no scene this is the 1988 program: the listing's own data, and the velocities are asked for
+on the terminal or read from standard input, two lines of three numbers.
+
+examples:
+  impact88 run                            prompts, as in 1988
+  impact88 run --sample 1                 the Appendix's first sample run
+  impact88 run crash.toml --set MU=.5     a scene file, one value changed
+  impact88 run --sample 1 --arithmetic float64
+  impact88 run --sample 1 --no-dos --json
+
+exit status: 0 the program ended, ZERO DETERMINANT included; 1 an Applesoft error; 2 bad input
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from contextlib import ExitStack
+
+from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
+from ..arithmetics import ARITHMETICS
+from ..errors import UserError
+from ..files import replacing
+from ..names import VELOCITIES
+from ..run import finished, start
+from ..scene import SAMPLES, Scene, check_names, check_value, published_data, sample
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 run`."""
+    parser.add_argument("scene", nargs="?", metavar="FILE.toml", help="a scene file (- is stdin)")
+    parser.add_argument("--sample", type=int, choices=SAMPLES, help="a published run's scene")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="change a value of the scene; repeatable",
+    )
+    parser.add_argument(
+        "--arithmetic",
+        choices=tuple(ARITHMETICS),
+        default="applesoft",
+        help="the numbers to compute with (default: %(default)s)",
+    )
+    parser.add_argument("--json", action="store_true", help="print the run as one JSON object")
+    add_machine_arguments(parser)
+
+
+def add_machine_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options that say what is plugged into the machine."""
+    parser.add_argument(
+        "--no-dos",
+        action="store_true",
+        help="no disk operating system: lines that start with control-D are shown",
+    )
+    parser.add_argument(
+        "--slot",
+        type=int,
+        choices=range(8),
+        default=0,
+        metavar="N",
+        help="the output slot in line 190: 0 the screen, 1 the printer",
+    )
+    parser.add_argument(
+        "--printer", metavar="FILE", help="where the printer's output goes (default: stdout)"
+    )
+
+
+def settings(pairs: list[str]) -> dict[str, str]:
+    """The values of ``--set NAME=VALUE`` options. Raises UserError."""
+    changes: dict[str, str] = {}
+    for pair in pairs:
+        name, equals, value = pair.partition("=")
+        name = name.strip().upper()
+        if not equals:
+            raise UserError(f"--set {pair}: expected NAME=VALUE, such as --set MU=.5")
+        check_names({name: value}, "--set")
+        if name in changes:
+            raise UserError(f"--set: {name} is given twice")
+        changes[name] = check_value(name, value.strip(), "--set")
+    return changes
+
+
+def chosen_scene(args: argparse.Namespace) -> Scene | None:
+    """The scene the options name; None for the listing's own data with prompts."""
+    if args.scene and args.sample:
+        raise UserError(f"a scene file and --sample {args.sample} are both given; expected one")
+    changes = settings(args.set)
+    if args.scene or args.sample:
+        scene = Scene.from_toml(args.scene) if args.scene else sample(args.sample)
+        return scene.replaced(changes) if changes else scene
+    given = [name for name in VELOCITIES if name in changes]
+    if not given:
+        return None
+    if len(given) < len(VELOCITIES):
+        missing = " ".join(name for name in VELOCITIES if name not in changes)
+        raise UserError(
+            f"--set gives {' '.join(given)} but not {missing}; expected all six velocities, "
+            "or none of them to be asked for, or a scene"
+        )
+    return Scene(published_data() | changes, source="--set")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Run the program on the terminal, or on a scene."""
+    if args.slot not in (0, PRINTER_SLOT) and not args.no_dos:
+        raise UserError(
+            f"slot {args.slot} is empty; expected 0 (screen) or {PRINTER_SLOT} (printer), or --no-dos"
+        )
+    scene = chosen_scene(args)
+    data = scene if scene is not None else published_data() | settings(args.set)
+    shown: list[str] = []
+    show = shown.append if args.json else sys.stdout.write
+    with ExitStack() as stack:
+        printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
+        if scene is not None:
+            replies = iter(scene.keyboard())
+            console = Console(lambda: next(replies, None), show, printer, dos=not args.no_dos)
+        else:
+            echo = args.json or not sys.stdin.isatty()
+            console = Console(_typed_line, show, printer, dos=not args.no_dos, echo=echo)
+        try:
+            error, zero_determinant, left = start(data, console, args.arithmetic, str(args.slot))
+        except EndOfInput:
+            if not args.json:
+                print(flush=True)
+            raise UserError(
+                "the input ended at a prompt; expected two lines of three numbers: "
+                + ",".join(VELOCITIES[:3])
+                + " and "
+                + ",".join(VELOCITIES[3:])
+            ) from None
+    if args.json:
+        import json
+
+        run = finished("".join(shown), error, zero_determinant, left)
+        print(
+            json.dumps(
+                {
+                    "printout": run.printout,
+                    "error": run.error,
+                    "line": run.line,
+                    "reals": run.reals,
+                    "A": run.A,
+                }
+            )
+        )
+    elif error is not None:
+        print()
+    return 1 if error else 0
+
+
+def _typed_line() -> str | None:
+    """The next line of standard input, without its end."""
+    sys.stdout.flush()
+    line = sys.stdin.readline()
+    return line.rstrip("\r\n") if line else None

@@ -1,0 +1,266 @@
+"""A scene: the listing's 21 values as the text that was typed, and the files that hold them.
+
+The digits typed are part of the evidence (90315.8817 and 90315.88170 differ in their last bit), so
+a scene keeps text; an arithmetic reads it later. The file form is TOML, flat, keyed by the
+listing's names; only the raw text of a value is used, never TOML's own idea of the number.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+from .applesoft import decimaltext
+from .errors import UserError
+from .files import packaged_text, read_text
+from .names import DEFAULT_M, SCENE, VELOCITIES
+
+VALUE_LIMIT = 70
+"""The longest value: three of them and their commas fit the 239 characters INPUT keeps."""
+DATA_LINES = (280, 290, 310)
+M_LINE = 350
+LISTING = "impact.bas"
+
+_ASSIGNMENT = re.compile(r"\b([A-Z][A-Z]?) = ([^:]*?) *(?=:|$)")
+_ENTRY = re.compile(r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)""")
+_BARE = re.compile(r"[^#]*")
+
+
+class Scene(Mapping[str, str]):
+    """The 21 values of a scene by the listing's names, in the table's order, each as typed.
+
+    ``source`` says where it came from (a file's name), for messages.
+    """
+
+    __slots__ = ("_values", "source", "title")
+
+    def __init__(
+        self, values: Mapping[str, str], title: str | None = None, source: str = "scene"
+    ) -> None:
+        """Raises UserError for a missing or unknown name and for text that is no number."""
+        given = dict(values)
+        given.setdefault("M", DEFAULT_M)
+        check_names(given, source)
+        missing = [name for name in SCENE if name not in given]
+        if missing:
+            wanted = "; ".join(f"{name} ({SCENE[name].meaning})" for name in missing[:3])
+            more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
+            raise UserError(f"missing {wanted}{more}", source)
+        self._values = {name: check_value(name, given[name], source) for name in SCENE}
+        self.title = title
+        self.source = source
+
+    @classmethod
+    def from_mapping(cls, values: Mapping[str, str], source: str = "scene") -> Scene:
+        """A scene from texts by name; M defaults to 6."""
+        return cls(values, source=source)
+
+    @classmethod
+    def from_toml(cls, path: str) -> Scene:
+        """The scene in a TOML file. Raises UserError naming file, line or key."""
+        return cls.from_toml_text(read_text(path, limit=1_000_000), path)
+
+    @classmethod
+    def from_toml_text(cls, text: str, source: str) -> Scene:
+        """The scene in a TOML document; ``source`` names it in errors."""
+        values = toml_texts(text, source)
+        title = values.pop("title", None)
+        return cls(values, title, source)
+
+    def __getitem__(self, name: str) -> str:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __repr__(self) -> str:
+        return f"Scene({self._values!r})"
+
+    def replaced(self, changes: Mapping[str, str]) -> Scene:
+        """This scene with some values changed. Raises UserError as the constructor does."""
+        return Scene({**self._values, **changes}, self.title, self.source)
+
+    def keyboard(self) -> list[str]:
+        """The replies to the INPUTs of lines 210 and 230."""
+        return [",".join(self[name] for name in VELOCITIES[at : at + 3]) for at in (0, 3)]
+
+    def typed_lines(self) -> list[str]:
+        """The program lines to retype for this scene: 280, 290, 310, and 350 unless M is 6."""
+        lines = [
+            f"{line} "
+            + ":".join(f"{q.name} = {self[q.name]}" for q in SCENE.values() if q.line == line)
+            for line in DATA_LINES
+        ]
+        if self["M"] != DEFAULT_M:
+            lines.append(f"{M_LINE} N = {DEFAULT_M}:M = {self['M']}")
+        return lines
+
+    def to_toml(self) -> str:
+        """The scene as a commented TOML file."""
+        return template(self, self.title)
+
+
+def check_names(values: Mapping[str, str], source: str) -> None:
+    """Raises UserError for a name that is not a scene's."""
+    for name in values:
+        if name not in SCENE:
+            hint = f"; did you mean {name.upper()}?" if name.upper() in SCENE else ""
+            raise UserError(
+                f"{name!r} is no value of a scene{hint} (expected {' '.join(SCENE)}, or title)",
+                source,
+            )
+
+
+def check_value(name: str, text: str, source: str) -> str:
+    """``text`` if INPUT would take it for a number. Raises UserError if not."""
+    if not isinstance(text, str):
+        raise UserError(f"{name} is {text!r}; expected the number's text", source)
+    if not decimaltext.is_number(text.upper()):
+        raise UserError(
+            f"{name} = {text!r} is no number; expected {SCENE[name].meaning} as decimal text",
+            source,
+        )
+    if len(text) > VALUE_LIMIT:
+        raise UserError(f"{name} has more than {VALUE_LIMIT} characters", source)
+    return text
+
+
+# --- TOML ------------------------------------------------------------------------------------------
+
+
+def toml_texts(text: str, source: str) -> dict[str, str]:
+    """The entries of a flat TOML document as texts: numbers as they stand in the file, strings as
+    what they hold. Raises UserError for anything that is neither, naming the line."""
+    import tomllib
+
+    raw = _raw_values(text, source)
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise _syntax_error(text, str(error), raw, source) from None
+    texts = {}
+    for key, value in document.items():
+        line, raw_text = raw.get(key, (0, ""))
+        where = f"{source}, line {line}" if line else source
+        if isinstance(value, str):
+            texts[key] = value
+        elif isinstance(value, bool) or not isinstance(value, int | float):
+            kind = {bool: "a truth value", list: "a list", dict: "a table"}.get(
+                type(value), "a date"
+            )
+            raise UserError(f"{key} is {kind}; expected a number", where)
+        else:
+            if not decimaltext.is_number(raw_text.upper()):
+                raise UserError(f"{key} = {raw_text} is no number that INPUT takes", where)
+            texts[key] = raw_text
+    return texts
+
+
+def _raw_values(text: str, source: str) -> dict[str, tuple[int, str]]:
+    """Line and raw text of each entry's value, a comment cut off."""
+    raw: dict[str, tuple[int, str]] = {}
+    for number, line in enumerate(text.split("\n"), 1):
+        if '"""' in line or "'''" in line:
+            raise UserError(
+                "text over several lines is not used here; expected one value a line",
+                f"{source}, line {number}",
+            )
+        if match := _ENTRY.match(line):
+            key = next(group for group in match.groups()[:3] if group is not None)
+            if key in raw:
+                raise UserError(
+                    f"{key} is given twice (first in line {raw[key][0]})",
+                    f"{source}, line {number}",
+                )
+            bare = _BARE.match(match.group(4))
+            raw[key] = (number, bare.group(0).strip() if bare else "")
+    return raw
+
+
+def _syntax_error(
+    text: str, message: str, raw: Mapping[str, tuple[int, str]], source: str
+) -> UserError:
+    """What TOML refuses, with the spelling it would take when the value is one INPUT takes."""
+    place = re.search(r"\(at line (\d+)", message)
+    number = int(place.group(1)) if place else text.count("\n") + 1
+    where = f"{source}, line {number}"
+    for key, (line, value) in raw.items():
+        if line == number and decimaltext.is_number(value.upper()):
+            whole = re.sub(r"^([+-]?)\.", r"\g<1>0.", value)
+            whole = re.sub(r"\.(?![0-9])", ".0", whole)
+            return UserError(f'{key} = {value} is not TOML; write {whole} or "{value}"', where)
+        if line == number and not value:
+            return UserError(f"{key} has no value; expected a number", where)
+    return UserError(f"not TOML: {message}", where)
+
+
+def template(values: Mapping[str, str] | None = None, title: str | None = None) -> str:
+    """A commented scene file; without ``values`` the numbers are left to fill in."""
+    lines = [
+        "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per unit",
+        '# of time. The digits are used as written; write 0.911 or ".911", because TOML takes no .911',
+        f'title = "{title or ""}"',
+    ]
+    heading = None
+    for quantity in SCENE.values():
+        if quantity.line != heading:
+            heading = quantity.line
+            lines += ["", f"# line {heading} of the listing"]
+        text = values[quantity.name] if values else (DEFAULT_M if quantity.name == "M" else "")
+        value = text if _plain_toml(text) else f'"{text}"'
+        entry = f"{quantity.name} = {value}"
+        lines.append(f"{entry:<20} # {quantity.symbol}: {quantity.meaning} [{quantity.unit}]")
+    return "\n".join(lines) + "\n"
+
+
+def _plain_toml(text: str) -> bool:
+    """Whether TOML takes the number unquoted."""
+    return re.fullmatch(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?", text) is not None
+
+
+# --- the listing's own data and the published runs ---------------------------------------------------
+
+
+def published_data() -> dict[str, str]:
+    """The values in the published listing's own lines 280, 290, 310 and 350."""
+    data: dict[str, str] = {}
+    for line in packaged_text("impact88.legacy", LISTING).splitlines():
+        number, _, statements = line.partition(" ")
+        if int(number) in (*DATA_LINES, M_LINE):
+            data.update(_ASSIGNMENT.findall(statements.partition(": REM")[0]))
+    return {name: data[name] for name in SCENE if name in data}
+
+
+_APPENDIX_VELOCITIES = ("-29.04", "0", "0", "14.52", "25.15", "0")
+_SAMPLES: dict[int, tuple[str, tuple[str, ...], dict[str, str]]] = {
+    1: ("Appendix, first sample run", _APPENDIX_VELOCITIES, {}),
+    2: (
+        "Appendix, second sample run: point masses",
+        _APPENDIX_VELOCITIES,
+        {"M": "4", "DA": "0", "DB": "0"},
+    ),
+    3: (
+        "Table 3: hypothetical collision for example calculations",
+        ("-36.667", "0", "0", "0", "58.667", "0"),
+        {
+            **{"E": ".25", "MU": ".89", "EM": "-.9", "DA": "4.5", "DB": "4"},
+            **{"GA": "0", "PA": "0", "PB": "-40", "TA": "0", "TB": "90"},
+            **{"MA": "96", "MB": "145", "IA": "1970", "IB": "3770"},
+        },
+    ),
+}
+"""The published runs: title, the velocities typed, and what differs from the listing's own data."""
+
+SAMPLES = tuple(_SAMPLES)
+
+
+def sample(number: int) -> Scene:
+    """The scene of published run 1, 2 or 3. Raises UserError for another number."""
+    if number not in _SAMPLES:
+        raise UserError(f"there is no sample {number}; expected {', '.join(map(str, SAMPLES))}")
+    title, velocities, changes = _SAMPLES[number]
+    values = published_data() | dict(zip(VELOCITIES, velocities, strict=True)) | changes
+    return Scene(values, title, f"sample {number}")
