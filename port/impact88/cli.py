@@ -78,21 +78,21 @@ def _dispatch(arguments: Sequence[str]) -> int:
 
 
 def _open_closed_streams() -> None:
-    """A stream the shell closed (``<&-``, ``2>&-``) is None in Python; make it read or write nothing.
+    """A stream the shell closed (``2>&-``) is None in Python: make it read or write nothing.
 
     Raises UserError when standard output is closed: the result would be lost without a word.
     """
     if sys.stdin is None:
-        sys.stdin = open(os.devnull)
+        sys.stdin = open(os.devnull)  # noqa: SIM115
     if sys.stderr is None:
-        sys.stderr = open(os.devnull, "w")
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115
     if sys.stdout is None:
-        sys.stdout = open(os.devnull, "w")
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
         raise UserError("standard output is closed; expected somewhere to print the result")
 
 
 def _drop_output() -> None:
-    """Let stdout lead nowhere: the interpreter would complain again when it flushes on its way out."""
+    """Let stdout lead nowhere: on its way out the interpreter would flush, and complain, again."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

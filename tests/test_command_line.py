@@ -1,0 +1,309 @@
+"""The installed command: what it says, how it leaves, and that it never shows a traceback."""
+
+from __future__ import annotations
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import impact88
+from impact88.cli import COMMANDS
+from installed import COMMAND
+from installed import impact88 as command
+
+needs_full_device = pytest.mark.skipif(
+    not os.path.exists("/dev/full"), reason="this system has no /dev/full"
+)
+
+
+def assert_one_line(stderr: str) -> None:
+    assert "Traceback" not in stderr
+    assert stderr.count("\n") == 1, stderr
+    assert stderr.startswith("impact88")
+
+
+def test_version() -> None:
+    done = command("--version")
+    assert (done.returncode, done.stdout, done.stderr) == (
+        0,
+        f"impact88 {impact88.__version__}\n",
+        "",
+    )
+
+
+def test_help_lists_every_command_and_the_exit_statuses() -> None:
+    done = command("--help")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for name, line in COMMANDS.items():
+        assert any(row.split() == [name, *line.split()] for row in done.stdout.splitlines()), name
+    assert "exit status: 0 done, 1 done with an adverse result, 2 unusable input" in done.stdout
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help_and_refuses_an_unknown_option(name: str) -> None:
+    asked = command(name, "--help")
+    assert asked.returncode == 0, asked.stderr
+    assert asked.stdout.startswith(f"usage: impact88 {name}")
+    refused = command(name, "--no-such-option")
+    assert refused.returncode == 2
+    assert refused.stdout == ""
+    assert_one_line(refused.stderr)
+    assert refused.stderr.startswith(f"impact88 {name}: ")
+
+
+@pytest.mark.parametrize("arguments", [(), ("",), ("frobnicate",), ("--sample", "1"), ("RUN",)])
+def test_what_is_no_command_is_refused_in_one_line(arguments: tuple[str, ...]) -> None:
+    done = command(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert_one_line(done.stderr)
+
+
+@pytest.mark.parametrize(
+    "arguments", [("--version",), ("--help",), ("run", "--sample", "2"), ("x",)]
+)
+def test_module_is_the_command(arguments: tuple[str, ...]) -> None:
+    installed = command(*arguments)
+    module = subprocess.run(
+        [sys.executable, "-m", "impact88", *arguments],
+        capture_output=True,
+        encoding="utf-8",
+        input="",
+        timeout=120,
+        check=False,
+    )
+    assert module.returncode == installed.returncode
+    assert module.stdout == installed.stdout
+    assert module.stderr == installed.stderr
+
+
+# what the shell may do to the streams
+
+
+@pytest.mark.parametrize("arguments", [("--help",), ("scene",), ("run", "--sample", "1")])
+def test_broken_pipe_is_quiet(arguments: tuple[str, ...]) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        done = subprocess.run(
+            [COMMAND, *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=writing,
+            stderr=subprocess.PIPE,
+            timeout=120,
+            check=False,
+        )
+    finally:
+        os.close(writing)
+    assert done.returncode == 128 + signal.SIGPIPE
+    assert done.stderr == b""
+
+
+@needs_full_device
+@pytest.mark.parametrize("arguments", ["--version", "run --sample 1"])
+def test_full_disk_is_one_line(arguments: str) -> None:
+    done = shell(f'"$COMMAND" {arguments} >/dev/full')
+    assert done.returncode == 2
+    assert_one_line(done.stderr)
+    assert os.strerror(28) in done.stderr
+
+
+def test_closed_output_is_one_line() -> None:
+    done = shell('"$COMMAND" run --sample 1 >&-')
+    assert done.returncode == 2
+    assert_one_line(done.stderr)
+
+
+def test_closed_error_stream_does_not_reach_the_result() -> None:
+    done = shell('"$COMMAND" frobnicate 2>&-')
+    assert (done.returncode, done.stdout) == (2, "")
+
+
+def test_closed_input_is_input_that_ended() -> None:
+    done = shell('"$COMMAND" run <&-')
+    assert done.returncode == 2
+    assert_one_line(done.stderr)
+
+
+def shell(line: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        ["sh", "-c", line],
+        env={**os.environ, "COMMAND": COMMAND},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=120,
+        check=False,
+    )
+
+
+# run
+
+
+@pytest.mark.parametrize("sample", ["1", "2", "3"])
+def test_run_prints_a_sample(sample: str) -> None:
+    done = command("run", "--sample", sample)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "KE LOSS= " in done.stdout
+
+
+def test_run_ends_with_one_after_an_applesoft_error() -> None:
+    done = command("run", "--sample", "1", "--set", "IA=0")
+    assert done.returncode == 1
+    assert "?DIVISION BY ZERO ERROR\x07 IN 480" in done.stdout
+    assert "Traceback" not in done.stderr
+
+
+def test_zero_determinant_is_an_end_like_any_other() -> None:
+    done = command("run", "--sample", "1", "--set", "MA=0")
+    assert done.returncode == 0
+    assert done.stdout.endswith("ZERO DETERMINANT\n")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("no-such-file.toml",),
+        (".",),
+        ("--sample", "4"),
+        ("--sample", "1", "--set", "XX=1"),
+        ("--sample", "1", "--set", "MU"),
+        ("--sample", "1", "--set", "MU=much"),
+        ("--sample", "1", "--arithmetic", "decimal"),
+        ("--sample", "1", "--slot", "9"),
+    ],
+)
+def test_run_refuses_what_it_cannot_use_in_one_line(
+    arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    done = command("run", *arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert_one_line(done.stderr)
+
+
+def test_scene_file_with_bytes_that_are_no_text_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_bytes(b'MU = "\xff\xfe"\n')
+    done = command("run", str(file))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert_one_line(done.stderr)
+    assert "scene.toml" in done.stderr
+
+
+def test_scene_template_names_the_samples_values_and_runs(tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(command("scene", "--sample", "2").stdout, encoding="utf-8")
+    assert command("run", str(file)).stdout == command("run", "--sample", "2").stdout
+
+
+def test_run_reads_the_velocities_from_standard_input() -> None:
+    done = command("run", input="-29.04,0,0\n14.52,25.15,0\n")
+    assert (done.returncode, done.stderr) == (0, "")
+    sample = command("run", "--sample", "1").stdout
+    assert done.stdout[done.stdout.index("MA= ") :] == sample[sample.index("MA= ") :]
+
+
+def test_input_that_ends_at_a_prompt_is_one_line() -> None:
+    done = command("run", input="-29.04,0,0\n")
+    assert done.returncode == 2
+    assert "COMPONENTS OF MB" in done.stdout
+    assert_one_line(done.stderr)
+
+
+class Terminal:
+    """The command on a terminal of its own."""
+
+    def __init__(self, *arguments: str) -> None:
+        self.process, self.screen = pty.fork()
+        if self.process == 0:
+            try:
+                os.execv(COMMAND, [COMMAND, *arguments])
+            finally:
+                os._exit(127)
+        self.shown = ""
+
+    def read(self) -> bool:
+        """More of what is on the screen; false when the command has left."""
+        try:
+            data = os.read(self.screen, 4096)
+        except OSError:  # how a terminal says that nobody is left at the other end
+            data = b""
+        self.shown += data.decode()
+        return bool(data)
+
+    def read_until(self, text: str) -> None:
+        start = len(self.shown)
+        while text not in self.shown[start:]:
+            assert self.read(), self.shown
+
+    def type(self, keys: str) -> None:
+        os.write(self.screen, keys.encode())
+
+    def leave(self) -> int:
+        while self.read():
+            pass
+        os.close(self.screen)
+        _, status = os.waitpid(self.process, 0)
+        return os.waitstatus_to_exitcode(status)
+
+
+def test_run_on_a_terminal_prompts_and_does_not_repeat_the_echo() -> None:
+    terminal = Terminal("run")
+    terminal.read_until("?")
+    terminal.type("-29.04,0,0\n")
+    terminal.read_until("?")
+    terminal.type("14.52,25.15,0\n")
+    assert terminal.leave() == 0
+    shown = terminal.shown.replace("\r\n", "\n")
+    assert shown.count("-29.04,0,0\n") == 1
+    assert "XB= 14.51 YB= 25.14\n" in shown
+
+
+def test_control_c_at_a_prompt_leaves_without_a_traceback() -> None:
+    terminal = Terminal("run")
+    terminal.read_until("?")
+    terminal.type("\x03")
+    assert terminal.leave() == 128 + signal.SIGINT
+    assert "Traceback" not in terminal.shown
+
+
+def test_interrupt_signal_at_a_prompt_leaves_without_a_traceback() -> None:
+    with subprocess.Popen(
+        [COMMAND, "run"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        bufsize=0,
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        shown = b""
+        while b"?" not in shown:  # the prompt comes before the reply is waited for
+            data = process.stdout.read(4096)
+            assert data
+            shown += data
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60) == 128 + signal.SIGINT
+        assert b"Traceback" not in process.stderr.read()
+
+
+@pytest.mark.parametrize("arguments", [["run", "--sample", "1"], ["scene"], ["--help"]])
+def test_first_command_imports_neither_numpy_nor_matplotlib(arguments: list[str]) -> None:
+    code = (
+        "import sys\n"
+        "from impact88.cli import main\n"
+        f"status = main({arguments!r})\n"
+        "heavy = {'numpy', 'matplotlib', 'mpmath', 'scipy'} & set(sys.modules)\n"
+        "sys.exit(f'{status} {heavy}' if status or heavy else 0)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=False
+    )
+    assert done.returncode == 0, done.stderr
