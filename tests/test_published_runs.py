@@ -1,0 +1,67 @@
+"""The three published runs: what the program prints, against golden files and against 1988."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from importlib.resources import files
+
+import pytest
+
+from impact88.run import run
+from impact88.scene import sample
+
+PUBLISHED = [(1, "run1"), (2, "run2"), (3, "table3")]
+
+
+def published(name: str) -> str:
+    return (files("impact88.legacy") / f"{name}-as-printed.txt").read_bytes().decode()
+
+
+def results(printout: str) -> str:
+    """A printout from ``MA=`` on, blanks, line ends and asterisks left out: ERRATA says why."""
+    return re.sub(r"[\s*]", "", printout[printout.index("MA=") :])
+
+
+def replies(printout: str) -> list[str]:
+    """What was typed after each question mark, without blanks (and without INPUT's NUL)."""
+    return [re.sub(r"[ \0]", "", reply) for reply in re.findall(r"\?(.*)", printout)]
+
+
+@pytest.mark.parametrize(("number", "name"), PUBLISHED)
+def test_printout_is_the_golden_file_to_the_character(
+    number: int, name: str, golden_printout: Callable[[str, str], None]
+) -> None:
+    golden_printout(run(sample(number)).printout, name)
+
+
+@pytest.mark.parametrize(("number", "name"), PUBLISHED)
+def test_every_published_character_is_printed(number: int, name: str) -> None:
+    assert results(run(sample(number)).printout) == results(published(name))
+
+
+@pytest.mark.parametrize(("number", "name"), PUBLISHED)
+def test_replies_are_those_typed_in_1988(number: int, name: str) -> None:
+    typed = replies(run(sample(number)).printout)
+    assert typed == replies(published(name))
+    assert len(typed) == 2
+
+
+@pytest.mark.parametrize(("number", "name"), PUBLISHED)
+def test_comparison_with_the_published_text_sees_one_digit(number: int, name: str) -> None:
+    """Every digit of the published text counts: changing any of them fails the comparison."""
+    printed = results(run(sample(number)).printout)
+    text = published(name)
+    start = text.index("MA=")
+    for match in re.finditer(r"\d", text[start:]):
+        at = start + match.start()
+        changed = text[:at] + str((int(match[0]) + 1) % 10) + text[at + 1 :]
+        assert results(changed) != printed
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_double_precision_misses_two_published_digits(number: int) -> None:
+    """XB= 14.51 and YB= 25.14 are the arithmetic's, not the statements'."""
+    exact, double = run(sample(number)).printout, run(sample(number), "float64").printout
+    assert "XB= 14.51 YB= 25.14\n" in exact
+    assert double == exact.replace("XB= 14.51 YB= 25.14\n", "XB= 14.52 YB= 25.15\n")
