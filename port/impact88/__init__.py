@@ -6,7 +6,9 @@ numpy.
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 __version__ = "0.1.0"
@@ -17,6 +19,20 @@ _LAZY = {
     "run": "run",
 }
 """Public name -> the module that holds it."""
+
+
+class _Package(ModuleType):
+    """This package: a public name stays the function when the module of that name is imported.
+
+    Python would bind ``impact88.run`` to the module ``run`` once anything imports it.
+    """
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _LAZY and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package
 
 
 def __getattr__(name: str) -> Any:
