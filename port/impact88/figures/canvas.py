@@ -1,0 +1,152 @@
+"""Where matplotlib is met: imported when a figure is drawn, one style for all of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..errors import UserError
+from ..files import replacing
+from .drawing import (
+    BLACK,
+    BLUE,
+    GREEN,
+    MM_PER_POINT,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    Drawing,
+    Path,
+    text_runs,
+)
+from .svg import svg
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORMATS = ("svg", "png", "pdf")
+DOTS_PER_INCH = 300
+STYLE: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7,
+    "axes.labelsize": 7,
+    "axes.titlesize": 7.5,
+    "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5,
+    "legend.fontsize": 6.5,
+    "legend.frameon": False,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "lines.linewidth": 1.2,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "hatch.linewidth": 0.5,
+    "svg.fonttype": "none",
+    # the same data give the same file
+    "svg.hashsalt": "impact88",
+    "pdf.fonttype": 42,
+}
+COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+
+
+def new_figure(width_mm: float, height_mm: float) -> Figure:
+    """An empty figure of that size, in this project's style, tied to no screen. Text sizes and
+    other style are those at the time artists are added: draw inside ``with style():``.
+
+    Raises UserError naming the extra to install when matplotlib is missing.
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise UserError(
+            "figures need matplotlib, which is not installed; pip install 'impact88[plot]'"
+        ) from None
+    figure = Figure(figsize=(width_mm / 25.4, height_mm / 25.4), dpi=DOTS_PER_INCH)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def style() -> Any:
+    """A context in which matplotlib uses this project's style. Raises UserError as above."""
+    try:
+        from matplotlib import rc_context
+    except ImportError:
+        raise UserError(
+            "figures need matplotlib, which is not installed; pip install 'impact88[plot]'"
+        ) from None
+    return rc_context(dict[Any, Any](STYLE))
+
+
+def drawn(drawing: Drawing) -> Figure:
+    """The drawing as a matplotlib figure of exactly its size."""
+    with style():
+        from matplotlib.patheffects import Normal, Stroke
+
+        figure = new_figure(drawing.width, drawing.height)
+        axes = figure.add_axes((0, 0, 1, 1))
+        axes.set_xlim(0, drawing.width)
+        axes.set_ylim(0, drawing.height)
+        axes.axis("off")
+        halo = [Stroke(linewidth=0.5 / MM_PER_POINT, foreground="white"), Normal()]
+        for order, item in enumerate(drawing.items):
+            if isinstance(item, Path):
+                _add_path(axes, item, order)
+                continue
+            for run in text_runs(item):
+                axes.text(
+                    run.x,
+                    run.y,
+                    run.text.replace("$", r"\$"),
+                    fontsize=run.size,
+                    color=item.colour,
+                    fontweight="bold" if item.bold else "normal",
+                    ha="left",
+                    va="baseline",
+                    zorder=10 + order,
+                    gid=item.role or None,
+                    path_effects=halo,
+                )
+    return figure
+
+
+def _add_path(axes: Any, path: Path, order: int) -> None:
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    points = path.width / MM_PER_POINT
+    dashes = tuple(part / path.width for part in path.dash)
+    corners = (*path.points, path.points[0]) if path.fill else path.points
+    axes.add_patch(
+        PathPatch(
+            Outline(corners),
+            facecolor=path.fill or "none",
+            edgecolor=path.stroke or "none",
+            linewidth=points if path.stroke else 0,
+            linestyle=(0, dashes) if dashes else "-",
+            joinstyle="round",
+            zorder=10 + order,
+            gid=path.role or None,
+        )
+    )
+
+
+def save(figure: Figure | Drawing, path: str) -> None:
+    """Write a figure; the format is the ending of ``path``. A drawing as SVG needs no matplotlib.
+
+    Raises UserError for another ending, a place that cannot be written to, missing matplotlib.
+    """
+    ending = path.rpartition(".")[2].lower()
+    if ending not in FORMATS:
+        raise UserError(f"no picture ends so; expected .{', .'.join(FORMATS)}", path)
+    if isinstance(figure, Drawing):
+        if ending == "svg":
+            text = '<?xml version="1.0" encoding="UTF-8"?>\n' + svg(figure)
+            with replacing(path) as file:
+                file.write(text)
+            return
+        figure = drawn(figure)
+    undated = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[ending]
+    with style(), replacing(path, "wb") as file:
+        figure.savefig(file, format=ending, dpi=DOTS_PER_INCH, metadata=undated)

@@ -1,0 +1,56 @@
+"""A drawing as SVG: self-contained text, no library."""
+
+from __future__ import annotations
+
+from xml.sax.saxutils import escape, quoteattr
+
+from .drawing import FONTS, MM_PER_POINT, Drawing, Path, Text, text_runs
+
+
+def svg(drawing: Drawing) -> str:
+    """The drawing as one SVG element, in millimetres, with title and description for readers who
+    cannot see it. May stand in a file by itself or inside an HTML page."""
+    width, height = _number(drawing.width), _number(drawing.height)
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+        f'viewBox="0 0 {width} {height}" role="img" font-family="{FONTS}">',
+        f"<title>{escape(drawing.title)}</title>",
+        f"<desc>{escape(drawing.description)}</desc>",
+        f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
+    ]
+    for item in drawing.items:
+        lines.append(_path(item, drawing) if isinstance(item, Path) else _text(item, drawing))
+    return "\n".join([*lines, "</svg>", ""])
+
+
+def _number(value: float) -> str:
+    return f"{value:.3f}".rstrip("0").rstrip(".")
+
+
+def _role(role: str) -> str:
+    return f" class={quoteattr(role)}" if role else ""
+
+
+def _path(path: Path, drawing: Drawing) -> str:
+    steps = " L".join(f"{_number(x)} {_number(drawing.height - y)}" for x, y in path.points)
+    close = "Z" if path.fill else ""
+    look = f'fill="{path.fill or "none"}"'
+    if path.stroke:
+        look += f' stroke="{path.stroke}" stroke-width="{_number(path.width)}"'
+        look += ' stroke-linejoin="round"'
+        if path.dash:
+            look += f' stroke-dasharray="{" ".join(map(_number, path.dash))}"'
+    return f'<path{_role(path.role)} d="M{steps}{close}" {look}/>'
+
+
+def _text(text: Text, drawing: Drawing) -> str:
+    weight = ' font-weight="bold"' if text.bold else ""
+    spans = "".join(
+        f'<tspan x="{_number(run.x)}" y="{_number(drawing.height - run.y)}" '
+        f'font-size="{_number(run.size * MM_PER_POINT)}">{escape(run.text)}</tspan>'
+        for run in text_runs(text)
+    )
+    return (
+        f'<text{_role(text.role)} fill="{text.colour}"{weight} xml:space="preserve" '
+        f'stroke="#ffffff" stroke-width="0.5" paint-order="stroke">{spans}</text>'
+    )
