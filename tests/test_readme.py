@@ -1,0 +1,110 @@
+"""README's examples are run, and print what README shows.
+
+In a ``console`` block a line that begins with ``$`` is a command and what follows is its output, in
+order of appearance on the terminal; a line ``...`` stands for any lines. All blocks share one
+folder. ``pycon`` blocks are doctests. Control characters are not compared: they cannot be seen in
+README, and other tests compare them.
+"""
+
+from __future__ import annotations
+
+import doctest
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from captures import ROOT
+from impact88.cli import COMMANDS
+from installed import COMMAND
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+TEST_COMMAND = "python3 -m venv .venv && .venv/bin/pip install -e '.[test]' && .venv/bin/pytest"
+FIRST_COMMAND = (
+    "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/impact88 run --sample 1"
+)
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.M | re.S)
+
+
+def examples() -> list[tuple[str, str]]:
+    """Each command of the console blocks with the output shown for it."""
+    found = []
+    for block in blocks("console"):
+        assert block.startswith("$ ")
+        for example in re.split(r"^\$ ", block, flags=re.M)[1:]:
+            command, _, output = example.partition("\n")
+            found.append((command, output))
+    return found
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the examples run, one after the other."""
+    return tmp_path_factory.mktemp("readme")
+
+
+def visible(text: str) -> list[str]:
+    return [line.rstrip() for line in re.sub(r"[\0\a\f]", "", text).rstrip("\n").split("\n")]
+
+
+def matches(shown: list[str], printed: list[str]) -> bool:
+    pattern = "".join(r"(?:.*\n)*" if line == "..." else re.escape(line) + r"\n" for line in shown)
+    return re.fullmatch(pattern, "".join(f"{line}\n" for line in printed)) is not None
+
+
+@pytest.mark.parametrize(("command", "shown"), examples())
+def test_example_prints_what_readme_shows(command: str, shown: str, folder: Path) -> None:
+    done = subprocess.run(
+        ["bash", "-c", command],
+        cwd=folder,
+        env={**os.environ, "PATH": f"{Path(COMMAND).parent}:{os.environ['PATH']}"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        timeout=120,
+        check=False,
+    )
+    if not matches(visible(shown), visible(done.stdout)):
+        assert visible(done.stdout) == visible(shown)
+
+
+@pytest.mark.parametrize("block", blocks("pycon"))
+def test_python_example(
+    block: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    test = doctest.DocTestParser().get_doctest(block, {}, "README.md", "README.md", 0)
+    assert test.examples
+    result = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(test)
+    assert result.failed == 0, capsys.readouterr().out
+
+
+def test_first_screen_holds_the_two_commands() -> None:
+    """The install commands are not run here: .ci/run runs the second in a fresh environment."""
+    screen = "\n".join(README.split("\n")[:24])
+    assert [block.strip() for block in blocks("sh")][:2] == [FIRST_COMMAND, TEST_COMMAND]
+    assert FIRST_COMMAND in screen
+    assert TEST_COMMAND in screen
+
+
+def test_every_command_is_mentioned() -> None:
+    missing = [name for name in COMMANDS if f"impact88 {name}" not in README]
+    assert not missing
+
+
+def test_every_linked_file_is_there() -> None:
+    links = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
+    assert links
+    assert [link for link in links if not (ROOT / link).exists()] == []
+
+
+def test_rooms_named_in_readme_are_there() -> None:
+    rooms = re.findall(r"\| `([a-z_/]+\.py)`", README)
+    assert rooms
+    assert [room for room in rooms if not (ROOT / "port" / "impact88" / room).is_file()] == []
