@@ -13,7 +13,7 @@ from typing import Any
 
 from .applesoft import decimaltext, functions
 from .applesoft.errors import ApplesoftError, division_by_zero, illegal_quantity, overflow
-from .applesoft.real import Real
+from .applesoft.real import ZERO, Number, Real, absolute, floor
 from .errors import UserError
 
 
@@ -69,6 +69,22 @@ def _applesoft_error(error: Exception) -> ApplesoftError | None:
     return error if isinstance(error, ApplesoftError) else None
 
 
+def _read_real(text: str, start: int) -> tuple[Real, int]:
+    number, end = decimaltext.read(text, start)
+    return Real(number), end
+
+
+def _write_real(x: Real) -> str:
+    return decimaltext.write(x.number)
+
+
+def _of_reals(function: Callable[[Number], Number]) -> Callable[[Real], Real]:
+    def of_real(x: Real) -> Real:
+        return Real(function(x.number))
+
+    return of_real
+
+
 def _float_error(error: Exception) -> ApplesoftError | None:
     if isinstance(error, ZeroDivisionError):
         return division_by_zero()
@@ -112,16 +128,16 @@ def _floor(x: float) -> float:
 
 APPLESOFT = Arithmetic(
     "applesoft",
-    read=decimaltext.read,
+    read=_read_real,
     LET=Real.rounded,
-    INT=functions.INT,
-    ABS=functions.ABS,
-    SIN=functions.SIN,
-    COS=functions.COS,
-    write=decimaltext.write,
+    INT=_of_reals(floor),
+    ABS=_of_reals(absolute),
+    SIN=_of_reals(functions.sine),
+    COS=_of_reals(functions.cosine),
+    write=_write_real,
     error=_applesoft_error,
-    unset=Real(0, 0, 0),
-    zero=Real(0, 0, 0),
+    unset=Real(ZERO),
+    zero=Real(ZERO),
 )
 FLOAT64 = Arithmetic(
     "float64",

@@ -55,6 +55,7 @@ def start(
     zero_determinant = False
     watching = stepping.after_every_line(after_line, chosen.unset) if after_line else nullcontext()
     try:
+        names: Mapping[str, Any]
         with watching:
             names = listing.impact(data, chosen, console, slot)
     except listing.End as end:
@@ -107,7 +108,9 @@ def finished(
         error.message if error else None,
         error.line if error else None,
         {name: _shown(value) for name, value in left.reals.items()},
-        left.A and {"dims": left.A.sizes, "data": [_shown(value) for value in left.A.data]},
+        None
+        if left.A is None
+        else {"dims": left.A.sizes, "data": [_shown(value) for value in left.A.data]},
         zero_determinant,
     )
 

@@ -128,7 +128,7 @@ def check_value(name: str, text: str, source: str) -> str:
     return text
 
 
-# --- TOML ------------------------------------------------------------------------------------------
+# --- TOML ----------------------------------------------------------------------------------------
 
 
 def toml_texts(text: str, source: str) -> dict[str, str]:
@@ -200,8 +200,8 @@ def _syntax_error(
 def template(values: Mapping[str, str] | None = None, title: str | None = None) -> str:
     """A commented scene file; without ``values`` the numbers are left to fill in."""
     lines = [
-        "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per unit",
-        '# of time. The digits are used as written; write 0.911 or ".911", because TOML takes no .911',
+        "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per",
+        '# unit of time. The digits are used as written. Write 0.911 or ".911": TOML takes no .911',
         f'title = "{title or ""}"',
     ]
     heading = None
@@ -221,7 +221,7 @@ def _plain_toml(text: str) -> bool:
     return re.fullmatch(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?", text) is not None
 
 
-# --- the listing's own data and the published runs ---------------------------------------------------
+# --- the listing's own data and the published runs -----------------------------------------------
 
 
 def published_data() -> dict[str, str]:

@@ -29,7 +29,7 @@ AfterLine = Callable[[int, "Variables"], object]
 
 
 class Variables(NamedTuple):
-    """The listing's variables at a moment: reals by name (those assigned so far) and the array A."""
+    """The listing's variables at a moment: reals by name, if assigned so far, and the array A."""
 
     reals: Mapping[str, Any]
     A: Array | None

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from .errors import ApplesoftError, illegal_quantity
-from .real import Real
+from .real import Real, integer
 
 SUBSCRIPT_LIMIT = 32768
+_SMALL = {integer(n): n for n in range(16)}
 
 
 def subscript(x: Any) -> int:
@@ -17,9 +18,13 @@ def subscript(x: Any) -> int:
     Raises ILLEGAL QUANTITY for a negative or larger one, however small its fraction.
     """
     if x.__class__ is Real:
-        if x.s or x.e > 143:
+        known = _SMALL.get(x.number)
+        if known is not None:
+            return known
+        e, m, s = x.number
+        if s or e > 143:
             raise illegal_quantity()
-        return int(x.m >> 168 - x.e)
+        return int(m >> 168 - e)
     if not 0 <= x < SUBSCRIPT_LIMIT:
         raise illegal_quantity()
     return int(x)
@@ -39,17 +44,22 @@ class Array:
         self._rows, self._columns = (*self.sizes, 1)[:2]
         self.data = [zero] * (self._rows * self._columns)
 
-    def _place(self, i: Any, j: Any) -> int:
+    def __getitem__(self, place: tuple[Any, Any]) -> Any:
+        i, j = place
         if i.__class__ is not int:
             i = subscript(i)
         if j.__class__ is not int:
             j = subscript(j)
         if i >= self._rows or j >= self._columns:
             raise ApplesoftError("BAD SUBSCRIPT")
-        return int(i + self._rows * j)
-
-    def __getitem__(self, place: tuple[Any, Any]) -> Any:
-        return self.data[self._place(*place)]
+        return self.data[i + self._rows * j]
 
     def __setitem__(self, place: tuple[Any, Any], value: Any) -> None:
-        self.data[self._place(*place)] = self._store(value)
+        i, j = place
+        if i.__class__ is not int:
+            i = subscript(i)
+        if j.__class__ is not int:
+            j = subscript(j)
+        if i >= self._rows or j >= self._columns:
+            raise ApplesoftError("BAD SUBSCRIPT")
+        self.data[i + self._rows * j] = self._store(value)

@@ -70,6 +70,10 @@ class Console:
         if not self.dos:
             self._show(text)
             return
+        if self._command is None and "\n" not in text and text[0] != CONTROL_D:
+            self._line_begins = False  # most text: no line ends in it, and no command begins
+            self._show(text)
+            return
         for line in text.splitlines(keepends=True) if "\n" in text else (text,):
             self._put_piece(line)
 

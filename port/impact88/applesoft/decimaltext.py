@@ -11,7 +11,21 @@ import re
 from typing import NamedTuple
 
 from .errors import overflow
-from .real import ZERO, Real, compare, integer, to_integer
+from .real import (
+    BIAS,
+    ZERO,
+    Number,
+    absolute,
+    add,
+    compare,
+    divide,
+    from_stored,
+    integer,
+    multiply,
+    negate,
+    rounded,
+    to_integer,
+)
 
 _NUMBER = re.compile(
     r"(?: *([+-]))?((?: *[0-9])*)(?: *\.((?: *[0-9])*))?(?: *E(?: *([+-]))?((?: *[0-9])*))?"
@@ -19,30 +33,30 @@ _NUMBER = re.compile(
 """Blanks may stand anywhere; every part may be missing, so this matches any text."""
 
 TEN = integer(10)
-HALF = Real.from_stored("8000000000")
-BILLION = Real.from_stored("9E6E6B2800")
-NINE_DIGITS = Real.from_stored("9E6E6B27FD")
+HALF = from_stored("8000000000")
+BILLION = from_stored("9E6E6B2800")
+NINE_DIGITS = from_stored("9E6E6B27FD")
 """999,999,999: above it a number has to be divided by ten before its nine digits are taken."""
-EIGHT_DIGITS = Real.from_stored("9B3EBC1FFD")
+EIGHT_DIGITS = from_stored("9B3EBC1FFD")
 """99,999,999.9: not above it, a number has to be multiplied by ten."""
 
 
-def times_ten(x: Real) -> Real:
+def times_ten(x: Number) -> Number:
     """MUL10: x rounded, as (4x + x) doubled. Raises OVERFLOW."""
-    x = x.rounded()
-    if not x.e:
+    e, m, s = rounded(x)
+    if not e:
         return ZERO
-    if x.e + 2 > 255:
+    if e + 2 > 255:
         raise overflow()
-    t = Real(x.e + 2, x.m, x.s) + x
-    if t.e + 1 > 255:
+    e, m, s = add((e + 2, m, s), (e, m, s))
+    if e == 255:
         raise overflow()
-    return Real(t.e + 1, t.m, t.s)
+    return e + 1, m, s
 
 
-def over_ten(x: Real) -> Real:
+def over_ten(x: Number) -> Number:
     """DIV10: |x| rounded, divided by ten."""
-    return abs(x).rounded() / TEN
+    return divide(absolute(x), TEN)
 
 
 class Numeral(NamedTuple):
@@ -60,11 +74,13 @@ def scan(text: str, start: int = 0) -> Numeral:
     """The parts of the number that begins at ``start``; no number at all has empty parts."""
     match = _NUMBER.match(text, start)
     assert match is not None  # the pattern matches the empty text
-    parts = (part.replace(" ", "") for part in match.groups(default=""))
-    return Numeral(*parts, end=match.end())
+    sign, whole, decimals, exponent_sign, exponent_digits = (
+        part.replace(" ", "") for part in match.groups(default="")
+    )
+    return Numeral(sign, whole, decimals, exponent_sign, exponent_digits, match.end())
 
 
-def read(text: str, start: int = 0) -> tuple[Real, int]:
+def read(text: str, start: int = 0) -> tuple[Number, int]:
     """The number that begins at ``start``, and where it ends; no number at all reads as zero.
 
     Blanks are passed over. Raises OVERFLOW.
@@ -72,13 +88,13 @@ def read(text: str, start: int = 0) -> tuple[Real, int]:
     numeral = scan(text, start)
     value = ZERO
     for digit in numeral.whole + numeral.decimals:
-        value = times_ten(value).rounded() + integer(int(digit))
+        value = add(times_ten(value), integer(int(digit)))
     steps = _exponent(numeral.exponent_sign, numeral.exponent_digits) - len(numeral.decimals)
     for _ in range(steps):
         value = times_ten(value)
     for _ in range(-steps):
         value = over_ten(value)
-    return (-value if numeral.sign == "-" else value), numeral.end
+    return (negate(value) if numeral.sign == "-" else value), numeral.end
 
 
 def _exponent(sign: str, digits: str) -> int:
@@ -99,19 +115,19 @@ def is_number(text: str) -> bool:
     return _NUMBER.fullmatch(text.rstrip(" ")) is not None and bool(text.strip(" "))
 
 
-def number(text: str) -> Real:
+def number(text: str) -> Number:
     """The real that the whole of ``text`` is. Raises ValueError if it is not one number."""
     if not is_number(text):
         raise ValueError(f"{text!r} is no number that Applesoft reads")
     return read(text)[0]
 
 
-def write(x: Real) -> str:
+def write(x: Number) -> str:
     """The characters PRINT and STR$ make of ``x``: at most nine digits, extension counted."""
-    if not x.e:
+    if not x[0]:
         return "0"
-    digits, d = _nine_digits(abs(x))
-    return lay_out("-" if x.s else "", str(digits), d)
+    digits, d = _nine_digits(absolute(x))
+    return lay_out("-" if x[2] else "", str(digits), d)
 
 
 def lay_out(sign: str, text: str, d: int) -> str:
@@ -127,11 +143,11 @@ def lay_out(sign: str, text: str, d: int) -> str:
     return sign + text.rstrip("0").rstrip(".") + exponent
 
 
-def _nine_digits(x: Real) -> tuple[int, int]:
+def _nine_digits(x: Number) -> tuple[int, int]:
     """The nine digits N written for x > 0, and d with x = N * 10^d."""
     d = 0
-    if x.e <= 128:
-        x = BILLION * x
+    if x[0] <= BIAS:
+        x = multiply(BILLION, x)
         d = -9
     while (order := compare(NINE_DIGITS, x)) > 0:
         x = over_ten(x)
@@ -140,5 +156,5 @@ def _nine_digits(x: Real) -> tuple[int, int]:
         while compare(EIGHT_DIGITS, x) <= 0:
             x = times_ten(x)
             d -= 1
-        x = HALF + x
+        x = add(HALF, x)
     return to_integer(x), d

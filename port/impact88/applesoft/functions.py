@@ -1,12 +1,14 @@
 """Applesoft's functions, each by the ROM's own reduction and polynomial.
 
-Arguments may carry an extension (a function's argument is not rounded on the way in, except where
-the rule says so); so do results. Coefficients are stored reals in hexadecimal, as the ROM has them.
+They are functions on plain triples, as in `real`. Arguments may carry an extension (a function's
+argument is not rounded on the way in, except where the rule says so); so do results. Coefficients
+are stored reals in hexadecimal, as the ROM has them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from .errors import illegal_quantity, overflow
 from .real import (
@@ -15,19 +17,27 @@ from .real import (
     LIMIT,
     TOP,
     ZERO,
-    Real,
+    Number,
+    absolute,
+    add,
     compare,
+    divide,
     floor,
+    from_stored,
     integer,
+    multiply,
+    negate,
     normalise,
     product_exponent,
+    rounded,
+    subtract,
     to_integer,
 )
 
 
-def stored_reals(text: str) -> tuple[Real, ...]:
+def stored_reals(text: str) -> tuple[Number, ...]:
     """Constants from their hexadecimal bytes, separated by blanks."""
-    return tuple(Real.from_stored(word) for word in text.split())
+    return tuple(from_stored(word) for word in text.split())
 
 
 LOG_COEFFICIENTS = stored_reals("7F5E56CB79 80139B0B64 8076389316 8238AA3B20")
@@ -54,174 +64,164 @@ ATN_COEFFICIENTS = stored_reals(
     " 8000000000"
 )
 RND_FACTOR, RND_ADDEND = stored_reals("9835447A68 6828B14620")
-FIRST_SEED = Real.from_stored("804FC75258")
+FIRST_SEED = from_stored("804FC75258")
 """RND's seed after the machine is switched on."""
 ONE = integer(1)
 EXP_ROUNDING = 0x50
 """What EXP adds to the extension of x / ln 2 before it takes that apart."""
 
 
-def polynomial(coefficients: Sequence[Real], x: Real) -> Real:
-    """c0 x^n + ... + cn by Horner's rule; ``x`` is rounded, the running value keeps its extension."""
-    x = x.rounded()
-    r = coefficients[0] * x
+def polynomial(coefficients: Sequence[Number], x: Number) -> Number:
+    """c0 x^n + ... + cn by Horner's rule; x is rounded, the running value keeps its extension."""
+    x = rounded(x)
+    r = multiply(coefficients[0], x)
     for c in coefficients[1:-1]:
-        r = x * (c + r)
-    return coefficients[-1] + r
+        r = multiply(x, add(c, r))
+    return add(coefficients[-1], r)
 
 
-def odd_polynomial(coefficients: Sequence[Real], x: Real) -> Real:
+def odd_polynomial(coefficients: Sequence[Number], x: Number) -> Number:
     """x times the polynomial in x squared."""
-    x = x.rounded()
-    return x * polynomial(coefficients, x * x)
+    x = rounded(x)
+    return multiply(x, polynomial(coefficients, multiply(x, x)))
 
 
-def INT(x: Real) -> Real:
-    """The floor of x, see `real.floor`."""
-    return floor(x)
+def sign(x: Number) -> Number:
+    """SGN: -1, 0 or 1."""
+    e, _, s = x
+    return integer(-1 if s else 1) if e else ZERO
 
 
-def ABS(x: Real) -> Real:
-    """x without its sign; the extension stays."""
-    return abs(x)
-
-
-def SGN(x: Real) -> Real:
-    """-1, 0 or 1."""
-    return integer(-1 if x.s else 1) if x.e else ZERO
-
-
-def LOG(x: Real) -> Real:
-    """Natural logarithm. Raises ILLEGAL QUANTITY for x <= 0."""
-    if x.s or not x.e:
+def logarithm(x: Number) -> Number:
+    """LOG, the natural logarithm. Raises ILLEGAL QUANTITY for x <= 0."""
+    e, m, s = x
+    if s or not e:
         raise illegal_quantity()
-    f = Real(BIAS, x.m, 0)
-    f = ONE - SQRT_TWO / (SQRT_HALF + f)
-    f = MINUS_HALF + odd_polynomial(LOG_COEFFICIENTS, f)
-    return LN_TWO * (f + integer(x.e - BIAS))
+    f = (BIAS, m, 0)
+    f = subtract(ONE, divide(SQRT_TWO, add(SQRT_HALF, f)))
+    f = add(MINUS_HALF, odd_polynomial(LOG_COEFFICIENTS, f))
+    return multiply(LN_TWO, add(f, integer(e - BIAS)))
 
 
-def EXP(x: Real) -> Real:
-    """e to the x. Raises OVERFLOW; underflows to zero."""
-    f = LOG2_E * x
-    e = f.e
+def exponential(x: Number) -> Number:
+    """EXP: e to the x. Raises OVERFLOW; underflows to zero."""
+    e, m, s = multiply(LOG2_E, x)
     if e:
-        m = f.m + EXP_ROUNDING
+        m += EXP_ROUNDING
         if m >= LIMIT:
             # the 32-bit mantissa overflows to 80000000; the extension's sum is kept as it is
             m = TOP | m & 0xFF
             e += 1
-        f = Real(e, m, f.s)
     if e >= BIAS + 8:
-        return _exp_out_of_range(f.s)
-    i = to_integer(Real(e, f.m & ~0xFF, f.s)) if e else 0
+        return _exponential_out_of_range(s)
+    i = to_integer((e, m & ~0xFF, s))
     k = i + 129 & 0xFF
     if not k:
-        return _exp_out_of_range(int(i < 0))
+        return _exponential_out_of_range(int(i < 0))
     k -= 1
     if not k:
         return ZERO
-    g = polynomial(EXP_COEFFICIENTS, -(integer(i) - f))
-    e = product_exponent(k, g.e)
-    return Real(e, g.m, 0) if e else ZERO
+    g = negate(subtract(integer(i), (e, m, s)))
+    e, m, s = polynomial(EXP_COEFFICIENTS, g)
+    e = product_exponent(k, e)
+    return (e, m, 0) if e else ZERO
 
 
-def _exp_out_of_range(negative: int) -> Real:
+def _exponential_out_of_range(negative: int) -> Number:
     if negative:
         return ZERO
     raise overflow()
 
 
-def power(left: Real, right: Real) -> Real:
-    """left ^ right = EXP(right * LOG(left)), so X ^ 2 is not X * X.
+def power(left: Number, right: Number) -> Number:
+    """left ^ right = EXP (right * LOG (left)), so X ^ 2 is not X * X.
 
     Raises ILLEGAL QUANTITY for a negative left with a right that is not whole, OVERFLOW.
     """
-    if not right.e:
-        return EXP(ZERO)
-    left = left.rounded()
-    if not left.e:
+    if not right[0]:
+        return exponential(ZERO)
+    left = rounded(left)
+    if not left[0]:
         return ZERO
-    p = right.rounded()
+    p = rounded(right)
     odd = False
-    if left.s:
-        whole = floor(p)
-        if compare(p, whole):
+    if left[2]:
+        if compare(p, floor(p)):
             raise illegal_quantity()
         # beyond 32 bits the ROM still looks at the mantissa's last bit
-        odd = bool((p.m >> 8 if p.e >= INTEGER_EXPONENT else to_integer(p)) & 1)
-        left = -left
-    result = EXP(p * LOG(left))
-    return -result if odd else result
+        odd = bool((p[1] >> 8 if p[0] >= INTEGER_EXPONENT else to_integer(p)) & 1)
+        left = negate(left)
+    result = exponential(multiply(p, logarithm(left)))
+    return negate(result) if odd else result
 
 
-def SQR(x: Real) -> Real:
-    """Square root, as (x rounded) ^ 0.5. Raises ILLEGAL QUANTITY for a negative x."""
-    return power(x.rounded(), HALF)
+def square_root(x: Number) -> Number:
+    """SQR, as (x rounded) ^ 0.5. Raises ILLEGAL QUANTITY for a negative x."""
+    return power(x, HALF)
 
 
-def _sine(x: Real) -> tuple[Real, bool, Real]:
-    """SIN, with what TAN needs of it: the quadrant flag and the reduced argument, rounded.
+@lru_cache(maxsize=64)  # a program asks for the sine of the same few angles over and over
+def _sine(x: Number) -> tuple[Number, bool, Number]:
+    """The sine, with what TAN needs of it: the quadrant flag and the reduced argument, rounded.
 
     The angle becomes a fraction of a turn, and that is folded into -1/4 ... 1/4.
     """
-    f = (x.rounded() / TWO_PI).rounded()
-    f = f - floor(f)
-    f = QUARTER - f
-    beyond_first_quarter = f.s
+    f = rounded(divide(x, TWO_PI))
+    f = subtract(QUARTER, subtract(f, floor(f)))
+    beyond_first_quarter = f[2]
     flag = False
     if beyond_first_quarter:
-        f = HALF + f
-        if not f.s:
-            f = -f
+        f = add(HALF, f)
+        if not f[2]:
+            f = negate(f)
             flag = True
     else:
-        f = -f
-    f = QUARTER + f
+        f = negate(f)
+    f = add(QUARTER, f)
     if beyond_first_quarter:
-        f = -f
-    f = f.rounded()
+        f = negate(f)
+    f = rounded(f)
     return odd_polynomial(SIN_COEFFICIENTS, f), flag, f
 
 
-def SIN(x: Real) -> Real:
-    """Sine of x radians."""
+def sine(x: Number) -> Number:
+    """SIN of x radians."""
     return _sine(x)[0]
 
 
-def COS(x: Real) -> Real:
-    """Cosine of x radians, as SIN (pi/2 + x)."""
-    return _sine(HALF_PI + x)[0]
+def cosine(x: Number) -> Number:
+    """COS of x radians, as SIN (pi/2 + x)."""
+    return _sine(add(HALF_PI, x))[0]
 
 
-def TAN(x: Real) -> Real:
-    """Tangent of x radians: the sine over a cosine folded from the same reduced argument."""
-    sine, flag, reduced = _sine(x.rounded())
-    f = QUARTER + -abs(reduced)
+def tangent(x: Number) -> Number:
+    """TAN of x radians: the sine over a cosine folded from the same reduced argument."""
+    of_sine, flag, reduced = _sine(rounded(x))
+    f = add(QUARTER, negate(absolute(reduced)))
     if flag:
-        f = -f
-    return sine.rounded() / odd_polynomial(SIN_COEFFICIENTS, f)
+        f = negate(f)
+    return divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f))
 
 
-def ATN(x: Real) -> Real:
-    """Arc tangent in radians, -pi/2 ... pi/2."""
-    f = abs(x)
-    inverted = f.e > BIAS
+def arc_tangent(x: Number) -> Number:
+    """ATN in radians, -pi/2 ... pi/2."""
+    f = absolute(x)
+    inverted = f[0] > BIAS
     if inverted:
-        f = ONE / f
+        f = divide(ONE, f)
     f = odd_polynomial(ATN_COEFFICIENTS, f)
     if inverted:
-        f = HALF_PI - f
-    return -f if x.s else f
+        f = subtract(HALF_PI, f)
+    return negate(f) if x[2] else f
 
 
-def RND(x: Real, seed: Real) -> Real:
-    """The next random number, to be stored as the new seed; the seed itself for x = 0.
+def random(x: Number, seed: Number) -> Number:
+    """RND: the next random number, to be stored as the new seed; the seed itself for x = 0.
 
     A negative x starts a sequence of its own. The bytes are shuffled and the exponent thrown away.
     """
-    if not x.e:
+    if not x[0]:
         return seed
-    f = x if x.s else RND_ADDEND + RND_FACTOR * seed
-    b1, b2, b3, b4 = (f.m >> 8).to_bytes(4, "big")
-    return normalise(BIAS, int.from_bytes((b4, b2, b3, b1, f.e), "big"), 0).rounded()
+    e, m, _ = x if x[2] else add(RND_ADDEND, multiply(RND_FACTOR, seed))
+    b1, b2, b3, b4 = (m >> 8).to_bytes(4, "big")
+    return rounded(normalise(BIAS, int.from_bytes((b4, b2, b3, b1, e), "big"), 0))

@@ -1,19 +1,25 @@
 """The 40-bit real of Applesoft II, and its arithmetic rule by rule.
 
-    value   exponent byte e, 40-bit mantissa m, sign s:   (-1)^s * m * 2^(e - 168)
-    m       top 32 bits: the mantissa, its top bit always set; low 8 bits: the *extension*
-    zero    e = 0, and here always the one object ZERO (the ROM leaves odd mantissas behind)
+    value   (e, m, s):   (-1)^s * m * 2^(e - 168)
+    e       exponent byte, 1 ... 255
+    m       40-bit mantissa. Top 32 bits: the mantissa proper, its top bit always set;
+            low 8 bits: the *extension*
+    s       sign, 1 for negative
+    zero    e = 0, and here always (0, 0, 0): the ROM leaves odd mantissas behind, which count
+            for nothing
 
 A *stored* value has five bytes and no extension; a value *in flight*, in the accumulator (FAC), has
 one. In a binary operation the left operand is set aside in five bytes (ARG), so it is rounded; the
-right one is still in the accumulator and keeps its extension. The operators of `Real` do just that,
-so a Python expression computes what the same Applesoft expression does. Storing is explicit:
+right one is still in the accumulator and keeps its extension.
+
+The rules are functions on plain triples (`Number`), each in one place: `rounded`, `normalise`,
+`add`, `multiply`, `divide`, `compare`, `floor`. `Real` clothes a triple in Python's operators, so
+that a Python expression computes what the same Applesoft expression does. Storing is explicit:
 `Real.rounded`.
 
-Each rule stands once: rounding in `Real.rounded`, normalising in `normalise`, comparing in
-`compare`. Where the ROM differs from a machine that is merely correct, a name says so: `EQUAL_CARRY`
-(an extra unit when exponents are equal), `_multiply_with_defect` (double zero byte), and the
-comparison's missing carry.
+Where the ROM differs from a machine that is merely correct, a name says so: `EQUAL_CARRY` (an extra
+unit when exponents are equal), `_multiply_with_defect` (double zero byte), and the comparison's
+missing carry (`compare`).
 """
 
 from __future__ import annotations
@@ -21,6 +27,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 from .errors import division_by_zero, overflow
+
+Number = tuple[int, int, int]
+"""Exponent, 40-bit mantissa, sign."""
 
 TOP = 1 << 39
 """The top bit of a 40-bit mantissa: set in every number but zero."""
@@ -33,213 +42,30 @@ EQUAL_CARRY = 1
 """The ROM skips the alignment that would clear the carry when exponents are equal, and so adds one
 unit of the extension to a sum of like signs. A correct machine would add nothing."""
 
-
-class Real:
-    """A number as the accumulator holds it: exponent ``e``, 40-bit mantissa ``m``, sign ``s``.
-
-    Operators round the left operand and keep the right one's extension. Python integers are taken
-    for constants; floats are refused, because they would smuggle in digits nobody typed. ``==`` and
-    its kin are the ROM's comparison, so reals are not hashable and take only reals.
-    Raises ApplesoftError: OVERFLOW past 255 in the exponent, DIVISION BY ZERO.
-    """
-
-    __slots__ = ("e", "m", "s")
-
-    def __init__(self, e: int, m: int, s: int) -> None:
-        self.e = e
-        self.m = m
-        self.s = s
-
-    # --- taking apart and putting together -------------------------------------------------------
-
-    @staticmethod
-    def from_stored(stored: bytes | str, extension: int = 0) -> Real:
-        """The value of five stored bytes (or ten hexadecimal digits), with an extension byte."""
-        data = bytes.fromhex(stored) if isinstance(stored, str) else stored
-        if len(data) != 5:
-            raise ValueError(f"a stored real has five bytes, not {len(data)}")
-        e = data[0]
-        if e == 0:
-            return ZERO
-        mantissa = int.from_bytes(data[1:], "big")
-        return Real(e, (mantissa | 0x80000000) << 8 | extension, mantissa >> 31)
-
-    def stored(self) -> bytes:
-        """The five bytes a variable gets when this value is assigned to it: rounded, with the sign
-        in the mantissa's top bit."""
-        r = self.rounded()
-        mantissa = r.m >> 8 & 0x7FFFFFFF | r.s << 31
-        return bytes((r.e,)) + mantissa.to_bytes(4, "big")
-
-    @property
-    def extension(self) -> int:
-        """The eight bits below the mantissa that storing would round away."""
-        return self.m & 0xFF
-
-    def rounded(self) -> Real:
-        """The value as it is stored: 32 bits, by the extension's top bit alone."""
-        m = self.m
-        extension = m & 0xFF
-        if not extension:
-            return self
-        e = self.e
-        m -= extension
-        if extension >= 0x80:
-            m += 0x100
-            if m == LIMIT:
-                m = TOP
-                e += 1
-                if e > 255:
-                    raise overflow()
-        return Real(e, m, self.s)
-
-    def fraction(self) -> Fraction:
-        """The exact value, extension included."""
-        scale = self.e - BIAS - 40
-        size = Fraction(self.m << scale) if scale >= 0 else Fraction(self.m, 1 << -scale)
-        return -size if self.s else size
-
-    def __float__(self) -> float:
-        """The exact value: 40 bits and this exponent range fit a double."""
-        size = float(self.m) * 2.0 ** (self.e - BIAS - 40)
-        return -size if self.s else size
-
-    def __repr__(self) -> str:
-        return f"Real({float(self)!r}, {self.stored().hex()}:{self.extension:02x})"
-
-    # --- operators: left rounds, right keeps its extension -----------------------------------------
-
-    def __neg__(self) -> Real:
-        return Real(self.e, self.m, self.s ^ 1) if self.e else self
-
-    def __pos__(self) -> Real:
-        return self
-
-    def __abs__(self) -> Real:
-        return Real(self.e, self.m, 0) if self.s else self
-
-    def __add__(self, right: Real | int) -> Real:
-        if right.__class__ is int:
-            right = integer(right)  # type: ignore[arg-type]
-        elif not isinstance(right, Real):
-            return NotImplemented
-        return _add(self, right, right.s)  # type: ignore[union-attr]
-
-    def __sub__(self, right: Real | int) -> Real:
-        if right.__class__ is int:
-            right = integer(right)  # type: ignore[arg-type]
-        elif not isinstance(right, Real):
-            return NotImplemented
-        return _add(self, right, right.s ^ 1)  # type: ignore[union-attr,arg-type]
-
-    def __mul__(self, right: Real | int) -> Real:
-        if right.__class__ is int:
-            right = integer(right)  # type: ignore[arg-type]
-        elif not isinstance(right, Real):
-            return NotImplemented
-        e = self.e
-        e2 = right.e  # type: ignore[union-attr]
-        if not e or not e2:
-            return ZERO
-        m = self.m
-        if m & 0xFF:
-            left = self.rounded()
-            m = left.m
-            e = left.e
-        e = product_exponent(e, e2)
-        if not e:
-            return ZERO
-        m2 = right.m  # type: ignore[union-attr]
-        # both kinds of double zero byte have a zero in the mantissa's third byte
-        if m2 & 0xFF0000 or not m2 & 0xFFFF:
-            m = m * m2 >> 40
-        else:
-            m = _multiply_with_defect(m, m2)
-        if m < TOP:  # the product of two normalised mantissas is short by one bit at most
-            if e == 1:
-                return ZERO
-            return Real(e - 1, m << 1, self.s ^ right.s)  # type: ignore[union-attr]
-        return Real(e, m, self.s ^ right.s)  # type: ignore[union-attr]
-
-    def __truediv__(self, right: Real | int) -> Real:
-        if right.__class__ is int:
-            right = integer(right)  # type: ignore[arg-type]
-        elif not isinstance(right, Real):
-            return NotImplemented
-        right = right.rounded()  # type: ignore[union-attr]
-        if not right.e:
-            raise division_by_zero()
-        left = self.rounded()
-        if not left.e:
-            return ZERO
-        total = left.e + (-right.e & 0xFF)
-        if total < BIAS:
-            return ZERO
-        if total >= BIAS + 256:
-            raise overflow()
-        e = total - BIAS
-        s = left.s ^ right.s if e else 0  # exponent 0 does not make a zero here, it loses the sign
-        e += 1
-        if e > 255:
-            raise overflow()
-        return normalise(e, (left.m << 33) // right.m << 6, s)
-
-    def __pow__(self, right: Real | int) -> Real:
-        from .functions import power
-
-        if right.__class__ is int:
-            right = integer(right)  # type: ignore[arg-type]
-        elif not isinstance(right, Real):
-            return NotImplemented
-        return power(self, right)  # type: ignore[arg-type]
-
-    def __radd__(self, left: int) -> Real:
-        return integer(left) + self
-
-    def __rsub__(self, left: int) -> Real:
-        return integer(left) - self
-
-    def __rmul__(self, left: int) -> Real:
-        return integer(left) * self
-
-    def __rtruediv__(self, left: int) -> Real:
-        return integer(left) / self
-
-    def __rpow__(self, left: int) -> Real:
-        return integer(left) ** self
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __lt__(self, right: Real) -> bool:
-        return compare(self.rounded(), right) > 0
-
-    def __gt__(self, right: Real) -> bool:
-        return compare(self.rounded(), right) < 0
-
-    def __le__(self, right: Real) -> bool:
-        return compare(self.rounded(), right) >= 0
-
-    def __ge__(self, right: Real) -> bool:
-        return compare(self.rounded(), right) <= 0
-
-    def __eq__(self, right: object) -> bool:
-        if not isinstance(right, Real):
-            raise TypeError(f"a real compares with reals only, not with {right!r}")
-        return compare(self.rounded(), right) == 0
-
-    def __ne__(self, right: object) -> bool:
-        return not self == right
-
-    def __bool__(self) -> bool:
-        """Whether an IF on this value succeeds: anything but zero."""
-        return self.e != 0
+ZERO: Number = (0, 0, 0)
 
 
-ZERO = Real(0, 0, 0)
+# --- the rules -----------------------------------------------------------------------------------
 
 
-def normalise(e: int, m: int, s: int) -> Real:
-    """The real with a 40-bit mantissa ``m`` whose top bits may be clear.
+def rounded(x: Number) -> Number:
+    """The value as it is stored: 32 bits, by the extension's top bit alone. Raises OVERFLOW."""
+    e, m, s = x
+    extension = m & 0xFF
+    if not extension:
+        return x
+    m -= extension
+    if extension >= 0x80:
+        m += 0x100
+        if m == LIMIT:
+            if e == 255:
+                raise overflow()
+            return e + 1, TOP, s
+    return e, m, s
+
+
+def normalise(e: int, m: int, s: int) -> Number:
+    """The number with a 40-bit mantissa ``m`` whose top bits may be clear.
 
     Zero if the top 32 bits are all clear, whatever the extension holds; zero too, without a word,
     when the exponent runs out.
@@ -247,33 +73,34 @@ def normalise(e: int, m: int, s: int) -> Real:
     if m < 0x100:
         return ZERO
     k = 40 - m.bit_length()
-    return Real(e - k, m << k, s) if k < e else ZERO
+    return (e - k, m << k, s) if k < e else ZERO
 
 
-def product_exponent(e1: int, e2: int) -> int:
-    """The exponent of a product before normalising; 0 for an underflow. Raises OVERFLOW."""
-    total = e1 + e2
-    if total < BIAS:
-        return 0
-    if total >= BIAS + 256:
-        raise overflow()
-    return total - BIAS
+def negate(x: Number) -> Number:
+    """-x; zero stays as it is."""
+    e, m, s = x
+    return (e, m, s ^ 1) if e else x
 
 
-def _add(left: Real, right: Real, s2: int) -> Real:
-    """left + right, with ``s2`` for the right operand's sign (a subtraction flips it)."""
-    m1 = left.m
+def absolute(x: Number) -> Number:
+    """ABS: x without its sign; the extension stays."""
+    e, m, s = x
+    return (e, m, 0) if s else x
+
+
+def add(left: Number, right: Number) -> Number:
+    """left + right: the left operand rounded, the right one with its extension. Raises OVERFLOW.
+
+    The operand with the smaller exponent is shifted right; what falls below 40 bits is lost.
+    """
+    e1, m1, s1 = left
     if m1 & 0xFF:
-        left = left.rounded()
-        m1 = left.m
-    e1 = left.e
-    e2 = right.e
+        left = e1, m1, s1 = rounded(left)
+    e2, m2, s2 = right
     if not e2:
         return left
-    m2 = right.m
     if not e1:
-        return Real(e2, m2, s2)
-    s1 = left.s
+        return right
     shift = e1 - e2
     if s1 == s2:
         if shift > 0:
@@ -284,11 +111,10 @@ def _add(left: Real, right: Real, s2: int) -> Real:
         else:
             m1 += m2 + EQUAL_CARRY
         if m1 >= LIMIT:
-            m1 >>= 1
-            e1 += 1
-            if e1 > 255:
+            if e1 == 255:
                 raise overflow()
-        return Real(e1, m1, s1)
+            return e1 + 1, m1 >> 1, s1
+        return e1, m1, s1
     if shift > 0:
         m1 -= m2 >> shift
     else:
@@ -298,9 +124,42 @@ def _add(left: Real, right: Real, s2: int) -> Real:
         if m1 < 0:  # only with equal exponents
             m1 = -m1
             s1 ^= 1
-    if m1 >= TOP:
-        return Real(e1, m1, s1)
-    return normalise(e1, m1, s1)
+    return (e1, m1, s1) if m1 >= TOP else normalise(e1, m1, s1)
+
+
+def subtract(left: Number, right: Number) -> Number:
+    """left - right, which is left + (-right)."""
+    e, m, s = right
+    return add(left, (e, m, s ^ 1)) if e else rounded(left)
+
+
+def multiply(left: Number, right: Number) -> Number:
+    """left * right: the left operand rounded, the right one with its extension. Raises OVERFLOW."""
+    e1, m1, s1 = left
+    e2, m2, s2 = right
+    if not e1 or not e2:
+        return ZERO
+    if m1 & 0xFF:
+        e1, m1, s1 = rounded(left)
+    e = product_exponent(e1, e2)
+    if not e:
+        return ZERO
+    # both kinds of double zero byte have a zero in the mantissa's third byte
+    m = m1 * m2 >> 40 if m2 & 0xFF0000 or not m2 & 0xFFFF else _multiply_with_defect(m1, m2)
+    if m >= TOP:
+        return e, m, s1 ^ s2
+    # the product of two normalised mantissas is short by one bit at most
+    return (e - 1, m << 1, s1 ^ s2) if e > 1 else ZERO
+
+
+def product_exponent(e1: int, e2: int) -> int:
+    """The exponent of a product before normalising; 0 for an underflow. Raises OVERFLOW."""
+    total = e1 + e2
+    if total < BIAS:
+        return 0
+    if total >= BIAS + 256:
+        raise overflow()
+    return total - BIAS
 
 
 def _multiply_with_defect(m1: int, m2: int) -> int:
@@ -321,70 +180,255 @@ def _multiply_with_defect(m1: int, m2: int) -> int:
     return built
 
 
-def compare(stored: Real, right: Real) -> int:
+def divide(left: Number, right: Number) -> Number:
+    """left / right, both rounded. Raises DIVISION BY ZERO (for 0 / 0 too) and OVERFLOW."""
+    e2, m2, s2 = rounded(right)
+    if not e2:
+        raise division_by_zero()
+    e1, m1, s1 = rounded(left)
+    if not e1:
+        return ZERO
+    total = e1 + (-e2 & 0xFF)
+    if total < BIAS:
+        return ZERO
+    e = total - BIAS + 1
+    if e > 255:
+        raise overflow()
+    # an exponent of 0 before that 1 is added does not make a zero here, it loses the sign
+    return normalise(e, (m1 << 33) // m2 << 6, s1 ^ s2 if e > 1 else 0)
+
+
+def compare(stored: Number, right: Number) -> int:
     """1 if the accumulator ``right`` is larger than ``stored``, 0 if equal, -1 if smaller.
 
     Sign, then exponent, then the upper three mantissa bytes; only when all agree, the last byte
     against the accumulator's last byte plus the top bit of its extension. That addition carries
     nowhere: 256 counts as equal to 0, and as larger than anything else.
     """
-    e1 = stored.e
-    e2 = right.e
-    s2 = right.s
+    e1, m1, s1 = stored
+    e2, m2, s2 = right
     if not e1:
         return (-1 if s2 else 1) if e2 else 0
-    if stored.s != s2 or not e2:
-        return 1 if stored.s else -1
+    if s1 != s2 or not e2:
+        return 1 if s1 else -1
     if e1 != e2:
         larger = e2 > e1
+    elif m1 >> 16 != m2 >> 16:
+        larger = m2 > m1
     else:
-        high1 = stored.m >> 16
-        high2 = right.m >> 16
-        if high1 != high2:
-            larger = high2 > high1
-        else:
-            last1 = stored.m >> 8 & 0xFF
-            last2 = (right.m >> 8 & 0xFF) + (right.m >> 7 & 1)
-            if last1 == last2 & 0xFF:
-                return 0
-            larger = last2 > last1
+        last1 = m1 >> 8 & 0xFF
+        last2 = (m2 >> 8 & 0xFF) + (m2 >> 7 & 1)
+        if last1 == last2 & 0xFF:
+            return 0
+        larger = last2 > last1
     return 1 if larger != bool(s2) else -1
 
 
-def floor(x: Real) -> Real:
+def to_integer(x: Number) -> int:
+    """The floor of ``x``, extension counted, as a Python integer."""
+    e, m, s = x
+    if s:
+        m = -m
+    return m >> BIAS + 40 - e if e < BIAS + 40 else m << e - BIAS - 40
+
+
+def floor(x: Number) -> Number:
     """INT: the largest whole number not above ``x``, its extension counted; extension 0.
 
     A number of 32 bits or more before the point stays as it is, extension and all.
     """
-    return x if x.e >= INTEGER_EXPONENT else integer(to_integer(x))
+    return x if x[0] >= INTEGER_EXPONENT else integer(to_integer(x))
 
 
-def to_integer(x: Real) -> int:
-    """The floor of ``x``, extension counted, as a Python integer."""
-    shift = BIAS + 40 - x.e
-    if shift <= 0:
-        n = x.m << -shift
-        return -n if x.s else n
-    return -x.m >> shift if x.s else x.m >> shift
+# --- whole numbers and stored bytes --------------------------------------------------------------
 
 
-def _from_integer(n: int) -> Real:
+def _from_integer(n: int) -> Number:
     size = abs(n)
     length = size.bit_length()
     if length > 32:
         raise ValueError(f"{n} has more than 32 bits; write it as decimal text")
-    return Real(BIAS + length, size << 40 - length, int(n < 0)) if n else ZERO
+    return (BIAS + length, size << 40 - length, int(n < 0)) if n else ZERO
 
 
 _SMALL = {n: _from_integer(n) for n in range(-16, 129)}
 
 
-def integer(n: int) -> Real:
-    """A whole number of at most 32 bits, exact. Raises ValueError for a larger one and TypeError
-    for what is no int."""
-    known = _SMALL.get(n)
-    if known is not None and n.__class__ is int:
-        return known
-    if n.__class__ is not int:
-        raise TypeError(f"an Applesoft real takes whole numbers and reals, not {n!r}")
-    return _from_integer(n)
+def integer(n: int) -> Number:
+    """A whole number of at most 32 bits, exact. Raises ValueError for a larger one."""
+    return _SMALL.get(n) or _from_integer(n)
+
+
+def from_stored(stored: bytes | str, extension: int = 0) -> Number:
+    """The value of five stored bytes (or ten hexadecimal digits), with an extension byte."""
+    data = bytes.fromhex(stored) if isinstance(stored, str) else stored
+    if len(data) != 5:
+        raise ValueError(f"a stored real has five bytes, not {len(data)}")
+    e = data[0]
+    if e == 0:
+        return ZERO
+    mantissa = int.from_bytes(data[1:], "big")
+    return e, (mantissa | 0x80000000) << 8 | extension, mantissa >> 31
+
+
+def to_stored(x: Number) -> bytes:
+    """The five bytes a variable gets when ``x`` is assigned to it: rounded, with the sign in the
+    mantissa's top bit. Raises OVERFLOW."""
+    e, m, s = rounded(x)
+    return bytes((e,)) + (m >> 8 & 0x7FFFFFFF | s << 31).to_bytes(4, "big")
+
+
+# --- the operators -------------------------------------------------------------------------------
+
+
+class Real:
+    """A number in the operators of Python: left operands round, right ones keep their extension.
+
+    Python integers are taken for constants; floats are refused, because they would smuggle in
+    digits nobody typed. ``==`` and its kin are the ROM's comparison, so reals are not hashable and
+    compare with reals only. Raises ApplesoftError: OVERFLOW, DIVISION BY ZERO, and what
+    `functions.power` raises.
+    """
+
+    __slots__ = ("number",)
+
+    def __init__(self, number: Number) -> None:
+        self.number = number
+
+    @classmethod
+    def from_stored(cls, stored: bytes | str, extension: int = 0) -> Real:
+        """See `from_stored`."""
+        return cls(from_stored(stored, extension))
+
+    def stored(self) -> bytes:
+        """See `to_stored`."""
+        return to_stored(self.number)
+
+    def rounded(self) -> Real:
+        """The value as it is stored; see `rounded`."""
+        number = self.number
+        return Real(rounded(number)) if number[1] & 0xFF else self
+
+    @property
+    def e(self) -> int:
+        """The exponent byte."""
+        return self.number[0]
+
+    @property
+    def m(self) -> int:
+        """The 40-bit mantissa, extension included."""
+        return self.number[1]
+
+    @property
+    def s(self) -> int:
+        """The sign: 1 for negative."""
+        return self.number[2]
+
+    @property
+    def extension(self) -> int:
+        """The eight bits below the mantissa that storing would round away."""
+        return self.number[1] & 0xFF
+
+    def fraction(self) -> Fraction:
+        """The exact value, extension included."""
+        e, m, s = self.number
+        scale = e - BIAS - 40
+        size = Fraction(m << scale) if scale >= 0 else Fraction(m, 1 << -scale)
+        return -size if s else size
+
+    def __float__(self) -> float:
+        """The exact value: 40 bits and this exponent range fit a double."""
+        e, m, s = self.number
+        size = float(m) * 2.0 ** (e - BIAS - 40)
+        return -size if s else size
+
+    def __repr__(self) -> str:
+        return f"Real({float(self)!r}, {self.stored().hex()}:{self.extension:02x})"
+
+    def __neg__(self) -> Real:
+        return Real(negate(self.number))
+
+    def __pos__(self) -> Real:
+        return self
+
+    def __abs__(self) -> Real:
+        return Real(absolute(self.number))
+
+    def __add__(self, right: Real | int) -> Real:
+        return Real(add(self.number, right.number if right.__class__ is Real else _number(right)))
+
+    def __sub__(self, right: Real | int) -> Real:
+        return Real(
+            subtract(self.number, right.number if right.__class__ is Real else _number(right))
+        )
+
+    def __mul__(self, right: Real | int) -> Real:
+        return Real(
+            multiply(self.number, right.number if right.__class__ is Real else _number(right))
+        )
+
+    def __truediv__(self, right: Real | int) -> Real:
+        return Real(
+            divide(self.number, right.number if right.__class__ is Real else _number(right))
+        )
+
+    def __pow__(self, right: Real | int) -> Real:
+        from .functions import power
+
+        return Real(power(self.number, _number(right)))
+
+    def __radd__(self, left: int) -> Real:
+        return Real(add(_number(left), self.number))
+
+    def __rsub__(self, left: int) -> Real:
+        return Real(subtract(_number(left), self.number))
+
+    def __rmul__(self, left: int) -> Real:
+        return Real(multiply(_number(left), self.number))
+
+    def __rtruediv__(self, left: int) -> Real:
+        return Real(divide(_number(left), self.number))
+
+    def __rpow__(self, left: int) -> Real:
+        return Real(_number(left)) ** self
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __lt__(self, right: Real) -> bool:
+        return _compare(self, right) > 0
+
+    def __gt__(self, right: Real) -> bool:
+        return _compare(self, right) < 0
+
+    def __le__(self, right: Real) -> bool:
+        return _compare(self, right) >= 0
+
+    def __ge__(self, right: Real) -> bool:
+        return _compare(self, right) <= 0
+
+    def __eq__(self, right: object) -> bool:
+        return _compare(self, right) == 0
+
+    def __ne__(self, right: object) -> bool:
+        return _compare(self, right) != 0
+
+    def __bool__(self) -> bool:
+        """Whether an IF on this value succeeds: anything but zero."""
+        return self.number[0] != 0
+
+
+def _number(operand: Real | int) -> Number:
+    if operand.__class__ is int:
+        return _SMALL.get(operand) or _from_integer(operand)
+    if isinstance(operand, Real):
+        return operand.number
+    raise TypeError(f"an Applesoft real takes whole numbers and reals, not {operand!r}")
+
+
+def _compare(left: Real, right: object) -> int:
+    if right.__class__ is not Real:
+        raise TypeError(f"a real compares with reals only, not with {right!r}")
+    stored = left.number
+    if stored[1] & 0xFF:
+        stored = rounded(stored)
+    return compare(stored, right.number)

@@ -106,7 +106,8 @@ def main(args: argparse.Namespace) -> int:
     """Run the program on the terminal, or on a scene."""
     if args.slot not in (0, PRINTER_SLOT) and not args.no_dos:
         raise UserError(
-            f"slot {args.slot} is empty; expected 0 (screen) or {PRINTER_SLOT} (printer), or --no-dos"
+            f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
+            "or --no-dos"
         )
     scene = chosen_scene(args)
     data = scene if scene is not None else published_data() | settings(args.set)
