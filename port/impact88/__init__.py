@@ -17,6 +17,7 @@ _LAZY = {
     "Scene": "scene",
     "sample": "scene",
     "run": "run",
+    "solve": "solve",
 }
 """Public name -> the module that holds it."""
 

@@ -1,0 +1,550 @@
+"""The planar impact in closed form: Equations 13 to 18 solved once and for all.
+
+Written in inverse masses and inertias, so that a rigid barrier (a body that cannot be moved) is
+the number 0 and nothing special. The unknowns are the impulse (Pn, Pt) on A and h, the part of the
+spin change that is equal and opposite in angular momentum::
+
+    Omega_a - omega_a = J sigma·P + h/Ia        Omega_b - omega_b = J sigma·P - h/Ib
+
+With Q_ij = R delta_ij + J sigma_i sigma_j (J = 1/(Ia + Ib)), kappa_i = a_i/Ia - b_i/Ib, Ired the
+reduced inertia Ia·Ib/(Ia + Ib), the restitution equation (15), no slip at separation (listing
+lines 430-440) and the moment equation (18), *multiplied through by 1 - 2 em*, read::
+
+    Q_nn Pn + Q_nt Pt + kappa_n h  = -(1 + e) gn
+    Q_nt Pn + Q_tt Pt + kappa_t h  = -gt                                     (pivot only)
+    em Ired kappa·P + (1 - 2 em) h = -(1 - em) Ired (omega_a - omega_b)
+
+Friction has Pt = mu Pn for the middle line. Solved by Cramer's rule with the factor 1 - 2 em
+cancelled, no term becomes infinite at em = 1/2, and for -1 <= em <= 0 the pivot's determinant is a
+sum of terms of one sign.
+
+Axes: n = (cos GA, sin GA), t = (-sin GA, cos GA), A on the +n side; P acts on A, -P on B. Every
+quantity below is an `Expression`; its formula is made when first asked for, so that what no wanted
+result needs is never computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+
+from . import statusbits  # noqa: F401 - makes "status" an operation of plans
+from .expressions import Book, Expression
+
+Pair = tuple[Expression, Expression]
+
+
+class Impact:
+    """The quantities of an impact, given the expressions of a scene's columns.
+
+    ``pivot``: True when MU = -10 throughout, False when nowhere, else the condition where it is.
+    ``point``: the same for M = 4.
+    """
+
+    def __init__(
+        self,
+        book: Book,
+        scene: Mapping[str, Expression],
+        pivot: bool | Expression,
+        point: bool | Expression,
+        infinite: bool,
+    ) -> None:
+        self.book = book
+        self.scene = scene
+        self.pivot = pivot
+        self.point = point
+        self.infinite = infinite
+        self.GA, self.E, self.MU = scene["GA"], scene["E"], scene["MU"]
+        self.UX, self.UY, self.VX, self.VY = (scene[name] for name in ("UX", "UY", "VX", "VY"))
+        self.MA, self.MB = scene["MA"], scene["MB"]
+        # a point mass has neither arm nor spin, whatever its columns hold
+        self.EM, self.WA, self.WB = (self._unless_point(scene[x]) for x in ("EM", "WA", "WB"))
+        self.DA, self.DB = self._unless_point(scene["DA"]), self._unless_point(scene["DB"])
+        self.IA, self.IB = (self._unless_point(scene[x], 1.0) for x in ("IA", "IB"))
+
+    def _unless_point(self, value: Expression, instead: float = 0.0) -> Expression:
+        if self.point is False:
+            return value
+        if self.point is True:
+            return self.book.constant(instead)
+        return self.book.choose(self.point, self.book.constant(instead), value)
+
+    def _by_kind(
+        self, friction: Callable[[], Expression], pivot: Callable[[], Expression]
+    ) -> Expression:
+        if self.pivot is False:
+            return friction()
+        if self.pivot is True:
+            return pivot()
+        return self.book.choose(self.pivot, pivot(), friction())
+
+    # -- geometry
+
+    @cached_property
+    def _n(self) -> Pair:
+        s, c = self.book.sine_and_cosine(self.GA)
+        return c, s
+
+    def _arms(self, d: str, phi: str, theta: str) -> Pair:
+        """(an, at): what a spin adds to the normal and tangential contact velocity of A, or the
+        same of B with the sign that the *relative* velocity a - b takes."""
+        distance = self.DA if d == "DA" else self.DB
+        if distance.is_zero:
+            return distance, distance
+        s, c = self.book.sine_and_cosine(self.scene[theta] + self.scene[phi] - self.GA)
+        return distance * s, -(distance * c)
+
+    @cached_property
+    def _a(self) -> Pair:
+        return self._arms("DA", "PA", "TA")
+
+    @cached_property
+    def _b(self) -> Pair:
+        return self._arms("DB", "PB", "TB")
+
+    def _listing_arms(self, d: str, phi: str, theta: str) -> Pair:
+        """Line 330: D3 and D4 of A, D1 and D2 of B."""
+        distance = self.DA if d == "DA" else self.DB
+        if distance.is_zero:
+            return distance, distance
+        s, c = self.book.sine_and_cosine(self.scene[theta] + self.scene[phi])
+        return distance * s, distance * c
+
+    @cached_property
+    def _D3_D4(self) -> Pair:
+        return self._listing_arms("DA", "PA", "TA")
+
+    @cached_property
+    def _D1_D2(self) -> Pair:
+        return self._listing_arms("DB", "PB", "TB")
+
+    # -- inertia
+
+    @cached_property
+    def _ma(self) -> Expression:
+        return 1.0 / self.MA
+
+    @cached_property
+    def _mb(self) -> Expression:
+        return 1.0 / self.MB
+
+    @cached_property
+    def _ia(self) -> Expression:
+        return 1.0 / self.IA
+
+    @cached_property
+    def _ib(self) -> Expression:
+        return 1.0 / self.IB
+
+    @cached_property
+    def R(self) -> Expression:
+        return self._ma + self._mb
+
+    @cached_property
+    def Ired(self) -> Expression:
+        return 1.0 / (self._ia + self._ib)
+
+    @cached_property
+    def J(self) -> Expression:
+        return self._ia * self._ib * self.Ired
+
+    # -- relative velocity before impact
+
+    @cached_property
+    def _approach(self) -> Pair:
+        return self.UX - self.VX, self.UY - self.VY
+
+    def _along(self, direction: Pair, arms: tuple[Expression, Expression]) -> Expression:
+        dx, dy = self._approach
+        x, y = direction
+        return x * dx + y * dy + arms[0] * self.WA + arms[1] * self.WB
+
+    @cached_property
+    def gn(self) -> Expression:
+        return self._along(self._n, (self._a[0], self._b[0]))
+
+    @cached_property
+    def gt(self) -> Expression:
+        c, s = self._n
+        return self._along((-s, c), (self._a[1], self._b[1]))
+
+    @cached_property
+    def gw(self) -> Expression:
+        return self.WA - self.WB
+
+    # -- coefficients
+
+    @cached_property
+    def mu(self) -> Expression:
+        """MU after the sign rule of line 400: changed where gt > 0, kept on a tie."""
+        return self.book.against(self.MU, self.gt)
+
+    @cached_property
+    def z(self) -> Expression:
+        return 1.0 - (self.EM + self.EM)
+
+    @cached_property
+    def v(self) -> Expression:
+        return (1.0 + self.E) * self.gn
+
+    @cached_property
+    def w(self) -> Expression:
+        return (1.0 - self.EM) * self.Ired * self.gw if not self.gw.is_zero else self.gw
+
+    @cached_property
+    def y(self) -> Expression:
+        return self.EM * self.Ired
+
+    @cached_property
+    def sigma(self) -> Pair:
+        return self._a[0] + self._b[0], self._a[1] + self._b[1]
+
+    @cached_property
+    def kappa(self) -> Pair:
+        return self._kappa(0), self._kappa(1)
+
+    def _kappa(self, i: int) -> Expression:
+        return self._a[i] * self._ia - self._b[i] * self._ib
+
+    # -- friction: everything along the direction (1, mu) of the impulse
+
+    @cached_property
+    def _along_impulse(self) -> Pair:
+        """sigma and kappa in the direction (1, mu)."""
+        a = self._a[0] + self.mu * self._a[1]
+        b = self._b[0] + self.mu * self._b[1]
+        return a + b, a * self._ia - b * self._ib
+
+    @cached_property
+    def _friction(self) -> tuple[Expression, Expression, Expression, Expression]:
+        """Q, g, D and kappa_n of the 2x2 system left when Pt = mu Pn."""
+        sigma_mu, kappa_mu = self._along_impulse
+        sigma_n = self._a[0] + self._b[0]
+        kappa_n = self._kappa(0)
+        Q = self.R if sigma_n.is_zero else self.R + self.J * sigma_n * sigma_mu
+        g = kappa_mu if kappa_mu.is_zero else self.y * kappa_mu
+        return Q, g, self.z * Q - g * kappa_n, kappa_n
+
+    @cached_property
+    def _friction_Pn(self) -> Expression:
+        _, _, D, kappa_n = self._friction
+        return (kappa_n * self.w - self.z * self.v) / D
+
+    @cached_property
+    def _friction_h(self) -> Expression:
+        Q, g, D, _ = self._friction
+        return (g * self.v - Q * self.w) / D
+
+    # -- pivot
+
+    @cached_property
+    def _cross(self) -> Expression:
+        """sigma x kappa."""
+        return self.sigma[1] * self.kappa[0] - self.sigma[0] * self.kappa[1]
+
+    @cached_property
+    def _RQ(self) -> Expression:
+        """det Q / R."""
+        sn, st = self.sigma
+        return self.R + (self.J_times(sn * sn) + self.J_times(st * st))
+
+    @cached_property
+    def _pivot_products(self) -> tuple[Expression, Expression, Expression, Expression]:
+        """det Q, kappa·adj Q·kappa, kappa·adj Q·r and the determinant of all three equations.
+
+        With s' = (sigma_t, -sigma_n), adj(Q) x = R x + J s' (s'·x): no cancellation in det Q and
+        in kappa·adj Q·kappa, however slight R is.
+        """
+        (sn, st), (kn, kt) = self.sigma, self.kappa
+        rn, rt = -self.v, -self.gt
+        kQk = self.R * (kn * kn + kt * kt) + self.J_times(self._cross * self._cross)
+        kQr = self.R * (kn * rn + kt * rt) + self.J_times(self._cross * (st * rn - sn * rt))
+        RRQ = self.R * self._RQ
+        return RRQ, kQk, kQr, self.z * RRQ - self._y_times(kQk)
+
+    @cached_property
+    def _pivot(self) -> tuple[Expression, Expression, Expression]:
+        """(Pn, Pt, h) for no tangential relative velocity at separation."""
+        (sn, st), (kn, kt) = self.sigma, self.kappa
+        RRQ, _, kQr, determinant = self._pivot_products
+        h = -((self.w * RRQ + self._y_times(kQr)) / determinant)
+        xn, xt = -self.v - kn * h, -self.gt - kt * h
+        turned = self.J_times((st * xn - sn * xt) / self.R)
+        return (xn + st * turned) / self._RQ, (xt - sn * turned) / self._RQ, h
+
+    def J_times(self, x: Expression) -> Expression:
+        return x if x.is_zero else self.J * x
+
+    def _y_times(self, x: Expression) -> Expression:
+        return x if x.is_zero else self.y * x
+
+    def Ired_times(self, x: Expression) -> Expression:
+        return x if x.is_zero else self.Ired * x
+
+    # -- impulse
+
+    @cached_property
+    def PN(self) -> Expression:
+        return self._by_kind(lambda: self._friction_Pn, lambda: self._pivot[0])
+
+    @cached_property
+    def PT(self) -> Expression:
+        return self._by_kind(lambda: self.mu * self._friction_Pn, lambda: self._pivot[1])
+
+    @cached_property
+    def h(self) -> Expression:
+        h = self._by_kind(lambda: self._friction_h, lambda: self._pivot[2])
+        return self._unless_point(h)
+
+    def _times_impulse(self, name: str) -> Expression:
+        """sigma·P or kappa·P."""
+
+        def friction() -> Expression:
+            return self._along_impulse[0 if name == "sigma" else 1] * self._friction_Pn
+
+        def pivot() -> Expression:
+            n, t = getattr(self, name)
+            return n * self._pivot[0] + t * self._pivot[1]
+
+        return self._by_kind(friction, pivot)
+
+    @cached_property
+    def _common_spin(self) -> Expression:
+        """J sigma·P: what the impulse adds to both spins alike."""
+        return self.J_times(self._times_impulse("sigma"))
+
+    @cached_property
+    def PM(self) -> Expression:
+        """The moment impulse on A: h - Ired kappa·P, by Cramer's rule too (0 at em = 1)."""
+
+        def friction() -> Expression:
+            Q, _, D, kappa_n = self._friction
+            turn = self.Ired * self._along_impulse[1]
+            spin = self.gw if self.gw.is_zero else self.gw * (Q + turn * kappa_n)
+            return (1.0 - self.EM) * self.Ired_times(self._along_impulse[1] * self.v - spin) / D
+
+        def pivot() -> Expression:
+            RRQ, kQk, kQr, determinant = self._pivot_products
+            spin = self.gw if self.gw.is_zero else self.gw * (RRQ + self.Ired_times(kQk))
+            return -((1.0 - self.EM) * self.Ired_times(spin + kQr) / determinant)
+
+        return self._unless_point(self._by_kind(friction, pivot))
+
+    @cached_property
+    def _Px(self) -> Expression:
+        c, s = self._n
+        return c * self.PN - s * self.PT
+
+    @cached_property
+    def _Py(self) -> Expression:
+        c, s = self._n
+        return s * self.PN + c * self.PT
+
+    # -- after impact
+
+    @cached_property
+    def VAX(self) -> Expression:
+        return self.UX + self._ma * self._Px
+
+    @cached_property
+    def VAY(self) -> Expression:
+        return self.UY + self._ma * self._Py
+
+    @cached_property
+    def VBX(self) -> Expression:
+        return self.VX - self._mb * self._Px
+
+    @cached_property
+    def VBY(self) -> Expression:
+        return self.VY - self._mb * self._Py
+
+    @cached_property
+    def WAF(self) -> Expression:
+        return self._pass_through("WA", self._spin_a)
+
+    @cached_property
+    def WBF(self) -> Expression:
+        return self._pass_through("WB", self._spin_b)
+
+    @cached_property
+    def _spin_a(self) -> Expression:
+        return self.WA + (self._common_spin + self._ia * self.h)
+
+    @cached_property
+    def _spin_b(self) -> Expression:
+        return self.WB + (self._common_spin - self._ib * self.h)
+
+    def _pass_through(self, name: str, spin: Expression) -> Expression:
+        if self.point is False:
+            return spin
+        if self.point is True:
+            return self.scene[name]
+        return self.book.choose(self.point, self.scene[name], spin)
+
+    # -- contact velocities, lines 340, 700 and 710
+
+    @cached_property
+    def XA(self) -> Expression:
+        return self.UX + self._D3_D4[0] * self.WA
+
+    @cached_property
+    def YA(self) -> Expression:
+        return self.UY - self._D3_D4[1] * self.WA
+
+    @cached_property
+    def XB(self) -> Expression:
+        return self.VX - self._D1_D2[0] * self.WB
+
+    @cached_property
+    def YB(self) -> Expression:
+        return self.VY + self._D1_D2[1] * self.WB
+
+    @cached_property
+    def XAF(self) -> Expression:
+        return self.VAX + self._D3_D4[0] * self._spin_a
+
+    @cached_property
+    def YAF(self) -> Expression:
+        return self.VAY - self._D3_D4[1] * self._spin_a
+
+    @cached_property
+    def XBF(self) -> Expression:
+        return self.VBX - self._D1_D2[0] * self._spin_b
+
+    @cached_property
+    def YBF(self) -> Expression:
+        return self.VBY + self._D1_D2[1] * self._spin_b
+
+    # -- energy
+
+    def _finite(self, inertia: Expression) -> Expression:
+        """An infinite body is at rest and adds no energy."""
+        if not self.infinite:
+            return inertia
+        return self.book.choose(
+            self.book.combine("isinf", inertia, dtype="bool"), self.book.constant(0.0), inertia
+        )
+
+    def _energy(
+        self, ax: Expression, ay: Expression, bx: Expression, by: Expression, wa: Expression,
+        wb: Expression,
+    ) -> Expression:  # fmt: skip
+        """Lines 320, 580 and 590; a point mass's spins are 0 here."""
+        moving = self._finite(self.MA) * (ax * ax + ay * ay)
+        moving = moving + self._finite(self.MB) * (bx * bx + by * by)
+        if not wa.is_zero:
+            moving = moving + self._finite(self.IA) * (wa * wa)
+        if not wb.is_zero:
+            moving = moving + self._finite(self.IB) * (wb * wb)
+        return 0.5 * moving
+
+    @cached_property
+    def KI(self) -> Expression:
+        return self._energy(self.UX, self.UY, self.VX, self.VY, self.WA, self.WB)
+
+    @cached_property
+    def KF(self) -> Expression:
+        wa, wb = (self._unless_point(spin) for spin in (self._spin_a, self._spin_b))
+        return self._energy(self.VAX, self.VAY, self.VBX, self.VBY, wa, wb)
+
+    @cached_property
+    def Gt(self) -> Expression:
+        """Tangential relative velocity at separation; 0 for a pivot, by its definition."""
+
+        def friction() -> Expression:
+            return (
+                self.gt
+                + self.R * self.PT
+                + self.sigma[1] * self._common_spin
+                + self.kappa[1] * self.h
+            )
+
+        return self._by_kind(friction, lambda: self.book.constant(0.0))
+
+    @cached_property
+    def _lost(self) -> Expression:
+        """Twice the energy lost: the work of P and M at the mean relative velocities, negated.
+
+        KI - KF would lose digits when little is lost; this does not.
+        """
+        normal = ((1.0 - self.E) * self.gn) * self.PN
+        sliding = self.PT * (self.gt + self.Gt)
+        spins = self._ia + self._ib
+        turning = self.PM if self.PM.is_zero else self.PM * (self.gw + (self.gw + spins * self.h))
+        return -(normal + sliding + turning)
+
+    @cached_property
+    def LOSS(self) -> Expression:
+        return (50.0 * self._lost) / self.KI
+
+    # -- sizes and coefficients of the result
+
+    @cached_property
+    def _P(self) -> Expression:
+        return self.book.hypotenuse(self.PN, self.PT)
+
+    @cached_property
+    def DVA(self) -> Expression:
+        return self._ma * self._P
+
+    @cached_property
+    def DVB(self) -> Expression:
+        return self._mb * self._P
+
+    @cached_property
+    def MUP(self) -> Expression:
+        return self._by_kind(lambda: self.mu, lambda: self.book.constant(-10.0))
+
+    @cached_property
+    def MUC(self) -> Expression:
+        return self._pivot[1] / self._pivot[0]
+
+    # -- how far the result can be trusted
+
+    @cached_property
+    def COND(self) -> Expression:
+        """An estimate of the condition number of the 6x6 equations, rows and columns scaled best.
+
+        The determinant with every sum in it replaced by the sum of the absolute values, divided by
+        the determinant, times 4 (the typical ratio to Bauer's number, the spectral radius of
+        |A^-1||A|; measured: within a factor 10 of it for 98 % of the scenes of each population).
+        """
+        absolute = self.book.absolute
+        (sn, st), (kn, kt) = self.sigma, self.kappa
+
+        def friction() -> Expression:
+            mu = absolute(self.mu)
+            asn, akn = absolute(sn), absolute(kn)
+            straight = self.R * (1.0 + mu) + self.J_times(asn * (asn + mu * absolute(st)))
+            moment = absolute(self._y_times(akn * (akn + mu * absolute(kt))))
+            return (absolute(self.z) * straight + moment) / absolute(self._friction[2])
+
+        def pivot() -> Expression:
+            RRQ, _, _, determinant = self._pivot_products
+            cross = absolute(st * kn) + absolute(sn * kt)
+            moment = self.R * (kn * kn + kt * kt) + self.J_times(absolute(self._cross) * cross)
+            return (absolute(self.z) * RRQ + absolute(self._y_times(moment))) / absolute(
+                determinant
+            )
+
+        return 4.0 * self._by_kind(friction, pivot)
+
+    @cached_property
+    def STATUS(self) -> Expression:
+        zero = self.book.constant(0.0)
+        velocities = self.VAX + self.VAY + self.VBX + self.VBY + self.WAF + self.WBF
+        return self.book.combine(
+            "status",
+            self.gn,
+            self.PN,
+            self._by_kind(lambda: self.book.absolute(self.mu), lambda: zero),
+            self.MUC,
+            self._lost,
+            self.KI,
+            self.E,
+            self.EM,
+            self._by_kind(lambda: self.mu, lambda: zero),
+            self.COND,
+            velocities,
+            dtype="bits",
+        )

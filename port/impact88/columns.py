@@ -1,0 +1,228 @@
+"""Columns of scenes: from what a caller hands over to blocks ready for a plan.
+
+Columns may be scalars or arrays of any shapes that broadcast together. They are never copied as a
+whole: a block of a column that is not plain float64 is converted into a buffer when its turn comes.
+Blocks are looked at once: which columns are the same for all their scenes, which are 0, which
+numbers cannot be used. The answers choose the plan.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import UserError
+from .names import DEFAULT_M, SCENE
+
+Array = NDArray[Any]
+Floats = NDArray[np.float64]
+
+PIVOT = -10.0
+ANGLES = ("GA", "PA", "PB", "TA", "TB")
+INERTIAS = ("MA", "MB", "IA", "IB")
+UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
+"""What a point-mass scene (M = 4) does not look at."""
+
+_LARGE_ANGLE = 1e9  # degrees: taken modulo 360 first, so that sums of angles stay exact enough
+
+
+class Source(NamedTuple):
+    """A column: ``values`` flat and of full length, or of length 1; or awkward, see `block`."""
+
+    values: Array
+    shape: tuple[int, ...] | None  # of the broadcast, when ``values`` must be read through it
+
+
+def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int, ...]]:
+    """Check ``columns`` and return name -> source for every scene name, and the common shape.
+
+    Raises UserError for an unknown or missing name, a column that holds no numbers, and shapes
+    that do not broadcast together. M may be missing (it is 6 in the published listing); when it is
+    4 throughout, so may be what a point mass does not look at.
+    """
+    unknown = [name for name in columns if name not in SCENE]
+    if unknown:
+        raise UserError(f"{unknown[0]!r} is no scene name; expected {' '.join(SCENE)}")
+    arrays = {name: _numbers(name, columns[name]) for name in SCENE if name in columns}
+    arrays.setdefault("M", np.array(float(DEFAULT_M)))
+    if arrays["M"].size and bool((arrays["M"] == 4).all()):
+        for name in UNUSED_BY_POINTS:
+            arrays.setdefault(name, np.array(0.0))
+    missing = [name for name in SCENE if name not in arrays]
+    if missing:
+        raise UserError(f"missing: {' '.join(missing)}; a scene needs {' '.join(SCENE)}")
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
+    return {name: _source(array, shape) for name, array in arrays.items()}, shape
+
+
+def _numbers(name: str, values: object) -> Array:
+    array = np.asarray(values)
+    if array.dtype.kind in "fiub":
+        return array
+    try:
+        if array.dtype.kind in "USO":
+            return array.astype(np.float64)
+    except (TypeError, ValueError) as error:
+        raise UserError(f"{error}; expected numbers", f"column {name}") from None
+    raise UserError(f"holds {array.dtype} values; expected numbers", f"column {name}")
+
+
+def _source(array: Array, shape: tuple[int, ...]) -> Source:
+    if array.size == 1:
+        return Source(array.reshape(1).astype(np.float64), None)
+    if array.shape == shape and (array.ndim == 1 or array.flags.c_contiguous):
+        return Source(array.reshape(-1), None)
+    return Source(array, shape)
+
+
+class Buffers:
+    """Room for the blocks of columns that are not plain float64 arrays (one for each thread)."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self._kept: dict[str, Floats] = {}
+
+    def block(self, name: str, source: Source, start: int, stop: int) -> Floats:
+        """Scenes ``start`` to ``stop`` of a column, or its only value, as float64."""
+        values = source.values
+        if source.shape is None:
+            if len(values) == 1:
+                return values
+            if values.dtype == np.float64 and values.strides[0] == values.itemsize:
+                return values[start:stop]
+            part = values[start:stop]
+        else:
+            part = np.broadcast_to(values, source.shape).flat[start:stop]
+        if name not in self._kept:
+            self._kept[name] = np.empty(self.size)
+        room = self._kept[name][: stop - start]
+        np.copyto(room, part)
+        return room
+
+
+class Block(NamedTuple):
+    """A block of scenes made ready: ``fixed`` columns have length 1, ``varying`` its length.
+
+    ``kinds`` tells of each scene name what a plan may rely on:
+
+    - ``array``, ``scalar``, ``0`` or ``1`` (for all scenes of the block);
+    - MA MB IA IB: also ``array with infinities`` and ``inf``;
+    - MU: ``pivot`` or ``mixed`` (some pivots), else no pivot is in it;
+    - M: ``6``, ``4`` or ``mixed``.
+
+    ``refused``: a boolean array, True where the numbers cannot be used, or None if nowhere.
+    """
+
+    fixed: dict[str, Floats]
+    varying: dict[str, Floats]
+    kinds: tuple[str, ...]
+    refused: NDArray[np.bool_] | None
+
+
+def examine(values: Mapping[str, Floats]) -> Block:
+    """Find out what kind of block this is. ``values``: a column each of one length or of length 1."""
+    fixed: dict[str, Floats] = {}
+    varying: dict[str, Floats] = {}
+    kinds: list[str] = []
+    usable = True
+    for name, column in values.items():
+        if len(column) > 1 and _same_throughout(column):
+            column = column[:1]
+        kind, fine = _kind(name, column)
+        if kind in _CONSTANT_KINDS:
+            column = column[:1]
+        usable = usable and fine
+        if name in ANGLES and not _sum_of_squares(column) < _LARGE_ANGLE**2:
+            with np.errstate(invalid="ignore"):
+                turned = np.fmod(column, 360.0)
+            column = np.where(np.abs(column) > _LARGE_ANGLE, turned, column)
+        (fixed if len(column) == 1 else varying)[name] = column
+        kinds.append(kind)
+    together = {**fixed, **varying}
+    if usable and "4" not in kinds[-1] and not any("inf" in kind for kind in kinds):
+        return Block(fixed, varying, tuple(kinds), None)
+    refused = _refused(together, max(map(len, together.values())))
+    return Block(fixed, varying, tuple(kinds), refused if refused.any() else None)
+
+
+_CONSTANT_KINDS = ("scalar", "0", "1", "inf", "pivot", "4", "6")
+
+
+def _same_throughout(column: Floats) -> bool:
+    first = column[0]
+    return bool(first == column[-1] and first == column[len(column) // 2]) and bool(
+        (column == first).all()
+    )
+
+
+def _sum_of_squares(column: Floats, piece: int = 8192) -> float:
+    """Finite exactly when all values are (unless they are beyond 1e150); far cheaper than
+    ``isfinite``. In pieces, because BLAS starts threads of its own for long ones."""
+    return float(sum(np.dot(p, p) for p in _pieces(column, piece)))
+
+
+def _pieces(column: Floats, size: int) -> Iterable[Floats]:
+    return (column[i : i + size] for i in range(0, len(column), size))
+
+
+def _kind(name: str, column: Floats) -> tuple[str, bool]:
+    """The kind of a column of a block, and False when some value may be unusable."""
+    alike = len(column) == 1
+    if name == "M":
+        if alike and column[0] in (4, 6):
+            return str(int(column[0])), True
+        return "mixed", False
+    if name in INERTIAS:
+        low, high = column.min(), column.max()
+        if not low > 0:
+            return ("scalar" if alike else "array with infinities"), False
+        if high == np.inf:
+            return ("inf" if alike else "array with infinities"), True
+        return ("scalar" if alike else "array"), True
+    if name == "MU" and not column.min() > PIVOT:
+        fine = bool(np.isfinite(column).all())
+        pivots = column == PIVOT
+        if alike and pivots[0]:
+            return "pivot", True
+        if pivots.any():
+            return "mixed", fine
+        return ("scalar" if alike else "array"), fine
+    if alike:
+        value = column[0]
+        return {0.0: "0", 1.0: "1"}.get(float(value), "scalar"), bool(np.isfinite(value))
+    return "array", bool(np.isfinite(_sum_of_squares(column)))
+
+
+def _refused(columns: Mapping[str, Floats], length: int) -> NDArray[np.bool_]:
+    """Which scenes cannot be used: a number not finite, M neither 4 nor 6, a mass or inertia not
+    above 0, an infinite body that moves, two infinite bodies."""
+    point = columns["M"] == 4
+    refused = ~(point | (columns["M"] == 6))
+    for name, column in columns.items():
+        if name in INERTIAS:
+            bad = ~(column > 0)
+        else:
+            bad = ~np.isfinite(column)
+        if name in UNUSED_BY_POINTS:
+            bad = bad & ~point
+        refused = refused | bad
+    infinite = []
+    for mass, inertia, velocities, spin in (
+        ("MA", "IA", ("UX", "UY"), "WA"),
+        ("MB", "IB", ("VX", "VY"), "WB"),
+    ):
+        no_shift = columns[mass] == np.inf
+        no_turn = (columns[inertia] == np.inf) & ~point
+        for name in velocities:
+            refused = refused | (no_shift & (columns[name] != 0))
+        refused = refused | (no_turn & (columns[spin] != 0))
+        infinite.append(no_shift | no_turn)
+    refused = refused | (infinite[0] & infinite[1])
+    return np.broadcast_to(refused, (length,))

@@ -1,0 +1,133 @@
+"""The listing's 6x6 equations in double precision, for comparison with the closed form.
+
+`fill` sets up for many scenes the matrices that lines 370 to 560 set up for one, entry by entry;
+`lapack` solves them with ``numpy.linalg.solve``; `eliminate` is the listing's own subroutine
+(lines 1000 to 1170) for one scene in whatever arithmetic its numbers have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+LISTING_PI = 3.14159265
+"""The pi of line 300."""
+PIVOT = -10
+ORDER = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
+"""The unknowns, column by column."""
+
+
+def fill(columns: Mapping[str, Any], pi: float = np.pi) -> tuple[Array, Array]:
+    """The matrices (n, 6, 6) and right-hand sides (n, 6) of n scenes with M = 6.
+
+    ``columns``: scene name -> array of shape (n,) or number. Lines 300 to 560, with ``pi`` for the
+    listing's. Where line 510 takes for a pivot what is none (MU below -10), this does not.
+    """
+    g = {name: np.asarray(value, dtype=np.float64) for name, value in columns.items()}
+    size = np.broadcast_shapes(*(v.shape for v in g.values()))[0]
+    ag = pi / 180
+    GA, PA, PB, TA, TB = (g[name] * ag for name in ("GA", "PA", "PB", "TA", "TB"))
+    MA, MB, IA, IB, DA, DB = (g[name] for name in ("MA", "MB", "IA", "IB", "DA", "DB"))
+    UX, UY, WA, VX, VY, WB = (g[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB"))
+    E, EM, MU = g["E"], g["EM"], g["MU"]
+    s, c = np.sin(GA), np.cos(GA)
+    D1, D2 = DB * np.sin(TB + PB), DB * np.cos(TB + PB)
+    D3, D4 = DA * np.sin(TA + PA), DA * np.cos(TA + PA)
+    XA, YA, XB, YB = UX + D3 * WA, UY - D4 * WA, VX - D1 * WB, VY + D2 * WB
+    pivot = MU == PIVOT
+    flip = ~pivot & (XA * s - YA * c < XB * s - YB * c)
+    MU = np.where(flip, -MU, MU)
+    A, b = np.zeros((size, 6, 6)), np.zeros((size, 6))
+    A[:, 0, 0], A[:, 0, 2] = MA, MB
+    A[:, 1, 1], A[:, 1, 3] = MA, MB
+    along_a, along_b = MA * (c - MU * s), MB * (s + MU * c)
+    A[:, 2, 0] = np.where(pivot, s, 0.0)
+    A[:, 2, 1] = np.where(pivot, -c, along_a)
+    A[:, 2, 2] = np.where(pivot, -s, along_b)
+    A[:, 2, 3] = np.where(pivot, c, 0.0)
+    A[:, 2, 4] = np.where(pivot, DA * np.cos(PA + TA - GA), 0.0)
+    A[:, 2, 5] = np.where(pivot, DB * np.cos(PB + TB - GA), 0.0)
+    A[:, 3, 0], A[:, 3, 1], A[:, 3, 2], A[:, 3, 3] = c, s, -c, -s
+    A[:, 3, 4], A[:, 3, 5] = D3 * c - D4 * s, D1 * c - D2 * s
+    A[:, 4, 1], A[:, 4, 2], A[:, 4, 4], A[:, 4, 5] = MA * (D2 + D4), MB * (D1 + D3), IA, IB
+    A[:, 5, 0], A[:, 5, 1] = -EM * MA * D3 / IA, EM * MA * D4 / IA
+    A[:, 5, 2], A[:, 5, 3] = -EM * MB * D1 / IB, EM * MB * D2 / IB
+    A[:, 5, 4], A[:, 5, 5] = 2 * EM - 1, 1 - 2 * EM
+    b[:, 0], b[:, 1] = MA * UX + MB * VX, MA * UY + MB * VY
+    b[:, 2] = np.where(pivot, 0.0, along_a * UY + along_b * VX)
+    b[:, 3] = -E * ((UY - D4 * WA - VY - D2 * WB) * s + (UX + D3 * WA - VX + D1 * WB) * c)
+    b[:, 4] = MA * (D2 + D4) * UY + MB * (D1 + D3) * VX + IA * WA + IB * WB
+    b[:, 5] = EM * (
+        -MA * D3 * UX / IA + MA * D4 * UY / IA - MB * D1 * VX / IB + MB * D2 * VY / IB + WA - WB
+    )
+    return A, b
+
+
+def lapack(A: Array, b: Array) -> Array:
+    """The solutions (n, 6) by ``numpy.linalg.solve``; NaN throughout if LAPACK finds an exact zero
+    pivot in any of the matrices (it then solves none)."""
+    try:
+        solution: Array = np.linalg.solve(A, b[..., np.newaxis])[..., 0]
+    except np.linalg.LinAlgError:
+        return np.full(b.shape, np.nan)
+    return solution
+
+
+def eliminate(A: list[list[Any]], smallest: Any) -> list[Any] | None:
+    """The listing's elimination, statement by statement, on the rows ``A`` (M rows of M + 1).
+
+    ``smallest`` is line 1080's 1E-9 in the arithmetic of the rows. Returns the solution, or None
+    for ZERO DETERMINANT. The listing's ways are kept: no scaling, ties and the last pivot take the
+    later row, the pivot is tested against an absolute 1E-9, and RX keeps its last value when a
+    whole column is smaller than that, so that a row already used may be taken again.
+    """
+    A = [list(row) for row in A]
+    M = len(A)
+    RX = 0
+    for J in range(M):
+        MX = smallest
+        for RO in range(J, M):
+            # line 1090; RO * CO < M * M fails only in the last row of the last column
+            if abs(MX) > abs(A[RO][J]) and (RO + 1) * (J + 1) < M * M:
+                continue
+            MX, RX = A[RO][J], RO
+        if abs(A[RX][J]) < smallest:
+            return None
+        AP = A[RX][J]
+        for OL in range(J, M + 1):
+            A[J][OL], A[RX][OL] = A[RX][OL], A[J][OL]
+            A[J][OL] = A[J][OL] / AP
+        for RO in range(M):
+            if RO == J:
+                continue
+            AR = A[RO][J]
+            for CO in range(J, M + 1):
+                A[RO][CO] = A[RO][CO] - A[J][CO] * AR
+    return [row[M] for row in A]
+
+
+def equilibrated_condition(A: Array, rounds: int = 20) -> Array:
+    """The condition numbers (largest row sum) of the matrices (n, 6, 6) after scaling rows and
+    columns so that the largest entry of each is near 1; infinite where singular."""
+    A = np.array(A, dtype=np.float64)
+    for _ in range(rounds):
+        for axis in (1, 2):
+            A /= np.sqrt(np.abs(A).max(axis=axis, keepdims=True))
+    try:
+        inverse = np.linalg.inv(A)
+    except np.linalg.LinAlgError:
+        return np.array([_condition(a) for a in A])
+    result: Array = np.abs(A).sum(2).max(1) * np.abs(inverse).sum(2).max(1)
+    return result
+
+
+def _condition(a: Array) -> float:
+    try:
+        return float(np.abs(a).sum(1).max() * np.abs(np.linalg.inv(a)).sum(1).max())
+    except np.linalg.LinAlgError:
+        return float("inf")

@@ -1,0 +1,204 @@
+"""Expressions over columns: formulas written once, pruned to what is asked and to what is given.
+
+A formula is written with `Expression` operands and the usual operators. Building it does no
+arithmetic; it records *what* would be computed, and leaves out on the spot what need not be:
+
+- equal subexpressions become one (same operation on the same operands);
+- an operand known to be exactly 0 or 1 disappears: x + 0, x · 1, 0 · x, sin 0, ...;
+- what no wanted result depends on is never reached when a `plan` is made.
+
+None of these changes a bit of a result (but the sign of a zero), and no other rearrangement is
+made: a scene gets the same digits alone, in a column, and on every path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+Key = tuple[object, ...]
+
+
+class Expression:
+    """One value per scene: an operation on other expressions, a column, or a constant.
+
+    ``varies`` is False when the value is the same for every scene of a block.
+    """
+
+    __slots__ = ("book", "dtype", "key", "operands", "operation", "value", "varies")
+
+    def __init__(
+        self,
+        book: Book,
+        operation: str,
+        operands: tuple[Expression, ...],
+        varies: bool,
+        dtype: str,
+        value: float | str | None = None,
+    ) -> None:
+        self.book = book
+        self.operation = operation
+        self.operands = operands
+        self.varies = varies
+        self.dtype = dtype
+        self.value = value
+
+    def is_constant(self, number: float) -> bool:
+        """Whether this is the known constant ``number``."""
+        return self.operation == "constant" and self.value == number
+
+    @property
+    def is_zero(self) -> bool:
+        return self.is_constant(0.0)
+
+    def __add__(self, other: Expression | float) -> Expression:
+        return self.book.add(self, self.book.wrap(other))
+
+    def __radd__(self, other: float) -> Expression:
+        return self.book.add(self.book.wrap(other), self)
+
+    def __sub__(self, other: Expression | float) -> Expression:
+        return self.book.subtract(self, self.book.wrap(other))
+
+    def __rsub__(self, other: float) -> Expression:
+        return self.book.subtract(self.book.wrap(other), self)
+
+    def __mul__(self, other: Expression | float) -> Expression:
+        return self.book.multiply(self, self.book.wrap(other))
+
+    def __rmul__(self, other: float) -> Expression:
+        return self.book.multiply(self.book.wrap(other), self)
+
+    def __truediv__(self, other: Expression | float) -> Expression:
+        return self.book.divide(self, self.book.wrap(other))
+
+    def __rtruediv__(self, other: float) -> Expression:
+        return self.book.divide(self.book.wrap(other), self)
+
+    def __neg__(self) -> Expression:
+        return self.book.negative(self)
+
+
+class Book:
+    """Where the expressions of one plan are kept, each once."""
+
+    def __init__(self) -> None:
+        self._kept: dict[Key, Expression] = {}
+
+    def _keep(
+        self,
+        operation: str,
+        *operands: Expression,
+        dtype: str = "float",
+        value: float | str | None = None,
+        varies: bool | None = None,
+    ) -> Expression:
+        key: Key = (operation, value, *map(id, operands))
+        if key not in self._kept:
+            if varies is None:
+                varies = any(operand.varies for operand in operands)
+            self._kept[key] = Expression(self, operation, operands, varies, dtype, value)
+        return self._kept[key]
+
+    def constant(self, number: float) -> Expression:
+        return self._keep("constant", value=float(number), varies=False)
+
+    def column(self, name: str, varies: bool) -> Expression:
+        return self._keep("column", value=name, varies=varies)
+
+    def wrap(self, operand: Expression | float) -> Expression:
+        return operand if isinstance(operand, Expression) else self.constant(operand)
+
+    # -- arithmetic; the rules of leaving out stand here and nowhere else
+
+    def add(self, a: Expression, b: Expression) -> Expression:
+        if a.is_zero:
+            return b
+        if b.is_zero:
+            return a
+        if b.operation == "negative":
+            return self.subtract(a, b.operands[0])
+        return self._fold("add", a, b, lambda x, y: x + y)
+
+    def subtract(self, a: Expression, b: Expression) -> Expression:
+        if b.is_zero:
+            return a
+        if a.is_zero:
+            return self.negative(b)
+        if b.operation == "negative":
+            return self.add(a, b.operands[0])
+        return self._fold("subtract", a, b, lambda x, y: x - y)
+
+    def multiply(self, a: Expression, b: Expression) -> Expression:
+        if a.is_zero or b.is_zero:
+            return self.constant(0.0)
+        if a.is_constant(1.0):
+            return b
+        if b.is_constant(1.0):
+            return a
+        if a.is_constant(-1.0):
+            return self.negative(b)
+        if b.is_constant(-1.0):
+            return self.negative(a)
+        if a.operation == b.operation == "negative":
+            return self.multiply(a.operands[0], b.operands[0])
+        return self._fold("multiply", a, b, lambda x, y: x * y)
+
+    def divide(self, a: Expression, b: Expression) -> Expression:
+        if b.is_constant(1.0):
+            return a
+        if a.is_zero:
+            return a
+        return self._keep("divide", a, b)
+
+    def negative(self, a: Expression) -> Expression:
+        if a.operation == "constant":
+            assert isinstance(a.value, float)
+            return self.constant(-a.value)
+        if a.operation == "negative":
+            return a.operands[0]
+        return self._keep("negative", a)
+
+    def _fold(
+        self, operation: str, a: Expression, b: Expression, rule: Callable[[float, float], float]
+    ) -> Expression:
+        if isinstance(a.value, float) and isinstance(b.value, float):
+            return self.constant(rule(a.value, b.value))
+        return self._keep(operation, a, b)
+
+    def absolute(self, a: Expression) -> Expression:
+        return a if a.is_zero else self._keep("absolute", a)
+
+    def greatest(self, a: Expression, b: Expression) -> Expression:
+        return a if a is b else self._keep("maximum", a, b)
+
+    def hypotenuse(self, a: Expression, b: Expression) -> Expression:
+        if a.is_zero or b.is_zero:
+            return self.absolute(a if b.is_zero else b)
+        return self._keep("hypot", a, b)
+
+    def sine_and_cosine(self, degrees: Expression) -> tuple[Expression, Expression]:
+        """Sine and cosine of an angle in degrees; sin(-x) is taken as -sin x."""
+        if degrees.is_zero:
+            return self.constant(0.0), self.constant(1.0)
+        if degrees.operation == "negative":
+            sine, cosine = self.sine_and_cosine(degrees.operands[0])
+            return self.negative(sine), cosine
+        both = self._keep("sine_and_cosine", degrees)
+        return self._keep("sine", both), self._keep("cosine", both)
+
+    def against(self, value: Expression, slip: Expression) -> Expression:
+        """``value`` with its sign changed where ``slip`` > 0 (the rule of listing line 400)."""
+        if value.is_zero or slip.is_zero:
+            return value
+        return self._keep("against", value, slip)
+
+    def choose(self, where: Expression, a: Expression, b: Expression) -> Expression:
+        """``a`` where the condition holds, else ``b``."""
+        return a if a is b else self._keep("choose", where, a, b)
+
+    def equals(self, a: Expression, number: float) -> Expression:
+        return self._keep("equal", a, self.constant(number), dtype="bool")
+
+    def combine(self, operation: str, *operands: Expression, dtype: str = "float") -> Expression:
+        """Any other operation the plan knows by name."""
+        return self._keep(operation, *operands, dtype=dtype)

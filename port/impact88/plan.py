@@ -1,0 +1,267 @@
+"""Plans: expressions put in order and run over blocks of scenes, a tile at a time.
+
+A plan is a list of passes. Each pass is one numpy operation over a *tile*, a run of scenes short
+enough that its working arrays stay in the processor's cache, and writes into a working array that
+was allotted beforehand and is used again as soon as its value is no longer needed. Values that are
+the same for all scenes are computed once per block, as arrays of length 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .degrees import sine_and_cosine
+from .expressions import Expression
+
+Array = NDArray[Any]
+
+_SIGN = np.uint64(1 << 63)
+_DTYPES = {"float": np.float64, "bool": np.bool_, "bits": np.uint8}
+
+
+def _against(value: Array, slip: Array, out: Array) -> None:
+    # 0 - slip has a sign bit exactly where slip > 0: a difference of equal zeros is +0
+    np.subtract(0.0, slip, out=out)
+    bits = out.view(np.uint64)
+    np.bitwise_and(bits, _SIGN, out=bits)
+    np.bitwise_xor(bits, value.view(np.uint64), out=bits)
+
+
+def _choose(where: Array, a: Array, b: Array, out: Array) -> None:
+    np.copyto(out, b)
+    np.copyto(out, a, where=where)
+
+
+OPERATIONS: dict[str, Callable[..., object]] = {
+    "add": np.add,
+    "subtract": np.subtract,
+    "multiply": np.multiply,
+    "divide": np.divide,
+    "negative": np.negative,
+    "absolute": np.absolute,
+    "maximum": np.maximum,
+    "hypot": np.hypot,
+    "equal": np.equal,
+    "isinf": np.isinf,
+    "against": _against,
+    "choose": _choose,
+}
+"""Operation -> the function of its operands and ``out``. `register` adds to it."""
+
+_PROJECTIONS = ("sine", "cosine")
+
+
+def register(name: str, function: Callable[..., object]) -> None:
+    """Make ``function(*operands, out)`` an operation that plans know by ``name``."""
+    OPERATIONS[name] = function
+
+
+class _Slots:
+    """Numbers working arrays; one that is free again is handed out first (it is still in cache)."""
+
+    def __init__(self) -> None:
+        self.dtypes: list[str] = []
+        self._free: dict[str, list[int]] = {}
+
+    def take(self, dtype: str) -> int:
+        free = self._free.setdefault(dtype, [])
+        if free:
+            return free.pop()
+        self.dtypes.append(dtype)
+        return len(self.dtypes) - 1
+
+    def give_back(self, slot: int) -> None:
+        self._free[self.dtypes[slot]].append(slot)
+
+
+class Plan:
+    """The passes that compute ``results`` (name -> expression).
+
+    ``columns``: the names of the columns the plan reads, those that vary from scene to scene in
+    ``varying``. ``passes``: how many operations it does for each scene.
+    """
+
+    def __init__(self, results: Mapping[str, Expression]) -> None:
+        self.results = dict(results)
+        order = _in_order(list(self.results.values()))
+        self.columns = [str(e.value) for e in order if e.operation == "column"]
+        self.varying = [str(e.value) for e in order if e.operation == "column" and e.varies]
+        self._fixed = [e for e in order if not e.varies]
+        tiled = [e for e in order if e.varies]
+        self.passes = sum(_weight(e) for e in tiled)
+        self._schedule(tiled)
+
+    def _schedule(self, tiled: Sequence[Expression]) -> None:
+        """Give every pass its places: fixed values and columns first, then working arrays, then
+        the results, which are written where the caller wants them."""
+        self._index = {id(e): i for i, e in enumerate(self._fixed)}
+        count = len(self._fixed)
+        for e in tiled:
+            if e.operation == "column":
+                self._index[id(e)] = count
+                count += 1
+        self._first_slot = count
+        slots = _Slots()
+        last_use: dict[int, int] = {}
+        for moment, e in enumerate(tiled):
+            for operand in e.operands:
+                last_use[id(operand)] = moment
+        self._steps: list[tuple[Callable[..., object] | None, tuple[int, ...]]] = []
+        self._outputs: list[tuple[str, int]] = []
+        wanted = {id(e) for e in self.results.values()}
+        direct: dict[int, str] = {}
+        for name, e in self.results.items():
+            if e.varies and e.operation != "column" and id(e) not in direct:
+                direct[id(e)] = name
+        self._direct = list(direct.values())
+        place_of_result = {i: count + k for k, i in enumerate(direct)}
+        base = count + len(direct)
+        self._slots = slots
+        live: dict[int, int] = {}
+
+        def place(e: Expression) -> int:
+            return self._index[id(e)]
+
+        def allot(e: Expression) -> int:
+            if id(e) in wanted:
+                where = place_of_result[id(e)]
+            else:
+                slot = slots.take(e.dtype)
+                live[id(e)] = slot
+                where = base + slot
+            self._index[id(e)] = where
+            return where
+
+        def release(e: Expression, moment: int) -> None:
+            for operand in e.operands:
+                if last_use[id(operand)] == moment and id(operand) in live:
+                    slots.give_back(live.pop(id(operand)))
+
+        for moment, e in enumerate(tiled):
+            if e.operation == "column" or e.operation in _PROJECTIONS:
+                continue
+            if e.operation == "sine_and_cosine":
+                both = [self._find(tiled, e, name) for name in _PROJECTIONS]
+                places = []
+                for half in both:
+                    if half is None:
+                        spare = slots.take("float")
+                        live[id(e)] = spare
+                        places.append(base + spare)
+                    else:
+                        places.append(allot(half))
+                work = [slots.take("float") for _ in range(4)]
+                indices = (place(e.operands[0]), *places, *(base + w for w in work))
+                self._steps.append((None, indices))
+                for w in work:
+                    slots.give_back(w)
+                if id(e) in live:
+                    slots.give_back(live.pop(id(e)))
+            else:
+                operation = OPERATIONS[e.operation]
+                operands = tuple(place(o) for o in e.operands)
+                if isinstance(operation, np.ufunc):
+                    # it may write over an operand that nobody needs any more
+                    release(e, moment)
+                self._steps.append((operation, (*operands, allot(e))))
+            release(e, moment)
+        self._base = base
+
+    @staticmethod
+    def _find(tiled: Sequence[Expression], both: Expression, half: str) -> Expression | None:
+        for e in tiled:
+            if e.operation == half and e.operands[0] is both:
+                return e
+        return None
+
+    def workspace(self, tile: int) -> list[Array]:
+        """The working arrays for tiles of up to ``tile`` scenes (one set for each thread)."""
+        return [np.empty(tile, _DTYPES[dtype]) for dtype in self._slots.dtypes]
+
+    def fixed_values(self, columns: Mapping[str, Array]) -> list[Array]:
+        """The values that are the same for all scenes of a block, each of length 1.
+
+        ``columns``: arrays of length 1 for the columns that do not vary.
+        """
+        values: dict[int, Array] = {}
+        for e in self._fixed:
+            if e.operation == "constant":
+                values[id(e)] = np.array([e.value], dtype=np.float64)
+            elif e.operation == "column":
+                values[id(e)] = columns[str(e.value)]
+            elif e.operation in _PROJECTIONS:
+                values[id(e)] = values[id(e.operands[0])][_PROJECTIONS.index(e.operation)]
+            elif e.operation == "sine_and_cosine":
+                sine, cosine, *work = (np.empty(1) for _ in range(6))
+                angle = values[id(e.operands[0])]
+                sine_and_cosine(angle, sine, cosine, (work[0], work[1], work[2], work[3]))
+                values[id(e)] = np.array([sine, cosine])
+            else:
+                out = np.empty(1, _DTYPES[e.dtype])
+                OPERATIONS[e.operation](*(values[id(o)] for o in e.operands), out)
+                values[id(e)] = out
+        return [values[id(e)] for e in self._fixed]
+
+    def run(
+        self,
+        fixed: Sequence[Array],
+        columns: Mapping[str, Array],
+        results: Mapping[str, Array],
+        workspace: Sequence[Array],
+    ) -> None:
+        """Compute one tile: read the varying ``columns`` (equally long float64 arrays), write the
+        ``results`` (name -> array of that length)."""
+        length = len(next(iter(results.values())))
+        if workspace and len(workspace[0]) != length:
+            workspace = [array[:length] for array in workspace]
+        places: list[Array] = [
+            *fixed,
+            *(columns[name] for name in self.varying),
+            *(results[name] for name in self._direct),
+            *workspace,
+        ]
+        for operation, at in self._steps:
+            if operation is None:
+                a, s, c, w0, w1, w2, w3 = at
+                sine_and_cosine(
+                    places[a],
+                    places[s],
+                    places[c],
+                    (places[w0], places[w1], places[w2], places[w3]),
+                )
+            elif len(at) == 3:
+                operation(places[at[0]], places[at[1]], places[at[2]])
+            else:
+                operation(*[places[i] for i in at])
+        for name, e in self.results.items():
+            if name not in self._direct:
+                np.copyto(results[name], places[self._index[id(e)]])
+
+
+def _weight(e: Expression) -> int:
+    """How many passes over the tile an operation makes."""
+    if e.operation == "column" or e.operation in _PROJECTIONS:
+        return 0
+    return {"sine_and_cosine": 26, "against": 3, "choose": 2}.get(e.operation, 1)
+
+
+def _in_order(results: Sequence[Expression]) -> list[Expression]:
+    """All that the results depend on, operands before what is made of them."""
+    seen: set[int] = set()
+    order: list[Expression] = []
+    stack = [(e, False) for e in reversed(results)]
+    while stack:
+        e, ready = stack.pop()
+        if id(e) in seen:
+            continue
+        if ready:
+            seen.add(id(e))
+            order.append(e)
+        else:
+            stack.append((e, True))
+            stack.extend((operand, False) for operand in reversed(e.operands))
+    return order

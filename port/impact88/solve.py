@@ -1,0 +1,196 @@
+"""`impact88.solve`: the impact in double precision over any number of scenes.
+
+Same physics as the 1988 listing (Equations 13 to 18, its sign rule of line 400, its pivot and its
+point masses) with exact pi, by the closed form of `impact88.closedform`.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .closedform import Impact
+from .columns import Block, Buffers, Source, examine, sources
+from .errors import UserError
+from .expressions import Book, Expression
+from .names import RESULTS, SCENE
+from .plan import Plan
+from .status import Status
+
+Array = NDArray[Any]
+
+TILE = 4096
+"""Scenes a pass works on: its arrays of 32 KB stay in the second-level cache, and numpy's cost of
+starting an operation is spread over enough of them."""
+BLOCK = 8 * TILE
+"""Scenes looked at together to choose a plan."""
+WORTH_A_THREAD = 4 * BLOCK
+"""Scenes from which a second thread pays."""
+
+
+def solve(
+    columns: Mapping[str, object],
+    outputs: Sequence[str] | str | None = None,
+    *,
+    threads: int | None = None,
+) -> dict[str, Array]:
+    """Solve the impact of every scene.
+
+    Args:
+        columns: scene name -> number or array (see ``impact88.names.SCENE``); all broadcast
+            together. Angles in degrees, spins in radians per unit of time. ``MU`` = -10 is the
+            pivot; any other MU takes the sign line 400 gives it (changed where gt > 0, kept on a
+            tie). ``M`` is 6 (the default) or 4. Infinite MA, IA, MB or IB make a rigid barrier.
+        outputs: the result names wanted (``impact88.names.RESULTS``), all of them by default. Only
+            what they need is computed.
+        threads: how many to use; by default as many as there are processors and work.
+
+    Returns:
+        name -> array of the broadcast shape, float64 (STATUS: uint8), in the order asked.
+
+    M = 4 is the point-mass impact: DA and DB count as 0; EM, angles other than GA and inertias are
+    not looked at, spins pass through and stay out of the energies. An infinite body must be at
+    rest and adds no energy; not both bodies may be infinite (mass or inertia).
+
+    A scene with a number that cannot be used (not finite, M neither 4 nor 6, a mass or inertia
+    that is not positive, a barrier that moves, two barriers) is NaN in every result and has
+    NOT_FINITE alone in STATUS; a scene without solution is NaN in what depends on it. Neither
+    disturbs another scene: every scene gets the bits it would get alone.
+
+    Where the listing does not solve its own equations, the equations are solved: an MU below -10,
+    or MU = 10 that the sign rule makes -10 (there line 510 zeroes a right-hand side that is not a
+    pivot's), is taken as the friction coefficient it is, with COEFFICIENT_OUT_OF_RANGE in STATUS.
+
+    Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast.
+    """
+    wanted = _wanted(outputs)
+    given, shape = sources(columns)
+    count = int(np.prod(shape, dtype=np.int64))
+    results: dict[str, Array] = {
+        name: np.empty(count, np.uint8 if name == "STATUS" else np.float64) for name in wanted
+    }
+    starts = range(0, count, BLOCK)
+    workers = _workers(count, threads)
+    if workers == 1:
+        _Worker(given, wanted, results, count)(starts)
+    else:
+        lock = threading.Lock()
+        remaining = iter(starts)
+
+        def next_block() -> int | None:
+            with lock:
+                return next(remaining, None)
+
+        with ThreadPoolExecutor(workers) as pool:
+            jobs = [
+                pool.submit(_Worker(given, wanted, results, count), iter(next_block, None))
+                for _ in range(workers)
+            ]
+        for job in jobs:
+            job.result()
+    return {name: array.reshape(shape) for name, array in results.items()}
+
+
+def _wanted(outputs: Sequence[str] | str | None) -> tuple[str, ...]:
+    if outputs is None:
+        return tuple(RESULTS)
+    names = outputs.replace(",", " ").split() if isinstance(outputs, str) else list(outputs)
+    for name in names:
+        if name not in RESULTS:
+            raise UserError(f"{name!r} is no result name; expected some of {' '.join(RESULTS)}")
+    return tuple(dict.fromkeys(names))
+
+
+def _workers(count: int, threads: int | None) -> int:
+    if threads is None:
+        processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else None
+        threads = min(processors or os.cpu_count() or 1, 1 + count // WORTH_A_THREAD)
+    return max(1, min(threads, -(-count // BLOCK)))
+
+
+class _Worker:
+    """Solves blocks with working arrays of its own."""
+
+    def __init__(
+        self,
+        given: Mapping[str, Source],
+        wanted: tuple[str, ...],
+        results: Mapping[str, Array],
+        count: int,
+    ) -> None:
+        self.given = given
+        self.wanted = wanted
+        self.results = results
+        self.count = count
+        self.buffers = Buffers(min(BLOCK, count))
+        self.workspaces: dict[int, list[Array]] = {}
+
+    def __call__(self, starts: Any) -> None:
+        with np.errstate(all="ignore"):
+            for start in starts:
+                self.solve_block(start, min(start + BLOCK, self.count))
+
+    def solve_block(self, start: int, stop: int) -> None:
+        values = {
+            name: self.buffers.block(name, source, start, stop)
+            for name, source in self.given.items()
+        }
+        block = examine(values)
+        plan = plan_for(block.kinds, self.wanted)
+        results = {name: array[start:stop] for name, array in self.results.items()}
+        if results:
+            self.run(plan, block, results, stop - start)
+        for name, result in results.items():
+            if name not in ("STATUS", "COND") and not np.isfinite(result.sum()):
+                result[np.isinf(result)] = np.nan
+        if block.refused is not None:
+            for name, result in results.items():
+                result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan
+
+    def run(self, plan: Plan, block: Block, results: Mapping[str, Array], length: int) -> None:
+        if id(plan) not in self.workspaces:
+            self.workspaces[id(plan)] = plan.workspace(min(TILE, self.count))
+        workspace = self.workspaces[id(plan)]
+        fixed = plan.fixed_values(block.fixed)
+        for low in range(0, length, TILE):
+            high = min(low + TILE, length)
+            plan.run(
+                fixed,
+                {name: block.varying[name][low:high] for name in plan.varying},
+                {name: result[low:high] for name, result in results.items()},
+                workspace,
+            )
+
+
+@lru_cache(maxsize=1024)
+def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...]) -> Plan:
+    """The plan for a kind of block (see `impact88.columns.Block`) and the results wanted."""
+    book = Book()
+    kind = dict(zip(SCENE, kinds, strict=True))
+    scene: dict[str, Expression] = {}
+    for name, what in kind.items():
+        if what in ("0", "1"):
+            scene[name] = book.constant(float(what))
+        else:
+            scene[name] = book.column(name, varies=what.startswith(("array", "mixed")))
+    pivot: bool | Expression = kind["MU"] == "pivot"
+    if kind["MU"] == "mixed":
+        pivot = book.equals(scene["MU"], -10.0)
+    point: bool | Expression = kind["M"] == "4"
+    if kind["M"] == "mixed":
+        point = book.equals(scene["M"], 4.0)
+    infinite = any("inf" in what for what in kinds)
+    impact = Impact(book, scene, pivot, point, infinite)
+    return Plan({name: _RESULT[name](impact) for name in wanted})
+
+
+_RESULT: dict[str, Callable[[Impact], Expression]] = {
+    name: (lambda impact, name=name: getattr(impact, name)) for name in RESULTS
+}
