@@ -17,7 +17,9 @@ _LAZY = {
     "Scene": "scene",
     "sample": "scene",
     "run": "run",
+    "solve_for": "unknowns",
     "solve": "solve",
+    "bounds": "bounds",
 }
 """Public name -> the module that holds it."""
 

@@ -21,6 +21,7 @@ from .errors import UserError
 COMMANDS = {
     "run": "run the 1988 program on its own data, a sample or a scene file",
     "scene": "print a scene file to fill in, or a sample's",
+    "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",
 }
 """Command -> one line of help, in the order ``--help`` lists them."""
 

@@ -1,0 +1,304 @@
+"""A value of the scene may be known only within limits. In the file, as text, or with --range:
+
+  0.7 .. 0.9             between two values, none preferred
+  0.8 +- 0.1             the same by middle and half width; also 143.5 +- 5%
+  +- 0.1, +- 5%          the same around the file's value (--range only)
+  uniform 0.7 0.9        the same as 0.7 .. 0.9
+  triangular 0.7 0.75 0.9          lower limit, most likely value, upper limit
+  normal 0.8 0.05                  mean and standard deviation
+  normal 0.8 0.05 within 0.7 .. 1  the same, cut off at limits
+
+In a file: MU = "0.7 .. 0.9". Correlated values, in the file: correlations = "UX,VX 0.5; MA,IA 0.9"
+(the correlation of a Gaussian copula); they shape the draws, not the bounds.
+
+The bounds are the extremes over all inputs within their limits (a normal without limits: --sigmas
+standard deviations), sought at the corners, on faces and inside. Every bound is attained: --json
+gives the inputs that do. The true bound lies no closer; that it lies no farther is not proven.
+Share of draws with a warning: see impact88.status. Units are those of the scene; angles in degrees.
+
+--reconstruct goes from final to initial velocities: the file (or --range) gives VAX VAY VBX VBY WAF
+WBF and MUP, the signed P_t/P_n; if it gives none, those of the scene's forward solution are taken.
+
+examples:
+  impact88 bounds --sample 1 --range MU="0.7 .. 1" --range UX="+- 10%"
+  impact88 bounds crash.toml --outputs DVA DVB LOSS --samples 1000000 --seed 7
+  impact88 bounds --sample 3 --reconstruct --range VAX="+- 2" --range VBY="normal 41.5 1.5"
+  impact88 bounds crash.toml --range UX="+- 3" --range VX="+- 3" --correlation UX,VX=0.8 --json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ..errors import UserError
+from ..files import read_text
+from ..ranges import Inputs, read_correlations, read_inputs
+from ..scene import SAMPLES, sample, toml_texts
+
+if TYPE_CHECKING:
+    from ..bounds import Bounds
+
+DRIVERS_SHOWN = 4
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 bounds`."""
+    add_scene_arguments(parser)
+    parser.add_argument("--outputs", nargs="+", metavar="NAME", help="the results wanted")
+    parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
+
+
+def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options that say what is uncertain, and how it is explored."""
+    parser.add_argument("scene", nargs="?", metavar="FILE.toml", help="a scene file (- is stdin)")
+    parser.add_argument("--sample", type=int, choices=SAMPLES, help="a published run's scene")
+    parser.add_argument(
+        "--range",
+        action="append",
+        default=[],
+        metavar="NAME=RANGE",
+        dest="ranges",
+        help="a value or range in place of the scene's; repeatable",
+    )
+    parser.add_argument(
+        "--correlation",
+        action="append",
+        default=[],
+        metavar="A,B=R",
+        dest="correlations",
+        help="the correlation of two inputs; repeatable",
+    )
+    parser.add_argument(
+        "--exclude",
+        nargs="+",
+        default=[],
+        metavar="WARNING",
+        help="leave out scenes that carry a warning, such as ENERGY_GAINED",
+    )
+    parser.add_argument(
+        "--reconstruct", action="store_true", help="from final to initial velocities"
+    )
+    parser.add_argument(
+        "--samples",
+        type=int,
+        default=100_000,
+        metavar="N",
+        help="random draws (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=0, help="which random draws (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--sigmas",
+        type=float,
+        default=3.0,
+        metavar="K",
+        help="where a normal without limits ends for the bounds (default: %(default)s)",
+    )
+
+
+def read_scene(args: argparse.Namespace) -> Inputs:
+    """The inputs the options describe. Raises UserError."""
+    if bool(args.scene) == bool(args.sample):
+        raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
+    if args.scene:
+        texts: dict[str, str] = toml_texts(read_text(args.scene, limit=1_000_000), args.scene)
+        source = args.scene
+    else:
+        texts, source = dict(sample(args.sample)), f"sample {args.sample}"
+    changes = {}
+    for pair in args.ranges:
+        name, equals, text = pair.partition("=")
+        name = name.strip().upper()
+        if not equals or name in changes:
+            what = "is given twice" if equals else "expected NAME=RANGE, such as MU='.7 .. .9'"
+            raise UserError(f"--range {pair}: {what}")
+        changes[name] = text
+    problem = "reconstruction" if args.reconstruct else "forward"
+    inputs = read_inputs(texts, changes, problem, source)
+    pairs = dict(inputs.correlations)
+    for text in args.correlations:
+        names, equals, number = text.partition("=")
+        if not equals:
+            raise UserError(f"--correlation {text}: expected A,B=R, such as UX,VX=0.5")
+        pairs |= read_correlations(f"{names} {number.strip()}", "--correlation")
+    return Inputs(inputs.values, pairs, inputs.derived)
+
+
+def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = False) -> Bounds:
+    """The bounds the options ask for, with progress on a terminal. Raises UserError."""
+    from ..bounds import bounds
+
+    inputs = read_scene(args)
+    if args.seed < 0:
+        raise UserError(f"seed {args.seed}; expected 0 or more")
+    if not any(item.varies for item in inputs.values.values()):
+        raise UserError(
+            "nothing varies; give ranges in the file or with --range, such as MU='.7 .. .9'"
+        )
+    if inputs.derived:
+        print(f"from the forward solution: {' '.join(inputs.derived)}", file=sys.stderr)
+    done = 0
+
+    def progress(draws: int) -> None:
+        nonlocal done
+        done += draws
+        if sys.stderr.isatty() and args.samples > 1_000_000:
+            end = "\n" if done >= args.samples else "\r"
+            print(f"{done:,} of {args.samples:,} draws", end=end, file=sys.stderr, flush=True)
+
+    return bounds(
+        inputs.values,
+        [name.upper() for text in outputs for name in text.replace(",", " ").split()]
+        if outputs
+        else None,
+        problem="reconstruction" if args.reconstruct else "forward",
+        samples=args.samples,
+        seed=args.seed,
+        correlations=inputs.correlations,
+        sigmas=args.sigmas,
+        exclude=[name.upper() for name in args.exclude],
+        keep_draws=keep,
+        progress=progress,
+    )
+
+
+def main(args: argparse.Namespace) -> int:
+    """Print bounds, spreads and what drives them."""
+    found = explored(args, args.outputs)
+    print(json.dumps(as_json(found), allow_nan=False) if args.json else table(found))
+    return 0
+
+
+def _plain(value: float) -> float | None:
+    """A number JSON has; None for the others."""
+    return value if math.isfinite(value) else None
+
+
+def as_json(found: Bounds) -> dict[str, Any]:
+    """Everything found, as JSON takes it; a value that does not exist is null."""
+    from ..bounds import quantity
+
+    return {
+        "problem": found.problem,
+        "samples": found.samples,
+        "seed": found.seed,
+        "sigmas": found.sigmas,
+        "evaluations": found.evaluations,
+        "all_corners": found.corners_in_full,
+        "unusable": found.unusable,
+        "warnings": found.warnings,
+        "correlations": [
+            {"names": list(pair), "correlation": value}
+            for pair, value in found.correlations.items()
+        ],
+        "inputs": {
+            name: {
+                "kind": item.kind,
+                "nominal": item.nominal,
+                "limits": list(found.limits[name]),
+                "unit": quantity(name).unit,
+            }
+            for name, item in found.inputs.items()
+        },
+        "outputs": {
+            name: {
+                "meaning": quantity(name).meaning,
+                "unit": quantity(name).unit,
+                "nominal": bound.nominal,
+                "lower": _plain(bound.lower),
+                "upper": _plain(bound.upper),
+                "corner_lower": _plain(bound.corner_lower),
+                "corner_upper": _plain(bound.corner_upper),
+                "lower_warnings": list(bound.lower_warnings),
+                "upper_warnings": list(bound.upper_warnings),
+                "at_lower": bound.at_lower,
+                "at_upper": bound.at_upper,
+                "mean": _plain(found.spreads[name].mean),
+                "deviation": _plain(found.spreads[name].deviation),
+                "quantiles": {
+                    f"{share:g}": _plain(value)
+                    for share, value in found.spreads[name].quantiles.items()
+                },
+                "drives": {
+                    source: {
+                        "rank_correlation": _plain(drive.rank_correlation),
+                        "at_low": _plain(drive.at_low),
+                        "at_high": _plain(drive.at_high),
+                        "lowest": _plain(drive.lowest),
+                        "highest": _plain(drive.highest),
+                    }
+                    for source, drive in found.drives[name].items()
+                },
+            }
+            for name, bound in found.bounds.items()
+        },
+    }
+
+
+def table(found: Bounds) -> str:
+    """What a reader wants to see, at most 100 characters wide."""
+    from ..bounds import quantity
+
+    lines = [f"Inputs that vary ({found.problem} problem)", ""]
+    lines.append(f"{'':6}{'from':>12}{'to':>12}{'nominal':>12}  {'kind':<12}{'unit':<16}meaning")
+    for name, item in found.inputs.items():
+        low, high = found.limits[name]
+        what = quantity(name)
+        numbers = "".join(f"{value:>12.6g}" for value in (low, high, item.nominal))
+        lines.append(f"{name:6}{numbers}  {item.kind:<12}{what.unit:<16}{what.meaning}")
+    spreads = next(iter(found.spreads.values())).quantiles
+    lines += ["", "Bounds, and quantiles of the draws", ""]
+    heads = "".join(f"{f'{100 * share:g} %':>10}" for share in spreads)
+    lines.append(f"{'':6}{'nominal':>10}{'lower':>11}{'upper':>11}{heads}  unit")
+    inside = False
+    for name, bound in found.bounds.items():
+        width = bound.upper - bound.lower
+        marks = [
+            "*" if abs(value - corner) > 1e-6 * width else " "
+            for value, corner in (
+                (bound.lower, bound.corner_lower),
+                (bound.upper, bound.corner_upper),
+            )
+        ]
+        inside = inside or "*" in marks
+        cells = "".join(f"{value:>10.5g}" for value in found.spreads[name].quantiles.values())
+        lines.append(
+            f"{name:6}{bound.nominal:>10.5g}{bound.lower:>10.5g}{marks[0]}{bound.upper:>10.5g}"
+            f"{marks[1]}{cells}  {quantity(name).unit}"
+        )
+    lines += [
+        "",
+        "What drives them: rank correlation, and how far the result goes with that alone",
+        "",
+    ]
+    for name in found.bounds:
+        ranked = sorted(found.drives[name].items(), key=lambda entry: -abs(entry[1].swing or 0.0))
+        cells = "".join(
+            f"  {source:<4}{drive.rank_correlation:>+6.2f} ({drive.swing:.3g})".ljust(23)
+            for source, drive in ranked[:DRIVERS_SHOWN]
+            if drive.swing > 0
+        )
+        lines.append(f"{name:6}{cells}".rstrip())
+    lines.append("")
+    if inside:
+        lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
+    for name, bound in found.bounds.items():
+        for side, warnings in (("lower", bound.lower_warnings), ("upper", bound.upper_warnings)):
+            if warnings:
+                lines.append(f"! {side} bound of {name}: {' '.join(warnings)} (see --exclude)")
+    corners = "all corners" if found.corners_in_full else "corners at random"
+    lines += [
+        f"Bounds: attained; sought in {found.evaluations:,} scenes ({corners}, faces, interior,",
+        "climbing), not proven to be the farthest. Correlations do not narrow them.",
+        f"Draws: {found.samples:,}, seed {found.seed}.",
+    ]
+    for name, share in found.warnings.items():
+        lines.append(f"{100 * share:.3g} % of the draws: {name}")
+    if found.unusable:
+        lines.append(f"{100 * found.unusable:.3g} % of the draws have no finite result, left out")
+    return "\n".join(lines)
