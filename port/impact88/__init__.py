@@ -18,6 +18,10 @@ _LAZY = {
     "sample": "scene",
     "run": "run",
     "solve_for": "unknowns",
+    "colinear": "colinear",
+    "colinear_inverse": "colinear",
+    "barrier": "barrier",
+    "delta_v": "deltav",
     "solve": "solve",
     "bounds": "bounds",
 }

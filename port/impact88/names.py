@@ -97,6 +97,40 @@ RESULTS: dict[str, Quantity] = {
 }
 """What an impact yields, in this project's order: the six final velocities first."""
 
+_LENGTH = "length"
+_FORCE = "mass·length/time²"
+
+CHAPTER: dict[str, Quantity] = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("CAX", "-d4", "x from A's center of gravity to the contact point", _LENGTH, 0),
+        Quantity("CAY", "-d3", "y from A's center of gravity to the contact point", _LENGTH, 0),
+        Quantity("CBX", "d2", "x from B's center of gravity to the contact point", _LENGTH, 0),
+        Quantity("CBY", "d1", "y from B's center of gravity to the contact point", _LENGTH, 0),
+        Quantity(
+            "PDOFA", "", "principal direction of force on A, clockwise from its front", "degree", 0
+        ),
+        Quantity(
+            "PDOFB", "", "principal direction of force on B, clockwise from its front", "degree", 0
+        ),
+        Quantity("P", "P", "size of the impulse", "mass·length/time", 0),
+        Quantity("TF", "t_f", "duration of contact", "time", 0),
+        Quantity("FA", "F_A", "average force during contact", _FORCE, 0),
+        Quantity("FM2", "F_M", "peak force, at twice the average", _FORCE, 0),
+        Quantity("FM3", "F_M", "peak force, at three times the average", _FORCE, 0),
+        Quantity("UN", "v_an", "initial normal velocity of A", _VELOCITY, 0),
+        Quantity("UT", "v_at", "initial tangential velocity of A", _VELOCITY, 0),
+        Quantity("VN", "v_bn", "initial normal velocity of B", _VELOCITY, 0),
+        Quantity("VT", "v_bt", "initial tangential velocity of B", _VELOCITY, 0),
+        Quantity("VAN", "V_an", "final normal velocity of A", _VELOCITY, 0),
+        Quantity("VAT", "V_at", "final tangential velocity of A", _VELOCITY, 0),
+        Quantity("VBN", "V_bn", "final normal velocity of B", _VELOCITY, 0),
+        Quantity("VBT", "V_bt", "final tangential velocity of B", _VELOCITY, 0),
+    )
+}
+"""What the chapter's other problems add (Sections III, IV-C and VI) and the listing has no name for:
+contact point, direction and size of the force, velocities along n and t."""
+
 FINAL_VELOCITIES = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 VELOCITIES = ("UX", "UY", "WA", "VX", "VY", "WB")
 """The six values lines 210 and 230 ask for, in that order."""
