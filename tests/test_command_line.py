@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import pty
+import select
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -231,6 +233,10 @@ class Terminal:
 
     def read(self) -> bool:
         """More of what is on the screen; false when the command has left."""
+        ready, _, _ = select.select([self.screen], [], [], 60)
+        if not ready:
+            os.kill(self.process, signal.SIGKILL)
+            pytest.fail(f"nothing came any more after {self.shown!r}")
         try:
             data = os.read(self.screen, 4096)
         except OSError:  # how a terminal says that nobody is left at the other end
@@ -266,6 +272,15 @@ def test_run_on_a_terminal_prompts_and_does_not_repeat_the_echo() -> None:
     assert "XB= 14.51 YB= 25.14\n" in shown
 
 
+@pytest.fixture
+def control_c_works() -> Iterator[None]:
+    """A shell's background job ignores control-C, and so would the commands started here."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("control_c_works")
 def test_control_c_at_a_prompt_leaves_without_a_traceback() -> None:
     terminal = Terminal("run")
     terminal.read_until("?")
@@ -274,6 +289,7 @@ def test_control_c_at_a_prompt_leaves_without_a_traceback() -> None:
     assert "Traceback" not in terminal.shown
 
 
+@pytest.mark.usefixtures("control_c_works")
 def test_interrupt_signal_at_a_prompt_leaves_without_a_traceback() -> None:
     with subprocess.Popen(
         [COMMAND, "run"],
