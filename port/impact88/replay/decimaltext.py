@@ -1,0 +1,297 @@
+"""Decimal texts to arrays of reals and back, as Applesoft reads constants and INPUT and writes PRINT.
+
+The scalar text of these rules is `impact88.applesoft.decimaltext`. Here all texts of a column are
+read together, a character place at a time, and all fields written together.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..applesoft import decimaltext as scalar
+from ..errors import UserError
+from .reals import OVERFLOW, Bools, Reals, compare, constant, floor, from_number
+from .unit import Ints, Unit
+
+Strings = npt.NDArray[np.str_]
+
+_TEN = constant(10)
+_HALF = from_number(scalar.HALF)
+_BILLION = from_number(scalar.BILLION)
+_NINE_DIGITS = from_number(scalar.NINE_DIGITS)
+_EIGHT_DIGITS = from_number(scalar.EIGHT_DIGITS)
+
+_EXACT_DIGITS = 9
+"""So many digits make a whole number below 2^32, which MUL10 and adding a digit leave exact."""
+
+_QUARTER_LIMIT = 2.0**125
+"""Four times this is exponent byte 256."""
+
+
+def times_ten(x: Reals) -> Reals:
+    """MUL10: x rounded, as (4x + x) doubled. Records OVERFLOW."""
+    x = x.rounded()
+    if x.high >= _QUARTER_LIMIT / 4:
+        failed = np.abs(x.v) >= _QUARTER_LIMIT
+        x._unit().record(failed, OVERFLOW)
+        x = Reals(np.where(failed, 0.0, x.v), x.unit, x.low, _QUARTER_LIMIT, True)
+    t = Reals(x.v * 4, x.unit, x.low * 4, x.high * 4, True, x.full) + x
+    result = Reals(t.v * 2, t.unit, t.low * 2, t.high * 2, False, t.full)
+    if result.high >= 2.0**127:
+        result._settle()
+    return result
+
+
+def over_ten(x: Reals) -> Reals:
+    """DIV10: |x| rounded, divided by ten."""
+    return abs(x) / _TEN
+
+
+# --- reading ---------------------------------------------------------------------------------------
+
+
+def read(texts: Any, unit: Unit, where: str) -> Reals:
+    """The numbers that texts are, extension included: a sequence of str, as many as ``unit`` has
+    scenes. Records OVERFLOW. Raises UserError for a text that is no number; ``where`` names it.
+    """
+    places, length = _characters(texts, where)
+    numerals = _Numerals(length)
+    for place in places:
+        numerals.take(place)
+    wrong = numerals.wrong | ~numerals.started
+    if wrong.any():
+        row = int(np.flatnonzero(wrong)[0])
+        raise UserError(
+            f"{str(texts[row])!r} is no number; expected decimal text", f"{where}, row {row + 1}"
+        )
+    if numerals.overflow.any():
+        unit.record(numerals.overflow, OVERFLOW)
+    v = numerals.value.astype(np.float64)
+    high = float(v.max(initial=0.0))
+    x = Reals(v, unit, 1.0, max(high, 1.0), True)
+    for more, digit in numerals.further:
+        rows = np.flatnonzero(more)
+        _treat(x, rows, lambda part, d=digit[rows]: _add_digit(times_ten(part), d))
+    exponent = np.where(numerals.exponent_negative, -numerals.exponent, numerals.exponent)
+    steps = exponent - numerals.decimals
+    for step, count in ((times_ten, steps), (over_ten, -steps)):
+        rows = np.flatnonzero(count > 0)
+        done = 0
+        while rows.size:
+            _treat(x, rows, step)
+            done += 1
+            rows = rows[count[rows] > done]
+    np.negative(x.v, out=x.v, where=numerals.negative)
+    return x
+
+
+def _characters(texts: Any, where: str) -> tuple[npt.NDArray[np.uint8], int]:
+    """The characters, a row for each place; 0 past a text's end."""
+    array = np.asarray(texts)
+    if array.dtype.kind == "O":
+        array = np.asarray([str(text) for text in texts])
+    try:
+        array = array.astype(np.bytes_)
+    except UnicodeEncodeError:
+        row = next(i for i, text in enumerate(texts) if not str(text).isascii())
+        raise UserError(
+            f"{str(texts[row])!r} is no number; expected decimal text", f"{where}, row {row + 1}"
+        ) from None
+    length = array.shape[0]
+    width = array.dtype.itemsize
+    matrix = np.ascontiguousarray(array).view(np.uint8).reshape(length, width)
+    return np.ascontiguousarray(matrix.T), length
+
+
+class _Numerals:
+    """The parts of many numbers' texts, taken in one character place after another.
+
+    Blanks count for nothing. ``value`` holds the first nine digits, ``further`` the others, as pairs
+    of which rows and which digit.
+    """
+
+    def __init__(self, length: int) -> None:
+        self.value = np.zeros(length, np.int64)
+        self.digits = np.zeros(length, np.int16)
+        self.decimals = np.zeros(length, np.int16)
+        self.further: list[tuple[Bools, npt.NDArray[np.uint8]]] = []
+        self.exponent = np.zeros(length, np.int16)
+        self.started = np.zeros(length, bool)
+        self.negative = np.zeros(length, bool)
+        self.point = np.zeros(length, bool)
+        self.after_e = np.zeros(length, bool)
+        self.sign_may_follow = np.ones(length, bool)
+        self.exponent_negative = np.zeros(length, bool)
+        self.overflow = np.zeros(length, bool)
+        self.wrong = np.zeros(length, bool)
+
+    def take(self, character: npt.NDArray[np.uint8]) -> None:
+        """The next character of every text."""
+        digit = character - np.uint8(ord("0"))
+        is_digit = digit < 10
+        blank = (character == ord(" ")) | (character == 0)
+        is_point = character == ord(".")
+        exponential = self.after_e.any()
+        if exponential:
+            of_exponent = is_digit & self.after_e
+            if of_exponent.any():
+                self._exponent_digit(of_exponent, digit)
+            is_mantissa = is_digit & ~self.after_e
+            self.wrong |= is_point & self.after_e
+        else:
+            is_mantissa = is_digit
+        room = self.digits < _EXACT_DIGITS
+        if not room.all():
+            beyond = is_mantissa & ~room
+            if beyond.any():
+                self.further.append((beyond, digit))
+            room &= is_mantissa
+        else:
+            room = is_mantissa
+        np.multiply(self.value, 10, out=self.value, where=room)
+        np.add(self.value, digit, out=self.value, where=room)
+        self.digits += is_mantissa
+        self.decimals += is_mantissa & self.point
+        self.wrong |= is_point & self.point
+        self.point |= is_point
+        known = is_digit | blank | is_point
+        if not known.all():
+            self._sign_or_e(character, known)
+            is_e = (character == ord("E")) | (character == ord("e"))
+            self.sign_may_follow = is_e | (self.sign_may_follow & blank)
+        else:
+            self.sign_may_follow &= blank
+        self.started |= ~blank
+
+    def _sign_or_e(self, character: npt.NDArray[np.uint8], known: Bools) -> None:
+        minus = character == ord("-")
+        sign = minus | (character == ord("+"))
+        is_e = (character == ord("E")) | (character == ord("e"))
+        self.wrong |= sign & ~self.sign_may_follow
+        self.negative |= minus & ~self.after_e
+        self.exponent_negative |= minus & self.after_e
+        self.wrong |= is_e & self.after_e
+        self.after_e |= is_e
+        self.wrong |= ~(known | sign | is_e)
+
+    def _exponent_digit(self, where: Bools, digit: npt.NDArray[np.uint8]) -> None:
+        """One more digit of the exponent; after two that are worth ten or more it is one too many."""
+        too_many = where & (self.exponent >= 10)
+        self.overflow |= too_many & ~self.exponent_negative
+        next_exponent = np.where(too_many, 100, self.exponent * 10 + digit)
+        np.copyto(self.exponent, next_exponent, where=where, casting="unsafe")
+
+
+def _add_digit(value: Reals, digit: npt.NDArray[np.uint8]) -> Reals:
+    """ADDACC: the value rounded, and a digit added."""
+    return value + Reals(digit.astype(np.float64), value.unit, 1.0, 9.0, True)
+
+
+def _treat(x: Reals, rows: Ints, operation: Any) -> None:
+    """Apply an operation to some rows of ``x`` in place, recording its errors with them."""
+    assert x.unit is not None
+    part = Unit(rows.size)
+    part._place = x.unit._place
+    result = operation(Reals(x.v[rows], part, x.low, x.high, False, False))
+    x.v[rows] = result.v
+    x.low = min(x.low, result.low)
+    x.high = max(x.high, result.high)
+    x.stored = False
+    x.unit.first[rows] = np.minimum(x.unit.first[rows], part.first)
+
+
+# --- writing ---------------------------------------------------------------------------------------
+
+
+def write(x: Reals) -> Strings:
+    """The characters PRINT makes of each: at most nine digits, the extension counted."""
+    number, d = _nine_digits(x)
+    return _lay_out(number, d, x.v < 0)
+
+
+def _nine_digits(x: Reals) -> tuple[Ints, Ints]:
+    """The nine digits N written for |x|, and d with |x| = N * 10^d; N = 0 for zero."""
+    v = np.abs(x.v)
+    d = np.zeros(v.shape, np.int64)
+    nonzero = v != 0
+
+    def part(rows: Ints) -> Reals:
+        return Reals(v[rows], Unit(rows.size), 2.0**-128, 2.0**127, False, True)
+
+    rows = np.flatnonzero(nonzero & (v < 1))
+    if rows.size:
+        v[rows] = (_BILLION * part(rows)).v
+        d[rows] = -9
+    rows = np.flatnonzero(nonzero)
+    rounds = nonzero.copy()
+    while rows.size:
+        current = part(rows)
+        order = compare(_NINE_DIGITS, current)
+        rounds[rows[order == 0]] = False
+        rows = rows[order > 0]
+        if rows.size:
+            v[rows] = over_ten(part(rows)).v
+            d[rows] += 1
+    rows = np.flatnonzero(rounds)
+    done = rows
+    while rows.size:
+        rows = rows[compare(_EIGHT_DIGITS, part(rows)) <= 0]
+        if rows.size:
+            v[rows] = times_ten(part(rows).within(1e8)).v
+            d[rows] -= 1
+    if done.size:
+        v[done] = (_HALF + part(done).within(2e9)).v
+    return floor(Reals(v, None, 1.0, 2e9)).v.astype(np.int64), d
+
+
+_WIDTH = 15
+"""The longest field: sign, point, nine digits, exponent."""
+
+
+def _lay_out(number: Ints, d: Ints, negative: Bools) -> Strings:
+    """Nine digits times ten to the d, as PRINT sets them (see the scalar `lay_out`)."""
+    length = number.size
+    digits = np.empty((length, 9), np.uint8)
+    rest = number
+    for place in range(8, -1, -1):
+        rest, digits[:, place] = np.divmod(rest, 10)
+    last = 8 - np.argmax(digits[:, ::-1] != 0, axis=1)  # the last digit that is not zero
+    digits += ord("0")
+    out = np.zeros((length, _WIDTH), np.uint8)
+    end = np.empty(length, np.int64)
+    low = int(d.min(initial=0))
+    kinds = (d - low) * 2 + negative
+    for kind in np.flatnonzero(np.bincount(kinds)).tolist():
+        rows = np.flatnonzero(kinds == kind)
+        exponent, sign = kind // 2 + low, kind % 2
+        if sign:
+            out[rows, 0] = ord("-")
+        plain = -10 <= exponent <= 0
+        point = exponent + 9 if plain else 1
+        if point < 0:
+            out[rows, sign] = ord(".")
+            out[rows, sign + 1] = ord("0")
+            out[rows, sign + 2 : sign + 11] = digits[rows]
+            end[rows] = sign + last[rows] + 3
+            continue
+        out[rows, sign : sign + point] = digits[rows, :point]
+        out[rows, sign + point] = ord(".")
+        out[rows, sign + point + 1 : sign + 10] = digits[rows, point:]
+        end[rows] = sign + np.where(last[rows] < point, point, last[rows] + 2)
+    out[np.arange(_WIDTH) >= end[:, np.newaxis]] = 0
+    rows = np.flatnonzero((d < -10) | (d > 0))
+    if rows.size:
+        exponent = d[rows] + 8
+        at = end[rows]
+        size = np.abs(exponent)
+        out[rows, at] = ord("E")
+        out[rows, at + 1] = np.where(exponent < 0, ord("-"), ord("+"))
+        out[rows, at + 2] = ord("0") + size // 10
+        out[rows, at + 3] = ord("0") + size % 10
+    zero = number == 0
+    out[zero] = 0
+    out[zero, 0] = ord("0")
+    return out.view(f"S{_WIDTH}").reshape(length).astype(np.str_)

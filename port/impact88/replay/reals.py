@@ -1,0 +1,565 @@
+"""Arrays of 40-bit reals, and the ROM's arithmetic on them.
+
+A 40-bit real, extension included, is exactly a float64: 40 bits of 53, and an exponent between
+-128 and 126 of +-1022. So an array of reals is a float64 array whose low 13 bits are clear, and
+
+    rounding to 32 bits   is integer arithmetic on its bits (a carry runs into the exponent, as it
+                          should),
+    a sum                 is exact once the smaller operand is cut off at the larger one's 40th bit,
+    a product, a quotient is the processor's, corrected where that rounded up across a 40th bit.
+
+The values are always exactly the ROM's; float64 only carries them. Zero may be -0.0.
+
+    bit 63 sign | 52-62 exponent byte + 894 | 21-51 mantissa without its top bit | 13-20 extension
+
+Every array also knows bounds on its magnitudes. While they exclude overflow and underflow (nearly
+always) those rules cost nothing; when they no longer do, the array is looked at, and only then are
+single scenes treated. An array known to be all zero (``high`` = 0) costs nothing at all: x + 0 is x
+rounded and 0 * x is 0 by the ROM's own rules.
+
+The scalar text of these rules is `impact88.applesoft.real`; the same captures drive both.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..applesoft.errors import CODES
+from ..applesoft.real import Number, integer
+from .unit import Bools, Unit
+
+Floats = npt.NDArray[np.float64]
+Packed = npt.NDArray[np.uint64]
+
+OVERFLOW = CODES["OVERFLOW"]
+DIVISION_BY_ZERO = CODES["DIVISION BY ZERO"]
+ILLEGAL_QUANTITY = CODES["ILLEGAL QUANTITY"]
+
+BIAS = 894
+"""What a float64's exponent field has more than the exponent byte."""
+LARGEST = 2.0**127
+"""One past the largest real: exponent byte 256."""
+SMALLEST = 2.0**-128
+"""The smallest real: exponent byte 1, mantissa 80000000."""
+WHOLE = 2.0**31
+"""From here on (exponent byte 160) INT leaves a number as it is."""
+
+
+def _mask(low: int, high: int) -> np.int64:
+    """The bits ``low`` to ``high`` of a float64, counted from 0."""
+    value = (1 << (high + 1)) - (1 << low)
+    return np.int64(value - (1 << 64) if high == 63 else value)
+
+
+def _wrapped(value: int) -> np.int64:
+    value &= (1 << 64) - 1
+    return np.int64(value - (1 << 64) if value >> 63 else value)
+
+
+_SIGN = _mask(63, 63)
+_MAGNITUDE = _mask(0, 62)
+_EXPONENT = _mask(52, 62)
+_FRACTION = _mask(0, 51)
+_HALF_UNIT = np.int64(1 << 20)
+_32_BITS = _mask(21, 63)
+_40_BITS = _mask(13, 63)
+_UPPER_HALF = _mask(33, 62)
+_BYTES_1_2 = _mask(21, 36)
+_BYTES_2_3 = _mask(29, 44)
+_BYTE_0 = _mask(13, 20)
+_BYTES_0_1 = _mask(13, 28)
+
+_TO_UNITS = _wrapped((1023 + 39 + 1023) << 52)
+_FROM_UNITS = np.int64(39 << 52)
+_BELOW_256 = np.int64(((1023 + 8) << 52) - 1)
+_EQUAL_CARRY = np.uint64(51)
+_ONE = np.uint64(1)
+_52 = np.uint64(52)
+
+_UP = 1.0 + 2.0**-30
+_DOWN = 0.9
+_CANCELLED = 2.0**-33
+
+
+def _nowhere() -> Unit:
+    """For constants, which belong to no block and cannot fail."""
+    return Unit(1)
+
+
+class Reals:
+    """An array of reals: float64 values ``v`` and what is known about them.
+
+    ``stored``: the extension is zero; ``low`` <= |x| <= ``high`` for every x that is not zero;
+    ``full``: none is zero; ``unit``: the block they belong to (None: constants). The last axis runs
+    over the scenes, or has length 1 for what all scenes share. Operators do what the ROM does: the
+    left operand is rounded, the right one keeps its extension; Python integers are constants.
+    """
+
+    __slots__ = ("_defects", "bits", "full", "high", "low", "stored", "unit", "v")
+
+    def __init__(
+        self,
+        v: Floats,
+        unit: Unit | None,
+        low: float,
+        high: float,
+        stored: bool = False,
+        full: bool = False,
+    ) -> None:
+        self.v = v
+        self.bits = v.view(np.int64)
+        self.unit = unit
+        self.low = low
+        self.high = high
+        self.stored = stored
+        self.full = full
+        self._defects: Bools | None | bool = False
+
+    def rounded(self) -> Reals:
+        """As a variable keeps it: 32 bits, by the top bit of the extension alone."""
+        if self.stored:
+            return self
+        v = np.empty(self.v.shape)
+        bits = v.view(np.int64)
+        np.add(self.bits, _HALF_UNIT, out=bits)
+        np.bitwise_and(bits, _32_BITS, out=bits)
+        high = self.high * (1 + 2.0**-31)
+        result = Reals(v, self.unit, self.low, high, True, self.full)
+        if high >= LARGEST:
+            result._settle()
+        return result
+
+    def __neg__(self) -> Reals:
+        v = np.negative(self.v)
+        return Reals(v, self.unit, self.low, self.high, self.stored, self.full)
+
+    def __abs__(self) -> Reals:
+        v = np.abs(self.v)
+        return Reals(v, self.unit, self.low, self.high, self.stored, self.full)
+
+    def __add__(self, right: Reals | int) -> Reals:
+        return _add(self, right if isinstance(right, Reals) else constant(right), False)
+
+    def __sub__(self, right: Reals | int) -> Reals:
+        return _add(self, right if isinstance(right, Reals) else constant(right), True)
+
+    def __mul__(self, right: Reals | int) -> Reals:
+        return _multiply(self, right if isinstance(right, Reals) else constant(right))
+
+    def __truediv__(self, right: Reals | int) -> Reals:
+        return _divide(self, right if isinstance(right, Reals) else constant(right))
+
+    def __radd__(self, left: int) -> Reals:
+        return _add(constant(left), self, False)
+
+    def __rsub__(self, left: int) -> Reals:
+        return _add(constant(left), self, True)
+
+    def __rmul__(self, left: int) -> Reals:
+        return _multiply(constant(left), self)
+
+    def __lt__(self, right: Reals | int) -> Bools:
+        return compare(self, right if isinstance(right, Reals) else constant(right)) > 0
+
+    def __gt__(self, right: Reals | int) -> Bools:
+        return compare(self, right if isinstance(right, Reals) else constant(right)) < 0
+
+    def __getitem__(self, key: Any) -> Reals:
+        """Some of them, as numpy indexes; the bounds still hold."""
+        return Reals(self.v[key], self.unit, self.low, self.high, self.stored, self.full)
+
+    def within(self, high: float) -> Reals:
+        """The same, where the caller knows that no magnitude exceeds ``high``."""
+        self.high = min(self.high, high)
+        return self
+
+    def packed(self) -> Packed:
+        """The five bytes a variable would hold, as one number: 0x8468000000 for 14.5."""
+        bits = self.rounded().bits.view(np.uint64)
+        e = (bits >> np.uint64(52) & np.uint64(0x7FF)) - np.uint64(BIAS)
+        mantissa = bits >> np.uint64(21) & np.uint64(0x7FFFFFFF)
+        sign = bits >> np.uint64(63)
+        packed = e << np.uint64(32) | sign << np.uint64(31) | mantissa
+        return np.where(self.v == 0, np.uint64(0), packed)
+
+    def _settle(self) -> None:
+        """Look at the values, and apply the rules for exponents out of range where they call for
+        it: underflow is zero, overflow an error."""
+        v, bits = self.v, self.bits
+        (_, i0), *_ = self._unit().buffers(v.shape)
+        np.bitwise_and(bits, _MAGNITUDE, out=i0)
+        high = float(i0.max(initial=0).view(np.float64))
+        if high >= LARGEST:
+            failed = np.abs(v) >= LARGEST
+            self._unit().record(failed, OVERFLOW)
+            v[failed] = 0.0
+            np.bitwise_and(bits, _MAGNITUDE, out=i0)
+            high = float(i0.max(initial=0).view(np.float64))
+            self.full = False
+        # zeros become the largest unsigned number
+        u0 = i0.view(np.uint64)
+        np.subtract(u0, _ONE, out=u0)
+        low = float((u0.min(initial=np.uint64(2**62)) + _ONE).view(np.float64))
+        if low < SMALLEST:
+            v[np.abs(v) < SMALLEST] = 0.0
+            low = SMALLEST
+            self.full = False
+        self.low, self.high = (low, high) if high else (1.0, 0.0)
+
+    def _unit(self) -> Unit:
+        return self.unit or _nowhere()
+
+
+def from_floats(v: Floats, unit: Unit | None, stored: bool = False) -> Reals:
+    """Reals from float64 values that are reals already."""
+    reals = Reals(v, unit, 1.0, 0.0, stored)
+    reals._settle()
+    return reals
+
+
+def from_packed(packed: Packed, unit: Unit | None) -> Reals:
+    """Reals from five stored bytes each, as one number (see `Reals.packed`)."""
+    e = packed >> np.uint64(32)
+    sign = packed >> np.uint64(31) & _ONE
+    fraction = (packed & np.uint64(0x7FFFFFFF)) << np.uint64(21)
+    bits = sign << np.uint64(63) | (e + np.uint64(BIAS)) << np.uint64(52) | fraction
+    return from_floats(np.where(e == 0, np.uint64(0), bits).view(np.float64), unit, True)
+
+
+def from_number(number: Number) -> Reals:
+    """A constant: one real, extension included."""
+    e, m, s = number
+    if not e:
+        return Reals(np.zeros(1), None, 1.0, 0.0, True)
+    size = m * 2.0 ** (e - 168)
+    return Reals(np.array([-size if s else size]), None, size, size, not m & 0xFF, True)
+
+
+@lru_cache(maxsize=256)
+def constant(n: int) -> Reals:
+    """A whole number as a constant."""
+    return from_number(integer(n))
+
+
+ZERO = constant(0)
+
+
+def select(condition: Bools, yes: Reals, no: Reals) -> Reals:
+    """``yes`` where the condition holds, else ``no``."""
+    return Reals(
+        np.where(condition, yes.v, no.v),
+        yes.unit or no.unit,
+        min(yes.low, no.low),
+        max(yes.high, no.high),
+        yes.stored and no.stored,
+        yes.full and no.full,
+    )
+
+
+def stack(rows: list[Reals], unit: Unit) -> Reals:
+    """Arrays one above the other, so that one operation computes them all."""
+    length = max(row.v.shape[-1] for row in rows)
+    v = np.empty((len(rows), length))
+    for place, row in zip(v, rows, strict=True):
+        place[...] = row.v
+    return Reals(
+        v,
+        unit,
+        min(row.low for row in rows),
+        max(row.high for row in rows),
+        all(row.stored for row in rows),
+        all(row.full for row in rows),
+    )
+
+
+def _shape(left: Floats, right: Floats) -> tuple[int, ...]:
+    return left.shape if left.shape == right.shape else np.broadcast(left, right).shape
+
+
+def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
+    """left + right, or left + (-right).
+
+    Both are scaled so that the larger one's 40-bit mantissa is a whole number; the smaller one is
+    cut off there. Where exponents and signs agree the ROM adds one unit of the extension: such a sum
+    always has 41 bits, so the extra unit rounds its halving up instead of down.
+    """
+    left = left.rounded()
+    if not right.high:
+        return left
+    if not left.high:
+        return -right if subtract else right
+    unit = left.unit or right.unit
+    low_left, high_left, low_right, high_right = left.low, left.high, right.low, right.high
+    # apart by a factor of more than two: exponents never equal, no leading bits cancelled but one
+    apart = low_left > 2 * high_right or low_right > 2 * high_left
+    shape = _shape(left.v, right.v)
+    (_, i0), (f1, i1), (f2, i2), _, _ = (unit or _nowhere()).buffers(shape)
+    v = np.empty(shape)
+    bits = v.view(np.int64)
+
+    np.bitwise_and(left.bits, _EXPONENT, out=i0)
+    np.bitwise_and(right.bits, _EXPONENT, out=i1)
+    np.maximum(i0, i1, out=i0)
+    np.subtract(_TO_UNITS, i0, out=i2)
+    np.multiply(right.v, f2, out=f1)
+    np.multiply(left.v, f2, out=f2)
+    np.trunc(f1, out=f1)
+    np.trunc(f2, out=f2)
+    if subtract:
+        np.subtract(f2, f1, out=v)
+    else:
+        np.add(f2, f1, out=v)
+    if not (apart or right.stored):  # two stored operands give an even sum: the unit is lost
+        np.bitwise_xor(left.bits, right.bits, out=i1)
+        if subtract:
+            np.bitwise_xor(i1, _SIGN, out=i1)
+        u1 = i1.view(np.uint64)
+        np.right_shift(u1, _52, out=u1)
+        np.subtract(u1, _ONE, out=u1)
+        np.right_shift(u1, _EQUAL_CARRY, out=u1)  # 13 ones where sign and exponent agree, else 0
+        np.add(bits, i1, out=bits)
+    np.bitwise_and(bits, _40_BITS, out=bits)
+    if not apart:
+        # normalising takes less than 256 units, the upper 32 bits all clear, for zero
+        np.bitwise_and(bits, _EXPONENT, out=i1)
+        np.subtract(_BELOW_256, i1, out=i1)
+        np.right_shift(i1, 63, out=i1)
+        np.bitwise_and(bits, i1, out=bits)
+    np.subtract(i0, _FROM_UNITS, out=i0)
+    np.multiply(v, i0.view(np.float64), out=v)
+
+    high = (high_left + high_right) * _UP
+    full = False
+    if apart:
+        full = left.full if low_left > high_right else right.full
+        low = max(low_left - high_right, low_right - high_left) * _DOWN
+        if not full:
+            low = min(low, low_left, low_right)
+    else:
+        low = max(low_left, low_right) * _CANCELLED
+        if not (left.full and right.full):
+            low = min(low, low_left, low_right)
+    result = Reals(v, unit, low, high, False, full)
+    if high >= LARGEST or low < SMALLEST:
+        result._settle()
+    return result
+
+
+def _multiply(left: Reals, right: Reals) -> Reals:
+    """left * right: the exact product cut to 40 bits before normalising, but for the ROM's defect.
+
+    The processor rounds the product to 53 bits; its error is computed exactly from the two halves
+    of the right operand, and where it rounded up, one unit of the 53rd bit is taken back. Cutting
+    to the 40th bit, or to the 39th where the product falls short by one, is then safe.
+    """
+    left = left.rounded()
+    if not left.high or not right.high:
+        return ZERO
+    unit = left.unit or right.unit
+    shape = _shape(left.v, right.v)
+    (_, i0), (f1, _), (f2, _), (f3, i3), (f4, i4) = (unit or _nowhere()).buffers(shape)
+    v = np.empty(shape)
+    bits = v.view(np.int64)
+
+    np.bitwise_xor(left.bits, right.bits, out=i0)
+    np.abs(left.v, out=f1)
+    np.abs(right.v, out=f2)
+    np.multiply(f1, f2, out=v)
+    np.bitwise_and(right.bits, _UPPER_HALF, out=i3)
+    np.subtract(f2, f3, out=f2)
+    np.multiply(f1, f3, out=f3)
+    np.subtract(f3, v, out=f3)
+    np.multiply(f1, f2, out=f2)
+    np.add(f3, f2, out=f3)  # the exact product less the rounded one
+    np.right_shift(i3, 63, out=i3)
+    np.add(bits, i3, out=bits)
+    # the parity of the three exponents tells whether the product fell short of the top bit
+    np.bitwise_xor(i0, bits, out=i4)
+    np.right_shift(i4, 39, out=i4)
+    np.bitwise_and(i4, 0x2000, out=i4)
+    np.bitwise_or(i4, 0x1FFF, out=i4)
+    np.bitwise_or(bits, i4, out=bits)
+    np.bitwise_xor(bits, i4, out=bits)
+    np.bitwise_and(i0, _SIGN, out=i0)
+    np.bitwise_or(bits, i0, out=bits)
+
+    defects = _defects(right)
+    if defects is not None:
+        _apply_defect(v, left, right, defects)
+    high = left.high * right.high
+    low = left.low * right.low * _DOWN
+    result = Reals(v, unit, low, high, False, left.full and right.full)
+    if high >= LARGEST / 2 or low < SMALLEST:
+        _settle_product(result, left, right)
+    return result
+
+
+def _settle_product(result: Reals, left: Reals, right: Reals) -> None:
+    """Overflow of a product is judged before it is normalised."""
+    if np.abs(result.v).max(initial=0) >= LARGEST / 2:
+        exponents = ((left.bits & _EXPONENT) >> 52) + ((right.bits & _EXPONENT) >> 52)
+        failed = (exponents >= 384 + 2 * BIAS) & (result.v != 0)
+        result._unit().record(failed, OVERFLOW)
+        result.v[failed] = 0.0
+        result.full = False
+    result._settle()
+
+
+def _defects(right: Reals) -> Bools | None:
+    """Where a right operand has two zero bytes in a row above a byte that is not zero; None: nowhere.
+
+    The bytes of the 40 bits are numbered from the extension, 0, to the top, 4, which is never zero.
+    """
+    if right._defects is not False:
+        return right._defects  # type: ignore[return-value]
+    bits = right.bits
+    (_, i0), *_ = right._unit().buffers(bits.shape)
+    np.bitwise_and(bits, _BYTES_2_3, out=i0)
+    found = not i0.min(initial=1)
+    if not found and not right.stored:
+        np.bitwise_and(bits, _BYTES_1_2, out=i0)
+        found = not i0.min(initial=1)
+    defects = None
+    if found:
+        mask = ((bits & _BYTES_2_3) == 0) & ((bits & _BYTES_0_1) != 0)
+        if not right.stored:
+            mask |= ((bits & _BYTES_1_2) == 0) & ((bits & _BYTE_0) != 0)
+        if mask.any():
+            defects = mask
+    right._defects = defects
+    return defects
+
+
+def _apply_defect(v: Floats, left: Reals, right: Reals, defects: Bools) -> None:
+    """Products as the ROM builds them, a byte of the right operand at a time, where that differs.
+
+    After a second zero byte in a row the upper 32 bits of what has been built move one bit too far.
+    """
+    where = np.nonzero(np.broadcast_to(defects, v.shape))
+    bits1 = np.broadcast_to(left.bits, v.shape)[where]
+    bits2 = np.broadcast_to(right.bits, v.shape)[where]
+    top = np.int64(1 << 52)
+    m1 = ((bits1 & _FRACTION | top) >> 21).view(np.uint64)
+    m2 = ((bits2 & _FRACTION | top) >> 13).view(np.uint64)
+    built = np.zeros(m1.shape, np.uint64)
+    previous = np.ones(m1.shape, bool)
+    eight, nine, last = np.uint64(8), np.uint64(9), np.uint64(0xFF)
+    for position in range(5):
+        byte = m2 >> np.uint64(8 * position) & last
+        built = built + (byte * m1 << eight) >> eight
+        double = (byte == 0) & ~previous
+        built = np.where(double, built >> nine << eight | built & last, built)
+        previous = byte != 0
+    product = built.astype(np.float64) * 2.0**-38  # 39 or 40 bits long: byte 4 sees to that
+    # 39 bits keep their place: the bit below is zero, as after normalising
+    sign_and_power = (bits1 & ~_FRACTION).view(np.float64) * (bits2 & ~_FRACTION).view(np.float64)
+    v[where] = product * sign_and_power
+
+
+def _divide(left: Reals, right: Reals) -> Reals:
+    """left / right, both rounded: a quotient of 34 bits, or 33 where the mantissa divided is the
+    smaller one.
+
+    The processor's quotient is cut there, and where it had been rounded up to that bit the
+    remainder, computed exactly, is negative and one unit is taken back.
+    """
+    right = right.rounded()
+    if not right.full:
+        zero = right.v == 0
+        if zero.any():
+            right._unit().record(zero, DIVISION_BY_ZERO)
+            right = select(zero, constant(1), right)
+        right.full = True
+    left = left.rounded()
+    if not left.high:
+        return ZERO
+    unit = left.unit or right.unit
+    shape = _shape(left.v, right.v)
+    (_, i0), (f1, _), (f2, _), (f3, i3), (f4, i4) = (unit or _nowhere()).buffers(shape)
+    v = np.empty(shape)
+    bits = v.view(np.int64)
+
+    np.bitwise_xor(left.bits, right.bits, out=i0)
+    np.abs(left.v, out=f1)
+    np.abs(right.v, out=f2)
+    np.divide(f1, f2, out=v)
+    np.bitwise_xor(i0, bits, out=i4)
+    np.right_shift(i4, 52 - 19, out=i4)
+    np.bitwise_or(i4, _mask(20, 63), out=i4)
+    np.bitwise_and(i4, _mask(19, 63), out=i4)
+    np.bitwise_and(bits, i4, out=bits)
+    np.bitwise_and(bits, _UPPER_HALF, out=i3)
+    np.multiply(f3, f2, out=f3)
+    np.subtract(f1, f3, out=f1)
+    np.bitwise_and(bits, _UPPER_HALF, out=i3)
+    np.subtract(v, f3, out=f3)
+    np.multiply(f3, f2, out=f3)
+    np.subtract(f1, f3, out=f1)  # the remainder
+    remainder = f1.view(np.int64)
+    np.right_shift(remainder, 63, out=remainder)
+    np.left_shift(remainder, 19, out=remainder)
+    np.add(bits, remainder, out=bits)
+    np.bitwise_and(bits, i4, out=bits)
+    np.bitwise_and(i0, _SIGN, out=i0)
+    np.bitwise_or(bits, i0, out=bits)
+
+    high = left.high / right.low * _UP
+    low = left.low / right.high * _DOWN
+    result = Reals(v, unit, low, high, False, left.full)
+    if high >= LARGEST / 2 or low < SMALLEST * 4:
+        _settle_quotient(result, left, right)
+    return result
+
+
+def _settle_quotient(result: Reals, left: Reals, right: Reals) -> None:
+    """Overflow of a quotient is judged before it is normalised; exponent 0 loses the sign."""
+    v = result.v
+    difference = ((left.bits & _EXPONENT) - (right.bits & _EXPONENT)) >> 52
+    failed = (difference >= 127) & (left.v != 0)
+    if failed.any():
+        result._unit().record(failed, OVERFLOW)
+        v[failed] = 0.0
+        result.full = False
+    signless = np.broadcast_to(difference == -128, v.shape)
+    v[signless] = np.abs(v[signless])
+    result._settle()
+
+
+def floor(x: Reals) -> Reals:
+    """INT: the largest whole number not above x, its extension counted; extension 0.
+
+    From `WHOLE` on a number stays as it is, extension and all.
+    """
+    v = np.floor(x.v)
+    if x.high < WHOLE:
+        return Reals(v, x.unit, 1.0, x.high + 1, True)
+    v = np.where(np.abs(x.v) < WHOLE, v, x.v)
+    return Reals(v, x.unit, 1.0, x.high + 1, x.stored, False)
+
+
+def compare(stored: Reals, right: Reals) -> npt.NDArray[np.int8]:
+    """1 where the accumulator ``right`` is larger than ``stored``, 0 where equal, -1 where smaller.
+
+    The accumulator counts as rounded, except that this rounding carries nowhere: a last byte of FF
+    with a half unit counts as 256, equal to 0 and larger than anything else.
+    """
+    stored = stored.rounded()
+    v = right.v
+    if right.stored:
+        return ((stored.v < v).view(np.int8)) - ((stored.v > v).view(np.int8))
+    last = _mask(20, 28)
+    full = (right.bits & last) == last
+    rounded = ((right.bits + _HALF_UNIT) & _32_BITS).view(np.float64)
+    order = ((stored.v < rounded).view(np.int8)) - ((stored.v > rounded).view(np.int8))
+    if full.any():
+        upper = _mask(29, 63)
+        same = full & (stored.bits & upper == right.bits & upper)
+        order = np.where(same & (stored.bits & _mask(21, 28) == 0), np.int8(0), order)
+        # one unit above it in magnitude: equal to it with a carry, beyond it without
+        beyond = full & (stored.v == rounded) & ~same
+        order = np.where(beyond, np.where(stored.v > 0, np.int8(-1), np.int8(1)), order)
+    return order

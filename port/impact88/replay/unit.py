@@ -1,0 +1,107 @@
+"""What one block of scenes shares while it is computed: who failed first and where, and scratch.
+
+In the ROM an error ends the program. Over arrays the other scenes go on, so an error is *recorded*:
+each scene keeps the first one in program order, and what it computes after that is never shown.
+Program order is kept in the records themselves, because lines that do not depend on each other are
+computed together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+Buffers = tuple[tuple[Any, Any], ...]
+
+NEVER = np.int64(2**63 - 1)
+"""The record of a scene in which nothing has failed."""
+SCRATCH = 5
+"""Buffers an operation may use at a time."""
+
+_ORDER = 40
+_CLOCK = 24
+_LINE = 8
+
+
+def stamp(line: int, position: int = 0) -> int:
+    """A place in program order: a line outside the subroutine and a position within it."""
+    return line * 1000 + position
+
+
+class Unit:
+    """The state of one block: ``count`` scenes, along the last axis of every array.
+
+    `record` notes an error at the present place. ``first`` holds one record a scene: place, count
+    of errors so far, line and code packed so that the smallest is the first in program order.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.first: Ints = np.full(count, NEVER, dtype=np.int64)
+        self.elsewhere: Bools | None = None
+        """The scenes that do not run the present statement; their errors are none."""
+        self._place: Any = 0
+        self._clock = 0
+        self._pool = np.empty((SCRATCH, 0))
+        self._views: dict[tuple[int, ...], Buffers] = {}
+
+    def at(self, line: int, position: int = 0, order: int | None = None) -> None:
+        """Go to a place: ``line`` is what a message would name, ``order`` where it comes in the
+        program (the line itself, but for the subroutine)."""
+        place = stamp(line, position) if order is None else order
+        self._place = (place << _ORDER) + (line << _LINE)
+
+    def at_each(self, places: Sequence[tuple[int, int]]) -> None:
+        """Go to several places at once: (line, position) of each row of a two-dimensional array."""
+        self._place = np.array(
+            [[(stamp(line, position) << _ORDER) + (line << _LINE)] for line, position in places],
+            dtype=np.int64,
+        )
+
+    def record(self, failed: Bools, code: int) -> None:
+        """Note an error where ``failed``, whose last axis runs over the scenes (or is 1: all)."""
+        if self.elsewhere is not None:
+            failed = failed & ~self.elsewhere
+        if not failed.any():
+            return
+        self._clock += 1
+        key = self._place + (self._clock << _CLOCK) + code
+        keys = np.where(failed, key, NEVER)
+        keys = keys.reshape(-1, keys.shape[-1]).min(axis=0)
+        np.minimum(self.first, keys, out=self.first)
+
+    def code(self) -> Ints:
+        """Each scene's error code; 0 for none."""
+        return np.where(self.first == NEVER, 0, self.first & ((1 << _LINE) - 1))
+
+    def line(self) -> Ints:
+        """The line each scene's error names; 0 for none."""
+        line = (self.first >> _LINE) & ((1 << (_CLOCK - _LINE)) - 1)
+        return np.where(self.first == NEVER, 0, line)
+
+    def reached(self, place: int) -> Bools:
+        """The scenes that got past ``place``."""
+        return (self.first >> _ORDER) > place
+
+    def buffers(self, shape: tuple[int, ...]) -> Buffers:
+        """Scratch arrays of this shape, each as float64 and as int64 of the same memory.
+
+        They are the same memory at every call: an operation must leave nothing in them.
+        """
+        views = self._views.get(shape)
+        if views is None:
+            size = 1
+            for length in shape:
+                size *= length
+            if self._pool.shape[1] < size:
+                self._pool = np.empty((SCRATCH, size))
+                self._views.clear()
+            floats = [row[:size].reshape(shape) for row in self._pool]
+            views = tuple((row, row.view(np.int64)) for row in floats)
+            self._views[shape] = views
+        return views
