@@ -1,0 +1,95 @@
+"""The rooms of port/impact88: data flows one way, and lower rooms never import upper ones."""
+
+from __future__ import annotations
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from importlib.util import resolve_name
+from pathlib import Path
+
+import pytest
+
+from captures import ROOT
+
+PACKAGE = ROOT / "port" / "impact88"
+
+
+def name_of(path: Path) -> str:
+    parts = path.relative_to(ROOT / "port").with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+FILES = {name_of(path): path for path in PACKAGE.rglob("*.py")}
+
+
+def imported(name: str) -> set[str]:
+    """The modules of this package that a module imports, at its top or on first use."""
+    path = FILES[name]
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            base = resolve_name("." * node.level + (node.module or ""), package)
+            for alias in node.names:
+                whole = f"{base}.{alias.name}"
+                found.add(whole if whole in FILES else base)
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+    return {module for module in found if module in FILES} - {name}
+
+
+ROOMS = {name: imported(name) for name in FILES}
+
+
+def test_no_room_is_both_above_and_below_another() -> None:
+    """But for one door: ``**`` of a Real is the ROM's power function, built on Reals itself."""
+    doors = {"impact88.applesoft.real": {"impact88.applesoft.functions"}}
+    # the package itself holds no more than its version
+    graph = {
+        name: modules - {"impact88"} - doors.get(name, set()) for name, modules in ROOMS.items()
+    }
+    try:
+        list(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+def test_applesoft_knows_nothing_of_collisions() -> None:
+    outside = {
+        (name, module)
+        for name, modules in ROOMS.items()
+        if name.startswith("impact88.applesoft")
+        for module in modules
+        if not module.startswith("impact88.applesoft")
+    }
+    assert not outside
+
+
+def test_only_commands_import_commands() -> None:
+    upper = ("impact88.commands.", "impact88.cli")
+    below = {
+        (name, module)
+        for name, modules in ROOMS.items()
+        if not name.startswith((*upper, "impact88.commands", "impact88.__main__"))
+        for module in modules
+        if module.startswith(upper)
+    }
+    assert not below
+
+
+@pytest.mark.parametrize("name", ["impact88.listing", "impact88.run", "impact88.scene"])
+def test_faithful_path_imports_no_third_party(name: str) -> None:
+    """Nothing but Python's own library lies between a typed digit and a printed one."""
+    seen, waiting = set(), {name}
+    while waiting:
+        module = waiting.pop()
+        seen.add(module)
+        waiting |= ROOMS[module] - seen
+        text = FILES[module].read_text(encoding="utf-8")
+        assert not {"numpy", "matplotlib", "mpmath", "scipy", "tqdm"} & {
+            (node.names[0].name if isinstance(node, ast.Import) else node.module or "").split(".")[
+                0
+            ]
+            for node in ast.walk(ast.parse(text))
+            if isinstance(node, ast.Import | ast.ImportFrom)
+        }, module
