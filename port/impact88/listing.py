@@ -28,7 +28,7 @@ from .arithmetics import Arithmetic
 # fmt: off
 
 
-class End(Exception):  # noqa: N818
+class End(Exception):
     """END inside a subroutine."""
 
 

@@ -1,0 +1,139 @@
+"""Python's operators on a Real: what rounds when, and what is refused."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from impact88.applesoft import decimaltext, real
+from impact88.applesoft.errors import CODES, ApplesoftError
+from impact88.applesoft.real import Real
+
+numbers = st.one_of(
+    st.just(real.ZERO),
+    st.tuples(st.integers(1, 255), st.integers(real.TOP, real.LIMIT - 1), st.integers(0, 1)),
+)
+middling = st.tuples(
+    st.integers(100, 156), st.integers(real.TOP, real.LIMIT - 1), st.integers(0, 1)
+)
+
+
+def of(text: str) -> Real:
+    return Real(decimaltext.number(text))
+
+
+def test_left_rounds_and_right_keeps_its_extension():
+    third = of("1") / of("3")
+    assert third.extension
+    assert (third + of("0")).number == third.rounded().number
+    assert (of("0") + third).number == third.number
+
+
+def test_storing_rounds():
+    third = of("1") / of("3")
+    assert third.rounded().extension == 0
+    assert third.stored() == third.rounded().stored()
+
+
+def test_the_published_floor():
+    """Run 1 prints XB= 14.51 for 14.52, because the product is not stored before INT."""
+    xb = of("14.52").rounded()
+    assert decimaltext.write((Real(real.floor((100 * xb).number)) / 100).number) == "14.51"
+    stored = (100 * xb).rounded()
+    assert decimaltext.write((Real(real.floor(stored.number)) / 100).number) == "14.52"
+
+
+def test_the_digits_typed_matter():
+    assert of("90315.8817").stored() != of("90315.88170").stored()
+
+
+def test_a_power_is_no_product():
+    x = of("3")
+    assert (x**2).number != (x * x).number
+
+
+def test_equal_exponents_add_a_unit_of_the_extension():
+    x = of("1.5").number
+    e, m, _ = real.add(x, x)
+    assert (e, m) == (x[0] + 1, (2 * x[1] + real.EQUAL_CARRY) >> 1)
+
+
+def test_double_zero_byte_shifts_once_too_often():
+    m1, m2 = 0xFFFFFFFF00, 0x8000004001
+    assert real.multiply((128, m1, 0), (128, m2, 0))[1] != m1 * m2 >> 39
+
+
+@pytest.mark.parametrize(
+    ("expression", "kind"),
+    [
+        (lambda x: x / 0, "DIVISION BY ZERO"),
+        (lambda x: (x - x) / 0, "DIVISION BY ZERO"),
+        (lambda x: x * of("1E38") * of("10"), "OVERFLOW"),
+        (lambda x: -(x ** of(".5")), None),
+        (lambda x: (-x) ** of(".5"), "ILLEGAL QUANTITY"),
+    ],
+)
+def test_errors_are_applesofts(expression, kind):
+    if kind is None:
+        expression(of("2"))
+        return
+    with pytest.raises(ApplesoftError) as caught:
+        expression(of("2"))
+    assert caught.value.message == f"?{kind} ERROR"
+    assert caught.value.code == CODES[kind]
+
+
+@pytest.mark.parametrize("other", [1.5, "2", None])
+def test_only_reals_and_whole_numbers_combine(other):
+    with pytest.raises(TypeError):
+        of("2") * other
+
+
+def test_comparisons_take_reals_only():
+    with pytest.raises(TypeError):
+        assert of("2") == 2
+    assert of("2") == of("2.0")
+    assert of("2") != of("3")
+    assert of("2") < of("3") <= of("3")
+    assert of("-2") > of("-3") >= of("-3")
+
+
+@given(numbers, numbers)
+def test_sum_is_near_the_exact_sum(a, b):
+    """One unit of the last of 40 bits of the larger operand, and the left one's rounding."""
+    try:
+        total = Real(real.add(a, b)).fraction()
+    except ApplesoftError:
+        return
+    exact = Real(a).fraction() + Real(b).fraction()
+    size = max(abs(Real(a).fraction()), abs(Real(b).fraction()), Fraction(1, 2**128))
+    assert abs(total - exact) <= size * Fraction(1, 2**31)
+
+
+@given(middling, middling)
+def test_quotient_times_divisor(a, b):
+    quotient = Real(a) / Real(b)
+    assert abs(float(quotient) / (float(Real(a)) / float(Real(b))) - 1) < 2**-30
+
+
+@given(numbers)
+def test_negating_twice_and_storing_is_storing(a):
+    assert real.negate(real.negate(a)) == a
+    try:
+        stored = real.to_stored(a)
+    except ApplesoftError:
+        return
+    assert real.from_stored(stored) == real.rounded(a)
+    assert real.to_stored(real.from_stored(stored)) == stored
+
+
+@given(numbers, numbers)
+def test_comparison_is_the_order_but_for_the_last_byte(a, b):
+    stored = real.from_stored(real.to_stored(a)) if a[1] < real.LIMIT - 0x80 else a
+    difference = Real(b).fraction() - Real(stored).fraction()
+    coarse = abs(difference) <= abs(Real(b).fraction()) * Fraction(1, 2**22)
+    if not coarse:
+        assert real.compare(stored, b) == (1 if difference > 0 else -1)

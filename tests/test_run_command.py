@@ -1,0 +1,146 @@
+"""``impact88 run``: scenes, prompts and INPUT's manners, the printer, JSON, exit statuses."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from impact88.run import run
+from impact88.scene import sample
+from installed import impact88
+
+REPLIES = "-29.04,0,0\n14.52,25.15,0\n"
+ASK_A = "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?\0"
+
+
+def after_ask(stdout: str) -> str:
+    """What follows the first prompt."""
+    return stdout.split(ASK_A)[1]
+
+
+def test_with_no_scene_it_is_the_1988_program():
+    done = impact88("run", input=REPLIES)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == run(sample(1)).printout
+
+
+@pytest.mark.parametrize(
+    ("typed", "shown"),
+    [
+        ("-29.04\n0,0\n14.52,25.15,0\n", "-29.04\n??\x000,0\n\nENTER"),
+        ("-29.04,X,0\n-29.04,0,0\n14.52,25.15,0\n", "-29.04,X,0\n?REENTER\n?\x00-29.04,0,0\n\n"),
+        ("-29.04,0,0,7\n14.52,25.15,0\n", "-29.04,0,0,7\n?EXTRA IGNORED\n\nENTER"),
+        ("-29.04,,\n14.52,25.15,0\n", "-29.04,,\n\nENTER"),
+        ("-29.04,0,0:9\n14.52,25.15,0\n", "-29.04,0,0:9\n?EXTRA IGNORED\n\nENTER"),
+        (" -29 . 04 , 0 , 0 \n14.52,25.15,0\n", " -29 . 04 , 0 , 0 \n\nENTER"),
+        ("-2.904e1,0,0\n14.52,25.15,0\n", "-2.904E1,0,0\n\nENTER"),
+        ("9\x08-29.04,0,0\n14.52,25.15,0\n", "9\x08-29.04,0,0\n\nENTER"),
+        ("1,2\x18-29.04,0,0\n14.52,25.15,0\n", "1,2\x18\\\n\0-29.04,0,0\n\nENTER"),
+    ],
+)
+def test_inputs_manners(typed, shown):
+    done = impact88("run", input=typed)
+    assert done.returncode == 0
+    assert after_ask(done.stdout).startswith(shown)
+    assert "VAX= -13.263" in done.stdout or "2.904E1" in shown
+
+
+def test_input_that_ends_at_a_prompt():
+    done = impact88("run", input="-29.04,0,0\n")
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "VX,VY,WB" in done.stderr
+
+
+def test_a_scene_file_and_changes(tmp_path):
+    path = tmp_path / "crash.toml"
+    path.write_text(sample(3).to_toml())
+    assert impact88("run", str(path)).stdout == run(sample(3)).printout
+    done = impact88("run", str(path), "--set", "MU=-10", "--set", "E = .5")
+    assert done.stdout == run(sample(3).replaced({"MU": "-10", "E": ".5"})).printout
+    with open(path) as file:
+        assert impact88("run", "-", stdin=file, input=None).stdout == run(sample(3)).printout
+
+
+def test_changed_data_with_prompts():
+    done = impact88("run", "--set", "MU=.5", input=REPLIES)
+    assert done.stdout == run(sample(1).replaced({"MU": ".5"})).printout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("nowhere.toml",), ["nowhere.toml", "cannot be read"]),
+        (("--sample", "4"), ["--sample", "1, 2, 3"]),
+        (("--sample", "1", "x.toml"), ["expected one"]),
+        (("--sample", "1", "--set", "MU"), ["NAME=VALUE"]),
+        (("--sample", "1", "--set", "MOO=1"), ["'MOO'"]),
+        (("--sample", "1", "--set", "MU=x"), ["MU", "'x'", "friction"]),
+        (("--sample", "1", "--set", "MU=1", "--set", "mu=2"), ["twice"]),
+        (("--set", "UX=1"), ["UY WA VX VY WB"]),
+        (("--sample", "1", "--slot", "3"), ["slot 3 is empty"]),
+        (("--sample", "1", "--slot", "9"), ["--slot"]),
+        (("--sample", "1", "--printer", "/nowhere/at/all"), ["/nowhere/at/all"]),
+        (("--sample", "1", "--arithmetic", "decimal"), ["applesoft", "float64"]),
+    ],
+)
+def test_unusable_input_is_one_line(arguments, words):
+    done = impact88("run", *arguments)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    for word in words:
+        assert word in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("setting", "status", "ending"),
+    [
+        ("MA=0", 0, "\nZERO DETERMINANT\n"),
+        ("IA=0", 1, "\n?DIVISION BY ZERO ERROR\a IN 480\n"),
+        ("UX=1E39", 1, "\n?OVERFLOW ERROR\a IN 210\n"),
+    ],
+)
+def test_exit_status(setting, status, ending):
+    done = impact88("run", "--sample", "1", "--set", setting)
+    assert (done.returncode, done.stderr) == (status, "")
+    assert done.stdout.endswith(ending)
+
+
+def test_json_is_the_captures_form():
+    done = impact88("run", "--sample", "1", "--no-dos", "--json")
+    shown = json.loads(done.stdout)
+    expected = run(sample(1), dos=False)
+    assert list(shown) == ["printout", "error", "line", "reals", "A"]
+    assert shown["printout"] == expected.printout
+    assert shown["reals"] == expected.reals
+    assert shown["A"] == expected.A
+    done = impact88("run", "--sample", "1", "--set", "IA=0", "--json")
+    shown = json.loads(done.stdout)
+    assert (done.returncode, shown["error"], shown["line"]) == (
+        1,
+        "?DIVISION BY ZERO ERROR IN 480",
+        480,
+    )
+
+
+def test_the_printer_gets_what_goes_to_slot_1(tmp_path):
+    paper = tmp_path / "paper.txt"
+    done = impact88("run", "--sample", "1", "--slot", "1", "--printer", str(paper))
+    whole = run(sample(1)).printout
+    assert paper.read_text().startswith("\n\nMA= 143.5")
+    assert done.stdout + paper.read_text() == whole
+    assert impact88("run", "--sample", "1", "--slot", "1").stdout == whole
+
+
+def test_nothing_half_written_when_the_input_ends(tmp_path):
+    paper = tmp_path / "paper.txt"
+    done = impact88("run", "--slot", "1", "--printer", str(paper), input="1,2,3\n")
+    assert done.returncode == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_dos_its_lines_show():
+    done = impact88("run", "--sample", "1", "--no-dos", "--slot", "3")
+    assert "\n\x04PR# 3\n" in done.stdout
+    assert done.stdout.endswith("\n\x04PR#0\n")

@@ -1,0 +1,137 @@
+"""Scenes: the digits as typed, and files whose errors say where and what."""
+
+from __future__ import annotations
+
+import pytest
+
+from impact88.errors import UserError
+from impact88.names import SCENE
+from impact88.scene import Scene, published_data, sample, template
+
+COMPLETE = sample(1).to_toml()
+
+
+def read(text: str) -> Scene:
+    return Scene.from_toml_text(text, "crash.toml")
+
+
+def with_line(name: str, line: str) -> str:
+    """The complete file with one entry's line replaced."""
+    return "\n".join(line if row.startswith(f"{name} =") else row for row in COMPLETE.splitlines())
+
+
+def test_the_listings_own_data():
+    assert published_data() == {
+        "E": "0.005",
+        "MU": "0.911",
+        "EM": "-0.715",
+        "DA": "7.59",
+        "DB": "3.44",
+        "GA": "-30.0",
+        "PA": "-19.8",
+        "PB": "-38.7",
+        "TA": "0.0",
+        "TB": "60.0",
+        "MA": "143.5",
+        "MB": "95.8",
+        "IA": "3728",
+        "IB": "1961",
+        "M": "6",
+    }
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_sample_survives_its_file(number):
+    scene = sample(number)
+    assert dict(read(scene.to_toml())) == dict(scene)
+    assert read(scene.to_toml()).title == scene.title
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("UX = 90315.88170", "90315.88170"),
+        ("UX = 90315.8817 # typed", "90315.8817"),
+        ('UX = ".911"', ".911"),
+        ('UX = "5."', "5."),
+        ("UX = 1e5", "1e5"),
+        ("UX = +7", "+7"),
+        ("'UX' = 3", "3"),
+        ("UX = 1E39", "1E39"),
+    ],
+)
+def test_digits_are_kept_as_typed(line, text):
+    assert read(with_line("UX", line))["UX"] == text
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("UX = .911", ["line", "UX = .911", '0.911 or ".911"']),
+        ("UX = 5.", ["line", '5.0 or "5."']),
+        ("UX =", ["line", "UX has no value"]),
+        ("UX = true", ["line", "UX is a truth value", "number"]),
+        ("UX = [1]", ["UX is a list"]),
+        ("UX = {a = 1}", ["UX is a table"]),
+        ("UX = 2020-01-01", ["UX is a date"]),
+        ("UX = inf", ["UX = inf"]),
+        ("UX = nan", ["UX = nan"]),
+        ("UX = 1_000.5", ["UX = 1_000.5"]),
+        ("UX = 1_000", ["UX = 1_000"]),
+        ("UX = 0x10", ["UX = 0x10"]),
+        ('UX = "12X"', ["UX", "12X", "initial x velocity of A"]),
+        ('UX = ""', ["UX"]),
+        ("", ["missing UX", "initial x velocity of A"]),
+        ("UX = 1\nUX = 2", ["UX is given twice", "line"]),
+        ("UX = 1\nspeed = 2", ["'speed' is no value of a scene"]),
+        ("UX = 1\nux = 2", ["did you mean UX"]),
+        ("UX = 1\n[part]", ["part is a table"]),
+        ("UX = 1\nwhat is this", ["line"]),
+        ('UX = 1\ntitle2 = """', ["several lines"]),
+    ],
+)
+def test_what_a_file_gets_wrong_is_said(line, words):
+    with pytest.raises(UserError) as caught:
+        read(with_line("UX", line))
+    message = str(caught.value)
+    assert message.startswith("crash.toml")
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
+def test_a_byte_order_mark_and_windows_line_ends(tmp_path):
+    path = tmp_path / "crash.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + COMPLETE.replace("\n", "\r\n").encode())
+    assert dict(Scene.from_toml(str(path))) == dict(sample(1))
+
+
+def test_m_defaults_to_six():
+    rows = [row for row in COMPLETE.splitlines() if not row.startswith("M ")]
+    assert read("\n".join(rows))["M"] == "6"
+
+
+def test_the_template_names_everything_once_and_must_be_filled_in():
+    text = template()
+    for quantity in SCENE.values():
+        assert sum(row.startswith(f"{quantity.name} =") for row in text.splitlines()) == 1
+        assert quantity.meaning in text
+        assert quantity.unit in text
+    with pytest.raises(UserError, match="E = ''"):
+        read(text)
+
+
+def test_typed_lines_and_keyboard_are_what_one_would_type():
+    scene = sample(2)
+    assert scene.typed_lines() == [
+        "280 E = 0.005:MU = 0.911:EM = -0.715",
+        "290 DA = 0:DB = 0:GA = -30.0:PA = -19.8:PB = -38.7:TA = 0.0:TB = 60.0",
+        "310 MA = 143.5:MB = 95.8:IA = 3728:IB = 1961",
+        "350 N = 6:M = 4",
+    ]
+    assert scene.keyboard() == ["-29.04,0,0", "14.52,25.15,0"]
+
+
+def test_a_scene_refuses_numbers_that_are_not_text():
+    with pytest.raises(UserError, match="text"):
+        Scene.from_mapping({**sample(1), "UX": 1.5})
