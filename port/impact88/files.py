@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import codecs
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import IO, Any
@@ -64,6 +63,8 @@ def replacing(path: str, mode: str = "w", **options: Any) -> Iterator[IO[Any]]:
     is not a regular file (a terminal, a pipe, /dev/null) is written directly: there is nothing to
     rename. Raises UserError when the place cannot be written to.
     """
+    import tempfile
+
     if "b" not in mode:
         options.setdefault("encoding", "utf-8")
         options.setdefault("newline", "\n")

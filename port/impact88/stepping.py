@@ -6,7 +6,6 @@ comment above it; the variables are those of the frame of `listing.impact`.
 
 from __future__ import annotations
 
-import linecache
 import re
 import sys
 from bisect import bisect_right
@@ -38,6 +37,8 @@ class Variables(NamedTuple):
 @cache
 def _comments() -> tuple[list[int], list[tuple[int, str]]]:
     """Python line numbers of the comments that hold BASIC, and what they hold, in file order."""
+    import linecache
+
     places: list[int] = []
     lines: list[tuple[int, str]] = []
     for place, text in enumerate(linecache.getlines(_FILE, listing.__dict__), 1):

@@ -24,9 +24,12 @@ missing carry (`compare`).
 
 from __future__ import annotations
 
-from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from .errors import division_by_zero, overflow
+
+if TYPE_CHECKING:
+    from fractions import Fraction
 
 Number = tuple[int, int, int]
 """Exponent, 40-bit mantissa, sign."""
@@ -331,6 +334,8 @@ class Real:
 
     def fraction(self) -> Fraction:
         """The exact value, extension included."""
+        from fractions import Fraction
+
         e, m, s = self.number
         scale = e - BIAS - 40
         size = Fraction(m << scale) if scale >= 0 else Fraction(m, 1 << -scale)
