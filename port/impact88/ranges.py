@@ -80,7 +80,9 @@ def read_inputs(
     missing = [name for name in wanted if name not in values]
     if missing:
         hint = " (MUP: the friction coefficient as signed P_t/P_n)" if "MUP" in missing else ""
-        raise UserError(f"{' '.join(missing)} missing; a {problem} needs it{hint}", source)
+        raise UserError(
+            f"{' '.join(missing)} missing; the {problem} problem needs it{hint}", source
+        )
     return Inputs({name: values[name] for name in wanted}, correlations, derived)
 
 

@@ -32,6 +32,7 @@ import argparse
 import json
 import math
 import sys
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
@@ -267,8 +268,9 @@ def table(found: Bounds) -> str:
         ]
         inside = inside or "*" in marks
         cells = "".join(f"{value:>10.5g}" for value in found.spreads[name].quantiles.values())
+        nominal = bound.nominal if abs(bound.nominal) > 1e-12 * width else 0.0
         lines.append(
-            f"{name:6}{bound.nominal:>10.5g}{bound.lower:>10.5g}{marks[0]}{bound.upper:>10.5g}"
+            f"{name:6}{nominal:>10.5g}{bound.lower:>10.5g}{marks[0]}{bound.upper:>10.5g}"
             f"{marks[1]}{cells}  {quantity(name).unit}"
         )
     lines += [
@@ -281,16 +283,13 @@ def table(found: Bounds) -> str:
         cells = "".join(
             f"  {source:<4}{drive.rank_correlation:>+6.2f} ({drive.swing:.3g})".ljust(23)
             for source, drive in ranked[:DRIVERS_SHOWN]
-            if drive.swing > 0
+            if drive.swing > 1e-9 * abs(found.bounds[name].upper - found.bounds[name].lower)
         )
         lines.append(f"{name:6}{cells}".rstrip())
     lines.append("")
     if inside:
         lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
-    for name, bound in found.bounds.items():
-        for side, warnings in (("lower", bound.lower_warnings), ("upper", bound.upper_warnings)):
-            if warnings:
-                lines.append(f"! {side} bound of {name}: {' '.join(warnings)} (see --exclude)")
+    lines += _warnings_at_bounds(found)
     corners = "all corners" if found.corners_in_full else "corners at random"
     lines += [
         f"Bounds: attained; sought in {found.evaluations:,} scenes ({corners}, faces, interior,",
@@ -300,5 +299,19 @@ def table(found: Bounds) -> str:
     for name, share in found.warnings.items():
         lines.append(f"{100 * share:.3g} % of the draws: {name}")
     if found.unusable:
-        lines.append(f"{100 * found.unusable:.3g} % of the draws have no finite result, left out")
+        lines.append(f"{100 * found.unusable:.3g} % of the draws have no finite result or are excluded: left out")
     return "\n".join(lines)
+
+
+def _warnings_at_bounds(found: Bounds) -> list[str]:
+    """For each warning the bounds at which it stands, one line (or more) each."""
+    places: dict[str, list[str]] = {}
+    for name, bound in found.bounds.items():
+        for side, warnings in (("lower", bound.lower_warnings), ("upper", bound.upper_warnings)):
+            for warning in warnings:
+                places.setdefault(warning, []).append(f"{side} {name}")
+    lines = []
+    for warning, bounds in places.items():
+        text = f"! {warning} at the bounds: {', '.join(bounds)} (--exclude {warning})"
+        lines += wrap(text, 96, subsequent_indent="  ")
+    return lines

@@ -1,0 +1,375 @@
+"""Charts with axes: draws and drivers of bounds, the friction sweep, staged collisions.
+
+Every function returns a matplotlib figure one column (85 mm) wide. Nothing is told by colour alone:
+marks, line styles and hatching differ as well, so a grey copy reads the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..errors import UserError
+from ..status import Status
+from .canvas import new_figure, style
+from .drawing import BLACK, BLUE, COLUMN, GREY, ORANGE, VERMILION
+from .plan import numbers_of, short
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..bounds import Bounds
+
+MOST_PANELS = 8
+MOST_BARS = 8
+BINS = 60
+SWEEP = 801
+WIDEST_SWEEP = 5.0
+"""Friction coefficients beyond are not swept."""
+
+
+def symbol(text: str) -> str:
+    """A symbol of the table of names as mathtext, its index lowered: V_ax -> $V_{ax}$."""
+    base, _, index = text.partition("_")
+    close = "|" if index.endswith("|") else ""
+    lowered = f"{base}_{{{index.rstrip('|')}}}{close}" if index else base
+    return "$\\mathregular{" + lowered.replace(" ", r"\ ") + "}$"
+
+
+def _axis_label(name: str) -> str:
+    from ..bounds import quantity
+
+    what = quantity(name)
+    return f"{symbol(what.symbol)}, {what.unit}"
+
+
+def _chosen(found: Bounds, outputs: Sequence[str] | None) -> list[str]:
+    wanted = list(outputs or found.bounds)
+    for name in wanted:
+        if name not in found.bounds:
+            raise UserError(f"{name!r} is not among the results; expected {' '.join(found.bounds)}")
+    return wanted[:MOST_PANELS]
+
+
+def histograms(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
+    """The draws of up to eight results, with quantiles, nominal value and bounds.
+
+    ``found`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks.
+    """
+    import numpy as np
+
+    names = _chosen(found, outputs)
+    columns = 1 if len(names) == 1 else 2
+    rows = -(-len(names) // columns)
+    with style():
+        figure = new_figure(COLUMN, 33 * rows + 14)
+        figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.04)
+        panels = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axes in panels[len(names) :]:
+            axes.axis("off")
+        for name, axes in zip(names, panels, strict=False):
+            draws = found.draws[name]
+            draws = draws[np.isfinite(draws)]
+            bound, spread = found.bounds[name], found.spreads[name]
+            axes.hist(
+                draws,
+                BINS,
+                weights=np.full(len(draws), 100 / len(draws)),
+                histtype="stepfilled",
+                facecolor="#c6dff0",
+                edgecolor=BLUE,
+                linewidth=0.6,
+            )
+            low, high = spread.quantiles[0.05], spread.quantiles[0.95]
+            top = axes.get_ylim()[1] * 1.08
+            axes.set_ylim(0, top)
+            axes.axvline(bound.nominal, color=BLACK, linewidth=1.0)
+            for share in (low, high):
+                axes.axvline(share, color=VERMILION, linewidth=1.0, linestyle=(0, (3, 2)))
+            axes.plot(
+                [bound.lower, bound.upper],
+                [0.03 * top] * 2,
+                linestyle="none",
+                marker="d",
+                color=BLACK,
+                markersize=4.5,
+                clip_on=False,
+                zorder=5,
+            )
+            axes.set_xlabel(_axis_label(name))
+            axes.margins(x=0.05)
+            axes.xaxis.set_major_locator(_ticks(5 if columns == 2 else 8))
+            axes.yaxis.set_major_locator(_ticks(4))
+        for axes in panels[::columns]:
+            axes.set_ylabel("% of draws")
+        figure.legend(
+            handles=_keys(
+                ("line", BLACK, "-", "nominal"),
+                ("line", VERMILION, (0, (3, 2)), "5 % and 95 %"),
+                ("mark", BLACK, "d", "bounds"),
+            ),
+            loc="outside lower center",
+            ncols=3,
+        )
+    return figure
+
+
+def tornado(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
+    """How far each input alone takes each result, longest first; one panel a result.
+
+    Bars end at the results of the input's limits, whiskers where the result goes in between.
+    Raises UserError for a result ``found`` lacks.
+    """
+    from ..bounds import quantity
+
+    names = _chosen(found, outputs)
+    bars = min(len(found.inputs), MOST_BARS)
+    with style():
+        figure = new_figure(COLUMN, len(names) * (4.2 * bars + 14) + 7)
+        figure.set_layout_engine("constrained", h_pad=0.04)
+        panels = figure.subplots(len(names), 1, squeeze=False).ravel()
+        for name, axes in zip(names, panels, strict=True):
+            bound = found.bounds[name]
+            drives = sorted(found.drives[name].items(), key=lambda entry: -entry[1].swing)
+            ticks = []
+            for place, (source, drive) in enumerate(drives[:bars]):
+                ends = [(drive.at_low, "#ffffff", "////"), (drive.at_high, BLUE, "")]
+                # where both lie on one side the shorter bar stands on the longer
+                for value, colour, hatch in sorted(
+                    ends, key=lambda end: -abs(end[0] - bound.nominal)
+                ):
+                    axes.barh(
+                        place,
+                        value - bound.nominal,
+                        left=bound.nominal,
+                        height=0.62,
+                        facecolor=colour,
+                        edgecolor=BLUE,
+                        hatch=hatch,
+                        linewidth=0.6,
+                    )
+                axes.plot([drive.lowest, drive.highest], [place] * 2, color=BLACK, linewidth=0.8)
+                low, high = found.limits[source]
+                what = symbol(quantity(source).symbol)
+                ticks.append(f"{what}  {short(low)} … {short(high)}")
+            axes.set_yticks(range(len(ticks)), ticks)
+            axes.tick_params(axis="y", length=0)
+            axes.invert_yaxis()
+            axes.axvline(bound.nominal, color=BLACK, linewidth=0.8)
+            axes.set_xlabel(_axis_label(name))
+            axes.xaxis.set_major_locator(_ticks(6))
+            axes.margins(x=0.04)
+        figure.legend(
+            handles=_keys(
+                ("bar", "#ffffff", "////", "at its lower limit"),
+                ("bar", BLUE, "", "at its upper limit"),
+                ("line", BLACK, "-", "in between"),
+            ),
+            loc="outside lower center",
+            ncols=3,
+            columnspacing=1.2,
+        )
+    return figure
+
+
+def friction_sweep(scene: Any) -> Figure:
+    """Energy loss and both ΔV against the friction coefficient as typed, all else as in ``scene``.
+
+    Positive values oppose the sliding (line 400's sign rule). A dotted line marks the critical
+    coefficient, beyond which friction would reverse the sliding; where kinetic energy is gained the
+    ground is shaded. Raises UserError when a value of the scene is no number.
+    """
+    import numpy as np
+
+    from ..solve import solve
+
+    values: dict[str, Any] = numbers_of(scene)
+    pivot = solve({**values, "MU": -10.0}, ["MUC", "STATUS"])
+    # line 400 turns the sign of what is typed where gt > 0: the critical value as one would type it
+    sign = float(np.sign(solve({**values, "MU": 1.0}, ["MUP"])["MUP"]))
+    critical = sign * float(pivot["MUC"])
+    own = critical if values["MU"] == -10 else values["MU"]
+    reach = max(1.0, 1.5 * abs(critical) if np.isfinite(critical) else 0.0, 1.2 * abs(own))
+    reach = min(reach, WIDEST_SWEEP)
+    friction = np.linspace(-reach, reach, SWEEP)
+    swept = solve({**values, "MU": friction}, ["LOSS", "DVA", "DVB", "STATUS"])
+    gained = (swept["STATUS"].astype(int) & Status.ENERGY_GAINED) != 0
+    here = {name: float(value) for name, value in solve(values, ["LOSS", "DVA", "DVB"]).items()}
+    with style():
+        figure = new_figure(COLUMN, 92)
+        figure.set_layout_engine("constrained", h_pad=0.03)
+        upper, lower = figure.subplots(2, 1, sharex=True)
+        upper.plot(friction, swept["LOSS"], color=BLACK)
+        upper.axhline(0, color=GREY, linewidth=0.6)
+        upper.set_ylabel("kinetic energy lost, %")
+        lower.plot(friction, swept["DVA"], color=BLUE, label=symbol("ΔV_a"))
+        lower.plot(friction, swept["DVB"], color=VERMILION, linestyle=(0, (4, 1.5)))
+        lower.set_ylabel("ΔV, length/time")
+        lower.set_xlabel("friction coefficient as typed; above 0 it opposes the sliding")
+        _limit(upper, swept["LOSS"], -60, 105)
+        _limit(lower, np.concatenate([swept["DVA"], swept["DVB"]]), 0, None)
+        if abs(own) <= reach:
+            upper.plot(own, here["LOSS"], "o", color=BLACK, markersize=4, zorder=6)
+            lower.plot(own, here["DVA"], "o", color=BLUE, markersize=4, zorder=6)
+            lower.plot(own, here["DVB"], "o", color=VERMILION, markersize=4, zorder=6)
+        for axes in (upper, lower):
+            axes.set_xlim(-reach, reach)
+            _shade(axes, friction, gained)
+            if abs(critical) <= reach:
+                axes.axvline(critical, color=BLACK, linewidth=1.0, linestyle=(0, (1, 1.5)))
+        entries = [
+            ("line", BLUE, "-", symbol("ΔV_a")),
+            ("line", VERMILION, (0, (4, 1.5)), symbol("ΔV_b")),
+            ("mark", BLACK, "o", "pivot" if values["MU"] == -10 else "this scene"),
+        ]
+        if abs(critical) <= reach:
+            what = f"critical: {short(critical)}"
+            entries.append(("line", BLACK, (0, (1, 1.5)), what))
+        if gained.any():
+            entries.append(("bar", _GAINED, "....", "energy gained"))
+        figure.legend(
+            handles=_keys(*entries), loc="outside lower center", ncols=3, columnspacing=1.2
+        )
+    return figure
+
+
+_GAINED = "#f7dfae"
+
+
+def _shade(axes: Axes, friction: Any, gained: Any) -> None:
+    """Shade the stretches of the horizontal axis where ``gained`` holds."""
+    import numpy as np
+
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], gained.astype(int), [0]])))
+    for first, last in edges.reshape(-1, 2):
+        axes.axvspan(
+            friction[first],
+            friction[last - 1],
+            facecolor=_GAINED,
+            edgecolor=ORANGE,
+            hatch="....",
+            linewidth=0,
+            zorder=0,
+        )
+
+
+def _limit(axes: Axes, values: Any, least: float, most: float | None) -> None:
+    """Show the values, but no more than ``least`` ... ``most`` where they run away near a pole."""
+    import numpy as np
+
+    finite = values[np.isfinite(values)]
+    low, high = np.min(finite, initial=0.0), np.max(finite, initial=0.0)
+    if most is None:
+        most = 6 * float(np.median(finite)) if len(finite) else 1.0
+    low, high = max(low, least), min(high, most)
+    pad = 0.06 * (high - low) or 1.0
+    axes.set_ylim(low - (pad if low < 0 else 0), high + pad)
+
+
+def staged_comparison(points: Mapping[str, Sequence[tuple[float, float, str]]]) -> Figure:
+    """Figure 5: calculated against experimental ΔV.
+
+    ``points``: series name -> (experimental, calculated, vehicle A or B); at most three series,
+    each with a mark of its own, filled for A and open for B.
+    """
+    marks = ("o", "^", "s")
+    with style():
+        figure = new_figure(COLUMN, 92)
+        figure.set_layout_engine("constrained")
+        axes = figure.subplots()
+        top = 1.06 * max(max(x, y) for series in points.values() for x, y, _ in series)
+        axes.plot([0, top], [0, top], color=GREY, linewidth=0.8)
+        for series, mark, colour in zip(
+            points.values(), marks, (BLUE, VERMILION, BLACK), strict=False
+        ):
+            for x, y, vehicle in series:
+                axes.plot(
+                    x,
+                    y,
+                    linestyle="none",
+                    marker=mark,
+                    markersize=4.5,
+                    markeredgewidth=0.9,
+                    color=colour,
+                    markerfacecolor=colour if vehicle == "A" else "#ffffff",
+                    zorder=3,
+                )
+        axes.set_xlim(0, top)
+        axes.set_ylim(0, top)
+        axes.set_aspect("equal")
+        axes.set_xlabel("experimental ΔV, ft/s")
+        axes.set_ylabel("calculated ΔV, ft/s")
+        entries = [
+            ("mark", colour, mark, name)
+            for name, mark, colour in zip(points, marks, (BLUE, VERMILION, BLACK), strict=False)
+        ]
+        figure.legend(
+            handles=[
+                *_keys(*entries, ("line", GREY, "-", "equal")),
+            ],
+            title="filled: vehicle A; open: vehicle B",
+            title_fontsize=6.5,
+            loc="outside lower center",
+            ncols=2,
+        )
+    return figure
+
+
+def force_and_impulse() -> Figure:
+    """Figure 1: a typical force between vehicles, and the average force of the same impulse."""
+    import numpy as np
+
+    with style():
+        figure = new_figure(COLUMN, 48)
+        figure.set_layout_engine("constrained", w_pad=0.05)
+        typical, average = figure.subplots(1, 2)
+        time = np.linspace(0, 1, 201)
+        # a skewed hump; its mean is the average force by construction
+        force = time**1.2 * (1 - time) ** 1.6 * (1 + 0.12 * np.sin(9 * np.pi * time))
+        force /= force.max()
+        mean = float(np.trapezoid(force, time))
+        typical.fill_between(time, force, facecolor="#c6dff0", edgecolor=BLUE, linewidth=1.2)
+        average.fill_between([0, 1], mean, facecolor="#c6dff0", edgecolor=BLUE, linewidth=1.2)
+        for axes, level, name in ((typical, 1.0, "F_M"), (average, mean, "F_A")):
+            axes.plot([0, 1], [level] * 2, color=GREY, linewidth=0.6, linestyle=(0, (3, 2)))
+            axes.set_yticks([level], [symbol(name)])
+            axes.set_xticks([0, 1], ["0", symbol("t_f")])
+            axes.set_xlim(0, 1.15)
+            axes.set_ylim(0, 1.18)
+            axes.set_xlabel("time")
+            axes.text(0.42, 0.4 * mean, "impulse", ha="center", va="center")
+        typical.set_ylabel("force")
+        typical.set_title("a. typical force", loc="left")
+        average.set_title("b. average force", loc="left")
+    return figure
+
+
+def _ticks(most: int) -> Any:
+    from matplotlib.ticker import MaxNLocator
+
+    return MaxNLocator(nbins=most, min_n_ticks=2)
+
+
+def _keys(*entries: tuple[str, str, Any, str]) -> list[Any]:
+    """Legend samples: ("line", colour, line style, text), ("mark", colour, marker, text) or
+    ("bar", face colour, hatch, text)."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    result: list[Any] = []
+    for kind, colour, look, text in entries:
+        if kind == "line":
+            result.append(Line2D([], [], color=colour, linestyle=look, label=text))
+        elif kind == "mark":
+            result.append(
+                Line2D(
+                    [], [], color=colour, marker=look, linestyle="none", markersize=4.5, label=text
+                )
+            )
+        else:
+            edge = ORANGE if colour == _GAINED else BLUE
+            result.append(
+                Patch(facecolor=colour, edgecolor=edge, hatch=look, linewidth=0.6, label=text)
+            )
+    return result
