@@ -127,7 +127,7 @@ class Block(NamedTuple):
 
 
 def examine(values: Mapping[str, Floats]) -> Block:
-    """Find out what kind of block this is. ``values``: a column each of one length or of length 1."""
+    """Find out what kind of block this is. ``values``: columns of one length, or of length 1."""
     fixed: dict[str, Floats] = {}
     varying: dict[str, Floats] = {}
     kinds: list[str] = []
@@ -206,10 +206,7 @@ def _refused(columns: Mapping[str, Floats], length: int) -> NDArray[np.bool_]:
     point = columns["M"] == 4
     refused = ~(point | (columns["M"] == 6))
     for name, column in columns.items():
-        if name in INERTIAS:
-            bad = ~(column > 0)
-        else:
-            bad = ~np.isfinite(column)
+        bad = ~(column > 0) if name in INERTIAS else ~np.isfinite(column)
         if name in UNUSED_BY_POINTS:
             bad = bad & ~point
         refused = refused | bad

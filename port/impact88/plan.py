@@ -201,7 +201,7 @@ class Plan:
                 sine_and_cosine(angle, sine, cosine, (work[0], work[1], work[2], work[3]))
                 values[id(e)] = np.array([sine, cosine])
             else:
-                out = np.empty(1, _DTYPES[e.dtype])
+                out: Array = np.empty(1, _DTYPES[e.dtype])
                 OPERATIONS[e.operation](*(values[id(o)] for o in e.operands), out)
                 values[id(e)] = out
         return [values[id(e)] for e in self._fixed]
