@@ -21,7 +21,9 @@ from .errors import UserError
 COMMANDS = {
     "run": "run the 1988 program on its own data, a sample or a scene file",
     "scene": "print a scene file to fill in, or a sample's",
+    "verify": "say whether an old printout is right, digit for digit, and if not, why",
     "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",
+    "figure": "draw a scene, its bounds or a figure of the chapter (extra: plot)",
 }
 """Command -> one line of help, in the order ``--help`` lists them."""
 

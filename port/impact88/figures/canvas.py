@@ -132,14 +132,20 @@ def _add_path(axes: Any, path: Path, order: int) -> None:
     )
 
 
+def check_ending(path: str) -> str:
+    """The format the ending of ``path`` asks for. Raises UserError for any other."""
+    ending = path.rpartition(".")[2].lower()
+    if ending not in FORMATS:
+        raise UserError(f"no picture ends so; expected .{', .'.join(FORMATS)}", path)
+    return ending
+
+
 def save(figure: Figure | Drawing, path: str) -> None:
     """Write a figure; the format is the ending of ``path``. A drawing as SVG needs no matplotlib.
 
     Raises UserError for another ending, a place that cannot be written to, missing matplotlib.
     """
-    ending = path.rpartition(".")[2].lower()
-    if ending not in FORMATS:
-        raise UserError(f"no picture ends so; expected .{', .'.join(FORMATS)}", path)
+    ending = check_ending(path)
     if isinstance(figure, Drawing):
         if ending == "svg":
             text = '<?xml version="1.0" encoding="UTF-8"?>\n' + svg(figure)

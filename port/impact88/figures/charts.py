@@ -6,6 +6,7 @@ marks, line styles and hatching differ as well, so a grey copy reads the same.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -265,6 +266,25 @@ def _limit(axes: Axes, values: Any, least: float, most: float | None) -> None:
     low, high = max(low, least), min(high, most)
     pad = 0.06 * (high - low) or 1.0
     axes.set_ylim(low - (pad if low < 0 else 0), high + pad)
+
+
+def figure_5() -> Figure:
+    """Figure 5 from our own computation: the impact equations with Table 2's coefficients, and
+    Equation 19 with its energy loss, against the measured ΔV (Table 2's where Table 1's is lost).
+    """
+    from ..staged import collisions, experimental, forward, predicted
+
+    equations, equation_19 = [], []
+    for collision in collisions():
+        measured = experimental(collision)
+        computed, rule = forward(collision), predicted(collision)
+        for name, printed in (("DVA", "dVa_exp"), ("DVB", "dVb_exp")):
+            x = measured[name]
+            if not math.isfinite(x):
+                x = collision.table2[printed]
+            equations.append((x, float(computed[name]), name[-1]))
+            equation_19.append((x, float(rule[name]), name[-1]))
+    return staged_comparison({"impact equations": equations, "Equation 19": equation_19})
 
 
 def staged_comparison(points: Mapping[str, Sequence[tuple[float, float, str]]]) -> Figure:

@@ -24,13 +24,13 @@ def colinear() -> Drawing:
     """Figure 2: direct colinear impact, no rotation."""
     drawing = Drawing(
         d.COLUMN,
-        52.0,
+        45.0,
         "Free bodies, direct colinear impact",
         "Two vehicles pulled apart, with the impulse components P_n and P_t on each, opposite "
         "in direction, and the normal and tangential axes.",
     )
     labels: list[Label] = []
-    middle = (42.5, 27.0)
+    middle = (42.5, 20.0)
     for name, side in (("B", -1.0), ("A", 1.0)):
         center = (middle[0] + side * 24.5, middle[1])
         length, width = 22.0, 8.5
@@ -60,7 +60,7 @@ def colinear() -> Drawing:
         end = (base[0] - side * 8.0, base[1])
         drawing.items += d.arrow(base, end, COLOURS[name], 0.45, (1.3, 0.7), 2.2, "velocity")
         labels.append(Label(base, (side, 0.0), f"v_{{{low}n}}, v_{{{low}t}}", 8, COLOURS[name]))
-    origin = (middle[0] - 4.0, 40.0)
+    origin = (middle[0] - 4.0, 33.0)
     for unit, name in (((1.0, 0.0), "n"), ((0.0, 1.0), "t")):
         end = (origin[0] + 8 * unit[0], origin[1] + 8 * unit[1])
         drawing.items += d.arrow(origin, end, d.BLACK, 0.35, head=1.8, role=f"{name} axis")
@@ -76,7 +76,7 @@ def colinear() -> Drawing:
             role="note",
         )
     )
-    place(drawing, labels, Box(0.8, 6.0, drawing.width - 0.8, drawing.height - 0.4))
+    place(drawing, labels, Box(0.8, 5.5, drawing.width - 0.8, drawing.height - 0.4))
     return drawing
 
 
@@ -98,7 +98,7 @@ def planar(scene: Any = None) -> Drawing:
         "the contact point, axes n and t, impulses P_n and P_t and moment impulse M on each.",
     )
     size = max(vehicle.length for vehicle in shapes.vehicles)
-    shift = {v.name: (0.34 if v.name == "A" else -0.34) * size for v in shapes.vehicles}
+    shift = {v.name: (0.42 if v.name == "A" else -0.42) * size for v in shapes.vehicles}
     moved = {name: (by * shapes.normal[0], by * shapes.normal[1]) for name, by in shift.items()}
     points = [
         (x + moved[v.name][0], y + moved[v.name][1]) for v in shapes.vehicles for x, y in v.outline
@@ -136,6 +136,7 @@ def planar(scene: Any = None) -> Drawing:
             )
 
         _body(drawing, labels, shapes, vehicle, at, scale * size)
+    _plane(drawing.items, labels, shapes, origin, scale * size)
     place(drawing, labels, Box(0.6, 0.4, drawing.width - 0.6, drawing.height - 0.4))
     return drawing
 
@@ -159,7 +160,7 @@ def _body(
     _ray(items, center, vehicle.front, 0.5 * size)
     _ray(items, center, (1.0, 0.0), arm)
     if abs(heading) > 3:
-        labels.append(_arc(items, center, 0.0, heading, 0.22 * size, f"θ_{low}"))
+        labels.append(_arc(items, center, 0.0, heading, 0.28 * size, f"θ_{low}"))
     else:
         edge = (center[0] + arm, center[1])
         labels.append(Label(edge, (1.0, 0.3), f"θ_{low} = {heading:.3g}°", 7.5, _ANGLE))
@@ -173,7 +174,8 @@ def _body(
         front = math.degrees(math.atan2(vehicle.front[1], vehicle.front[0]))
         angle = shapes.numbers["P" + vehicle.name]
         if abs(angle) > 3:
-            labels.append(_arc(items, center, front, angle, 0.15 * size, f"φ_{low}"))
+            radius = min(0.16 * size, 0.6 * math.dist(center, contact))
+            labels.append(_arc(items, center, front, angle, radius, f"φ_{low}"))
 
     # impulses: on A along n and t, on B against them
     sense = 1.0 if vehicle.name == "A" else -1.0
@@ -203,8 +205,6 @@ def _body(
             "moment label",
         )
     )
-    if vehicle.name == "B":
-        _plane(items, labels, shapes, contact, size)
     items.append(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))
     items.append(Path(d.circle(contact, 0.5), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
 
@@ -212,9 +212,9 @@ def _body(
 def _plane(
     items: list[Path | Text], labels: list[Label], shapes: Plan, contact: Point, size: float
 ) -> None:
-    """The contact plane through B's contact point, its axes, and its angle from the y axis."""
+    """The contact plane halfway between the bodies, its axes, and its angle from the y axis."""
     n, t = shapes.normal, shapes.tangent
-    half = 0.42 * size
+    half = 0.36 * size
     ends = (
         (contact[0] - half * t[0], contact[1] - half * t[1]),
         (contact[0] + half * t[0], contact[1] + half * t[1]),
@@ -223,13 +223,13 @@ def _plane(
     head = (contact[0] + 0.999 * half * t[0], contact[1] + 0.999 * half * t[1])
     items += d.arrow((head[0] - 2 * t[0], head[1] - 2 * t[1]), ends[1], d.BLACK, 0.35, head=1.8)
     labels.append(Label(ends[1], t, "t", 8))
-    end = (contact[0] + half * n[0], contact[1] + half * n[1])
+    end = (contact[0] + 0.14 * size * n[0], contact[1] + 0.14 * size * n[1])
     items += d.arrow(contact, end, d.BLACK, 0.35, head=1.8, role="n axis")
     labels.append(Label(end, n, "n", 8))
     angle = shapes.numbers["GA"]
     if abs(angle) > 3:
-        _ray(items, contact, (0.0, 1.0), 0.36 * size)
-        labels.append(_arc(items, contact, 90.0, angle, 0.3 * size, "Γ"))
+        _ray(items, contact, (0.0, 1.0), 0.32 * size)
+        labels.append(_arc(items, contact, 90.0, angle, 0.25 * size, "Γ"))
 
 
 def _back(vehicle: Vehicle) -> Point:

@@ -386,7 +386,7 @@ class _Field:
             if vehicle.wall:
                 self._draw_wall(items, vehicle, ats)
             else:
-                self._draw_body(items, vehicle, ats)
+                draw_body(items, vehicle, ats)
         self._draw_plane(items, labels, at)
         for vehicle in self.shapes.vehicles:
             if not vehicle.wall:
@@ -422,34 +422,6 @@ class _Field:
             low = _plus(face[0], _scaled(_minus(face[1], face[0]), (step + 0.5) / 12))
             high = _plus(face[3], _scaled(_minus(face[2], face[3]), (step + 1) / 12))
             items.append(Path(ats([low, high]), COLOURS[vehicle.name], 0.2, role=role))
-
-    def _draw_body(self, items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
-        colour = COLOURS[vehicle.name]
-        items.append(Path(ats(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
-        outline = (*vehicle.outline, vehicle.outline[0])
-        if vehicle.kept != vehicle.outline:
-            items.append(Path(ats(outline), colour, 0.2, (0.7, 0.7), role=f"{vehicle.name} whole"))
-        items.append(
-            Path(
-                ats((*vehicle.kept, vehicle.kept[0])),
-                colour,
-                0.45,
-                role=f"{vehicle.name} outline",
-            )
-        )
-        # the front: a windscreen's line and an arrowhead, as on a police sketch
-        left = (-vehicle.front[1], vehicle.front[0])
-        for along, across in ((0.22, 0.38), (-0.3, 0.36)):
-            middle = _plus(vehicle.center, _scaled(vehicle.front, along * vehicle.length))
-            half = _scaled(left, across * vehicle.width)
-            items.append(
-                Path(ats([_minus(middle, half), _plus(middle, half)]), colour, 0.2, role="glass")
-            )
-        nose = _plus(vehicle.center, _scaled(vehicle.front, 0.36 * vehicle.length))
-        back = _plus(vehicle.center, _scaled(vehicle.front, 0.25 * vehicle.length))
-        half = _scaled(left, 0.16 * vehicle.width)
-        tip = [_plus(back, half), nose, _minus(back, half)]
-        items.append(Path(ats(tip), colour, 0.3, role="heading"))
 
     def _draw_plane(self, items: list[Path | Text], labels: list[Label], at: Any) -> None:
         half = _scaled(self.shapes.tangent, self.plane_half())
@@ -553,6 +525,37 @@ class _Field:
                     role=f"{name} label",
                 )
             )
+
+
+def draw_body(items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
+    """A vehicle's outline, what of it is crushed, and marks that show its front. ``ats`` maps
+    points of the plan to paper."""
+    colour = COLOURS[vehicle.name]
+    items.append(Path(ats(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
+    outline = (*vehicle.outline, vehicle.outline[0])
+    if vehicle.kept != vehicle.outline:
+        items.append(Path(ats(outline), colour, 0.2, (0.7, 0.7), role=f"{vehicle.name} whole"))
+    items.append(
+        Path(
+            ats((*vehicle.kept, vehicle.kept[0])),
+            colour,
+            0.45,
+            role=f"{vehicle.name} outline",
+        )
+    )
+    # the front: a windscreen's line and an arrowhead, as on a police sketch
+    left = (-vehicle.front[1], vehicle.front[0])
+    for along, across in ((0.22, 0.38), (-0.3, 0.36)):
+        middle = _plus(vehicle.center, _scaled(vehicle.front, along * vehicle.length))
+        half = _scaled(left, across * vehicle.width)
+        items.append(
+            Path(ats([_minus(middle, half), _plus(middle, half)]), colour, 0.2, role="glass")
+        )
+    nose = _plus(vehicle.center, _scaled(vehicle.front, 0.36 * vehicle.length))
+    back = _plus(vehicle.center, _scaled(vehicle.front, 0.25 * vehicle.length))
+    half = _scaled(left, 0.16 * vehicle.width)
+    tip = [_plus(back, half), nose, _minus(back, half)]
+    items.append(Path(ats(tip), colour, 0.3, role="heading"))
 
 
 def short(value: float) -> str:

@@ -1,0 +1,129 @@
+"""kinds:
+  scene            the scene from above: vehicles, contact plane, velocities, impulse
+  friction         energy loss and delta-V against MU, with the critical value
+  histogram        the draws of uncertain results; options as impact88 bounds
+  tornado          how far each uncertain input takes each result
+  staged           Figure 5: calculated against experimental delta-V of the staged collisions
+  force            Figure 1: force between vehicles and its impulse
+  colinear         Figure 2: free bodies, direct colinear impact
+  planar           Figure 3: free bodies, planar impact, of any scene
+  configurations   Figure 4: the staged collisions' configurations
+
+The ending of FILE says how it is written: .svg, .png or .pdf; all are one column (85 mm) wide. It
+takes pip install 'impact88[plot]', but for scene, planar, colinear and configurations as .svg.
+
+examples:
+  impact88 figure scene --sample 1 -o scene.svg
+  impact88 figure scene crash.toml --set MU=-10 -o pivot.pdf
+  impact88 figure friction --sample 3 -o friction.png
+  impact88 figure tornado --sample 1 --range GA="+- 10" --range MU=".7 .. 1" \\
+      --outputs DVA LOSS -o tornado.pdf
+  impact88 figure staged -o figure5.pdf
+"""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from ..errors import UserError
+from ..scene import Scene, sample
+from .bounds import add_scene_arguments, explored
+from .run import settings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..figures.drawing import Drawing
+
+OF_A_SCENE = ("scene", "friction")
+OF_RANGES = ("histogram", "tornado")
+OF_NOTHING = ("staged", "force", "colinear", "configurations")
+KINDS = (*OF_A_SCENE, *OF_RANGES, "planar", *OF_NOTHING)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 figure`."""
+    parser.add_argument("kind", choices=KINDS, metavar="KIND", help="see kinds below")
+    parser.add_argument(
+        "-o", "--output", required=True, metavar="FILE", help="where to write: .svg, .png or .pdf"
+    )
+    add_scene_arguments(parser)
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="change a value of the scene; repeatable",
+    )
+    parser.add_argument("--outputs", nargs="+", metavar="NAME", help="the results wanted")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Draw one figure."""
+    from ..figures.canvas import check_ending, save
+
+    check_ending(args.output)
+    save(_drawn(args), args.output)
+    return 0
+
+
+def _drawn(args: argparse.Namespace) -> Figure | Drawing:
+    kind = args.kind
+    given = bool(args.scene or args.sample)
+    if kind in OF_NOTHING and (given or args.set or args.ranges):
+        raise UserError(f"{kind} is drawn from the chapter alone and takes no scene")
+    if kind in OF_RANGES:
+        from ..figures import charts
+
+        args.ranges = [*args.set, *args.ranges]
+        draw = charts.histograms if kind == "histogram" else charts.tornado
+        return draw(explored(args, args.outputs, keep=kind == "histogram"))
+    if args.ranges or args.outputs:
+        raise UserError(
+            f"{kind} shows one scene as it is; --range and --outputs are for histogram "
+            "and tornado, --set changes a value"
+        )
+    if kind == "friction":
+        from ..figures import charts
+
+        return charts.friction_sweep(_scene(args))
+    if kind == "scene":
+        from ..figures.plan import scene_drawing
+
+        scene = _scene(args)
+        return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
+    if kind == "planar":
+        from ..figures import freebody
+
+        return freebody.planar(_scene(args) if given or args.set else None)
+    if kind == "colinear":
+        from ..figures import freebody
+
+        return freebody.colinear()
+    if kind == "configurations":
+        from ..figures.configurations import configurations
+
+        return configurations()
+    from ..figures import charts
+
+    return charts.figure_5() if kind == "staged" else charts.force_and_impulse()
+
+
+def _scene(args: argparse.Namespace) -> Scene:
+    """The scene the options name. Raises UserError unless there is exactly one."""
+    if bool(args.scene) == bool(args.sample):
+        raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
+    scene = Scene.from_toml(args.scene) if args.scene else sample(args.sample)
+    changes = settings(args.set)
+    return scene.replaced(changes) if changes else scene
+
+
+def solved(scene: Scene) -> dict[str, Any]:
+    """The results of one scene as numbers, for a drawing."""
+    from ..figures.plan import numbers_of
+    from ..names import FINAL_VELOCITIES
+    from ..solve import solve
+
+    found = solve(numbers_of(scene), (*FINAL_VELOCITIES, "STATUS"))
+    return {name: value.item() for name, value in found.items()}
