@@ -17,6 +17,8 @@ _LAZY = {
     "Scene": "scene",
     "sample": "scene",
     "run": "run",
+    "verify_file": "verify",
+    "read_printouts": "printout",
     "solve_for": "unknowns",
     "colinear": "colinear",
     "colinear_inverse": "colinear",
@@ -24,6 +26,7 @@ _LAZY = {
     "delta_v": "deltav",
     "solve": "solve",
     "bounds": "bounds",
+    "replay": "replay",
 }
 """Public name -> the module that holds it."""
 

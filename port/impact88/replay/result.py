@@ -1,0 +1,139 @@
+"""What a replay gives back."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..applesoft.errors import CODES, ApplesoftError
+from . import impact
+from .columns import Scenes
+from .decimaltext import Strings, write
+from .elimination import ZERO_DETERMINANT
+from .reals import Floats, Packed, Reals, from_floats
+from .unit import Bools, Ints, Unit
+
+OTHER_M = 2
+"""The code of a scene whose M is neither 4 nor 6: not replayed."""
+_KINDS = {code: kind for kind, code in CODES.items()}
+_CHUNK = 16384
+"""So many fields are written at a time."""
+
+
+class Replay:
+    """The results of `replay`, a value for each scene; names as in `impact88.names`.
+
+    A scene that an error ended keeps what it had computed before, as on the machine, and has no
+    later value: NaN as a float, 0 as a stored real, "" as a printed field (`present` tells).
+
+    ``code``: 0, or the Applesoft error's code (53, 69, 133), 1 for ZERO DETERMINANT, 2 for an M that
+    is neither 4 nor 6 (not replayed). ``line``: the line of the listing that ended the scene early
+    (1160 for ZERO DETERMINANT), else 0. ``count``: the number of scenes.
+    """
+
+    def __init__(
+        self, scenes: Scenes, six: Bools, unit: Unit, values: dict[str, Floats]
+    ) -> None:
+        self.count = scenes.count
+        self.code: Ints = unit.code()
+        self.line: Ints = unit.line()
+        self._scenes = scenes
+        self._six = six
+        self._unit = unit
+        self._values = values
+        self._fields: dict[str, Strings] = {}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The results there are."""
+        return tuple(self._values)
+
+    @property
+    def zero_determinant(self) -> Bools:
+        """The scenes the listing ends with ZERO DETERMINANT."""
+        return self.code == ZERO_DETERMINANT
+
+    @property
+    def error(self) -> Strings:
+        """Each scene's error message, such as "?DIVISION BY ZERO ERROR IN 480"; "" for none.
+
+        ZERO DETERMINANT is a normal end and no error.
+        """
+        messages = np.full(self.count, "", dtype="<U48")
+        for i in np.flatnonzero(self.code > ZERO_DETERMINANT).tolist():
+            code, line = int(self.code[i]), int(self.line[i])
+            messages[i] = (
+                "M IS NEITHER 4 NOR 6"
+                if code == OTHER_M
+                else ApplesoftError(_KINDS[code], line).message
+            )
+        return messages
+
+    def present(self, name: str) -> Bools:
+        """The scenes that have the result."""
+        present = self._unit.reached(impact.ASSIGNED[name]) & (self.code != OTHER_M)
+        return present & self._six if name in ("WAF", "WBF") else present
+
+    def floats(self, name: str) -> Floats:
+        """A result, exactly, as float64; NaN where there is none. Raises KeyError for an unknown
+        name."""
+        return np.where(self.present(name), self._values[name], np.nan)
+
+    def reals(self, name: str) -> Packed:
+        """A result as the five bytes stored, one number each: f"{x:010x}" writes them in
+        hexadecimal. 0 where there is none."""
+        packed = from_floats(self._values[name].copy(), None, True).packed()
+        return np.where(self.present(name), packed, np.uint64(0))
+
+    def printed(self, name: str) -> Strings:
+        """A field of the printout, character for character: "-8.78", "5E-03"; "" where the program
+        did not get as far.
+
+        ``name`` is a result's, or a scene value's; MU and MUP both are what line 680 prints. KF is
+        printed nowhere. Fields are written when first asked for.
+        """
+        name = "MUP" if name == "MU" else name
+        if name not in self._fields:
+            self._fields[name] = self._write(name)
+        return self._fields[name]
+
+    def _write(self, name: str) -> Strings:
+        present = self._unit.reached(impact.PRINTED[name]) & (self.code != OTHER_M)
+        if name in ("WAF", "WBF"):
+            present &= self._six
+        if name == "LOSS":
+            columns = [self._values["KI"], self._values["KF"]]
+        elif name in self._values:
+            columns = [self._values[name]]
+        else:
+            columns = [self._scenes.values[name]]
+        if all(column.size == 1 for column in columns):
+            return np.where(present, _field(name, columns), "")
+        columns = [np.broadcast_to(column, self.count) for column in columns]
+        parts = [
+            _field(name, [column[at : at + _CHUNK] for column in columns])
+            for at in range(0, self.count, _CHUNK)
+        ]
+        return np.where(present, np.concatenate(parts), "")
+
+
+def _field(name: str, columns: list[Floats]) -> Strings:
+    """The characters of one field of the printout."""
+    unit = Unit(columns[0].size)
+    with np.errstate(all="ignore"):
+        x, *more = (from_floats(column.copy(), unit, True) for column in columns)
+        if more:
+            x = impact.loss(x, *more)
+        elif name in impact.FLOORED:
+            x = impact.floored(name, x)
+        elif name in impact.ANGLES:
+            (angle,) = impact.radians(unit, [x])
+            x = (angle / impact.AG).rounded()
+        if x.v.size != columns[0].size:  # known to be zero throughout
+            x = Reals(np.zeros(columns[0].size), unit, 1.0, 0.0, True)
+        return write(x)
+
+
+def field_names() -> tuple[str, ...]:
+    """The fields of the printout, in its order."""
+    return tuple(sorted(impact.PRINTED, key=impact.PRINTED.__getitem__))
+
