@@ -17,6 +17,7 @@ _LAZY = {
     "Scene": "scene",
     "sample": "scene",
     "run": "run",
+    "verify": "verify",
     "verify_file": "verify",
     "read_printouts": "printout",
     "solve_for": "unknowns",

@@ -24,6 +24,12 @@ COMMANDS = {
     "verify": "say whether an old printout is right, digit for digit, and if not, why",
     "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",
     "figure": "draw a scene, its bounds or a figure of the chapter (extra: plot)",
+    "reconstruct": "solve the impact equations for any unknowns: velocities, coefficients",
+    "barrier": "the impact of one vehicle on a rigid barrier",
+    "colinear": "the direct colinear impact, Equations 1-12, forward or inverse",
+    "delta-v": "delta-V of both vehicles from speeds, masses and energy loss, Equation 19",
+    "staged": "the eleven staged collisions: Tables 1 and 2 recomputed, fitted, compared",
+    "example": "Section VII's reconstruction, step by step",
 }
 """Command -> one line of help, in the order ``--help`` lists them."""
 

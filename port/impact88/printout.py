@@ -195,10 +195,10 @@ def read_file(path: str) -> list[Printout]:
             if zeros.count(0) > 0.9 * len(zeros):
                 data = data[: len(data) // 2 * 2].decode(encoding, "replace").encode()
                 break
-    return read(files.decode(data, where), where)
+    return read_printouts(files.decode(data, where), where)
 
 
-def read(text: str, where: str = "text") -> list[Printout]:
+def read_printouts(text: str, where: str = "text") -> list[Printout]:
     """The printouts in a text, in order. Raises UserError (naming ``where``) if there is none."""
     squeezed = glyphs.Squeezed(text)
     found = [_Reader(squeezed, tokens).printout() for tokens in _printouts(squeezed.text)]
