@@ -13,7 +13,7 @@ from typing import Any
 
 from .applesoft import decimaltext, functions
 from .applesoft.errors import ApplesoftError, division_by_zero, illegal_quantity, overflow
-from .applesoft.real import ZERO, Number, Real, absolute, floor
+from .applesoft.real import ZERO, Number, Real, absolute, floor, integer
 from .errors import UserError
 
 
@@ -21,9 +21,10 @@ class Arithmetic:
     """What the listing needs of a machine's numbers.
 
     ``read(text, start)`` gives the number that begins there and where it ends; ``LET`` is what
-    storing does to a value; ``error`` turns an exception of this arithmetic into Applesoft's, or
-    None if it is not the arithmetic's. ``unset`` is a zero that ``is`` tells from every other: the
-    value of a variable never assigned; ``zero`` is any other zero.
+    storing does to a value and ``NEXT`` what NEXT makes of a loop's variable; ``error`` turns an
+    exception of this arithmetic into Applesoft's, or None if it is not the arithmetic's. ``unset``
+    is a zero that ``is`` tells from every other: the value of a variable never assigned; ``zero``
+    is any other zero.
     """
 
     def __init__(
@@ -32,6 +33,7 @@ class Arithmetic:
         *,
         read: Callable[[str, int], tuple[Any, int]],
         LET: Callable[[Any], Any],
+        NEXT: Callable[[Any], Any],
         INT: Callable[[Any], Any],
         ABS: Callable[[Any], Any],
         SIN: Callable[[Any], Any],
@@ -44,6 +46,7 @@ class Arithmetic:
         self.name = name
         self.read = read
         self.LET = LET
+        self.NEXT = NEXT
         self.INT = INT
         self.ABS = ABS
         self.SIN = SIN
@@ -76,6 +79,14 @@ def _read_real(text: str, start: int) -> tuple[Real, int]:
 
 def _write_real(x: Real) -> str:
     return decimaltext.write(x.number)
+
+
+def _next_real(x: Real) -> Real:
+    """x + 1, stored; what follows the usual small numbers is worked out once."""
+    return _FOLLOWING.get(x.number) or (x + 1).rounded()
+
+
+_FOLLOWING = {integer(n): (Real(integer(n)) + 1).rounded() for n in range(16)}
 
 
 def _of_reals(function: Callable[[Number], Number]) -> Callable[[Real], Real]:
@@ -119,6 +130,10 @@ def _keep(x: float) -> float:
     return x
 
 
+def _next_float(x: float) -> float:
+    return x + 1
+
+
 def _floor(x: float) -> float:
     """INT of a double. Raises OverflowError for one that is not finite."""
     if not math.isfinite(x):
@@ -130,6 +145,7 @@ APPLESOFT = Arithmetic(
     "applesoft",
     read=_read_real,
     LET=Real.rounded,
+    NEXT=_next_real,
     INT=_of_reals(floor),
     ABS=_of_reals(absolute),
     SIN=_of_reals(functions.sine),
@@ -143,6 +159,7 @@ FLOAT64 = Arithmetic(
     "float64",
     read=_read_float,
     LET=_keep,
+    NEXT=_next_float,
     INT=_floor,
     ABS=abs,
     SIN=math.sin,

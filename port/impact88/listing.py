@@ -57,8 +57,9 @@ def impact(
     (`stepping.variables` sorts them out). Raises the arithmetic's errors, `End` after ZERO
     DETERMINANT, and `console.EndOfInput`; the variables are then in the traceback's frame.
     """
-    LET, INT, ABS, SIN, COS = (
+    LET, NEXT, INT, ABS, SIN, COS = (
         arithmetic.LET,
+        arithmetic.NEXT,
         arithmetic.INT,
         arithmetic.ABS,
         arithmetic.SIN,
@@ -243,14 +244,14 @@ def impact(
                     while True:
                         A[RO, CO] = A[RO, CO] - A[I, CO] * AR
                         # 1050 NEXT CO
-                        CO = LET(CO + 1)
+                        CO = NEXT(CO)
                         if CO > limit:
                             break
                 # 1060 NEXT RO: NEXT J: RETURN
-                RO = LET(RO + 1)
+                RO = NEXT(RO)
                 if RO > M:
                     break
-            J = LET(J + 1)
+            J = NEXT(J)
             if J > M:
                 break
         return
@@ -266,7 +267,7 @@ def impact(
                 # 1100 MX = A(RO,CO):RX = RO
                 MX = LET(A[RO, CO]); RX = LET(RO)
             # 1110 NEXT RO
-            RO = LET(RO + 1)
+            RO = NEXT(RO)
             if RO > M:
                 break
         # 1120 IF ABS (A(RX,J)) < 1E - 9 THEN 1160
@@ -277,7 +278,7 @@ def impact(
                 # 1140 AS = A(I,OL):A(I,OL) = A(RX,OL):A(RX,OL) = AS
                 AS = LET(A[I, OL]); A[I, OL] = A[RX, OL]; A[RX, OL] = AS
                 # 1150 A(I,OL) = A(I,OL) / AP: NEXT OL: RETURN
-                A[I, OL] = A[I, OL] / AP; OL = LET(OL + 1)
+                A[I, OL] = A[I, OL] / AP; OL = NEXT(OL)
                 if OL > limit:
                     break
             return

@@ -6,6 +6,7 @@ over the keyboard.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from contextlib import nullcontext
 from typing import Any, NamedTuple
@@ -116,4 +117,7 @@ def finished(
 
 
 def _shown(value: Any) -> Any:
-    return value.stored().hex() if isinstance(value, Real) else value
+    """A real's stored bytes in hexadecimal; a double as it is, or in words where JSON has none."""
+    if isinstance(value, Real):
+        return value.stored().hex()
+    return value if math.isfinite(value) else str(value)

@@ -9,7 +9,8 @@ from .errors import ApplesoftError, illegal_quantity
 from .real import Real, integer
 
 SUBSCRIPT_LIMIT = 32768
-_SMALL = {integer(n): n for n in range(16)}
+_PLACES = {integer(n): n for n in range(16)}
+"""The usual subscripts, so that a loop does not work them out each time."""
 
 
 def subscript(x: Any) -> int:
@@ -18,9 +19,6 @@ def subscript(x: Any) -> int:
     Raises ILLEGAL QUANTITY for a negative or larger one, however small its fraction.
     """
     if x.__class__ is Real:
-        known = _SMALL.get(x.number)
-        if known is not None:
-            return known
         e, m, s = x.number
         if s or e > 143:
             raise illegal_quantity()
@@ -46,8 +44,12 @@ class Array:
 
     def __getitem__(self, place: tuple[Any, Any]) -> Any:
         i, j = place
+        if i.__class__ is Real:
+            i = _PLACES.get(i.number, i)
         if i.__class__ is not int:
             i = subscript(i)
+        if j.__class__ is Real:
+            j = _PLACES.get(j.number, j)
         if j.__class__ is not int:
             j = subscript(j)
         if i >= self._rows or j >= self._columns:
@@ -56,8 +58,12 @@ class Array:
 
     def __setitem__(self, place: tuple[Any, Any], value: Any) -> None:
         i, j = place
+        if i.__class__ is Real:
+            i = _PLACES.get(i.number, i)
         if i.__class__ is not int:
             i = subscript(i)
+        if j.__class__ is Real:
+            j = _PLACES.get(j.number, j)
         if j.__class__ is not int:
             j = subscript(j)
         if i >= self._rows or j >= self._columns:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from contextlib import ExitStack
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
@@ -113,6 +114,8 @@ def main(args: argparse.Namespace) -> int:
     data = scene if scene is not None else published_data() | settings(args.set)
     shown: list[str] = []
     show = shown.append if args.json else sys.stdout.write
+    if args.json and scene is None and sys.stdin.isatty():
+        show = _prompting(shown)
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
         if scene is not None:
@@ -150,6 +153,17 @@ def main(args: argparse.Namespace) -> int:
     elif error is not None:
         print()
     return 1 if error else 0
+
+
+def _prompting(shown: list[str]) -> Callable[[str], object]:
+    """Keep the output, and let the person at the terminal see the prompts on stderr."""
+
+    def show(text: str) -> None:
+        shown.append(text)
+        sys.stderr.write(text)
+        sys.stderr.flush()
+
+    return show
 
 
 def _typed_line() -> str | None:
