@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .errors import UserError
 from .solve import solve
@@ -22,6 +21,8 @@ BARRIER = {
     **{"DB": 0.0, "PB": 0.0, "TB": 0.0},
 }
 """The values of the scene that make B a barrier; where on it the vehicle hits is of no matter."""
+BARRIER_AFTER = {"VBX": 0.0, "VBY": 0.0, "WBF": 0.0}
+"""Its velocities after the impact, for `impact88.unknowns.solve_for`: rebound -> approach."""
 VEHICLE = ("E", "MU", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "UX", "UY", "WA")
 """The values of the scene that are the vehicle's and the contact's."""
 RESULTS = (

@@ -62,5 +62,5 @@ def principal_direction(vehicle: str, theta: Any, gamma: Any, pn: Any, pt: Any) 
 
 
 def clock(pdof: float) -> str:
-    """A PDOF as the nearest hour of the clock face: "12 o'clock" is the front, "3 o'clock" right."""
+    """A PDOF as the nearest hour of the clock: 12 o'clock is the front, 3 o'clock the right."""
     return f"{round(pdof / 30) % 12 or 12} o'clock"

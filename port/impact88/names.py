@@ -107,17 +107,15 @@ CHAPTER: dict[str, Quantity] = {
         Quantity("CAY", "-d3", "y from A's center of gravity to the contact point", _LENGTH, 0),
         Quantity("CBX", "d2", "x from B's center of gravity to the contact point", _LENGTH, 0),
         Quantity("CBY", "d1", "y from B's center of gravity to the contact point", _LENGTH, 0),
-        Quantity(
-            "PDOFA", "", "principal direction of force on A, clockwise from its front", "degree", 0
-        ),
-        Quantity(
-            "PDOFB", "", "principal direction of force on B, clockwise from its front", "degree", 0
-        ),
+        Quantity("PDOFA", "", "force on A comes from, clockwise from its front", "degree", 0),
+        Quantity("PDOFB", "", "force on B comes from, clockwise from its front", "degree", 0),
         Quantity("P", "P", "size of the impulse", "mass·length/time", 0),
         Quantity("TF", "t_f", "duration of contact", "time", 0),
         Quantity("FA", "F_A", "average force during contact", _FORCE, 0),
         Quantity("FM2", "F_M", "peak force, at twice the average", _FORCE, 0),
         Quantity("FM3", "F_M", "peak force, at three times the average", _FORCE, 0),
+        Quantity("SA", "|v_a|", "initial speed of A", _VELOCITY, 0),
+        Quantity("SB", "|v_b|", "initial speed of B", _VELOCITY, 0),
         Quantity("UN", "v_an", "initial normal velocity of A", _VELOCITY, 0),
         Quantity("UT", "v_at", "initial tangential velocity of A", _VELOCITY, 0),
         Quantity("VN", "v_bn", "initial normal velocity of B", _VELOCITY, 0),
@@ -128,8 +126,8 @@ CHAPTER: dict[str, Quantity] = {
         Quantity("VBT", "V_bt", "final tangential velocity of B", _VELOCITY, 0),
     )
 }
-"""What the chapter's other problems add (Sections III, IV-C and VI) and the listing has no name for:
-contact point, direction and size of the force, velocities along n and t."""
+"""What the chapter's other problems add (Sections III, IV-C and VI), which the listing has no name
+for: contact point, direction and size of the force, velocities along n and t."""
 
 FINAL_VELOCITIES = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 VELOCITIES = ("UX", "UY", "WA", "VX", "VY", "WB")

@@ -1,0 +1,48 @@
+"""Vehicle A against a rigid barrier that does not move. The file (flat TOML) or --set give what is
+known of the vehicle: DA PA TA MA IA, the barrier's GA (angle of its surface from the y axis), and
+of UX UY WA (before), VAX VAY WAF (after), E, EM and MU all but at most three; what is left out is
+solved for. As everywhere A is on the +n side, n = (cos GA, sin GA): with GA = 0 it drives towards
+-x, and TA = 0 then means that it faces the barrier. M = 4 makes it a point mass.
+
+MU is the number of line 280: friction opposes the sliding (line 400); MUP is the signed P_t/P_n.
+Units: any consistent set; angles in degrees, spins in rad per unit of time. PDOF: where the force
+comes from, clockwise from the vehicle's front.
+
+examples:
+  impact88 barrier --set MA=143.5 --set IA=3728 --set DA=7.59 --set PA=-19.8 --set TA=0 \\
+      --set GA=-30 --set E=.005 --set MU=.911 --set EM=-.715 --set UX=-29.04 --set UY=0 --set WA=0
+  impact88 barrier car.toml --contact-time .1
+  impact88 barrier rebound.toml --json          VAX VAY WAF known, UX UY WA left out
+
+exit status: 0 solved; 2 bad input, or unknowns that are not determined
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from ..errors import UserError
+from ..givens import givens
+from .reconstruct import add_solution_arguments, show
+
+KNOWABLE = (
+    *("E", "MU", "MUP", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "M"),
+    *("UX", "UY", "WA", "VAX", "VAY", "WAF"),
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 barrier`."""
+    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
+    add_solution_arguments(parser)
+
+
+def main(args: argparse.Namespace) -> int:
+    """Solve for what is unknown and print every solution."""
+    from ..barrier import BARRIER, BARRIER_AFTER
+
+    if args.file is None and not args.set:
+        raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
+    known = givens(args.file, args.set, KNOWABLE)
+    show({**known, **BARRIER, **BARRIER_AFTER}, None, args)
+    return 0

@@ -1,0 +1,108 @@
+"""Two vehicles that do not turn, velocities along n (crush) and t (sliding). Given MA MB E MUP and
+the velocities before (UN UT of A, VN VT of B), Equations 9-12 give those after; given those after
+(VAN VAT VBN VBT), the same equations with 1/E give those before. MUP is the signed P_t/P_n of
+Equation 8: no rule chooses its sign here. Units: any consistent set.
+
+examples:
+  impact88 colinear --set MA=154.7 --set MB=99.1 --set E=.071 --set MUP=-.008 \\
+      --set UN=-56.76 --set UT=0 --set VN=0 --set VT=0
+  impact88 colinear rear-end.toml --contact-time .12
+  impact88 colinear rear-end.toml --json
+
+exit status: 0 solved; 2 bad input, or E = 0 in the inverse problem
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+
+from ..errors import UserError
+from ..givens import givens
+from .reconstruct import add_solution_arguments
+
+COMMON = ("MA", "MB", "E", "MUP")
+BEFORE = ("UN", "UT", "VN", "VT")
+AFTER = ("VAN", "VAT", "VBN", "VBT")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 colinear`."""
+    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
+    add_solution_arguments(parser)
+
+
+def main(args: argparse.Namespace) -> int:
+    """Print the velocities that were not given, and what follows from them."""
+    from ..colinear import colinear, colinear_inverse
+
+    known = givens(args.file, args.set, (*COMMON, *BEFORE, *AFTER))
+    before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
+    missing = [name for name in COMMON if name not in known]
+    if before and after:
+        raise UserError(
+            f"velocities before ({' '.join(before)}) and after ({' '.join(after)}) are both given; "
+            "expected the four before or the four after",
+            args.file,
+        )
+    missing += [name for name in (AFTER if after else BEFORE) if name not in known]
+    if missing:
+        raise UserError(f"missing {' '.join(missing)}", args.file)
+    for name in ("MA", "MB"):
+        if not known[name] > 0:
+            raise UserError(f"{name} is not positive; expected a mass", args.file)
+    solve = colinear_inverse if after else colinear
+    values = {name: float(value) for name, value in solve(**known).items()}
+    values = {"MA": known["MA"], "MB": known["MB"], "E": known["E"], **values}
+    if args.contact_time is not None:
+        from ..impulse import forces
+
+        values["P"] = math.hypot(values["PN"], values["PT"])
+        values["TF"] = args.contact_time
+        values |= {n: float(v) for n, v in forces(values["P"], args.contact_time).items()}
+    show(values, BEFORE if after else AFTER, args.json)
+    return 0
+
+
+def show(values: dict[str, float], found: tuple[str, ...], as_json: bool) -> None:
+    """Print the table or the JSON object."""
+    from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
+    from ..solutiontable import quantity
+
+    warnings = _warnings(values)
+    if as_json:
+        units = {name: quantity(name).unit for name in values}
+        whole = {"solved_for": list(found), "values": values, "units": units, "warnings": warnings}
+        print(json.dumps(plain(whole), allow_nan=False))
+        return
+    decimals = decimals_for([values[name] for name in (*BEFORE, *AFTER)])
+    rows = []
+    for label, names in (("n", ("UN", "VAN", "VN", "VBN")), ("t", ("UT", "VAT", "VT", "VBT"))):
+        cells = [f"{fixed(values[n], decimals)}{'*' if n in found else ' '}" for n in names]
+        rows.append([label, *cells, "length/time"])
+    heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
+    print("\n".join([*table(rows, heading, left=(0, 5)), "* solved for", ""]))
+    shown = [n for n in values if n not in (*BEFORE, *AFTER) and math.isfinite(values[n])]
+    lines = [[n, number(values[n]), quantity(n).unit, quantity(n).meaning] for n in shown]
+    lines = [
+        [*line[:3], "signed P_t/P_n, as given"] if line[0] == "MUP" else line for line in lines
+    ]
+    print("\n".join(table(lines, left=(0, 2, 3))))
+    for warning in warnings:
+        print("\n".join(paragraph(f"! {warning}")))
+
+
+def _warnings(values: dict[str, float]) -> list[str]:
+    found = []
+    if values["UN"] - values["VN"] >= 0:
+        found.append("the vehicles do not approach along n: UN - VN is not negative")
+    if not 0 <= values["E"] <= 1:
+        found.append("E is outside 0 ... 1")
+    if values["LOSS"] < -1e-10:
+        found.append("kinetic energy is gained in the impact")
+    if values["MUP"] and abs(values["MUP"]) > abs(values["MUC"]):
+        found.append("friction reverses the sliding: |MUP| is above the critical value MUC")
+    elif values["MUP"] * values["MUC"] < 0:
+        found.append("friction drives the sliding: MUP and MUC differ in sign")
+    return found

@@ -1,0 +1,135 @@
+"""Equation 19 (Section VI), an empirical estimate from masses, initial speeds and energy loss,
+fitted to eleven staged collisions; no impact is solved. By default it has the factor 2/3 with which
+all of Table 2 was computed and which the printed equation lacks; --as-printed leaves it out.
+
+Given are MA MB, the speeds SA SB (or UX UY VX VY) and the loss LOSS in percent; or, instead of
+LOSS, --like takes the range of losses of one category of Table 2. A scene file (impact88 scene)
+gives masses and velocities; its other values are not used. Units: any consistent set.
+
+examples:
+  impact88 delta-v --set MA=96 --set MB=145 --set SA=36.667 --set SB=58.667 --set LOSS=37.4
+  impact88 delta-v crash.toml --like 90-side
+  impact88 delta-v crash.toml --set LOSS=40 --as-printed --json
+
+exit status: 0 done; 2 bad input
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from math import hypot
+from typing import Any
+
+from ..errors import UserError
+from ..givens import givens
+from ..names import SCENE
+
+CATEGORIES = {
+    "60-side": "60° FRONT TO SIDE",
+    "90-side": "90° FRONT TO SIDE",
+    "front": "10° FRONT TO FRONT",
+    "rear": "10° FRONT TO REAR",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 delta-v`."""
+    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="give or change a value; repeatable",
+    )
+    parser.add_argument(
+        "--like",
+        choices=tuple(CATEGORIES),
+        help="take the range of energy losses of this category of Table 2",
+    )
+    parser.add_argument(
+        "--as-printed", action="store_true", help="Equation 19 as printed, without the factor 2/3"
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Print the estimate, or its range."""
+    from ..deltav import AS_PRINTED, AS_USED, delta_v, described
+
+    known = givens(args.file, args.set, (*SCENE, "SA", "SB", "LOSS"))
+    for name in ("MA", "MB"):
+        if not known.get(name, 0) > 0:
+            raise UserError(f"{name} is missing or not positive; expected a mass", args.file)
+    speeds = [
+        _speed(known, "SA", "UX", "UY", args.file),
+        _speed(known, "SB", "VX", "VY", args.file),
+    ]
+    factor = AS_PRINTED if args.as_printed else AS_USED
+    losses, source = _losses(known, args)
+    estimates = []
+    for loss in losses:
+        found = delta_v(known["MA"], known["MB"], *speeds, loss, factor)
+        estimates.append({"LOSS": loss, **{name: float(v) for name, v in found.items()}})
+    given = {"MA": known["MA"], "MB": known["MB"], "SA": speeds[0], "SB": speeds[1]}
+    if args.json:
+        whole = {
+            "equation": described(factor),
+            "factor": factor,
+            "given": given,
+            "loss_from": source,
+            "estimates": estimates,
+            "units": {"DVA": "length/time", "DVB": "length/time", "LOSS": "percent"},
+        }
+        print(json.dumps(whole, allow_nan=False))
+        return 0
+    _show(given, estimates, source, described(factor))
+    return 0
+
+
+def _speed(known: dict[str, float], speed: str, x: str, y: str, source: str | None) -> float:
+    if speed in known:
+        if known[speed] < 0:
+            raise UserError(f"{speed} is negative; expected a speed", source)
+        return known[speed]
+    if x in known and y in known:
+        return hypot(known[x], known[y])
+    raise UserError(f"{speed} is missing; expected it, or {x} and {y}", source)
+
+
+def _losses(known: dict[str, float], args: argparse.Namespace) -> tuple[list[float], str]:
+    """The losses to take, in percent, and where they come from."""
+    if args.like:
+        from ..staged import collisions
+
+        if "LOSS" in known:
+            raise UserError("LOSS and --like are both given; expected one")
+        category = CATEGORIES[args.like]
+        alike = [c for c in collisions() if c.category == category]
+        losses = sorted(c.table2["loss"] for c in alike)
+        numbers = ", ".join(str(c.number) for c in alike)
+        return [losses[0], losses[-1]], f"Table 2, {category} (collisions {numbers})"
+    if "LOSS" not in known:
+        raise UserError("LOSS is missing (percent of kinetic energy); expected it, or --like")
+    if not 0 <= known["LOSS"] <= 100:
+        raise UserError("LOSS is outside 0 ... 100; expected percent of the initial kinetic energy")
+    return [known["LOSS"]], "given"
+
+
+def _show(
+    given: dict[str, float], estimates: list[dict[str, Any]], source: str, equation: str
+) -> None:
+    from ..plaintable import number, table
+    from ..solutiontable import quantity
+
+    rows = [[n, number(v), quantity(n).unit, quantity(n).meaning] for n, v in given.items()]
+    print("\n".join(table(rows, left=(0, 2, 3))))
+    lines = [[number(e["LOSS"]), number(e["DVA"]), number(e["DVB"])] for e in estimates]
+    heading = ["loss [percent]", "DVA [length/time]", "DVB [length/time]"]
+    print("\n".join(["", *table(lines, heading, left=())]))
+    print(f"\nloss: {source}")
+    print(equation)
+    print(
+        "An estimate: within a few ft/s for the staged collisions, untested elsewhere (Section VI)."
+    )

@@ -1,0 +1,99 @@
+"""The file is flat TOML with the listing's names, like a scene (impact88 scene --help): whatever
+is not known is left out, or left empty, and is solved for. The vehicles and their geometry (DA DB
+GA PA PB TA TB MA MB IA IB) must be known; then any of the velocities
+
+  before   UX UY WA   VX VY WB            A, then B; x, y, spin
+  after    VAX VAY WAF   VBX VBY WBF
+
+and of the coefficients E, EM and MU. Usual sets of unknowns (Equations 13-18): the six velocities
+after; the six before; before of one vehicle with after of the other; three velocities with the
+three coefficients; any other set of up to six that the equations determine. One that they do not
+is refused with the reason. With fewer unknowns than equations the known values are fitted by least
+squares, and the mismatch is told.
+
+MU is the number of line 280: friction opposes the sliding (line 400). Where the velocities before
+are unknown, both signs are tried and every solution that agrees with itself is shown. MUP is the
+signed P_t/P_n instead. Units: any consistent set; angles in degrees, spins in rad per unit of time.
+PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
+
+examples:
+  impact88 reconstruct after.toml                       all that the file leaves out
+  impact88 reconstruct after.toml --set E=.1            a value changed
+  impact88 reconstruct after.toml --set E= --set MU=    two values no longer known
+  impact88 reconstruct after.toml --for UX,VY           only these; others may stay unknown
+  impact88 reconstruct after.toml --contact-time .15 --json
+
+exit status: 0 solved; 2 bad input, or unknowns that are not determined
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Mapping
+
+from ..errors import UserError
+from ..givens import givens
+from ..names import SCENE
+
+KNOWABLE = (*SCENE, "MUP", "VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 reconstruct`."""
+    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
+    parser.add_argument(
+        "--for",
+        dest="wanted",
+        metavar="NAMES",
+        help="solve for these names only; others may stay unknown",
+    )
+    add_solution_arguments(parser)
+
+
+def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the commands that print a solution."""
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="give or change a value; an empty one makes it unknown; repeatable",
+    )
+    parser.add_argument(
+        "--contact-time",
+        type=float,
+        metavar="T",
+        help="duration of contact (usually .1 to .2 s): average and peak force",
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Solve for what is unknown and print every solution."""
+    if args.file is None and not args.set:
+        raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
+    known = givens(args.file, args.set, KNOWABLE)
+    wanted = args.wanted.upper().replace(",", " ").split() if args.wanted else None
+    show(known, wanted, args)
+    return 0
+
+
+def show(known: Mapping[str, float], wanted: list[str] | None, args: argparse.Namespace) -> None:
+    """Print the solutions of one problem."""
+    from ..solutiontable import as_json, as_text, complete
+    from ..unknowns import solve_for
+
+    try:
+        solutions = solve_for(known, wanted)
+        tables = [(s, complete(known, s, args.contact_time)) for s in solutions]
+    except UserError as error:
+        raise UserError(str(error), getattr(args, "file", None)) from None
+    if args.json:
+        print(json.dumps({"solutions": [as_json(known, s, v) for s, v in tables]}, allow_nan=False))
+        return
+    for at, (solution, values) in enumerate(tables):
+        if len(tables) > 1:
+            head = f"SOLUTION {at + 1} OF {len(tables)}"
+            print(f"{chr(10) if at else ''}{head}: MU is known in size, and both signs agree\n")
+        print(as_text(solution, values))

@@ -1,0 +1,73 @@
+"""Rows laid out as a table of aligned columns, for people to read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from textwrap import wrap
+from typing import Any
+
+WIDTH = 96
+
+
+def number(value: Any, digits: int = 6) -> str:
+    """A number to ``digits`` significant digits; nothing where there is none."""
+    value = float(value)
+    if math.isnan(value):
+        return ""
+    # 0 for -0 and for what the digits cannot show
+    return f"{value + 0.0:.{digits}g}"
+
+
+def fixed(value: Any, decimals: int) -> str:
+    """A number with a fixed count of decimals, never -0; nothing where there is none."""
+    value = float(value)
+    if math.isnan(value):
+        return ""
+    text = f"{value:.{decimals}f}"
+    return text.removeprefix("-") if float(text) == 0 else text
+
+
+def decimals_for(values: Sequence[float], digits: int = 6) -> int:
+    """The decimals that show the largest of ``values`` to ``digits`` significant digits."""
+    largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
+    return max(0, digits - 1 - math.floor(math.log10(largest))) if largest else digits - 1
+
+
+def table(
+    rows: Iterable[Sequence[str]], heading: Sequence[str] | None = None, left: Sequence[int] = (0,)
+) -> list[str]:
+    """Lines of aligned columns, two blanks between; columns in ``left`` start at the left."""
+    body = [list(row) for row in rows]
+    lines = [list(heading), *body] if heading else body
+    count = max(map(len, lines), default=0)
+    lines = [line + [""] * (count - len(line)) for line in lines]
+    widths = [max(len(line[i]) for line in lines) for i in range(count)]
+    laid = [
+        "  ".join(
+            text.ljust(width) if i in left else text.rjust(width)
+            for i, (text, width) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in lines
+    ]
+    if heading:
+        laid.insert(1, "-" * max(map(len, laid)))
+    return laid
+
+
+def paragraph(text: str, indent: str = "") -> list[str]:
+    """A text in lines of at most `WIDTH`."""
+    return wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent)
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON takes it: numpy numbers and arrays unwrapped, not finite ones as null."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
