@@ -33,6 +33,12 @@ Read = Callable[[str, int], "tuple[Number, int]"]
 _SLOT_COMMAND = re.compile(r" *PR *# *([0-7])", re.IGNORECASE)
 
 
+class Keys(str):
+    """Keys with no RETURN after them: what a keyboard may return for GET to read."""
+
+    __slots__ = ()
+
+
 class EndOfInput(Exception):
     """The keyboard has no more lines and the program asks for one."""
 
@@ -60,6 +66,7 @@ class Console:
         self.slot = 0
         self._line_begins = True
         self._command: str | None = None
+        self._keys = ""
 
     # --- output ----------------------------------------------------------------------------------
 
@@ -106,24 +113,45 @@ class Console:
 
     # --- input -----------------------------------------------------------------------------------
 
-    def read_line(self) -> str:
+    def read_key(self) -> str:
+        """One key, as GET reads it: not shown, not made upper case; RETURN after a line's last.
+
+        Raises EndOfInput.
+        """
+        if not self._keys:
+            typed = self.keyboard()
+            if typed is None:
+                raise EndOfInput
+            self._keys = typed if isinstance(typed, Keys) else typed + "\r"
+        key, self._keys = self._keys[0], self._keys[1:]
+        return key
+
+    def _typed_line(self) -> str:
+        """What is left of a line that GET began, or the next one."""
+        if self._keys:
+            typed, self._keys = self._keys.rstrip("\r"), ""
+            return typed
+        line = self.keyboard()
+        if line is None:
+            raise EndOfInput
+        return line
+
+    def read_line(self, prompt: str = PROMPT) -> str:
         """One line from the keyboard as the monitor reads it: upper case, edited, echoed.
 
         Control-H takes back a character, control-X the line. Raises EndOfInput, and
         KeyboardInterrupt for control-C at the start of the line.
         """
         while True:
-            self.put(PROMPT)
-            typed = self.keyboard()
-            if typed is None:
-                raise EndOfInput
+            self.put(prompt)
+            typed = self._typed_line()
             typed = typed.upper()
             if typed.startswith(CONTROL_C):
                 raise KeyboardInterrupt
             kept, cancelled, rest = typed.rpartition(CONTROL_X)
             if cancelled:
-                self._echo(kept.replace(CONTROL_X, CONTROL_X + "\\\n" + PROMPT))
-                self._echo(CONTROL_X + "\\\n" + PROMPT)
+                cancelled += "\\\n" + prompt
+                self._echo(kept.replace(CONTROL_X, cancelled) + cancelled)
                 typed = rest
             self._echo(typed + "\n")
             return _edited(typed)[:LINE_LIMIT]

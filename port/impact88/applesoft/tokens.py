@@ -1,0 +1,117 @@
+"""Keywords and tokens: how a typed line becomes the bytes a program is made of.
+
+A keyword is one byte from 0x80 on; everything else stays as typed, without its blanks. Keywords are
+found anywhere, with or without blanks inside, the first in the table's order that fits: so TOTAL
+begins with TO and SCORE holds OR. REM and DATA keep their text, and so does a string. Two words are
+special: AT followed at once by N or O is not AT, so that ATN and A TO are found instead.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+FIRST = 0x80
+KEYWORDS = (
+    *"END FOR NEXT DATA INPUT DEL DIM READ GR TEXT PR# IN# CALL PLOT HLIN VLIN".split(),
+    *"HGR2 HGR HCOLOR= HPLOT DRAW XDRAW HTAB HOME ROT= SCALE= SHLOAD TRACE".split(),
+    *"NOTRACE NORMAL INVERSE FLASH COLOR= POP VTAB HIMEM: LOMEM: ONERR RESUME".split(),
+    *"RECALL STORE SPEED= LET GOTO RUN IF RESTORE & GOSUB RETURN REM STOP ON".split(),
+    *"WAIT LOAD SAVE DEF POKE PRINT CONT LIST CLEAR GET NEW TAB( TO FN SPC(".split(),
+    *"THEN AT NOT STEP + - * / ^ AND OR > = < SGN INT ABS USR FRE SCRN( PDL".split(),
+    *"POS SQR RND LOG EXP COS SIN TAN ATN PEEK LEN STR$ VAL ASC CHR$ LEFT$".split(),
+    *"RIGHT$ MID$".split(),
+)
+"""In the ROM's order: the first has token 0x80."""
+
+TOKENS = {word: FIRST + n for n, word in enumerate(KEYWORDS)}
+
+DATA = TOKENS["DATA"]
+REM = TOKENS["REM"]
+PRINT = TOKENS["PRINT"]
+AT = TOKENS["AT"]
+LAST_STATEMENT = TOKENS["NEW"]
+"""Keywords up to here may begin a statement."""
+LAST_LINE = 63999
+LINE_LIMIT = 239
+"""The monitor hands over no more of a line than this."""
+
+_BY_LETTER: dict[str, list[tuple[str, int]]] = {}
+for _word, _token in TOKENS.items():
+    _BY_LETTER.setdefault(_word[0], []).append((_word, _token))
+
+_COLON = ord(":")
+_QUOTE = '"'
+
+
+def _keyword(text: str, start: int) -> tuple[int, int] | None:
+    """Token and end of the keyword at ``start``, blanks passed over, or None."""
+    for word, token in _BY_LETTER.get(text[start], ()):
+        at = start
+        for letter in word:
+            while text[at : at + 1] == " ":
+                at += 1
+            if text[at : at + 1] != letter:
+                break
+            at += 1
+        else:
+            if token == AT and text[at : at + 1] in ("N", "O"):
+                continue
+            return token, at
+    return None
+
+
+@lru_cache(maxsize=4096)
+def tokenise(text: str) -> bytes:
+    """The bytes of a line's statements, as the ROM's parser leaves them (without the final zero)."""
+    out = bytearray()
+    at = 0
+    in_data = False
+    while at < len(text):
+        character = text[at]
+        if character == " " and not in_data:
+            at += 1
+        elif character == _QUOTE:
+            at = _copy(text, at, _QUOTE, out)
+        elif in_data or "0" <= character <= ";":
+            out.append(ord(character) & 0x7F)
+            at += 1
+            if character == ":":
+                in_data = False
+        elif character == "?":
+            out.append(PRINT)
+            at += 1
+        elif found := _keyword(text, at):
+            token, at = found
+            out.append(token)
+            in_data = token == DATA
+            if token == REM:
+                at = _copy(text, at, "", out)
+        else:
+            out.append(ord(character) & 0x7F)
+            at += 1
+    return bytes(out)
+
+
+def _copy(text: str, at: int, until: str, out: bytearray) -> int:
+    """Copy up to and including the ``until`` after ``at``, or to the end; return where that is."""
+    end = text.find(until, at + 1) + 1 if until else 0
+    end = end or len(text)
+    out += bytes(ord(character) & 0x7F for character in text[at:end])
+    return end
+
+
+def split_number(text: str) -> tuple[int, str] | None:
+    """The line number a typed line begins with and its rest; None if it begins with no digit.
+
+    Blanks before and within the number do not count. Raises ValueError past 63999.
+    """
+    number = None
+    for at, character in enumerate(text):
+        if character == " ":
+            continue
+        if not "0" <= character <= "9":
+            return None if number is None else (number, text[at:])
+        if (number or 0) >= (LAST_LINE + 1) // 10:
+            raise ValueError("a line number goes up to 63999")
+        number = 10 * (number or 0) + int(character)
+    return None if number is None else (number, "")
