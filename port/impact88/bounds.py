@@ -460,7 +460,11 @@ def _reconstruction_status(found: Mapping[str, Array], before: Sequence[Array]) 
         status.Status.NOT_FINITE: ~np.isfinite(found["KI"]),
         FRICTION_DRIVES: mu * tangential * np.sign(pn) > 0,
     }
-    return np.sum([int(bit) * np.int64(1) * holds for bit, holds in bits.items()], axis=0)
+    # the parts broadcast: what does not vary is a lone number
+    flags: Any = np.int64(0)
+    for bit, holds in bits.items():
+        flags = flags + np.int64(bit) * holds
+    return np.asarray(flags)
 
 
 def _monte_carlo(

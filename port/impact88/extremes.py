@@ -70,7 +70,7 @@ def extremes(
     height = _finite(values[:, number] * sense)
     corner_best = height[: len(corners)].max(axis=0)
     starts = np.argsort(-height, axis=0, kind="stable")[:STARTS]
-    place = points[starts].reshape(-1, coordinates)
+    place = points[starts].reshape(starts.size, coordinates)
     best = np.take_along_axis(height, starts, axis=0).reshape(-1)
     climbers = (np.tile(number, len(starts)), np.tile(sense, len(starts)))
     place, best, steps = _climb(function, place, best, *climbers, rng)
@@ -80,7 +80,7 @@ def extremes(
     every = np.arange(2 * functions)
     highest = heights[winner, every]
     reached = np.where(np.isneginf(highest), np.nan, highest) * sense
-    at: Array = place.reshape(len(starts), -1, coordinates)[winner, every]
+    at: Array = place.reshape(*starts.shape, coordinates)[winner, every]
     at_corner = np.where(np.isneginf(corner_best), np.nan, corner_best) * sense
     return Extremes(
         lower=reached[:functions],
@@ -95,7 +95,8 @@ def extremes(
 
 def _corners(coordinates: int, rng: np.random.Generator) -> Array:
     if coordinates <= CORNERS_IN_FULL:
-        return np.array(list(product((0.0, 1.0), repeat=coordinates))).reshape(-1, coordinates)
+        corners = list(product((0.0, 1.0), repeat=coordinates))
+        return np.array(corners).reshape(2**coordinates, coordinates)
     return np.round(rng.random((SCATTERED, coordinates)))
 
 

@@ -78,7 +78,10 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
 
         args.ranges = [*args.set, *args.ranges]
         draw = charts.histograms if kind == "histogram" else charts.tornado
-        return draw(explored(args, args.outputs, keep=kind == "histogram"))
+        outputs = args.outputs
+        if kind == "tornado" and not outputs:
+            outputs = ["SA", "SB", "LOSS"] if args.reconstruct else ["DVA", "DVB", "LOSS"]
+        return draw(explored(args, outputs, keep=kind == "histogram"))
     if args.ranges or args.outputs:
         raise UserError(
             f"{kind} shows one scene as it is; --range and --outputs are for histogram "

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from ..bounds import Bounds
 
-MOST_PANELS = 8
+MOST_PANELS = 12
 MOST_BARS = 8
 BINS = 60
 SWEEP = 801
@@ -50,13 +50,16 @@ def _chosen(found: Bounds, outputs: Sequence[str] | None) -> list[str]:
     for name in wanted:
         if name not in found.bounds:
             raise UserError(f"{name!r} is not among the results; expected {' '.join(found.bounds)}")
-    return wanted[:MOST_PANELS]
+    if len(wanted) > MOST_PANELS:
+        raise UserError(f"{len(wanted)} results do not fit a page; expected {MOST_PANELS} at most")
+    return wanted
 
 
 def histograms(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
-    """The draws of up to eight results, with quantiles, nominal value and bounds.
+    """The draws of up to twelve results, with quantiles, nominal value and bounds.
 
-    ``found`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks.
+    ``found`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks and
+    for more than fit.
     """
     import numpy as np
 

@@ -1,0 +1,482 @@
+"""Ranges and distributions, the search for extremes, bounds, draws and drivers."""
+
+from __future__ import annotations
+
+import math
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+from impact88 import uncertain
+from impact88.bounds import (
+    RECONSTRUCTED,
+    bounds,
+    forward_model,
+    input_names,
+    quantity,
+    reconstruction_model,
+)
+from impact88.errors import UserError
+from impact88.extremes import extremes
+from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES
+from impact88.ranges import read_correlations, read_inputs
+from impact88.scene import sample
+from impact88.uncertain import Uncertain, fixed, read
+
+
+def values(number: int = 1, **ranges: str) -> dict[str, Uncertain]:
+    """A sample's values, some of them as ranges."""
+    return read_inputs(dict(sample(number)), ranges).values
+
+
+def reconstruction(number: int = 1, **ranges: str) -> dict[str, Uncertain]:
+    return read_inputs(dict(sample(number)), ranges, "reconstruction").values
+
+
+class TestNotation:
+    @pytest.mark.parametrize(
+        ("text", "kind", "low", "nominal", "high"),
+        [
+            ("0.911", "fixed", 0.911, 0.911, 0.911),
+            ("-.5", "fixed", -0.5, -0.5, -0.5),
+            ("5E-03", "fixed", 0.005, 0.005, 0.005),
+            ("0.7 .. 0.9", "uniform", 0.7, 0.8, 0.9),
+            ("1..2", "uniform", 1, 1.5, 2),
+            ("-3 ..  -1", "uniform", -3, -2, -1),
+            ("8 +- 2", "uniform", 6, 8, 10),
+            ("8±2", "uniform", 6, 8, 10),
+            ("-40 +- 5%", "uniform", -42, -40, -38),
+            ("uniform 1 3", "uniform", 1, 2, 3),
+            ("triangular 1 1.5 3", "triangular", 1, 1.5, 3),
+            ("normal 2 0.5", "normal", -math.inf, 2, math.inf),
+            ("normal 2 0.5 within 1 .. 4", "normal", 1, 2, 4),
+            ("2 .. 2", "fixed", 2, 2, 2),
+            ("normal 2 0", "fixed", 2, 2, 2),
+        ],
+    )
+    def test_reads(self, text, kind, low, nominal, high):
+        item = read(text, "MU")
+        assert item.kind == kind
+        assert (item.low, item.nominal, item.high) == pytest.approx((low, nominal, high))
+
+    def test_half_width_around_the_scenes_value(self):
+        assert read("+- 10%", "UX", -30.0).limits(3) == pytest.approx((-33, -27))
+        assert read("+- 2", "UX", -30.0).nominal == -30
+
+    def test_the_scenes_value_stays_nominal_inside_a_range(self):
+        assert read("0.7 .. 1", "MU", 0.911).nominal == 0.911
+        assert read("0.7 .. 0.8", "MU", 0.911).nominal == 0.75
+
+    @pytest.mark.parametrize(
+        ("text", "says"),
+        [
+            ("", "no value or range"),
+            ("0.7 to 0.9", "no value or range"),
+            ("0.9 .. 0.7", "out of order"),
+            ("triangular 1 4 3", "out of order"),
+            ("normal 1 -1", "negative standard deviation"),
+            ("normal 5 1 within 1 .. 2", "mean outside"),
+            ("8 +- -2", "negative half width"),
+            ("+- 2", "no middle"),
+            ("1e999 .. 2", "too large"),
+            ("normal 1", "no value or range"),
+        ],
+    )
+    def test_refuses(self, text, says):
+        with pytest.raises(UserError, match=says) as caught:
+            read(text, "MU")
+        assert str(caught.value).startswith("MU: ")
+        assert "\n" not in str(caught.value)
+
+    def test_limits_of_a_normal(self):
+        assert read("normal 2 0.5", "E").limits(2) == (1, 3)
+        assert read("normal 2 0.5 within 1.5 .. 9", "E").limits(2) == (1.5, 3)
+
+
+class TestDraws:
+    COUNT = 200_000
+
+    @pytest.mark.parametrize(
+        "text",
+        ["1 .. 3", "triangular 1 1.4 3", "normal 2 0.5", "normal 2 0.5 within 1.5 .. 4"],
+    )
+    @pytest.mark.parametrize("way", ["alone", "copula"])
+    def test_shares_below(self, text, way):
+        item = read(text, "E")
+        rng = np.random.default_rng(5)
+        if way == "alone":
+            drawn = item.draws(rng, self.COUNT)
+        else:
+            drawn = item.from_normal(rng.standard_normal(self.COUNT))
+        shares = [0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99]
+        found = [np.mean(drawn <= item.quantile(share)) for share in shares]
+        # five standard errors
+        assert found == pytest.approx(shares, abs=5 * 0.5 / math.sqrt(self.COUNT))
+        assert drawn.min() >= item.low
+        assert drawn.max() <= item.high
+
+    def test_quantile_of_a_cut_normal(self):
+        item = read("normal 0 1 within -1 .. 2", "E")
+        standard = NormalDist()
+        below = standard.cdf(-1)
+        share = (standard.cdf(0.5) - below) / (standard.cdf(2) - below)
+        assert item.quantile(share) == pytest.approx(0.5, rel=1e-12)
+        assert (item.quantile(0), item.quantile(1)) == (-1, 2)
+
+    def test_table_error_is_what_it_says(self):
+        item = read("triangular 0 0.3 1", "E")
+        variates = np.linspace(-4, 4, 4001)
+        exact = [item.quantile(NormalDist().cdf(z)) for z in variates.tolist()]
+        assert np.max(np.abs(item.from_normal(variates) - exact)) < 1e-6
+
+
+class TestCopula:
+    INPUTS = {"UX": read("1 .. 2", "UX"), "VX": read("1 .. 2", "VX"), "E": fixed(0.1)}
+
+    def test_correlation_of_the_variates(self):
+        names, root = uncertain.correlation_root({("UX", "VX"): -0.6}, self.INPUTS)
+        assert names == ["UX", "VX"]
+        assert root.T @ root == pytest.approx(np.array([[1, -0.6], [-0.6, 1]]), abs=1e-14)
+
+    def test_whole_correlation_is_allowed(self):
+        _, root = uncertain.correlation_root({("UX", "VX"): 1.0}, self.INPUTS)
+        assert root[:, 0] == pytest.approx(root[:, 1], abs=1e-7)
+
+    @pytest.mark.parametrize(
+        ("pairs", "says"),
+        [
+            ({("UX", "E"): 0.5}, "E does not vary; those that do: UX VX"),
+            ({("UX", "UX"): 1.0}, "with itself"),
+            ({("UX", "VX"): 1.5}, "no correlation"),
+            ({("UX", "VX"): math.nan}, "no correlation"),
+            ({("UX", "VX"): 0.5, ("VX", "UX"): 0.4}, "twice"),
+        ],
+    )
+    def test_refuses(self, pairs, says):
+        with pytest.raises(UserError, match=says):
+            uncertain.correlation_root(pairs, self.INPUTS)
+
+    def test_contradiction(self):
+        inputs = {name: read("1 .. 2", name) for name in ("UX", "VX", "VY")}
+        pairs = {("UX", "VX"): 0.9, ("UX", "VY"): 0.9, ("VX", "VY"): -0.9}
+        with pytest.raises(UserError, match=r"UX, VX, VY contradict .* -0\.8\)"):
+            uncertain.correlation_root(pairs, inputs)
+        uncertain.correlation_root({**pairs, ("VX", "VY"): 0.9}, inputs)
+
+
+class TestExtremes:
+    RNG = 7
+
+    def found(self, function, coordinates):
+        return extremes(
+            lambda u: function(u).reshape(len(u), -1), coordinates, np.random.default_rng(self.RNG)
+        )
+
+    def test_inside(self):
+        top = np.array([0.3, 0.71, 0.5])
+        found = self.found(lambda u: 4 - np.square(u - top).sum(axis=1), 3)
+        assert found.upper[0] == pytest.approx(4, abs=1e-12)
+        assert found.at_upper[0] == pytest.approx(top, abs=1e-6)
+        assert found.corner_upper[0] < 3.7
+        assert found.lower[0] == found.corner_lower[0] == 4 - (0.49 + 0.71**2 + 0.25)
+
+    def test_corner_among_more_than_are_tried(self):
+        weights = np.linspace(-1, 1, 16)
+        found = self.found(lambda u: u @ weights, 16)
+        assert found.upper[0] == pytest.approx(weights[weights > 0].sum(), abs=1e-12)
+        assert found.lower[0] == pytest.approx(weights[weights < 0].sum(), abs=1e-12)
+
+    def test_jump_across_the_box(self):
+        # the height falls off at an oblique edge: the best lies on it, at its upper end
+        found = self.found(
+            lambda u: np.where(u[:, 0] + 0.7 * u[:, 1] < 0.9, u[:, 0] + 0.9 * u[:, 1], -1), 2
+        )
+        assert found.upper[0] == pytest.approx(0.2 + 0.9, abs=2e-3)
+
+    def test_points_without_value(self):
+        found = self.found(lambda u: np.where(u[:, 0] > 0.5, np.nan, u[:, 0]), 2)
+        assert found.upper[0] == pytest.approx(0.5, abs=1e-7)
+        assert found.lower[0] == 0
+
+    def test_no_value_anywhere(self):
+        found = self.found(lambda u: np.full(len(u), np.nan), 2)
+        assert np.isnan(found.upper[0])
+        assert np.isnan(found.lower[0])
+
+    def test_several_functions_at_once(self):
+        found = self.found(lambda u: np.stack([u[:, 0], -u[:, 1], u[:, 0] * 0], axis=1), 2)
+        assert found.upper.tolist() == [1, 0, 0]
+        assert found.lower.tolist() == [0, -1, 0]
+
+    def test_nothing_varies(self):
+        found = self.found(lambda u: np.full(len(u), 3.0), 0)
+        assert (found.lower[0], found.upper[0]) == (3, 3)
+
+
+RANGES = {"MU": "0.6 .. 1.2", "GA": "+- 10", "UX": "+- 10%"}
+
+
+@pytest.fixture(scope="module")
+def found():
+    return bounds(values(1, **RANGES), samples=20_000, seed=3, keep_draws=True)
+
+
+class TestForward:
+    RANGES = RANGES
+
+    def test_bounds_are_attained(self, found):
+        known = {name: item.nominal for name, item in values(1, **self.RANGES).items()}
+        for name, bound in found.bounds.items():
+            for at, value in ((bound.at_lower, bound.lower), (bound.at_upper, bound.upper)):
+                assert forward_model({**known, **at}, [name])[name] == value
+                for source, (low, high) in found.limits.items():
+                    assert low <= at[source] <= high
+
+    def test_no_draw_lies_outside(self, found):
+        for name, bound in found.bounds.items():
+            assert found.draws[name].min() >= bound.lower
+            assert found.draws[name].max() <= bound.upper
+
+    def test_no_scene_of_a_fine_grid_lies_outside(self, found):
+        axes = [np.linspace(*found.limits[name], 61) for name in self.RANGES]
+        grid = dict(zip(self.RANGES, map(np.ravel, np.meshgrid(*axes)), strict=True))
+        rest = {name: item.nominal for name, item in values(1).items()}
+        solved = forward_model({**rest, **grid}, list(found.bounds))
+        for name, bound in found.bounds.items():
+            slack = 1e-9 * (bound.upper - bound.lower)
+            assert solved[name].min() >= bound.lower - slack
+            assert solved[name].max() <= bound.upper + slack
+
+    def test_loss_turns_around_inside(self, found):
+        loss = found.bounds["LOSS"]
+        assert loss.upper > loss.corner_upper + 0.1
+        low, high = found.limits["GA"]
+        assert low < loss.at_upper["GA"] < high
+
+    def test_spreads_are_those_of_the_draws(self, found):
+        for name, spread in found.spreads.items():
+            draws = found.draws[name]
+            assert spread.mean == pytest.approx(draws.mean())
+            assert spread.deviation == pytest.approx(draws.std(ddof=1))
+            for share, value in spread.quantiles.items():
+                assert value == np.quantile(draws, share)
+
+    def test_drives_of_one_input_alone(self):
+        found = bounds(values(1, UX="-32 .. -26"), ["VAX", "DVA"], samples=2000)
+        # A faster means A pushed harder: VAX falls with -UX, DVA grows
+        assert found.drives["DVA"]["UX"].rank_correlation == pytest.approx(-1)
+        drive, bound = found.drives["DVA"]["UX"], found.bounds["DVA"]
+        assert (drive.at_high, drive.at_low) == (bound.lower, bound.upper)
+        assert drive.swing == bound.upper - bound.lower
+
+    def test_rank_correlation_of_ties(self):
+        # the pivot's printed MU does not vary; its rank correlation does not exist
+        found = bounds(values(1, UX="+- 1", MU="-10"), ["MUP"], samples=100)
+        assert math.isnan(found.drives["MUP"]["UX"].rank_correlation)
+
+    def test_seed(self):
+        again = [
+            bounds(values(1, **self.RANGES), ["DVA"], samples=500, seed=seed, keep_draws=True)
+            for seed in (1, 1, 2)
+        ]
+        assert (again[0].draws["DVA"] == again[1].draws["DVA"]).all()
+        assert (again[0].draws["DVA"] != again[2].draws["DVA"]).all()
+        assert again[0].bounds == again[1].bounds
+
+    def test_more_draws_begin_with_the_same(self):
+        few, many = (
+            bounds(values(1, **self.RANGES), ["DVA"], samples=n, keep_draws=True).draws["DVA"]
+            for n in (40_000, 70_000)
+        )
+        assert (few[:32_768] == many[:32_768]).all()
+
+    def test_correlation_narrows_a_difference(self):
+        # point masses along x: VAX is linear in UX and VX, so its variance is known
+        ranges = {"UX": "normal -30 2", "VX": "normal 10 1", "GA": "0", "MU": "0", "E": "0"}
+        scene = values(2, **ranges)
+        share = scene["MB"].nominal / (scene["MA"].nominal + scene["MB"].nominal)
+        for correlation in (-0.8, 0.0, 0.8):
+            pairs = {("UX", "VX"): correlation} if correlation else {}
+            found = bounds(scene, ["VAX"], samples=100_000, correlations=pairs)
+            a, b = (1 - share) * 2, share * 1
+            expected = math.sqrt(a**2 + b**2 + 2 * correlation * a * b)
+            assert found.spreads["VAX"].deviation == pytest.approx(expected, rel=0.01)
+
+    def test_sigmas_say_where_a_normal_ends(self):
+        wide, narrow = (
+            bounds(values(2, UX="normal -30 2"), ["DVA"], samples=10, sigmas=k).limits["UX"]
+            for k in (3, 1)
+        )
+        assert wide == (-36, -24)
+        assert narrow == (-32, -28)
+
+    def test_warnings_are_shares(self, found):
+        known = {name: item.nominal for name, item in values(1).items()}
+        assert 0 < found.warnings["SLIDING_REVERSED"] < 1
+        assert forward_model({**known, "MU": 1.2, "GA": -20}, ["STATUS"])["STATUS"] & 4
+
+    def test_exclude(self):
+        scene = values(1, MU="0.6 .. 1.2")
+        everything = bounds(scene, ["MUP", "DVA"], samples=5000)
+        critical = float(forward_model({**sample_numbers(1), "MU": 0}, ["MUC"])["MUC"])
+        allowed = bounds(scene, ["MUP", "DVA"], samples=5000, exclude=["SLIDING_REVERSED"])
+        assert everything.bounds["MUP"].upper == 1.2
+        assert everything.bounds["MUP"].upper_warnings == ("SLIDING_REVERSED",)
+        assert allowed.bounds["MUP"].upper == pytest.approx(critical, abs=1e-6)
+        assert allowed.bounds["MUP"].upper_warnings == ()
+        assert allowed.unusable == pytest.approx((1.2 - critical) / 0.6, abs=0.02)
+        assert allowed.bounds["DVA"].upper < everything.bounds["DVA"].upper
+
+    def test_point_masses_have_no_spins(self):
+        assert "WAF" not in bounds(values(2, UX="+- 1"), samples=10).bounds
+
+    def test_jump_where_the_sign_of_friction_turns(self):
+        # UY carries the sliding through gt = 0, where line 400 turns MU's sign
+        scene = values(2, UY="-20 .. 60")
+        found = bounds(scene, ["PT"], samples=4000, keep_draws=True).bounds["PT"]
+        assert found.lower < 0 < found.upper
+
+
+def sample_numbers(number):
+    return {name: float(text) for name, text in sample(number).items()}
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(
+        ("changes", "options", "says"),
+        [
+            ({"M": read("4 .. 6", "M")}, {}, "M: expected 6"),
+            ({"MU": read("-12 .. 1", "MU")}, {}, "MU: a range must keep off -10"),
+            ({"XX": fixed(1)}, {}, "XX: is no input"),
+            ({}, {"outputs": ["FOO"]}, "'FOO' is no result"),
+            ({}, {"outputs": []}, "no result is asked for"),
+            ({}, {"samples": 1}, "too few"),
+            ({}, {"sigmas": 0.0}, "span nothing"),
+            ({}, {"quantiles": [2.0]}, "no quantile"),
+            ({}, {"problem": "sideways"}, "no problem"),
+            ({}, {"exclude": ["BAD"]}, "no warning"),
+            ({"MA": fixed(0)}, {}, "no finite value at the nominal"),
+        ],
+    )
+    def test_refuses(self, changes, options, says):
+        with pytest.raises(UserError, match=says):
+            bounds({**values(1, UX="+- 1"), **changes}, **options)
+
+    def test_missing(self):
+        scene = values(1, UX="+- 1")
+        del scene["GA"]
+        with pytest.raises(UserError, match="GA is missing"):
+            bounds(scene)
+
+
+class TestReconstruction:
+    @pytest.mark.parametrize("number", [1, 3])
+    def test_finds_the_samples_velocities_again(self, number):
+        inputs = reconstruction(number, E="+- 1%")
+        found = bounds(inputs, problem="reconstruction", samples=100)
+        scene = sample_numbers(number)
+        for name in VELOCITIES:
+            assert found.bounds[name].nominal == pytest.approx(scene[name], abs=1e-9)
+        assert found.bounds["SA"].nominal == pytest.approx(abs(scene["UX"]), abs=1e-9)
+
+    def test_agrees_with_the_forward_solution(self):
+        """Loss, ΔV, impulses and critical friction of the impact found are the forward ones."""
+        inputs = {name: item.nominal for name, item in reconstruction(3).items()}
+        found = reconstruction_model(inputs, RECONSTRUCTED)
+        names = ["DVA", "DVB", "KI", "KF", "LOSS", "PN", "PT", "PM", "MUC"]
+        solved = forward_model(sample_numbers(3), names)
+        for name in names:
+            assert found[name] == pytest.approx(solved[name], rel=1e-10), name
+
+    def test_status_agrees_with_the_forward_solution(self):
+        rng = np.random.default_rng(2)
+        count = 400
+        scene = {**sample_numbers(3), "E": rng.uniform(0.05, 1.2, count)}
+        scene |= {
+            "MU": rng.uniform(0, 2, count),
+            "EM": rng.uniform(-1, -0.1, count),
+            "UX": rng.uniform(-60, 60, count),
+            "VY": rng.uniform(-60, 60, count),
+            "WA": rng.uniform(-2, 2, count),
+        }
+        forward = forward_model(scene, [*FINAL_VELOCITIES, "MUP", "STATUS"])
+        inputs = {name: scene[name] for name in input_names("reconstruction") if name in scene}
+        inputs |= {name: forward[name] for name in (*FINAL_VELOCITIES, "MUP")}
+        found = reconstruction_model(inputs, ["STATUS", *VELOCITIES])
+        for name in VELOCITIES:
+            assert np.broadcast_to(scene[name], count) == pytest.approx(found[name], abs=1e-7)
+        assert (found["STATUS"] & 127).tolist() == forward["STATUS"].tolist()
+        assert len(set(forward["STATUS"].tolist())) > 5  # the scenes do differ
+
+    @pytest.mark.parametrize(("typed", "share"), [("0.3", None), ("-0.3", 1.0)])
+    def test_friction_that_drives_is_told(self, typed, share):
+        # line 400 makes a positive MU oppose the sliding and a negative one push it on
+        texts = {**sample(3), "MU": typed}
+        inputs = read_inputs(texts, {"VAX": "+- 0.1"}, "reconstruction").values
+        found = bounds(inputs, ["SA"], problem="reconstruction", samples=200)
+        assert found.warnings.get("FRICTION_DRIVES") == share
+
+    @pytest.mark.parametrize(
+        ("changes", "says"),
+        [
+            ({"MUP": fixed(-10)}, "MUP: the pivot"),
+            ({"E": fixed(0)}, "no reconstruction at E = 0"),
+            ({"E": read("-.1 .. .2", "E")}, "no reconstruction at E = 0"),
+            ({"EM": read("-.5 .. 0", "EM")}, "no reconstruction at EM = 0"),
+        ],
+    )
+    def test_refuses_what_cannot_be_reconstructed(self, changes, says):
+        with pytest.raises(UserError, match=says):
+            bounds({**reconstruction(3, VAX="+- 1"), **changes}, problem="reconstruction")
+
+    def test_point_masses_need_no_moment_coefficient(self):
+        scene = {**reconstruction(2, VAX="+- 1"), "EM": fixed(0)}
+        assert "WA" not in bounds(scene, problem="reconstruction", samples=10).bounds
+
+
+class TestInputs:
+    def test_finals_of_the_forward_solution(self):
+        inputs = read_inputs(dict(sample(1)), {"VAX": "+- 1"}, "reconstruction")
+        assert inputs.values["VAX"].limits(3) == pytest.approx((-14.2626557, -12.2626557))
+        assert inputs.values["VBY"] == fixed(inputs.values["VBY"].nominal)
+        assert set(inputs.derived) == {"VAY", "VBX", "VBY", "WAF", "WBF", "MUP"}
+
+    def test_friction_takes_the_sign_of_line_400(self):
+        # turned by 180 degrees, run 1 slides the other way
+        texts = {**sample(1), "MU": "0.3 .. 0.5", "GA": "150"}
+        inputs = read_inputs(texts, {}, "reconstruction")
+        assert inputs.values["MUP"].limits(3) == (-0.5, -0.3)
+        inputs = read_inputs({**texts, "GA": "-30"}, {}, "reconstruction")
+        assert inputs.values["MUP"].limits(3) == (0.3, 0.5)
+
+    def test_finals_of_the_file(self):
+        texts = dict(sample(3)) | {name: "1" for name in FINAL_VELOCITIES} | {"MUP": "-.4"}
+        for name in VELOCITIES:
+            del texts[name]
+        inputs = read_inputs(texts, {}, "reconstruction")
+        assert inputs.derived == ()
+        assert inputs.values["MUP"].nominal == -0.4
+        assert set(inputs.values) == set(input_names("reconstruction"))
+
+    def test_mup_is_asked_for(self):
+        texts = dict(sample(3)) | {name: "1" for name in FINAL_VELOCITIES}
+        with pytest.raises(UserError, match=r"MUP missing.*signed P_t/P_n"):
+            read_inputs(texts, {}, "reconstruction")
+
+    def test_a_file_serves_both_problems(self):
+        texts = dict(sample(3)) | {name: "1" for name in FINAL_VELOCITIES} | {"MUP": "-.4"}
+        assert set(read_inputs(texts, {}).values) == set(SCENE)
+
+    def test_correlations(self):
+        assert read_correlations("UX,VX 0.5; ma , ia -.9", "x") == {
+            ("UX", "VX"): 0.5,
+            ("MA", "IA"): -0.9,
+        }
+        for bad in ("UX VX", "UX,VX", "UX,VX much", ",VX 0.5"):
+            with pytest.raises(UserError, match="no correlation"):
+                read_correlations(bad, "x")
+
+    @pytest.mark.parametrize("name", [*SCENE, *FINAL_VELOCITIES, "SA", "SB", "MUP"])
+    def test_everything_has_a_unit(self, name):
+        assert quantity(name).unit
