@@ -177,8 +177,8 @@ def _equation_19(
             Number("UX", "initial velocity of A", a, "ft/s", "-43.6"),
             Number("VY", "initial velocity of B", b, "ft/s", "61.5"),
         ),
-        "From the velocity changes rounded to one decimal, as the chapter must have done: unrounded, "
-        f"VY is {unrounded:.2f}.",
+        "From the velocity changes rounded to one decimal, as the chapter must have done: "
+        f"unrounded, VY is {unrounded:.2f}.",
     )
     return estimate, back
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,7 +13,12 @@ from .plaintable import decimals_for, fixed, number, paragraph, plain, table
 from .status import WORDS, Status
 from .unknowns import BADLY_CONDITIONED, PIVOT, Solution
 
-_AS_GIVEN = (*SCENE, *RESULTS, *CHAPTER)
+_ORDER = (*SCENE, *RESULTS, *CHAPTER)
+_BARRIERS = (
+    *("MB", "IB", "DB", "PB", "TB", "VX", "VY", "WB", "VBX", "VBY", "WBF"),
+    *("XB", "YB", "XBF", "YBF", "DVB", "CBX", "CBY", "PDOFB"),
+)
+"""What is not worth telling of B when it is a rigid barrier."""
 
 
 def quantity(name: str) -> Quantity:
@@ -31,7 +37,8 @@ def complete(
         following["TF"] = contact_time
         following |= {n: float(v) for n, v in forces(following["P"], contact_time).items()}
     values |= following
-    return {name: values[name] for name in _AS_GIVEN if name in values}
+    untold = _BARRIERS if math.isinf(known.get("MB", 0.0)) else ()
+    return {name: values[name] for name in _ORDER if name in values and name not in untold}
 
 
 def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
@@ -52,15 +59,15 @@ def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
     return found
 
 
-def as_text(solution: Solution, values: Mapping[str, float]) -> str:
+def as_text(known: Mapping[str, float], solution: Solution, values: Mapping[str, float]) -> str:
     """The solution as tables: velocities, coefficients, impulse, consequences, warnings."""
-    blocks = [
-        _velocities(solution, values),
-        _named(("E", "MUP", "EM"), solution, values),
-        _named(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), solution, values),
-        _named(("TF", "FA", "FM2", "FM3"), solution, values),
-        _named(("DVA", "DVB", "KI", "KF", "LOSS"), solution, values),
-        _named(("CAX", "CAY", "CBX", "CBY"), solution, values),
+    blocks: list[list[str]] = [
+        _velocities(known, values),
+        _named(("E", "MUP", "EM"), known, values),
+        _named(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values),
+        _named(("TF", "FA", "FM2", "FM3"), known, values),
+        _named(("DVA", "DVB", "KI", "KF", "LOSS"), known, values),
+        _named(("CAX", "CAY", "CBX", "CBY"), known, values),
         _conditions(solution),
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
@@ -78,31 +85,38 @@ _ROWS = (
 )
 
 
-def _velocities(solution: Solution, values: Mapping[str, float]) -> list[str]:
+def _velocities(known: Mapping[str, float], values: Mapping[str, float]) -> list[str]:
     decimals = {}
     for unit in ("length/time", "rad/time"):
-        names = [name for _, row_unit, row in _ROWS if row_unit == unit for name in row]
-        decimals[unit] = decimals_for([values[name] for name in names if name in values])
+        alike = [name for _, row_unit, row in _ROWS if row_unit == unit for name in row]
+        decimals[unit] = decimals_for([values[name] for name in alike if name in values])
     rows = []
-    for label, unit, names in _ROWS:
+    vehicles = 2 if "VX" in values or "VBX" in values else 1
+    for label, unit, all_names in _ROWS:
+        names = all_names[: 2 * vehicles]
         if not any(name in values for name in names):
             continue
         cells = []
         for name in names:
             text = fixed(values[name], decimals[unit]) if name in values else "unknown"
-            cells.append(f"{text}{'*' if name in solution.unknown else ' '}")
+            given = name in known or "contact" in label or name not in values
+            cells.append(f"{text}{' ' if given else '*'}")
         rows.append([label, *cells, unit])
-    heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
-    return [*table(rows, heading, left=(0, 5)), "* solved for"]
+    heading = ["A before ", "A after ", "B before ", "B after "][: 2 * vehicles]
+    lines = table(rows, ["velocity", *heading, "unit"], left=(0, 1 + 2 * vehicles))
+    return [*lines, "* solved for"]
 
 
-def _named(names: tuple[str, ...], solution: Solution, values: Mapping[str, float]) -> list[str]:
+def _named(
+    names: tuple[str, ...], known: Mapping[str, float], values: Mapping[str, float]
+) -> list[str]:
     rows = []
     for name in names:
         if name not in values or values[name] != values[name]:
             continue
         what = quantity(name)
-        mark = "*" if name in solution.unknown else " "
+        given = name in known or (name == "MUP" and "MU" in known)
+        mark = "*" if name in ("E", "MUP", "EM") and not given else " "
         note = what.meaning
         if name.startswith("PDOF"):
             note = f"{note} ({clock(values[name])})"
@@ -138,7 +152,7 @@ def as_json(
 ) -> dict[str, Any]:
     """The solution for a program; numbers that do not exist are null."""
     status = int(values.get("STATUS", 0))
-    return plain(  # type: ignore[no-any-return]
+    whole: dict[str, Any] = plain(
         {
             "known": [name for name in values if name in known],
             "solved_for": list(solution.unknown),
@@ -152,3 +166,4 @@ def as_json(
             "warnings": warnings(solution, values),
         }
     )
+    return whole

@@ -113,10 +113,9 @@ def cells() -> tuple[Cell, ...]:
 
 
 def _remark(table: int, row: str, column: str) -> Emendation | None:
-    for remark in emendations():
-        if (remark.table, remark.row, remark.column) == (table, row, column):
-            return remark
-    return None
+    """The remark on a cell, or else on its whole row."""
+    here = {e.column: e for e in emendations() if (e.table, e.row) == (table, row)}
+    return here.get(column) or here.get("*")
 
 
 def _printed_1(row: Mapping[str, str]) -> dict[str, str]:
@@ -178,7 +177,7 @@ def collisions() -> tuple[Collision, ...]:
     for number, table2 in results.items():
         a, b = vehicles[f"{number}/A"], vehicles[f"{number}/B"]
         scene = {"GA": float(a["Gamma"]), "WA": 0.0, "WB": 0.0}
-        measured = {}
+        measured: dict[str, float] = {}
         for v, row in (("A", a), ("B", b)):
             names = {"M": "m", "I": "I", "D": "d", "P": "phi", "T": "theta"}
             scene |= {f"{name}{v}": float(row[column]) for name, column in names.items()}

@@ -101,7 +101,9 @@ def _warnings(values: dict[str, float]) -> list[str]:
         found.append("E is outside 0 ... 1")
     if values["LOSS"] < -1e-10:
         found.append("kinetic energy is gained in the impact")
-    if values["MUP"] and abs(values["MUP"]) > abs(values["MUC"]):
+    if values["MUP"] and not values["MUC"]:
+        found.append("friction makes the vehicles slide: before the impact they do not")
+    elif abs(values["MUP"]) > abs(values["MUC"]):
         found.append("friction reverses the sliding: |MUP| is above the critical value MUC")
     elif values["MUP"] * values["MUC"] < 0:
         found.append("friction drives the sliding: MUP and MUC differ in sign")

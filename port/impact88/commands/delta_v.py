@@ -62,17 +62,15 @@ def main(args: argparse.Namespace) -> int:
     for name in ("MA", "MB"):
         if not known.get(name, 0) > 0:
             raise UserError(f"{name} is missing or not positive; expected a mass", args.file)
-    speeds = [
-        _speed(known, "SA", "UX", "UY", args.file),
-        _speed(known, "SB", "VX", "VY", args.file),
-    ]
+    speed_a = _speed(known, "SA", "UX", "UY", args.file)
+    speed_b = _speed(known, "SB", "VX", "VY", args.file)
     factor = AS_PRINTED if args.as_printed else AS_USED
     losses, source = _losses(known, args)
     estimates = []
     for loss in losses:
-        found = delta_v(known["MA"], known["MB"], *speeds, loss, factor)
+        found = delta_v(known["MA"], known["MB"], speed_a, speed_b, loss, factor)
         estimates.append({"LOSS": loss, **{name: float(v) for name, v in found.items()}})
-    given = {"MA": known["MA"], "MB": known["MB"], "SA": speeds[0], "SB": speeds[1]}
+    given = {"MA": known["MA"], "MB": known["MB"], "SA": speed_a, "SB": speed_b}
     if args.json:
         whole = {
             "equation": described(factor),

@@ -86,9 +86,9 @@ def show(known: Mapping[str, float], wanted: list[str] | None, args: argparse.Na
 
     try:
         solutions = solve_for(known, wanted)
-        tables = [(s, complete(known, s, args.contact_time)) for s in solutions]
     except UserError as error:
-        raise UserError(str(error), getattr(args, "file", None)) from None
+        raise UserError(str(error), args.file) from None
+    tables = [(s, complete(known, s, args.contact_time)) for s in solutions]
     if args.json:
         print(json.dumps({"solutions": [as_json(known, s, v) for s, v in tables]}, allow_nan=False))
         return
@@ -96,4 +96,4 @@ def show(known: Mapping[str, float], wanted: list[str] | None, args: argparse.Na
         if len(tables) > 1:
             head = f"SOLUTION {at + 1} OF {len(tables)}"
             print(f"{chr(10) if at else ''}{head}: MU is known in size, and both signs agree\n")
-        print(as_text(solution, values))
+        print(as_text(known, solution, values))
