@@ -22,6 +22,7 @@ COMMANDS = {
     "run": "run the 1988 program on its own data, a sample or a scene file",
     "scene": "print a scene file to fill in, or a sample's",
     "verify": "say whether an old printout is right, digit for digit, and if not, why",
+    "solve": "solve a table of scenes: double precision, or Applesoft's arithmetic, fast",
     "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",
     "figure": "draw a scene, its bounds or a figure of the chapter (extra: plot)",
     "reconstruct": "solve the impact equations for any unknowns: velocities, coefficients",

@@ -8,7 +8,7 @@ numbers cannot be used. The answers choose the plan.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -200,16 +200,28 @@ def _kind(name: str, column: Floats) -> tuple[str, bool]:
     return "array", bool(np.isfinite(_sum_of_squares(column)))
 
 
-def _refused(columns: Mapping[str, Floats], length: int) -> NDArray[np.bool_]:
-    """Which scenes cannot be used: a number not finite, M neither 4 nor 6, a mass or inertia not
-    above 0, an infinite body that moves, two infinite bodies."""
+class Refusal(NamedTuple):
+    """Why scenes cannot be used: the column at fault, the reason, and where (True)."""
+
+    column: str
+    reason: str
+    where: NDArray[np.bool_]
+
+
+def refusals(columns: Mapping[str, Floats]) -> Iterator[Refusal]:
+    """What cannot be used in ``columns`` (every scene name -> array of one length, or of length 1):
+    a number not finite, M neither 4 nor 6, a mass or inertia not above 0, an infinite body that
+    moves, two infinite bodies. A point-mass scene is not asked for what it does not look at."""
     point = columns["M"] == 4
-    refused = ~(point | (columns["M"] == 6))
+    yield Refusal("M", "is neither 4 nor 6", ~(point | (columns["M"] == 6)))
     for name, column in columns.items():
-        bad = ~(column > 0) if name in INERTIAS else ~np.isfinite(column)
-        if name in UNUSED_BY_POINTS:
-            bad = bad & ~point
-        refused = refused | bad
+        if name == "M":
+            continue
+        asked = ~point if name in UNUSED_BY_POINTS else True
+        if name in INERTIAS:
+            yield Refusal(name, "is not above 0", ~(column > 0) & asked)
+        else:
+            yield Refusal(name, "is not finite", ~np.isfinite(column) & asked)
     infinite = []
     for mass, inertia, velocities, spin in (
         ("MA", "IA", ("UX", "UY"), "WA"),
@@ -218,8 +230,17 @@ def _refused(columns: Mapping[str, Floats], length: int) -> NDArray[np.bool_]:
         no_shift = columns[mass] == np.inf
         no_turn = (columns[inertia] == np.inf) & ~point
         for name in velocities:
-            refused = refused | (no_shift & (columns[name] != 0))
-        refused = refused | (no_turn & (columns[spin] != 0))
+            moves = no_shift & (columns[name] != 0)
+            yield Refusal(name, f"is not 0, but {mass} is infinite: a barrier is at rest", moves)
+        turns = no_turn & (columns[spin] != 0)
+        yield Refusal(spin, f"is not 0, but {inertia} is infinite: a barrier is at rest", turns)
         infinite.append(no_shift | no_turn)
-    refused = refused | (infinite[0] & infinite[1])
-    return np.broadcast_to(refused, (length,))
+    yield Refusal("MB", "or IB is infinite, and so is MA or IA", infinite[0] & infinite[1])
+
+
+def _refused(columns: Mapping[str, Floats], length: int) -> NDArray[np.bool_]:
+    """Which scenes cannot be used."""
+    refused = np.zeros(length, np.bool_)
+    for refusal in refusals(columns):
+        refused |= refusal.where
+    return refused

@@ -22,7 +22,7 @@ from .errors import UserError
 from .names import DEFAULT_M
 
 if TYPE_CHECKING:
-    import mpmath
+    import mpmath  # type: ignore[import-untyped]
 else:
     try:
         import mpmath

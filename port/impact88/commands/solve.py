@@ -1,0 +1,309 @@
+"""CASES is a CSV (.csv .tsv .txt), JSON Lines (.jsonl .ndjson) or .npz table with a column for each
+of the scene's names (impact88 scene lists them; M may be missing and is 6 then). All its columns
+are passed through, and the results follow. Rows are read and written in blocks: memory does not
+grow with the file (.npz excepted).
+
+Results, all by default:
+{results}
+
+--arithmetic float64 is double precision with exact pi. --arithmetic applesoft is the 1988
+program's own arithmetic, bit for bit, on the numbers as they are written; two more columns, ERROR
+and LINE, say which error ended a scene and where.
+
+A row that cannot be used is reported with its number, its column and the reason on stderr, or in
+the file given with --errors; it is kept, with NaN for results, and all others are solved.
+
+examples:
+  impact88 solve cases.csv -o results.csv
+  impact88 solve cases.csv -o results.jsonl --outputs VAX,VAY,VBX,VBY,WAF,WBF,STATUS
+  impact88 solve cases.csv -o results.csv --set MU=-10 --errors bad-rows.csv
+  impact88 solve cases.npz -o results.npz --results-only
+  impact88 solve cases.csv -o results.csv --arithmetic applesoft
+
+exit status: 0 all rows solved; 1 some could not be, or ended with an Applesoft error; 2 bad input
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..applesoft.decimaltext import is_number
+from ..columns import UNUSED_BY_POINTS, refusals
+from ..errors import UserError
+from ..files import replacing
+from ..names import DEFAULT_M, RESULTS, SCENE
+from ..progress import progress
+from ..scene import VALUE_LIMIT
+from ..solve import solve
+from ..status import Status
+from ..tables import (
+    BadCell,
+    Rows,
+    check_scene_columns,
+    format_of,
+    numbers,
+    open_reader,
+    open_writer,
+)
+
+Results = dict[str, NDArray[Any]]
+
+SHOWN = 20
+"""Bad rows told on stderr, when no file takes them all."""
+
+
+def _list_of_results() -> str:
+    width = max(map(len, RESULTS))
+    return "\n".join(f"  {q.name:<{width}}  {q.meaning} [{q.unit}]" for q in RESULTS.values())
+
+
+__doc__ = (__doc__ or "").format(results=_list_of_results())
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 solve`."""
+    formats = ("csv", "jsonl", "npz")
+    parser.add_argument("cases", metavar="CASES", help="the table of scenes (- is stdin)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="RESULTS",
+        default="-",
+        help="the table to write (default: stdout)",
+    )
+    parser.add_argument(
+        "--outputs", metavar="NAMES", help="the results wanted, separated by commas (default: all)"
+    )
+    parser.add_argument(
+        "--arithmetic",
+        choices=("float64", "applesoft"),
+        default="float64",
+        help="the numbers to compute with (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="a value for all rows, in place of a column; repeatable",
+    )
+    parser.add_argument(
+        "--results-only",
+        action="store_true",
+        help="leave the scene's own columns out of the results; others are passed through",
+    )
+    parser.add_argument("--errors", metavar="FILE", help="write the bad rows here (CSV)")
+    parser.add_argument("--from", dest="form", choices=formats, help="the format of CASES")
+    parser.add_argument("--to", choices=formats, help="the format of RESULTS")
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Solve a table. Returns 1 when a row is bad or ended with an Applesoft error."""
+    source_format = format_of(arguments.cases, arguments.form)
+    to = arguments.to or (source_format if arguments.output == "-" else None)
+    result_format = format_of(arguments.output, to)
+    given = _given(arguments.set)
+    kind = {"float64": _Float64, "applesoft": _Applesoft}[arguments.arithmetic]
+    arithmetic: _Float64 | _Applesoft = kind(arguments.outputs)
+    complaints = _Complaints(arguments.errors)
+    with ExitStack() as stack:
+        source = stack.enter_context(open_reader(arguments.cases, source_format))
+        optional = ["M", *(UNUSED_BY_POINTS if given.get("M") == "4" else ())]
+        check_scene_columns(source.names, list(given), optional)
+        writer = stack.enter_context(
+            open_writer(
+                arguments.output,
+                result_format,
+                source,
+                arithmetic.columns,
+                not arguments.results_only,
+            )
+        )
+        stack.enter_context(complaints)
+        meter = stack.enter_context(progress(source.total, "solve", "B"))
+        at = 0
+        for rows in source:
+            for name, text in given.items():
+                rows.columns[name] = [text] * rows.count
+                rows.others.pop(name, None)
+            results = arithmetic(rows, optional)
+            writer.write(rows, results)
+            complaints.take(rows.bad)
+            now = source.position()
+            meter.update(now - at)
+            at = now
+    complaints.summarise()
+    return 1 if complaints.count or arithmetic.errors else 0
+
+
+def _given(settings: Sequence[str]) -> dict[str, str]:
+    given = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        name, text = name.strip(), text.strip()
+        if not equals or name not in SCENE:
+            raise UserError(
+                f"--set {setting}: expected NAME=VALUE with a name of {' '.join(SCENE)}"
+            )
+        try:
+            float(text)
+        except ValueError:
+            raise UserError(f"--set {setting}: {text!r} is no number") from None
+        given[name] = text
+    return given
+
+
+def _names(outputs: str | None, known: Sequence[str], arithmetic: str) -> list[str]:
+    names = list(known) if outputs is None else outputs.replace(",", " ").split()
+    for name in names:
+        if name not in known:
+            raise UserError(
+                f"--outputs: {name!r} is no result of --arithmetic {arithmetic}; "
+                f"expected some of {' '.join(known)}"
+            )
+    if not names:
+        raise UserError("--outputs: no name given")
+    return list(dict.fromkeys(names))
+
+
+class _Float64:
+    """The closed form in double precision."""
+
+    errors = 0
+
+    def __init__(self, outputs: str | None) -> None:
+        self.columns = _names(outputs, tuple(RESULTS), "float64")
+
+    def __call__(self, rows: Rows, optional: Sequence[str]) -> Results:
+        columns = numbers(_complete(rows, optional))
+        unread = {bad.row - rows.first for bad in rows.bad}
+        for refusal in refusals(columns):
+            for index in np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist():
+                if index not in unread:
+                    unread.add(index)
+                    value = float(np.broadcast_to(columns[refusal.column], rows.count)[index])
+                    reason = f"{value!r} {refusal.reason}"
+                    rows.bad.append(rows.cell(index, refusal.column, reason))
+        results = solve(columns, self.columns)
+        unusable = sorted(unread)
+        for name, result in results.items():
+            result[unusable] = Status.NOT_FINITE if name == "STATUS" else np.nan
+        return results
+
+
+def _complete(rows: Rows, optional: Sequence[str]) -> Rows:
+    """Rows with a column for every scene name: what may be missing gets its default, and a column
+    that only some JSON objects have is a complaint where it is missing."""
+    for name in SCENE:
+        if name in rows.columns:
+            column = rows.columns[name]
+            if name == "M" and not isinstance(column, np.ndarray):
+                rows.columns[name] = [DEFAULT_M if cell in (None, "") else cell for cell in column]
+        elif name in optional:
+            rows.columns[name] = [DEFAULT_M if name == "M" else "0"] * rows.count
+        else:
+            rows.columns[name] = [None] * rows.count
+    return rows
+
+
+class _Applesoft:
+    """The listing's own arithmetic, `impact88.replay`."""
+
+    KNOWN = tuple(name for name in RESULTS if RESULTS[name].line or name == "KF")
+
+    def __init__(self, outputs: str | None) -> None:
+        self.names = _names(outputs, self.KNOWN, "applesoft")
+        self.columns = [*self.names, "ERROR", "LINE"]
+        self.errors = 0
+
+    def __call__(self, rows: Rows, optional: Sequence[str]) -> Results:
+        from ..replay import replay
+
+        columns = {
+            name: _texts(column) for name, column in _complete(rows, optional).columns.items()
+        }
+        unread = {bad.row - rows.first for bad in rows.bad}
+        for name, column in columns.items():
+            for index, text in enumerate(column):
+                reason = _unreadable(name, text)
+                if reason is None and index not in unread:
+                    continue
+                if index not in unread:
+                    unread.add(index)
+                    rows.bad.append(rows.cell(index, name, str(reason)))
+        for index in unread:
+            for column in columns.values():
+                column[index] = "6"
+        found = replay(columns)
+        error = np.where(found.zero_determinant, "ZERO DETERMINANT", found.error)
+        results: Results = {name: found.floats(name) for name in self.names}
+        results |= {"ERROR": error, "LINE": found.line}
+        unusable = sorted(unread)
+        for name, result in results.items():
+            result[unusable] = {"ERROR": "", "LINE": 0}.get(name, np.nan)
+        self.errors += int(np.count_nonzero(error != "")) - int(found.zero_determinant.sum())
+        return results
+
+
+def _texts(column: Any) -> list[Any]:
+    if isinstance(column, np.ndarray):
+        return [repr(x).removesuffix(".0").upper() for x in column.tolist()]
+    return [text.strip().upper() if isinstance(text, str) else text for text in column]
+
+
+def _unreadable(name: str, text: Any) -> str | None:
+    """Why Applesoft would not take ``text`` for a number, or None."""
+    if text is None or text == "":
+        return "is empty; expected a number"
+    if not (isinstance(text, str) and is_number(text)):
+        return f"{text!r} is no number that Applesoft reads"
+    if len(text) > VALUE_LIMIT:
+        return f"has more than {VALUE_LIMIT} characters"
+    return None
+
+
+class _Complaints:
+    """Bad rows: to a file, or the first of them to stderr."""
+
+    def __init__(self, path: str | None) -> None:
+        self.count = 0
+        self._path = path
+        self._stack = ExitStack()
+        self._write: Callable[[BadCell], object] = self._tell
+
+    def __enter__(self) -> _Complaints:
+        if self._path is not None:
+            file: IO[str] = self._stack.enter_context(replacing(self._path))
+            rows = csv.writer(file, lineterminator="\n")
+            rows.writerow(BadCell._fields)
+            self._write = rows.writerow
+        return self
+
+    def __exit__(self, *exception: Any) -> None:
+        self._stack.__exit__(*exception)
+
+    def take(self, cells: Sequence[BadCell]) -> None:
+        for cell in sorted(cells):
+            self.count += 1
+            self._write(cell)
+
+    def _tell(self, cell: BadCell) -> None:
+        if self.count <= SHOWN:
+            print(f"impact88 solve: {cell}", file=sys.stderr)
+
+    def summarise(self) -> None:
+        if not self.count:
+            return
+        rows = f"{self.count:,} row{'s' if self.count > 1 else ''} could not be solved"
+        if self._path is not None:
+            print(f"impact88 solve: {rows}: see {self._path}", file=sys.stderr)
+        elif self.count > SHOWN:
+            print(f"impact88 solve: {rows}; --errors FILE tells all", file=sys.stderr)
