@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from statistics import NormalDist
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -132,7 +133,7 @@ class TestDraws:
 
 
 class TestCopula:
-    INPUTS = {"UX": read("1 .. 2", "UX"), "VX": read("1 .. 2", "VX"), "E": fixed(0.1)}
+    INPUTS: ClassVar = {"UX": read("1 .. 2", "UX"), "VX": read("1 .. 2", "VX"), "E": fixed(0.1)}
 
     def test_correlation_of_the_variates(self):
         names, root = uncertain.correlation_root({("UX", "VX"): -0.6}, self.INPUTS)
@@ -451,7 +452,7 @@ class TestInputs:
         assert inputs.values["MUP"].limits(3) == (0.3, 0.5)
 
     def test_finals_of_the_file(self):
-        texts = dict(sample(3)) | {name: "1" for name in FINAL_VELOCITIES} | {"MUP": "-.4"}
+        texts = dict(sample(3)) | dict.fromkeys(FINAL_VELOCITIES, "1") | {"MUP": "-.4"}
         for name in VELOCITIES:
             del texts[name]
         inputs = read_inputs(texts, {}, "reconstruction")
@@ -460,12 +461,12 @@ class TestInputs:
         assert set(inputs.values) == set(input_names("reconstruction"))
 
     def test_mup_is_asked_for(self):
-        texts = dict(sample(3)) | {name: "1" for name in FINAL_VELOCITIES}
+        texts = dict(sample(3)) | dict.fromkeys(FINAL_VELOCITIES, "1")
         with pytest.raises(UserError, match=r"MUP missing.*signed P_t/P_n"):
             read_inputs(texts, {}, "reconstruction")
 
     def test_a_file_serves_both_problems(self):
-        texts = dict(sample(3)) | {name: "1" for name in FINAL_VELOCITIES} | {"MUP": "-.4"}
+        texts = dict(sample(3)) | dict.fromkeys(FINAL_VELOCITIES, "1") | {"MUP": "-.4"}
         assert set(read_inputs(texts, {}).values) == set(SCENE)
 
     def test_correlations(self):

@@ -62,7 +62,8 @@ def read_inputs(
     for name in changes:
         if name not in wanted:
             raise UserError(
-                f"{name!r} is no input of a {problem}; expected one of {' '.join(wanted)}",
+                f"{name!r} is no input of the {problem} problem; expected one of "
+                f"{' '.join(wanted)}",
                 "--range",
             )
     values = {

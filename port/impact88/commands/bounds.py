@@ -246,16 +246,16 @@ def table(found: Bounds) -> str:
     from ..bounds import quantity
 
     lines = [f"Inputs that vary ({found.problem} problem)", ""]
-    lines.append(f"{'':6}{'from':>12}{'to':>12}{'nominal':>12}  {'kind':<12}{'unit':<16}meaning")
+    lines.append(f"{'':6}{'from':>12}{'to':>12}{'nominal':>12}  {'kind':<12}{'unit':<16}symbol")
     for name, item in found.inputs.items():
         low, high = found.limits[name]
         what = quantity(name)
         numbers = "".join(f"{value:>12.6g}" for value in (low, high, item.nominal))
-        lines.append(f"{name:6}{numbers}  {item.kind:<12}{what.unit:<16}{what.meaning}")
+        lines.append(f"{name:6}{numbers}  {item.kind:<12}{what.unit:<16}{what.symbol}")
     spreads = next(iter(found.spreads.values())).quantiles
     lines += ["", "Bounds, and quantiles of the draws", ""]
-    heads = "".join(f"{f'{100 * share:g} %':>10}" for share in spreads)
-    lines.append(f"{'':6}{'nominal':>10}{'lower':>11}{'upper':>11}{heads}  unit")
+    heads = "".join(f"{f'{100 * share:g} %':>9}" for share in spreads)
+    lines.append(f"{'':6}{'nominal':>9}{'lower':>10}{'upper':>10}{heads}  unit")
     inside = False
     for name, bound in found.bounds.items():
         width = bound.upper - bound.lower
@@ -267,10 +267,10 @@ def table(found: Bounds) -> str:
             )
         ]
         inside = inside or "*" in marks
-        cells = "".join(f"{value:>10.5g}" for value in found.spreads[name].quantiles.values())
+        cells = "".join(f"{value:>9.4g}" for value in found.spreads[name].quantiles.values())
         nominal = bound.nominal if abs(bound.nominal) > 1e-12 * width else 0.0
         lines.append(
-            f"{name:6}{nominal:>10.5g}{bound.lower:>10.5g}{marks[0]}{bound.upper:>10.5g}"
+            f"{name:6}{nominal:>9.4g}{bound.lower:>10.5g}{marks[0]}{bound.upper:>9.5g}"
             f"{marks[1]}{cells}  {quantity(name).unit}"
         )
     lines += [
@@ -299,7 +299,8 @@ def table(found: Bounds) -> str:
     for name, share in found.warnings.items():
         lines.append(f"{100 * share:.3g} % of the draws: {name}")
     if found.unusable:
-        lines.append(f"{100 * found.unusable:.3g} % of the draws have no finite result or are excluded: left out")
+        share = 100 * found.unusable
+        lines.append(f"{share:.3g} % of the draws have no finite result or are excluded: left out")
     return "\n".join(lines)
 
 
