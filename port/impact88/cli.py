@@ -20,6 +20,7 @@ from .errors import UserError
 
 COMMANDS = {
     "run": "run the 1988 program on its own data, a sample or a scene file",
+    "basic": "the ] prompt with the restored listing, or run any Applesoft program",
     "scene": "print a scene file to fill in, or a sample's",
     "verify": "say whether an old printout is right, digit for digit, and if not, why",
     "solve": "solve a table of scenes: double precision, or Applesoft's arithmetic, fast",

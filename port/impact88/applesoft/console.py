@@ -68,7 +68,7 @@ class Console:
         self._command: str | None = None
         self._keys = ""
 
-    # --- output ----------------------------------------------------------------------------------
+    # --- output -------------------------------------------------------------------------------
 
     def put(self, text: str) -> None:
         """Send characters on their way: to the disk system, or to the selected slot's device."""
@@ -111,7 +111,7 @@ class Console:
         elif self.slot == PRINTER_SLOT:
             self.printer(text)
 
-    # --- input -----------------------------------------------------------------------------------
+    # --- input --------------------------------------------------------------------------------
 
     def read_key(self) -> str:
         """One key, as GET reads it: not shown, not made upper case; RETURN after a line's last.
@@ -145,7 +145,7 @@ class Console:
         while True:
             self.put(prompt)
             typed = self._typed_line()
-            typed = typed.upper()
+            typed = capitals(typed)
             if typed.startswith(CONTROL_C):
                 raise KeyboardInterrupt
             kept, cancelled, rest = typed.rpartition(CONTROL_X)
@@ -221,6 +221,11 @@ class Reply(Generic[Number]):
     def has_more(self) -> bool:
         """Whether anything was typed beyond the values asked for."""
         return self._position < len(self._line)
+
+
+def capitals(typed: str) -> str:
+    """What the monitor makes of the codes above capital letters: those, and ``{`` becomes ``[``."""
+    return "".join(chr(n & 0x5F) if 0x60 <= n < 0x80 else chr(n & 0x7F) for n in map(ord, typed))
 
 
 def _edited(typed: str) -> str:

@@ -42,7 +42,7 @@ class Frame(NamedTuple):
     sign: int = 0
 
 
-class Deeper(Exception):  # noqa: N818
+class Deeper(Exception):
     """The stack has grown past what the program's formulas leave free; go on carefully at ``pc``."""
 
     def __init__(self, pc: int) -> None:
@@ -77,7 +77,7 @@ class Control:
             self.careful = careful
             raise Deeper(pc)
 
-    # --- what careful steps ask ------------------------------------------------------------------------
+    # --- what careful steps ask ---------------------------------------------------------------
 
     def room(self, at: int) -> None:
         """Raises OUT OF MEMORY if a formula cannot begin ``at`` bytes down."""
@@ -95,7 +95,7 @@ class Control:
         self.careful = True
         return condition
 
-    # --- FOR and NEXT ------------------------------------------------------------------------------------
+    # --- FOR and NEXT -------------------------------------------------------------------------
 
     def begin_for(self, slot: int) -> None:
         """A loop with the same variable ends, and those inside it. Raises OUT OF MEMORY."""
@@ -155,7 +155,7 @@ class Control:
                 self.pointer += GOSUB_SIZE if frame.slot == GOSUB else frame.sign
         del self.frames[n:]
 
-    # --- GOSUB and RETURN ----------------------------------------------------------------------------------
+    # --- GOSUB and RETURN ---------------------------------------------------------------------
 
     def push_gosub(self, back: int) -> None:
         """Raises OUT OF MEMORY."""
@@ -194,7 +194,7 @@ class Control:
         self._drop(n)
         return back
 
-    # --- errors that ONERR catches -----------------------------------------------------------------------
+    # --- errors that ONERR catches ------------------------------------------------------------
 
     def leave(self, kind: str) -> None:
         """What an error leaves on the stack."""

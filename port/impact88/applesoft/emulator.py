@@ -1,24 +1,25 @@
 """The emulated machine as a Python object: load, type, run, feed keys, take output, read variables.
 
-    machine = Applesoft()
-    machine.load("10 INPUT A\\n20 PRINT A / 3")
-    machine.feed("1")
-    machine.run()
-    machine.take_output()          # '?\\x001\\n.333333333\\n'
-    machine.reals()                # {'A': '8100000000'}
+machine = Applesoft()
+machine.load("10 INPUT A\\n20 PRINT A / 3")
+machine.feed("1")
+machine.run()
+machine.take_output()          # '?\\x001\\n.333333333\\n'
+machine.reals()                # {'A': '8100000000'}
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
-from .console import Device, EndOfInput, Keyboard, Keys
+from .console import Device, EndOfInput, Keyboard, Keys, capitals
 from .errors import ApplesoftError
-from .machine import DIRECT, Machine
+from .lister import source
+from .machine import Machine
 from .real import to_stored
-from .symbols import ARRAYS, REAL, SIMPLE, STRING, Name
+from .symbols import ARRAYS, REAL, SIMPLE, Name
 from .tokens import LINE_LIMIT, split_number, tokenise
 
 PROMPT = "]"
@@ -47,10 +48,15 @@ class Applesoft:
         self._keyboard = keyboard
         self._output: list[str] = []
         self.machine = Machine(
-            self._next_line, screen or self._output.append, printer, dos=dos, echo=echo, blanks=blanks
+            self._next_line,
+            screen or self._output.append,
+            printer,
+            dos=dos,
+            echo=echo,
+            blanks=blanks,
         )
 
-    # --- keyboard and screen -----------------------------------------------------------------------------
+    # --- keyboard and screen ------------------------------------------------------------------
 
     def _next_line(self) -> str | None:
         if self._queue:
@@ -76,7 +82,7 @@ class Applesoft:
         """The 24 rows of the text screen."""
         return self.machine.screen.text()
 
-    # --- the program ---------------------------------------------------------------------------------------
+    # --- the program --------------------------------------------------------------------------
 
     def load(self, text: str) -> None:
         """A program from text, one numbered line a row, its case kept; replaces the one there is.
@@ -95,9 +101,7 @@ class Applesoft:
             if numbered is None:
                 raise ValueError(f"row {row} has no line number")
             if len(line) > LINE_LIMIT:
-                raise ValueError(
-                    f"row {row} has {len(line)} characters; a line takes {LINE_LIMIT}"
-                )
+                raise ValueError(f"row {row} has {len(line)} characters; a line takes {LINE_LIMIT}")
             lines.append(numbered)
         self.machine.program.clear()
         for number, rest in lines:
@@ -116,7 +120,7 @@ class Applesoft:
 
         Small letters become capitals, as on its keyboard. Returns the error it ended in.
         """
-        return self.enter(text.upper()[:LINE_LIMIT])
+        return self.enter(capitals(text)[:LINE_LIMIT])
 
     def enter(self, text: str) -> ApplesoftError | None:
         """The same for a line as it is."""
@@ -144,6 +148,11 @@ class Applesoft:
         self.machine.error = error
         return error
 
+    def source(self) -> str:
+        """The program as text that `load` takes."""
+        program = self.machine.program
+        return source((number, program.tokens[number]) for number in program.numbers)
+
     def run(self) -> ApplesoftError | None:
         """RUN. Returns the error that ended the program, None if it simply ended.
 
@@ -167,7 +176,7 @@ class Applesoft:
             except KeyboardInterrupt:
                 self.machine.console.put("\n")
 
-    # --- variables -----------------------------------------------------------------------------------------
+    # --- variables ----------------------------------------------------------------------------
 
     def value(self, name: str) -> Any:
         """A simple variable: five stored bytes in hexadecimal, text for a string, None if it was
@@ -202,11 +211,3 @@ class Applesoft:
 
 def _shown(value: Any) -> Any:
     return value if isinstance(value, str) else to_stored(value).hex()
-
-
-def listing_lines(text: str) -> Iterable[str]:
-    """The rows of a program's text that hold something."""
-    return (line for line in text.split("\n") if line.strip())
-
-
-__all__ = ["DIRECT", "STRING", "Applesoft", "listing_lines"]

@@ -116,7 +116,7 @@ class Expressions:
         self.temporaries = 0
         self.deepest = 0
 
-    # --- errors --------------------------------------------------------------------------------------
+    # --- errors -------------------------------------------------------------------------------
 
     def fails(self, kind: str, *before: Piece) -> Piece:
         """A piece that computes ``before`` and then raises."""
@@ -131,7 +131,7 @@ class Expressions:
             return pieces[0]
         return Piece(f"({', '.join(piece.code for piece in pieces)})", dead=True)
 
-    # --- constants -----------------------------------------------------------------------------------
+    # --- constants ----------------------------------------------------------------------------
 
     def real(self, value: Number) -> str:
         """The name of a constant real."""
@@ -167,7 +167,7 @@ class Expressions:
         self.temporaries += 1
         return self._placed(code)
 
-    # --- formulas ------------------------------------------------------------------------------------
+    # --- formulas -----------------------------------------------------------------------------
 
     def number(self, at: int) -> Piece:
         """FRMNUM: a formula that must be a number."""
@@ -260,7 +260,7 @@ class Expressions:
         self.free(left)
         return self.made(f"joined({left.code}, {right.code})")
 
-    # --- elements ------------------------------------------------------------------------------------
+    # --- elements -----------------------------------------------------------------------------
 
     def element(self, at: int) -> Piece:
         """FRM_ELEMENT: a constant, a variable, a function, a sign or a parenthesis."""
@@ -316,7 +316,7 @@ class Expressions:
             return self.fails("SYNTAX", inner)
         return inner
 
-    # --- variables -----------------------------------------------------------------------------------
+    # --- variables ----------------------------------------------------------------------------
 
     def variable_name(self) -> tuple[str, str] | None:
         """Name and kind of the variable that comes next, None if none does."""
@@ -361,7 +361,7 @@ class Expressions:
             return self.fails("SYNTAX", *subscripts)
         return [piece.code for piece in subscripts]
 
-    # --- functions -----------------------------------------------------------------------------------
+    # --- functions ----------------------------------------------------------------------------
 
     def function_name(self) -> int | Piece:
         """The slot of the function that is named after FN."""

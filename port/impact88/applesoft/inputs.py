@@ -20,8 +20,9 @@ from .symbols import INTEGER, STRING
 from .tokens import DATA
 from .variables import whole
 
-Place = Callable[[], tuple[list[Any], int]]
-Items = tuple[tuple[str, Place], ...]
+Place = tuple[list[Any], int]
+Items = tuple[tuple[str, Callable[[], Place]], ...]
+"""Kind and place of each variable; a place is looked up when its turn comes."""
 
 _ENDS = ("", ":", "\0")
 _DATA = chr(DATA)
@@ -81,10 +82,10 @@ class Inputs:
         self.pointer = START - 1
 
     def _take(
-        self, kind: str, place: Callable[[], tuple[list[Any], int]], text: str, at: int, literal: bool
+        self, kind: str, place: Place, text: str, at: int, *, literal: bool = False
     ) -> int:
         """Read a value of a kind at ``at``, store it, and return where it ends, blanks passed."""
-        values, index = place()
+        values, index = place
         if kind == STRING:
             string, at = _string(text, at)
             values[index] = Literal(string) if literal else self._strings.made(string)
@@ -93,7 +94,7 @@ class Inputs:
             values[index] = whole(number) if kind == INTEGER else rounded(number)
         return _blanks(text, at)
 
-    # --- READ ----------------------------------------------------------------------------------------
+    # --- READ ---------------------------------------------------------------------------------
 
     def read(self, items: Items) -> None:
         """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is no number."""
@@ -107,7 +108,7 @@ class Inputs:
             at = _blanks(text, at)
             if text[at] in _ENDS:
                 at = self._next_data(at)
-            at = self._take(kind, lambda place=place: place, text, _blanks(text, at + 1), True)
+            at = self._take(kind, place, text, _blanks(text, at + 1), literal=True)
             if text[at] not in (*_ENDS, ","):
                 raise ApplesoftError("SYNTAX", self.data_line)
         self.pointer = at + START - 1
@@ -129,7 +130,7 @@ class Inputs:
             if text[at] == _DATA:
                 return at
 
-    # --- INPUT ---------------------------------------------------------------------------------------
+    # --- INPUT --------------------------------------------------------------------------------
 
     def input_(self, pc: int, items: Items) -> bool:
         """INPUT after its prompt; True if the statement has to be done again."""
@@ -144,9 +145,7 @@ class Inputs:
                 at = -1
             refused = kind != STRING and not text
             if not refused:
-                at = self._take(
-                    kind, lambda place=place: place, text, _blanks(text, at + 1), False
-                )
+                at = self._take(kind, place, text, _blanks(text, at + 1))
                 refused = text[at : at + 1] not in (*_ENDS, ",")
             if refused:
                 if self._onerr():
@@ -157,7 +156,7 @@ class Inputs:
             console.put("?EXTRA IGNORED\n")
         return False
 
-    # --- GET -----------------------------------------------------------------------------------------
+    # --- GET ----------------------------------------------------------------------------------
 
     def get(self, items: Items) -> None:
         """GET. Raises SYNTAX, as if at the prompt, for a key that begins no number."""
@@ -170,7 +169,7 @@ class Inputs:
                 values[index] = self._strings.made(key)
                 at = len(key)
                 continue
-            at = self._take(kind, lambda place=(values, index): place, key, _blanks(key, 0), False)
+            at = self._take(kind, (values, index), key, _blanks(key, 0))
             if key[at : at + 1] not in (*_ENDS, ","):
                 raise ApplesoftError("SYNTAX", DIRECT_AFTER_GET)
         if at < len(key):

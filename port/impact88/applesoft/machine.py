@@ -7,14 +7,14 @@ a number is compiled too and stands after the program's steps.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, MutableSequence
 from itertools import repeat
 from typing import Any
 
 from . import decimaltext, functions, memory
 from .compiler import compiled
 from .console import Console, Device, Keyboard
-from .control import GOSUB, Control, Deeper, Frame
+from .control import Control, Deeper
 from .errors import ApplesoftError
 from .expressions import ROOM
 from .inputs import Inputs
@@ -46,11 +46,11 @@ BELL = "\a"
 FLASH_BIT = 0x40
 
 
-class Halt(Exception):  # noqa: N818
+class Halt(Exception):
     """The program ends."""
 
 
-class TooManyStatements(Exception):  # noqa: N818
+class TooManyStatements(Exception):
     """The program has done as many statements as it was allowed."""
 
 
@@ -83,7 +83,8 @@ class Machine:
     """An Apple II Plus with 48K as far as a BASIC program can tell.
 
     ``after_line(number)`` is called each time the program leaves a line; ``statements_left`` limits
-    what it may do; ``refused`` collects the statements that were asked for and are not done here.
+    what it may do; ``refused`` collects the statements that were asked for and are not done here;
+    ``broken`` tells whether control-C ended the last program.
     """
 
     def __init__(
@@ -114,6 +115,7 @@ class Machine:
         self.after_line: Callable[[int], object] | None = None
         self.refused: list[str] = []
         self.error: ApplesoftError | None = None
+        self.broken = False
         self._continue: int | None = None
         self._here = 0
         self._line = 0
@@ -130,7 +132,7 @@ class Machine:
         self.names = self._names()
         self.changed()
 
-    # --- the names steps use -----------------------------------------------------------------------------
+    # --- the names steps use ------------------------------------------------------------------
 
     def _names(self) -> dict[str, Any]:
         variables, strings, control = self.variables, self.variables.strings, self.control
@@ -246,7 +248,7 @@ class Machine:
             "refuse": self._refuse,
         }
 
-    # --- linking -------------------------------------------------------------------------------------------
+    # --- linking ------------------------------------------------------------------------------
 
     def changed(self) -> None:
         """The program was changed: variables are gone, and it cannot be continued."""
@@ -260,8 +262,9 @@ class Machine:
             return
         self._linked = True
         self._careful = []
-        for table in (self._steps, self._begins, self._lines, self._first, self._after, self._start):
-            table.clear()  # type: ignore[attr-defined]
+        self._first.clear()
+        for table in self._tables():
+            table.clear()
         deepest = 0
         for number in self.program.numbers:
             self._first[number] = len(self._steps)
@@ -270,6 +273,10 @@ class Machine:
         self._append_end(self._lines[-1] if self._lines else 0)
         self.control.safe = ROOM + deepest
         self.variables.grow()
+
+    def _tables(self) -> tuple[MutableSequence[Any], ...]:
+        """What is known of each step."""
+        return self._steps, self._begins, self._lines, self._after, self._start
 
     def _append(self, tokens: bytes, number: int, *, direct: bool = False) -> int:
         """A line's steps; returns how deep they go into the stack."""
@@ -304,8 +311,8 @@ class Machine:
         """Steps for a line typed without a number, after the program's; where they begin."""
         self._link()
         at = self._end + 1
-        for table in (self._steps, self._begins, self._lines, self._after, self._start):
-            del table[at:]  # type: ignore[attr-defined]
+        for table in self._tables():
+            del table[at:]
         self._append(tokens, DIRECT, direct=True)
         self._append_end(DIRECT)
         self.variables.grow()
@@ -318,7 +325,7 @@ class Machine:
                 frames[n] = frame._replace(back=last)
         return at
 
-    # --- running -------------------------------------------------------------------------------------------
+    # --- running ------------------------------------------------------------------------------
 
     def execute(self, tokens: bytes) -> None:
         """Do a line typed without a number, and whatever it starts, until the machine is back at
@@ -327,6 +334,7 @@ class Machine:
         Raises TooManyStatements and `console.EndOfInput`.
         """
         self.error = None
+        self.broken = False
         self._go(self._put_direct(tokens))
 
     def _go(self, pc: int) -> None:
@@ -381,7 +389,7 @@ class Machine:
             self.out(f"#{line} ")
         steps = self._carefully() if self.control.careful and not direct else self._steps
         to: int = steps[pc](pc)
-        if self.after_line and not direct and (self._lines[to] != line or to <= self._end == pc):
+        if self.after_line and not direct and self._lines[to] != line:
             self.after_line(line)
         careful_now = self.control.careful or self.tracing or self.after_line
         if not careful_now:
@@ -394,7 +402,7 @@ class Machine:
             self._line = line
             if pc == self._end:
                 self._continue = pc
-            elif self.after_line:
+            if self.after_line:
                 self.after_line(line)
 
     def _handle(self, error: ApplesoftError, pc: int) -> int:
@@ -441,6 +449,7 @@ class Machine:
             self.control.leave("")
             return self._first.get(errors.handler or 0, -1)
         self._say_break(pc)
+        self.broken = True
         if self._lines[pc] < DIRECT:
             self._continue = self._start[pc]
         return -1
@@ -449,7 +458,7 @@ class Machine:
         line = self._lines[pc]
         self.out(f"\nBREAK{BELL}" + ("" if line >= DIRECT else f" IN {line}"))
 
-    # --- statements: control -------------------------------------------------------------------------------
+    # --- statements: control ------------------------------------------------------------------
 
     def _gosub(self, pc: int, number: int) -> int:
         self.control.push_gosub(pc + 1)
@@ -510,6 +519,7 @@ class Machine:
 
     def _new(self) -> None:
         self.program.clear()
+        self.program.spare = 1
         self.changed()
         raise Halt
 
@@ -539,7 +549,7 @@ class Machine:
         control.depth -= at
         return result
 
-    # --- statements: the outside ---------------------------------------------------------------------------
+    # --- statements: the outside --------------------------------------------------------------
 
     def out(self, text: str) -> None:
         """Show characters: high bit dropped, RETURN as newline."""
@@ -609,7 +619,7 @@ class Machine:
                 raise KeyboardInterrupt
         self.out("\n")
 
-    # --- statements: memory --------------------------------------------------------------------------------
+    # --- statements: memory -------------------------------------------------------------------
 
     def _random(self, x: Any) -> Any:
         self.seed = functions.random(x, self.seed)
@@ -692,6 +702,3 @@ def _bad(kind: str) -> None:
 
 def _halt(pc: int) -> int:
     raise Halt
-
-
-__all__ = ["DIRECT", "GOSUB", "Frame", "Halt", "Machine", "TooManyStatements"]

@@ -21,8 +21,8 @@ class Program:
         self.tokens: dict[int, bytes] = {}
         self._image: bytes | None = None
         self._starts: list[int] = []
-        self.new = True
-        """Whether NEW made it: NEW leaves one byte more than the program takes."""
+        self.spare = 0
+        """NEW, typed, leaves one byte more than the program takes, for good."""
 
     def __len__(self) -> int:
         return len(self.numbers)
@@ -32,7 +32,6 @@ class Program:
         self.numbers = []
         self.tokens = {}
         self._image = None
-        self.new = True
 
     def store(self, number: int, tokens: bytes) -> None:
         """Put a line in, or take it out if it has no tokens."""
@@ -46,7 +45,6 @@ class Program:
             del self.numbers[at]
             del self.tokens[number]
         self._image = None
-        self.new = False
 
     def delete(self, first: int, last: int) -> bool:
         """DEL: take out a range; False if the range lies before its own beginning."""
@@ -58,7 +56,6 @@ class Program:
             del self.tokens[number]
         del self.numbers[low:high]
         self._image = None
-        self.new = False
         return True
 
     def between(self, first: int, last: int) -> list[int]:
@@ -83,7 +80,7 @@ class Program:
     @property
     def end(self) -> int:
         """PRGEND: the address past the program."""
-        return START + len(self.image) + (1 if self.new else 0)
+        return START + len(self.image) + self.spare
 
     def address_of(self, number: int) -> int:
         """The address of a line."""

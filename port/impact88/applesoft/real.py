@@ -48,7 +48,7 @@ unit of the extension to a sum of like signs. A correct machine would add nothin
 ZERO: Number = (0, 0, 0)
 
 
-# --- the rules -----------------------------------------------------------------------------------
+# --- the rules --------------------------------------------------------------------------------
 
 
 def rounded(x: Number) -> Number:
@@ -243,7 +243,7 @@ def floor(x: Number) -> Number:
     return x if x[0] >= INTEGER_EXPONENT else integer(to_integer(x))
 
 
-# --- whole numbers and stored bytes --------------------------------------------------------------
+# --- whole numbers and stored bytes -----------------------------------------------------------
 
 
 def _from_integer(n: int) -> Number:
@@ -281,7 +281,7 @@ def to_stored(x: Number) -> bytes:
     return bytes((e,)) + (m >> 8 & 0x7FFFFFFF | s << 31).to_bytes(4, "big")
 
 
-# --- the operators -------------------------------------------------------------------------------
+# --- the operators ----------------------------------------------------------------------------
 
 
 class Real:

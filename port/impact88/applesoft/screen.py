@@ -35,7 +35,7 @@ class Screen:
         self._pending: list[tuple[int, str]] = []
         self._pending_size = 0
 
-    # --- characters --------------------------------------------------------------------------------------
+    # --- characters ---------------------------------------------------------------------------
 
     def write(self, text: str) -> None:
         """Show characters, and pass them on."""
@@ -68,7 +68,7 @@ class Screen:
         self._draw_later("\n")
         self.column = self._expected = 0
 
-    # --- the picture, drawn only when somebody looks ------------------------------------------------------
+    # --- the picture, drawn only when somebody looks ------------------------------------------
 
     def _draw_later(self, text: str) -> None:
         if self._pending_size > _PENDING_LIMIT:
@@ -127,9 +127,7 @@ class Screen:
         """The 24 rows as text, blanks at the end of each cut; inverse and flashing characters as
         normal ones."""
         self._draw()
-        return "".join(
-            "".join(map(_shown, row)).rstrip(" ") + "\n" for row in self._cells
-        )
+        return "".join("".join(map(_shown, row)).rstrip(" ") + "\n" for row in self._cells)
 
     def byte_at(self, address: int) -> int:
         """What screen memory holds: rows in eights, 128 bytes apart."""
@@ -144,7 +142,7 @@ class Screen:
         if column < WIDTH:
             self._cells[row][column] = value
 
-    # --- statements --------------------------------------------------------------------------------------
+    # --- statements ---------------------------------------------------------------------------
 
     def home(self) -> None:
         """Clear the window; the cursor at its top left."""

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 from .expressions import COMMA, NUMBER, OPEN, TEXT, Expressions, Piece
 from .reader import QUOTE, Reader, is_digit
-from .symbols import ARRAYS, INTEGER, REAL, SIMPLE, STRING
+from .symbols import ARRAYS, INTEGER, SIMPLE, STRING
 from .tokens import KEYWORDS, LAST_STATEMENT, TOKENS
 
 SEMICOLON = ord(";")
@@ -37,8 +37,8 @@ REFUSED = (
 
 
 class Step:
-    """``code``: the function's body. ``begins``: whether a statement begins here. ``need``: how deep
-    its formulas go into the stack. ``falls``: whether the next step may follow."""
+    """``code``: the function's body. ``begins``: whether a statement begins here. ``need``: how
+    deep its formulas go into the stack."""
 
     def __init__(self, begins: bool) -> None:
         self.code: list[str] = []
@@ -73,7 +73,7 @@ class Statements:
                 return
             reader.skip()
 
-    # --- steps ---------------------------------------------------------------------------------------
+    # --- steps --------------------------------------------------------------------------------
 
     def _begin(self, begins: bool) -> None:
         self.steps.append(Step(begins))
@@ -99,7 +99,7 @@ class Statements:
         self._emit(f"return {code}")
         self._over = True
 
-    # --- a statement ---------------------------------------------------------------------------------
+    # --- a statement --------------------------------------------------------------------------
 
     def _statement(self) -> None:
         reader = self.reader
@@ -133,7 +133,7 @@ class Statements:
         else:
             self._emit(f"{function}({piece.code})")
 
-    # --- LET and variables ---------------------------------------------------------------------------
+    # --- LET and variables --------------------------------------------------------------------
 
     def _target(self, at: int = TARGET_AT, *, simple: bool = False) -> tuple[str, str] | Piece:
         """PTRGET: kind of the variable that comes next, and text for its place (list and index)."""
@@ -188,7 +188,8 @@ class Statements:
         return value.stored
 
     def _items(self) -> str:
-        """The variables of READ, INPUT or GET: text for a tuple of (kind, function giving the place).
+        """The variables of READ, INPUT or GET: text for a tuple of kinds and of functions that give
+        the places.
 
         They are looked up one by one, each when the value before has been stored.
         """
@@ -272,7 +273,7 @@ class Statements:
         reader.at, formulas.deepest = start, depth
         reader.skip_statement()
 
-    # --- control -------------------------------------------------------------------------------------
+    # --- control ------------------------------------------------------------------------------
 
     def _line_number(self) -> int | None:
         """The line number that comes next; None (and the code to complain) past 63999."""
@@ -410,7 +411,7 @@ class Statements:
         self._emit(f"onerr(pc, {self.reader.line_number()})")
         self.reader.skip_line()
 
-    # --- PRINT, INPUT and their kin --------------------------------------------------------------------
+    # --- PRINT, INPUT and their kin -----------------------------------------------------------
 
     def _print(self) -> None:
         reader, formulas = self.reader, self.formulas
@@ -466,7 +467,7 @@ class Statements:
     def _read(self) -> None:
         self._emit(f"read({self._items()})")
 
-    # --- the machine -----------------------------------------------------------------------------------
+    # --- the machine --------------------------------------------------------------------------
 
     def _pair(self, function: str, *, third: bool = False) -> None:
         """POKE and WAIT: an address and bytes, separated by commas."""
@@ -508,7 +509,7 @@ class Statements:
     def _lomem(self) -> None:
         self._with_address("lomem")
 
-    # --- the program itself ------------------------------------------------------------------------------
+    # --- the program itself -------------------------------------------------------------------
 
     def _list(self) -> None:
         reader = self.reader

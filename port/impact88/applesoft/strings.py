@@ -51,7 +51,7 @@ class StringArea:
                 raise ApplesoftError("OUT OF MEMORY")
         self.bottom -= size
 
-    # --- operations that make a string ---------------------------------------------------------------
+    # --- operations that make a string --------------------------------------------------------
 
     def made(self, text: str) -> str:
         """A new string. Raises OUT OF MEMORY."""

@@ -62,7 +62,7 @@ def _keyword(text: str, start: int) -> tuple[int, int] | None:
 
 @lru_cache(maxsize=4096)
 def tokenise(text: str) -> bytes:
-    """The bytes of a line's statements, as the ROM's parser leaves them (without the final zero)."""
+    """The bytes of a line's statements as the ROM's parser leaves them, without the final zero."""
     out = bytearray()
     at = 0
     in_data = False

@@ -1,8 +1,8 @@
 """Variables and arrays: values by slot, the order they came into being, and the room they take.
 
-A simple variable takes seven bytes, an array five, two for each dimension and its elements. Both are
-made when something is assigned to them; merely reading a simple variable makes none. Arrays follow
-the variables in memory, strings grow down from HIMEM towards them.
+A simple variable takes seven bytes, an array five, two for each dimension and its elements. Both
+are made when something is assigned to them; merely reading a simple variable makes none. Arrays
+follow the variables in memory, strings grow down from HIMEM towards them.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ class Variables:
             if end >= self.strings.bottom:
                 raise ApplesoftError("OUT OF MEMORY")
 
-    # --- simple variables ----------------------------------------------------------------------------
+    # --- simple variables ---------------------------------------------------------------------
 
     def make(self, slot: int) -> None:
         """A simple variable comes into being, zero or empty. Raises OUT OF MEMORY."""
@@ -134,7 +134,7 @@ class Variables:
             self.make(slot)
         return self.values, slot
 
-    # --- arrays --------------------------------------------------------------------------------------
+    # --- arrays -------------------------------------------------------------------------------
 
     def dimension(self, slot: int, last: Sequence[int]) -> None:
         """DIM. Raises REDIM'D ARRAY and OUT OF MEMORY."""

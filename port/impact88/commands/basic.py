@@ -1,0 +1,227 @@
+"""The ] prompt of an Apple II Plus with the restored listing loaded: LIST it, retype a line, RUN.
+With a file: load that program, run it, and leave when it ends.
+
+At the prompt LOAD FILE and SAVE FILE read and write program text (not with --no-dos), control-C
+breaks a running program, control-D leaves. Graphics, tape, paddles, shapes and machine code are
+tokenised and listed, but not done: ?SYNTAX ERROR.
+
+examples:
+  impact88 basic                          the restored listing at the prompt
+  impact88 basic crash.bas < replies.txt  run a program, its INPUT from a file
+  impact88 basic crash.bas --prompt       run it and stay
+
+exit status: 0 the program ended; 1 an Applesoft error, or more than --max-statements; 2 bad input
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from types import FrameType
+
+from ..applesoft.console import EndOfInput
+from ..applesoft.emulator import Applesoft
+from ..applesoft.errors import ApplesoftError
+from ..applesoft.machine import TooManyStatements
+from ..errors import UserError
+from ..files import packaged_text, read_text, replacing
+from .run import add_machine_arguments
+
+LISTING = "impact.bas"
+SLOT_LINE = '190 P$ = "PR# " + "{}"'
+PROGRAM_LIMIT = 1_000_000
+INTERRUPTED = 130
+_SHOWN_CONTROLS = "\n\a\b"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 basic`."""
+    parser.add_argument("program", nargs="?", metavar="FILE.bas", help="a program to run")
+    parser.add_argument("--prompt", action="store_true", help="stay at the prompt after FILE.bas")
+    parser.add_argument(
+        "--max-statements", type=_count, metavar="N", help="stop a program after so many statements"
+    )
+    add_machine_arguments(parser)
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of statements; expected 1 or more")
+    return int(text)
+
+
+class Terminal:
+    """Standard input as the keyboard, standard output as the screen."""
+
+    def __init__(self) -> None:
+        self.typing = sys.stdin.isatty()
+        self.waiting = False
+        self.last = ""
+        self._filter = sys.stdout.isatty()
+        self._row = ""
+        if self.typing:
+            with suppress(ImportError):
+                import readline  # noqa: F401  (line editing and history in input())
+
+    def show(self, text: str) -> None:
+        """Characters for the screen; a real terminal gets no control characters it would act on."""
+        self._row = (self._row + text).rpartition("\n")[2][-200:]
+        if self._filter:
+            text = "".join(c for c in text if c >= " " or c in _SHOWN_CONTROLS)
+        sys.stdout.write(text)
+
+    def read(self) -> str | None:
+        """The next line typed, None at the end."""
+        sys.stdout.flush()
+        self.waiting = True
+        try:
+            line = self._ask() if self.typing else sys.stdin.readline()
+        except UnicodeDecodeError:
+            raise UserError("standard input is no UTF-8 text") from None
+        finally:
+            self.waiting = False
+        if not line:
+            return None
+        self.last = line.rstrip("\r\n")
+        return self.last
+
+    def _ask(self) -> str:
+        """A line with the terminal's editing; what stands in the row is given as the prompt, so
+        that editing does not wipe it out."""
+        prompt = "".join(c for c in self._row if c >= " ")
+        self._row = ""
+        if prompt:
+            sys.stdout.write("\r")
+            sys.stdout.flush()
+        try:
+            return input(prompt) + "\n"
+        except EOFError:
+            return ""
+
+    @property
+    def row_begun(self) -> bool:
+        """Whether something stands in the last row of the output."""
+        return bool(self._row)
+
+
+@contextmanager
+def _interrupts(machine: Applesoft, terminal: Terminal) -> Iterator[None]:
+    """Control-C breaks the program between two statements, or what is being typed."""
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if terminal.waiting:
+            raise KeyboardInterrupt
+        machine.machine.interrupted = True
+
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def main(args: argparse.Namespace) -> int:
+    """Run a program, or talk at the prompt."""
+    if args.prompt and not args.program:
+        raise UserError("--prompt needs a FILE.bas; without one the prompt comes anyway")
+    terminal = Terminal()
+    with ExitStack() as stack:
+        printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
+        machine = Applesoft(
+            terminal.read,
+            terminal.show,
+            printer,
+            dos=not args.no_dos,
+            echo=not terminal.typing,
+        )
+        machine.machine.statements_left = args.max_statements
+        load_program(machine, args.program)
+        if args.slot and args.program:
+            machine.machine.console.slot = args.slot
+        elif args.slot:
+            machine.enter(SLOT_LINE.format(args.slot))
+        with _interrupts(machine, terminal):
+            try:
+                return _session(machine, terminal, args)
+            except TooManyStatements:
+                _end_row(terminal)
+                print(
+                    f"impact88 basic: stopped after {args.max_statements} statements",
+                    file=sys.stderr,
+                )
+                return 1
+
+
+def load_program(machine: Applesoft, path: str | None) -> None:
+    """Load a file, or the restored listing. Raises UserError."""
+    if path is None:
+        text, where = packaged_text("impact88.legacy", LISTING), LISTING
+    else:
+        text, where = read_text(path, limit=PROGRAM_LIMIT), path
+    try:
+        machine.load(text)
+    except ValueError as error:
+        raise UserError(f"{error}; expected a program, one numbered line a row", where) from None
+    except ApplesoftError:
+        raise UserError("does not fit into 48K", where) from None
+
+
+def _session(machine: Applesoft, terminal: Terminal, args: argparse.Namespace) -> int:
+    status = 0
+    if args.program:
+        status = _run_file(machine, terminal, stay=args.prompt)
+    if args.prompt or not args.program:
+        machine.prompt(None if args.no_dos else lambda line: _disk_command(machine, terminal.last))
+        print()
+    _tell_refused(machine)
+    return status
+
+
+def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
+    try:
+        error = machine.run()
+    except EndOfInput:
+        _end_row(terminal)
+        raise UserError(
+            "the input ended while the program asked for more; expected a line for every INPUT"
+        ) from None
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    if not stay:
+        _end_row(terminal)
+    if machine.machine.broken:
+        return 0 if stay else INTERRUPTED
+    return 1 if error and not stay else 0
+
+
+def _end_row(terminal: Terminal) -> None:
+    if terminal.row_begun:
+        print()
+    sys.stdout.flush()
+
+
+def _tell_refused(machine: Applesoft) -> None:
+    for what in machine.machine.refused:
+        print(
+            f"impact88 basic: {what} is not done here: text only, no machine code", file=sys.stderr
+        )
+
+
+def _disk_command(machine: Applesoft, line: str) -> bool:
+    """LOAD and SAVE, which the disk system would take; whether the line was one."""
+    word, _, name = line.strip().partition(" ")
+    name = name.strip()
+    if word.upper() not in ("LOAD", "SAVE") or not name:
+        return False
+    try:
+        if word.upper() == "LOAD":
+            load_program(machine, name)
+        else:
+            with replacing(name) as file:
+                file.write(machine.source())
+    except UserError as error:
+        print(f"impact88 basic: {error}", file=sys.stderr)
+    return True
