@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,8 +10,8 @@ import numpy as np
 from ..errors import UserError
 from ..names import DEFAULT_M, SCENE, VELOCITIES
 from .decimaltext import read
-from .reals import Floats, from_packed
-from .unit import Ints, Unit
+from .reals import Floats, Packed, from_packed
+from .unit import NEVER, Ints, Unit, key
 
 
 def _input_places() -> dict[str, tuple[int, int]]:
@@ -19,6 +19,9 @@ def _input_places() -> dict[str, tuple[int, int]]:
     order = [*VELOCITIES, *(name for name in SCENE if name not in VELOCITIES)]
     return {name: (SCENE[name].line, i) for i, name in enumerate(order)}
 
+
+_AT_A_TIME = 65536
+"""So many texts are read together, if there are that many: few calls for few, cache for many."""
 
 PLACES = _input_places()
 
@@ -42,44 +45,76 @@ def read_columns(columns: Mapping[str, Any]) -> Scenes:
     missing = [name for name in SCENE if name not in given]
     if missing:
         raise UserError(f"missing {' '.join(missing)}")
-    arrays = {name: _array(name, given[name]) for name in SCENE}
-    lengths = {array.size for array in arrays.values()} - {1}
+    texts: dict[str, Sequence[str]] = {}
+    packed: dict[str, Packed] = {}
+    for name in SCENE:
+        _sort_out(name, given[name], texts, packed)
+    sizes = {name: len(column) for name, column in {**texts, **packed}.items()}
+    lengths = set(sizes.values()) - {1}
     if len(lengths) > 1:
-        sizes = ", ".join(f"{name} {array.size}" for name, array in arrays.items() if array.size > 1)
-        raise UserError(f"columns of different lengths: {sizes}")
+        all_sizes = ", ".join(f"{name} {size}" for name, size in sizes.items() if size != 1)
+        raise UserError(f"columns of different lengths: {all_sizes}")
     count = lengths.pop() if lengths else 1
-    unit = Unit(count)
-    values = {}
-    for name, array in arrays.items():
-        own = Unit(array.size)
-        own.at(*PLACES[name])
+    first = np.full(count, NEVER, np.int64)
+    values = {name: from_packed(column, None).v for name, column in packed.items()}
+    group: list[str] = []
+    size = 0
+    for name in [*texts, None]:
+        if group and (name is None or size + sizes[name] > _AT_A_TIME):
+            _read_texts({name: texts[name] for name in group}, values, first)
+            group, size = [], 0
+        if name is not None:
+            group.append(name)
+            size += sizes[name]
+    return Scenes(values, count, first)
+
+
+def _read_texts(
+    texts: dict[str, Sequence[str]], values: dict[str, Floats], first: Ints
+) -> None:
+    """Read some columns of texts as one."""
+    every = [text for column in texts.values() for text in column]
+    sizes = [len(column) for column in texts.values()]
+    names = list(texts)
+    starts = np.concatenate([[0], np.cumsum(sizes)])
+    unit = Unit(len(every))
+    unit.at_every(np.repeat([key(*PLACES[name]) for name in names], sizes))
+
+    def where(at: int) -> str:
+        column = int(np.searchsorted(starts, at, side="right")) - 1
+        row = f", row {at - starts[column] + 1}" if sizes[column] > 1 else ""
+        return names[column] + row
+
+    x = read(every, unit, where).rounded()
+    for name, start, size in zip(names, starts, sizes, strict=False):
+        values[name] = x.v[start : start + size]
+        np.minimum(first, unit.first[start : start + size], out=first)
+
+
+def _sort_out(
+    name: str, column: Any, texts: dict[str, Sequence[str]], packed: dict[str, Packed]
+) -> None:
+    """Put a column with the texts or with the stored reals."""
+    if isinstance(column, str):
+        texts[name] = [column]
+    elif isinstance(column, (list, tuple)) and column and isinstance(column[0], str):
+        texts[name] = column
+    else:
+        array = np.asarray(column)
+        if array.ndim > 1:
+            raise UserError(f"{name} has {array.ndim} dimensions; expected one value or a column")
+        array = array.reshape(-1)
         if array.dtype == np.uint64:
-            x = from_packed(array, own)
+            if (array >= np.uint64(1 << 40)).any():
+                raise UserError(f"{name} has a stored real of more than five bytes")
+            packed[name] = array
+        elif array.dtype.kind == "i":
+            texts[name] = [str(n) for n in array.tolist()]
+        elif array.dtype.kind in "UO" and array.size:
+            texts[name] = array.tolist()
         else:
-            x = read(array, own, name)
-        values[name] = x.rounded().v
-        np.minimum(unit.first, own.first, out=unit.first)
-    return Scenes(values, count, unit.first)
-
-
-def _array(name: str, column: Any) -> Any:
-    """One column as a one-dimensional array of texts or of stored reals."""
-    array = np.asarray(column)
-    if array.ndim > 1:
-        raise UserError(f"{name} has {array.ndim} dimensions; expected one value or a column")
-    array = np.atleast_1d(array)
-    kind = array.dtype.kind
-    if kind == "i":
-        array = array.astype(np.str_)
-    elif kind == "O" and all(isinstance(text, str) for text in array):
-        array = array.astype(np.str_)
-    elif array.dtype == np.uint64:
-        if (array >= np.uint64(1 << 40)).any():
-            raise UserError(f"{name} has a stored real of more than five bytes")
-    elif kind != "U":
-        raise UserError(
-            f"{name} is of type {array.dtype}; expected decimal texts, whose digits count, "
-            "or stored reals as uint64"
-        )
-    return array
-
+            kind = array.dtype if array.size else "nothing"
+            raise UserError(
+                f"{name} is {kind}; expected decimal texts, whose digits count, or stored reals "
+                "as uint64"
+            )

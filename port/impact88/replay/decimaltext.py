@@ -6,7 +6,7 @@ read together, a character place at a time, and all fields written together.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ from ..errors import UserError
 from .reals import OVERFLOW, Bools, Reals, compare, constant, floor, from_number
 from .unit import Ints, Unit
 
+Characters = npt.NDArray[np.uint8]
 Strings = npt.NDArray[np.str_]
 
 _TEN = constant(10)
@@ -26,6 +27,8 @@ _EIGHT_DIGITS = from_number(scalar.EIGHT_DIGITS)
 
 _EXACT_DIGITS = 9
 """So many digits make a whole number below 2^32, which MUL10 and adding a digit leave exact."""
+
+_END = ord("\n")
 
 _QUARTER_LIMIT = 2.0**125
 """Four times this is exponent byte 256."""
@@ -53,25 +56,21 @@ def over_ten(x: Reals) -> Reals:
 # --- reading ---------------------------------------------------------------------------------------
 
 
-def read(texts: Any, unit: Unit, where: str) -> Reals:
-    """The numbers that texts are, extension included: a sequence of str, as many as ``unit`` has
-    scenes. Records OVERFLOW. Raises UserError for a text that is no number; ``where`` names it.
+def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals:
+    """The numbers that texts are, extension included: as many texts as ``unit`` has scenes.
+
+    Records OVERFLOW. Raises UserError for a text that is no number; ``where`` names its place.
     """
-    places, length = _characters(texts, where)
-    numerals = _Numerals(length)
-    for place in places:
+    numerals = _Numerals(len(texts))
+    for place in _character_places(texts, where):
         numerals.take(place)
     wrong = numerals.wrong | ~numerals.started
     if wrong.any():
-        row = int(np.flatnonzero(wrong)[0])
-        raise UserError(
-            f"{str(texts[row])!r} is no number; expected decimal text", f"{where}, row {row + 1}"
-        )
+        raise _no_number(texts, int(np.flatnonzero(wrong)[0]), where)
     if numerals.overflow.any():
         unit.record(numerals.overflow, OVERFLOW)
     v = numerals.value.astype(np.float64)
-    high = float(v.max(initial=0.0))
-    x = Reals(v, unit, 1.0, max(high, 1.0), True)
+    x = Reals(v, unit, 1.0, max(float(v.max(initial=0.0)), 1.0), True)
     for more, digit in numerals.further:
         rows = np.flatnonzero(more)
         _treat(x, rows, lambda part, d=digit[rows]: _add_digit(times_ten(part), d))
@@ -88,22 +87,31 @@ def read(texts: Any, unit: Unit, where: str) -> Reals:
     return x
 
 
-def _characters(texts: Any, where: str) -> tuple[npt.NDArray[np.uint8], int]:
-    """The characters, a row for each place; 0 past a text's end."""
-    array = np.asarray(texts)
-    if array.dtype.kind == "O":
-        array = np.asarray([str(text) for text in texts])
+def _no_number(texts: Sequence[str], row: int, where: Callable[[int], str]) -> UserError:
+    return UserError(f"{texts[row]!r} is no number; expected decimal text", where(row))
+
+
+def _character_places(texts: Sequence[str], where: Callable[[int], str]) -> Iterator[Characters]:
+    """The first character of every text, then the second, ...; an END where a text has no more."""
     try:
-        array = array.astype(np.bytes_)
+        data = np.frombuffer(("\n".join(texts) + "\n").encode("ascii"), np.uint8)
+    except TypeError:
+        row = next(i for i, text in enumerate(texts) if not isinstance(text, str))
+        raise _no_number(texts, row, where) from None
     except UnicodeEncodeError:
-        row = next(i for i, text in enumerate(texts) if not str(text).isascii())
-        raise UserError(
-            f"{str(texts[row])!r} is no number; expected decimal text", f"{where}, row {row + 1}"
-        ) from None
-    length = array.shape[0]
-    width = array.dtype.itemsize
-    matrix = np.ascontiguousarray(array).view(np.uint8).reshape(length, width)
-    return np.ascontiguousarray(matrix.T), length
+        row = next(i for i, text in enumerate(texts) if not text.isascii())
+        raise _no_number(texts, row, where) from None
+    ends = np.flatnonzero(data == _END)
+    if ends.size != len(texts):
+        row = next(i for i, text in enumerate(texts) if "\n" in text)
+        raise _no_number(texts, row, where)
+    at = np.empty_like(ends)
+    at[0] = 0
+    np.add(ends[:-1], 1, out=at[1:])
+    for _ in range(int((ends - at).max(initial=0))):
+        yield data[at]
+        at += 1
+        np.minimum(at, ends, out=at)
 
 
 class _Numerals:
@@ -117,7 +125,7 @@ class _Numerals:
         self.value = np.zeros(length, np.int64)
         self.digits = np.zeros(length, np.int16)
         self.decimals = np.zeros(length, np.int16)
-        self.further: list[tuple[Bools, npt.NDArray[np.uint8]]] = []
+        self.further: list[tuple[Bools, Characters]] = []
         self.exponent = np.zeros(length, np.int16)
         self.started = np.zeros(length, bool)
         self.negative = np.zeros(length, bool)
@@ -128,11 +136,11 @@ class _Numerals:
         self.overflow = np.zeros(length, bool)
         self.wrong = np.zeros(length, bool)
 
-    def take(self, character: npt.NDArray[np.uint8]) -> None:
+    def take(self, character: Characters) -> None:
         """The next character of every text."""
         digit = character - np.uint8(ord("0"))
         is_digit = digit < 10
-        blank = (character == ord(" ")) | (character == 0)
+        blank = (character == ord(" ")) | (character == _END)
         is_point = character == ord(".")
         exponential = self.after_e.any()
         if exponential:
@@ -166,7 +174,7 @@ class _Numerals:
             self.sign_may_follow &= blank
         self.started |= ~blank
 
-    def _sign_or_e(self, character: npt.NDArray[np.uint8], known: Bools) -> None:
+    def _sign_or_e(self, character: Characters, known: Bools) -> None:
         minus = character == ord("-")
         sign = minus | (character == ord("+"))
         is_e = (character == ord("E")) | (character == ord("e"))
@@ -177,7 +185,7 @@ class _Numerals:
         self.after_e |= is_e
         self.wrong |= ~(known | sign | is_e)
 
-    def _exponent_digit(self, where: Bools, digit: npt.NDArray[np.uint8]) -> None:
+    def _exponent_digit(self, where: Bools, digit: Characters) -> None:
         """One more digit of the exponent; after two that are worth ten or more it is one too many."""
         too_many = where & (self.exponent >= 10)
         self.overflow |= too_many & ~self.exponent_negative
@@ -185,16 +193,16 @@ class _Numerals:
         np.copyto(self.exponent, next_exponent, where=where, casting="unsafe")
 
 
-def _add_digit(value: Reals, digit: npt.NDArray[np.uint8]) -> Reals:
+def _add_digit(value: Reals, digit: Characters) -> Reals:
     """ADDACC: the value rounded, and a digit added."""
     return value + Reals(digit.astype(np.float64), value.unit, 1.0, 9.0, True)
 
 
-def _treat(x: Reals, rows: Ints, operation: Any) -> None:
+def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
     """Apply an operation to some rows of ``x`` in place, recording its errors with them."""
     assert x.unit is not None
     part = Unit(rows.size)
-    part._place = x.unit._place
+    part.take_place(x.unit, rows)
     result = operation(Reals(x.v[rows], part, x.low, x.high, False, False))
     x.v[rows] = result.v
     x.low = min(x.low, result.low)

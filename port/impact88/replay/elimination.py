@@ -7,6 +7,9 @@ value when a whole column is below that, even a row that is done already.
 Columns J of the rows being eliminated are left out: A(I,J) / AP is exactly 1, and what line 1040
 leaves in column J is never read again. (Not always zero: the ROM's multiplication by 1 can miss.)
 With ``matrix`` they are computed too.
+
+Elements known to be zero in every scene are left out as well: x - 0 * y and x - y * 0 are x, whose
+extension is zero already, and 0 / AP is 0.
 """
 
 from __future__ import annotations
@@ -32,14 +35,15 @@ def solve(
 
     With ``matrix``, ``A`` gets all elements as the program leaves them.
     """
-    length = max(A[row, column].v.shape[-1] for row in range(1, M + 1) for column in range(1, M + 2))
-    block = np.empty((M + 1, M + 2, length))
-    block[0] = 0.0  # row 0 exists too, and RX is 0 as long as no pivot was found
-    for row in range(1, M + 1):
-        for column in range(1, M + 2):
-            block[row, column] = A[row, column].v
-    low = min(A[row, column].low for row in range(1, M + 1) for column in range(1, M + 2))
-    high = max(A[row, column].high for row in range(1, M + 1) for column in range(1, M + 2))
+    places = [(row, column) for row in range(1, M + 1) for column in range(1, M + 2)]
+    length = max(A[place].v.shape[-1] for place in places)
+    block = np.zeros((M + 1, M + 2, length))  # row 0 is there too: RX is 0 until a pivot is found
+    filled = np.zeros((M + 1, M + 2), bool)
+    for place in places:
+        block[place] = A[place].v
+        filled[place] = A[place].high > 0
+    low = min(A[place].low for place in places)
+    high = max(A[place].high for place in places)
     RX = np.zeros(length, np.int64)
     for J in range(1, M + 1):
         RX = _pivot_rows(block, J, M, RX)
@@ -49,25 +53,35 @@ def solve(
         if none.any():
             unit.record(none, ZERO_DETERMINANT)
             AP[none] = 1.0
-        _exchange(block, J, RX)
+        _exchange(block, filled, J, RX)
+        columns = np.flatnonzero(filled[J, :] & (np.arange(M + 2) > J - matrix))
+        rows = np.flatnonzero(filled[:, J] & (np.arange(M + 1) != J))
         unit.at(1150, order=stamp(570, 100 * J + 1))
-        first = J if matrix else J + 1
         pivot_row = (
-            Reals(block[J, first:], unit, low, high, True)
+            Reals(block[J, columns], unit, low, high, True)
             / Reals(AP, unit, max(low, 2.0**-30), high, True, True)
         ).rounded()
-        block[J, first:] = pivot_row.v
-        rows = [row for row in range(1, M + 1) if row != J]
+        block[J, columns] = pivot_row.v
         unit.at(1040, order=stamp(570, 100 * J + 2))
+        if low < 2.0**-60:  # too low a bound to rule out underflow: look again
+            low, high = _bounds(block[1:, J:], unit)
+        here = np.ix_(rows, columns)
         AR = Reals(block[rows, J, np.newaxis], unit, low, high, True)
-        others = (Reals(block[rows, first:], unit, low, high, True) - pivot_row * AR).rounded()
-        block[rows, first:] = others.v
-        low, high = min(pivot_row.low, others.low), max(pivot_row.high, others.high)
+        others = (Reals(block[here], unit, low, high, True) - pivot_row * AR).rounded()
+        block[here] = others.v
+        filled[here] = True
+        low = min(low, pivot_row.low, others.low)
+        high = max(high, pivot_row.high, others.high)
     if matrix:
-        for row in range(1, M + 1):
-            for column in range(1, M + 2):
-                A[row, column] = from_floats(block[row, column], unit, True)
+        for place in places:
+            A[place] = from_floats(block[place], unit, True)
     return [from_floats(block[row, M + 1], unit, True) for row in range(1, M + 1)]
+
+
+def _bounds(part: Floats, unit: Unit) -> tuple[float, float]:
+    """The least and the largest magnitude, zero apart."""
+    values = from_floats(part, unit, True)
+    return values.low, values.high
 
 
 def _pivot_rows(block: Floats, J: int, M: int, RX: Ints) -> Ints:
@@ -86,17 +100,23 @@ def _pivot_rows(block: Floats, J: int, M: int, RX: Ints) -> Ints:
     return RX
 
 
-def _exchange(block: Floats, J: int, RX: Ints) -> None:
-    """Line 1140: exchange rows J and RX from column J on."""
+def _exchange(block: Floats, filled: Bools, J: int, RX: Ints) -> None:
+    """Line 1140: exchange rows J and RX from column J on.
+
+    ``filled`` tells which elements may be other than zero: after a row is exchanged in some scenes
+    only, what either row could hold.
+    """
     found = np.bincount(RX, minlength=1)
     for row in np.flatnonzero(found).tolist():
         if row == J:
             continue
         if found[row] == RX.size:
             block[[J, row], J:] = block[[row, J], J:]
+            filled[[J, row], J:] = filled[[row, J], J:]
             continue
         here = RX == row
         mine, theirs = block[J, J:], block[row, J:]
         exchanged = np.where(here, theirs, mine)
         block[row, J:] = np.where(here, mine, theirs)
         block[J, J:] = exchanged
+        filled[[J, row], J:] = filled[J, J:] | filled[row, J:]

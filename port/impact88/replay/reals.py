@@ -30,7 +30,7 @@ import numpy.typing as npt
 
 from ..applesoft.errors import CODES
 from ..applesoft.real import Number, integer
-from .unit import Bools, Unit
+from .unit import Bools, Ints, Unit
 
 Floats = npt.NDArray[np.float64]
 Packed = npt.NDArray[np.uint64]
@@ -78,7 +78,11 @@ _FROM_UNITS = np.int64(39 << 52)
 _BELOW_256 = np.int64(((1023 + 8) << 52) - 1)
 _EQUAL_CARRY = np.uint64(51)
 _ONE = np.uint64(1)
+_TWO_BITS = np.uint64(2**62)  # 2.0
 _52 = np.uint64(52)
+
+_minimum = np.minimum.reduce
+_maximum = np.maximum.reduce
 
 _UP = 1.0 + 2.0**-30
 _DOWN = 0.9
@@ -117,7 +121,7 @@ class Reals:
         self.high = high
         self.stored = stored
         self.full = full
-        self._defects: Bools | None | bool = False
+        self._defects: Ints | None | bool = False
 
     def rounded(self) -> Reals:
         """As a variable keeps it: 32 bits, by the top bit of the extension alone."""
@@ -192,18 +196,18 @@ class Reals:
         v, bits = self.v, self.bits
         (_, i0), *_ = self._unit().buffers(v.shape)
         np.bitwise_and(bits, _MAGNITUDE, out=i0)
-        high = float(i0.max(initial=0).view(np.float64))
+        high = float(_maximum(i0, axis=None, initial=0).view(np.float64))
         if high >= LARGEST:
             failed = np.abs(v) >= LARGEST
             self._unit().record(failed, OVERFLOW)
             v[failed] = 0.0
             np.bitwise_and(bits, _MAGNITUDE, out=i0)
-            high = float(i0.max(initial=0).view(np.float64))
+            high = float(_maximum(i0, axis=None, initial=0).view(np.float64))
             self.full = False
         # zeros become the largest unsigned number
         u0 = i0.view(np.uint64)
         np.subtract(u0, _ONE, out=u0)
-        low = float((u0.min(initial=np.uint64(2**62)) + _ONE).view(np.float64))
+        low = float((_minimum(u0, axis=None, initial=_TWO_BITS) + _ONE).view(np.float64))
         if low < SMALLEST:
             v[np.abs(v) < SMALLEST] = 0.0
             low = SMALLEST
@@ -400,7 +404,7 @@ def _multiply(left: Reals, right: Reals) -> Reals:
 
 def _settle_product(result: Reals, left: Reals, right: Reals) -> None:
     """Overflow of a product is judged before it is normalised."""
-    if np.abs(result.v).max(initial=0) >= LARGEST / 2:
+    if result.high >= LARGEST / 2 and _maximum(np.abs(result.v), axis=None) >= LARGEST / 2:
         exponents = ((left.bits & _EXPONENT) >> 52) + ((right.bits & _EXPONENT) >> 52)
         failed = (exponents >= 384 + 2 * BIAS) & (result.v != 0)
         result._unit().record(failed, OVERFLOW)
@@ -409,8 +413,9 @@ def _settle_product(result: Reals, left: Reals, right: Reals) -> None:
     result._settle()
 
 
-def _defects(right: Reals) -> Bools | None:
-    """Where a right operand has two zero bytes in a row above a byte that is not zero; None: nowhere.
+def _defects(right: Reals) -> Ints | None:
+    """Which elements of a right operand have two zero bytes in a row above a byte that is not zero;
+    None: none has.
 
     The bytes of the 40 bits are numbered from the extension, 0, to the top, 4, which is never zero.
     """
@@ -418,28 +423,36 @@ def _defects(right: Reals) -> Bools | None:
         return right._defects  # type: ignore[return-value]
     bits = right.bits
     (_, i0), *_ = right._unit().buffers(bits.shape)
-    np.bitwise_and(bits, _BYTES_2_3, out=i0)
-    found = not i0.min(initial=1)
-    if not found and not right.stored:
-        np.bitwise_and(bits, _BYTES_1_2, out=i0)
-        found = not i0.min(initial=1)
-    defects = None
-    if found:
-        mask = ((bits & _BYTES_2_3) == 0) & ((bits & _BYTES_0_1) != 0)
-        if not right.stored:
-            mask |= ((bits & _BYTES_1_2) == 0) & ((bits & _BYTE_0) != 0)
-        if mask.any():
-            defects = mask
-    right._defects = defects
-    return defects
+    found = []
+    # a stored number's byte 0 is zero
+    for zeros, below in ((_BYTES_2_3, _BYTES_0_1), (_BYTES_1_2, _BYTE_0))[: 1 + (not right.stored)]:
+        np.bitwise_and(bits, zeros, out=i0)
+        if not _minimum(i0, axis=None):
+            at = np.flatnonzero(i0 == 0)
+            at = at[bits.reshape(-1)[at] & below != 0]
+            if at.size:
+                found.append(at)
+    right._defects = np.concatenate(found) if found else None
+    return right._defects
 
 
-def _apply_defect(v: Floats, left: Reals, right: Reals, defects: Bools) -> None:
+def _apply_defect(v: Floats, left: Reals, right: Reals, defects: Ints) -> None:
     """Products as the ROM builds them, a byte of the right operand at a time, where that differs.
 
     After a second zero byte in a row the upper 32 bits of what has been built move one bit too far.
     """
-    where = np.nonzero(np.broadcast_to(defects, v.shape))
+    if right.v.shape == v.shape:
+        where = np.unravel_index(defects, v.shape)
+    else:  # along the axes where the right operand is broadcast, everywhere
+        own = (1,) * (v.ndim - right.v.ndim) + right.v.shape
+        spread = [axis for axis in range(v.ndim) if own[axis] != v.shape[axis]]
+        grid = np.ogrid[tuple(slice(v.shape[axis]) for axis in spread)]
+        at = np.unravel_index(defects, own)
+        shape = (-1,) + (1,) * len(spread)
+        where = tuple(
+            grid[spread.index(axis)][np.newaxis] if axis in spread else at[axis].reshape(shape)
+            for axis in range(v.ndim)
+        )
     bits1 = np.broadcast_to(left.bits, v.shape)[where]
     bits2 = np.broadcast_to(right.bits, v.shape)[where]
     top = np.int64(1 << 52)
@@ -454,8 +467,9 @@ def _apply_defect(v: Floats, left: Reals, right: Reals, defects: Bools) -> None:
         double = (byte == 0) & ~previous
         built = np.where(double, built >> nine << eight | built & last, built)
         previous = byte != 0
-    product = built.astype(np.float64) * 2.0**-38  # 39 or 40 bits long: byte 4 sees to that
-    # 39 bits keep their place: the bit below is zero, as after normalising
+    # 39 or 40 bits long, byte 4 sees to that; the bit a shorter one leaves empty is zero, as after
+    # normalising
+    product = built.astype(np.float64) * 2.0**-38
     sign_and_power = (bits1 & ~_FRACTION).view(np.float64) * (bits2 & ~_FRACTION).view(np.float64)
     v[where] = product * sign_and_power
 

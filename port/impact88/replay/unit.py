@@ -33,6 +33,12 @@ def stamp(line: int, position: int = 0) -> int:
     return line * 1000 + position
 
 
+def key(line: int, position: int = 0, order: int | None = None) -> int:
+    """A place as records hold it: with the line a message names, and ``order`` where that line comes
+    in the program if not by its number."""
+    return ((stamp(line, position) if order is None else order) << _ORDER) + (line << _LINE)
+
+
 class Unit:
     """The state of one block: ``count`` scenes, along the last axis of every array.
 
@@ -51,17 +57,23 @@ class Unit:
         self._views: dict[tuple[int, ...], Buffers] = {}
 
     def at(self, line: int, position: int = 0, order: int | None = None) -> None:
-        """Go to a place: ``line`` is what a message would name, ``order`` where it comes in the
-        program (the line itself, but for the subroutine)."""
-        place = stamp(line, position) if order is None else order
-        self._place = (place << _ORDER) + (line << _LINE)
+        """Go to a place, see `key`."""
+        self._place = key(line, position, order)
 
     def at_each(self, places: Sequence[tuple[int, int]]) -> None:
         """Go to several places at once: (line, position) of each row of a two-dimensional array."""
         self._place = np.array(
-            [[(stamp(line, position) << _ORDER) + (line << _LINE)] for line, position in places],
-            dtype=np.int64,
+            [[key(line, position)] for line, position in places], dtype=np.int64
         )
+
+    def at_every(self, places: Ints) -> None:
+        """Go to a place of its own for each scene, given as `key`."""
+        self._place = places
+
+    def take_place(self, other: Unit, rows: Ints) -> None:
+        """Go where some scenes of another unit are."""
+        place = other._place
+        self._place = place[rows] if isinstance(place, np.ndarray) else place
 
     def record(self, failed: Bools, code: int) -> None:
         """Note an error where ``failed``, whose last axis runs over the scenes (or is 1: all)."""
@@ -70,8 +82,7 @@ class Unit:
         if not failed.any():
             return
         self._clock += 1
-        key = self._place + (self._clock << _CLOCK) + code
-        keys = np.where(failed, key, NEVER)
+        keys = np.where(failed, self._place + (self._clock << _CLOCK) + code, NEVER)
         keys = keys.reshape(-1, keys.shape[-1]).min(axis=0)
         np.minimum(self.first, keys, out=self.first)
 
