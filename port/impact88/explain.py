@@ -106,8 +106,11 @@ def explain(
 
 
 def _rank(one: Explanation) -> tuple[int, ...]:
+    """What leaves least unexplained first. Of equals, a cause that fixes every digit of the page at
+    once (another arithmetic) before a slip that could have gone many ways."""
     alike = misreading.likeness(one.printed, one.would_be) if one.printed and one.would_be else 4
-    return one.remaining, not one.alone, _RANK.index(one.kind), alike
+    order = 0 if one.field is None else 1 if one.alone else 2
+    return one.remaining, order, _RANK.index(one.kind), alike
 
 
 def _misread_alone(
@@ -132,6 +135,15 @@ def _misread_inputs(shown: Printout, recovered: Recovered, base: set[str]) -> li
     }
     trials = [one for name, text in printed.items() for one in _trials(name, text, recovered.scene)]
     outcomes = trial.run_all([one.scene for one in trials])
+    # line 400 flips MU by the geometry, so another input may mean that MU was typed the other way
+    mu = printed.get("MUP")
+    flipped = [
+        one._replace(scene={**one.scene, "MU": opposite(one.scene["MU"])})
+        for one, outcome in zip(trials, outcomes, strict=True)
+        if mu and one.field != "MUP" and outcome.fields.get("MUP") == opposite(mu)
+    ]
+    trials += flipped
+    outcomes += trial.run_all([one.scene for one in flipped])
     found = []
     for one, outcome in zip(trials, outcomes, strict=True):
         if outcome.fields.get(one.field, one.would_be) != one.would_be:

@@ -60,6 +60,10 @@ class Squeezed:
         line = bisect_right(self._lines, offset)
         return line, offset - self._lines[line - 1] + 1
 
+    def ends_at(self, index: int) -> bool:
+        """Whether the original ends with the character before ``index``, no blank after it."""
+        return index == len(self.text) and self._offsets[index - 1] == len(self._original) - 1
+
     def original(self, start: int, stop: int) -> str:
         """The original's text from character ``start`` up to character ``stop``."""
         if start >= stop:

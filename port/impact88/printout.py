@@ -20,8 +20,8 @@ from . import files, glyphs
 from .applesoft.errors import CODES
 from .errors import UserError
 
-LARGEST_FILE = 8_000_000
-"""Bytes of the largest file that is read: some 10,000 printouts."""
+LARGEST_FILE = 2_000_000
+"""Bytes of the largest file that is read: some 2,500 printouts."""
 
 
 class Field(NamedTuple):
@@ -125,12 +125,14 @@ class Reading:
     """One number as read: ``text`` as it is taken, ``alternatives`` other ways to take it where a
     blank may or may not end it, and the line and column (from 1) where it stands.
 
-    ``text`` may hold ``?`` for illegible characters."""
+    ``text`` may hold ``?`` for illegible characters. ``cut``: the text ends right after it, so more
+    digits may have followed."""
 
     text: str
     line: int
     column: int
     alternatives: tuple[str, ...] = ()
+    cut: bool = False
 
     @property
     def legible(self) -> bool:
@@ -167,6 +169,7 @@ class Printout:
     fields: dict[str, Reading] = field(default_factory=dict)
     replies: dict[str, Reading] = field(default_factory=dict)
     angles: list[tuple[str, ...]] = field(default_factory=list)
+    angles_guessed: bool = False
     ending: str | None = None
     ended: bool = False
     remarks: list[Remark] = field(default_factory=list)
@@ -341,10 +344,12 @@ class _Reader:
             self._remark(name, _unreadable(region), start)
             return
         texts = [glyphs.canonical(way) for way in ways]
-        self._printout.fields[name] = Reading(texts[0], line, column, tuple(texts[1:]))
+        cut = open_end and not ends and self._squeezed.ends_at(stop)
+        self._printout.fields[name] = Reading(texts[0], line, column, tuple(texts[1:]), cut)
 
     def _read_angles(self, start: int, stop: int) -> None:
-        ways = _five_numbers(self._squeezed.original(start, stop))
+        original = self._squeezed.original(start, stop)
+        ways = _five_numbers(original)
         if not ways:
             region = self._squeezed.text[start:stop]
             self._remark("PA", f"{_shown(region)}: expected five angles, PA PB TA TB GA", start)
@@ -353,6 +358,7 @@ class _Reader:
         for name, text in zip(ANGLES, ways[0], strict=True):
             self._printout.fields[name] = Reading(text, line, column)
         self._printout.angles = ways[1:]
+        self._printout.angles_guessed = len(original.split()) < 5
 
     def _read_reply(self, token: _Token, start: int, stop: int) -> None:
         """The three numbers typed at a prompt, after any that INPUT refused."""

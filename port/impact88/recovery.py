@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from . import names, trial
@@ -22,6 +22,9 @@ MOST_CANDIDATES = 20_000
 """Scenes tried at most for one printout; more illegible characters than that allows count as a
 missing value."""
 
+_GUESS_MAY_DIFFER = 3
+"""A row of angles that had to be cut without blanks counts as missing when no cut makes the
+printout agree but for this many differences."""
 _STAND_INS = ("1.7", "230", "-41000")
 """Values put in place of a missing input: a field that prints the same with each of them does not
 depend on it."""
@@ -50,6 +53,14 @@ class Recovered:
 
 def recover(shown: Printout) -> Recovered:
     """The scene whose replay agrees with most of the printout."""
+    recovered = _recover(shown)
+    if shown.angles_guessed and recovered.differences > _GUESS_MAY_DIFFER:
+        without = {name: one for name, one in shown.fields.items() if name not in ANGLES}
+        return _recover(replace(shown, fields=without, angles=[]))
+    return recovered
+
+
+def _recover(shown: Printout) -> Recovered:
     choices, missing = _choices(shown)
     scenes = list(_scenes(choices))
     outcomes = trial.run_all([scene for scene, _ in scenes])
@@ -133,7 +144,7 @@ def _ways(name: str, shown: Printout, room: int) -> list[Choice]:
     printed: list[str] = []
     if reading is not None:
         printed = [reading.text, *reading.alternatives] if reading.legible else []
-        if not reading.legible:
+        if not reading.legible and any(map(str.isdigit, reading.text)):
             printed = illegible_texts(reading.text, room, angle)
     if reply is not None and reply.legible:
         seen = stored_and_printed(reply.text)
@@ -238,6 +249,8 @@ class FieldCheck:
 
 def fits(reading: Reading, text: str) -> bool:
     """Whether a reading, legible or in part, can be ``text``."""
+    if reading.cut and text.startswith(reading.text):
+        return True
     if reading.legible:
         return text == reading.text or text in reading.alternatives
     pattern = "".join("." if glyph == ILLEGIBLE else re.escape(glyph) for glyph in reading.text)
@@ -290,14 +303,16 @@ def field_checks(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
                 continue
         same: bool | None = None
         if reading is not None and text is not None:
-            same = None if not reading.legible and fits(reading, text) else fits(reading, text)
+            same = fits(reading, text)
+            if same and not (reading.legible and text in (reading.text, *reading.alternatives)):
+                same = None
         elif reading is not None and not recovered.missing:
             same = False
         printed = reading.text if reading else None
         if reading is not None and text in reading.alternatives:
             printed = text
         checks.append(FieldCheck(name, printed, text, same))
-    if shown.angles:
+    if shown.angles and ANGLES[0] not in recovered.missing:
         for check in checks:
             if check.name in ANGLES:
                 check.printed, check.same = _angle_as_cut(shown, recovered, check)

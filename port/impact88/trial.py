@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from . import printout
+from .names import SCENE
 
 _FEW = 6
 """Up to this many scenes the port is as quick as the replay, and needs no numpy."""
@@ -37,8 +38,25 @@ def outcome_of(text: str) -> Outcome:
 
 
 def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
-    """The outcome of each scene."""
-    return [run_once(scene) for scene in scenes]
+    """The outcome of each scene, in order."""
+    if len(scenes) <= _FEW:
+        return [run_once(scene) for scene in scenes]
+    from .replay import replay
+
+    columns = {}
+    for name in SCENE:
+        column = [scene[name] for scene in scenes]
+        columns[name] = column[0] if column.count(column[0]) == len(column) else column
+    done = replay(columns)
+    endings: list[str | None] = [text or None for text in done.error.tolist()]
+    for index in done.zero_determinant.nonzero()[0].tolist():
+        endings[index] = printout.ZERO_DETERMINANT
+    outcomes = [Outcome({}, ending) for ending in endings]
+    for name in printout.FIELDS:
+        for outcome, text in zip(outcomes, done.printed(name).tolist(), strict=True):
+            if text:
+                outcome.fields[name] = text
+    return outcomes
 
 
 def unfloored(scene: Mapping[str, str], arithmetic: str = "applesoft") -> dict[str, float]:

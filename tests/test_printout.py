@@ -1,0 +1,164 @@
+"""Reading printouts as text."""
+
+from __future__ import annotations
+
+import pytest
+
+import captures
+import printouts
+from impact88.errors import UserError
+from impact88.printout import ANGLES, FIELDS, LARGEST_FILE, read_file, read_printouts
+
+SAMPLE = """\
+MA= 143.5 MB= 95.8 IA= 3728 IB= 1961
+
+DA= 7.59 DB= 3.44
+
+ PA PB TA TB GA
+ -19.8      -38.7      0      60      -30
+
+UX= -29.04 UY= 0 WA= 0 XA= -29.04 YA= 0
+
+VX= 14.52 VY= 25.15 WB= 0 XB= 14.51 YB= 25.14
+
+ E= 5E-03 MU= .911 EM= -.715
+
+INITIAL KE= 100904.929 KE LOSS= 57.47 %
+
+*****
+
+VAX= -13.263 VAY= 3.449 (XA=-8.78 YA= 15.91)
+
+VBX= -9.114 VBY= 19.982 (XB=-8.09 YB= 17.35)
+
+ WA= -1.745 WB= -.8202
+
+*****
+"""
+
+
+def texts(printout: str) -> dict[str, str]:
+    (shown,) = read_printouts(printout)
+    return {name: reading.text for name, reading in shown.fields.items()}
+
+
+@pytest.mark.captures
+def test_captured_printouts_read_field_by_field() -> None:
+    """Against places found by the listing's layout, not by the reader."""
+    checked = 0
+    for row in printouts.normal_ends():
+        expected = {
+            place.name: row["printout"][place.start : place.stop]
+            for place in printouts.places(row["printout"])
+        }
+        assert texts(row["printout"]) == expected
+        checked += 1
+    assert checked
+
+
+@pytest.mark.captures
+def test_captured_errors_and_replies_are_read() -> None:
+    endings = {}
+    for row in captures.scenes():
+        (shown,) = read_printouts(row["printout"])
+        typed = ",".join(row["keyboard"]).split(",")
+        assert [reading.text for reading in shown.replies.values()] == typed
+        tail = row["printout"].split("\n?")[-1] if "ERROR" in row["printout"] else ""
+        assert (shown.ending or "").lstrip("?") in (tail.replace("\a", ""), "ZERO DETERMINANT")
+        endings[shown.ending] = True
+    assert None in endings
+
+
+@pytest.mark.captures
+@pytest.mark.parametrize("how", printouts.MANGLED)
+def test_blanks_and_line_breaks_do_not_matter(how: str) -> None:
+    for row in printouts.sampled(printouts.normal_ends(), 40):
+        (plain,) = read_printouts(row["printout"])
+        (shown,) = read_printouts(printouts.MANGLED[how](row["printout"]))
+        for name in FIELDS:
+            if name in plain.fields and name not in ANGLES:
+                reading = shown.fields[name]
+                assert plain.fields[name].text in (reading.text, *reading.alternatives), name
+        rows = [tuple(shown.fields[name].text for name in ANGLES), *shown.angles]
+        assert tuple(plain.fields[name].text for name in ANGLES) in rows
+        if how != "no blanks at all":
+            assert rows[0] == tuple(plain.fields[name].text for name in ANGLES)
+
+
+def test_letters_stand_for_digits_only_where_a_number_must_stand() -> None:
+    found = texts(SAMPLE.replace("143.5", "l43.5").replace("60", "6O").replace("IA=", "lA="))
+    assert (found["MA"], found["TB"], found["IA"]) == ("143.5", "60", "3728")
+
+
+def test_every_kind_of_minus_and_a_leading_zero() -> None:
+    for minus in "−–—‐‑":
+        assert texts(SAMPLE.replace("-", minus)) == texts(SAMPLE)
+    assert texts(SAMPLE.replace(" .911", " 0.911"))["MUP"] == ".911"
+
+
+def test_illegible_characters_stay_question_marks() -> None:
+    assert texts(SAMPLE.replace("143.5", "1?3.5"))["MA"] == "1?3.5"
+    assert texts(SAMPLE.replace("143.5", "1§3.5"))["MA"] == "1?3.5"
+
+
+def test_what_cannot_be_read_is_named_with_its_place() -> None:
+    (shown,) = read_printouts(SAMPLE.replace("IA= 3728", "IA= (torn)"))
+    (remark,) = shown.remarks
+    assert "IA" not in shown.fields
+    assert (remark.name, remark.line, remark.column) == ("IA", 1, 24)
+
+
+def test_several_printouts_with_text_between() -> None:
+    text = (
+        f"Exhibit 7, DATE= 1989\n{SAMPLE}\nSee MA below.\f{SAMPLE.replace('143.5', '96')}appendix"
+    )
+    first, second = read_printouts(text)
+    assert (first.line, second.line) == (2, SAMPLE.count("\n") + 3)
+    assert (first.text("MA"), second.text("MA")) == ("143.5", "96")
+    assert len(first.fields) == len(second.fields) == len(FIELDS)
+
+
+def test_the_basic_listing_is_no_printout() -> None:
+    listing = '310 MA = 143.5:MB = 95.8:IA = 3728:IB = 1961\n620 PRINT "MA= ";MA;" MB= ";MB\n'
+    assert len(read_printouts(listing + SAMPLE)) == 1
+
+
+def test_error_messages_end_a_printout() -> None:
+    head = SAMPLE[: SAMPLE.index("57.47")]
+    (shown,) = read_printouts(head + "\n?DIVISION BY ZER0 ERROR\a IN 69O")
+    assert shown.ending == "?DIVISION BY ZERO ERROR IN 690"
+    assert "LOSS" not in shown.fields
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
+def test_encodings(tmp_path, encoding: str) -> None:
+    path = tmp_path / "printout.txt"
+    path.write_bytes(SAMPLE.replace("\n", "\r").encode(encoding))
+    (shown,) = read_file(str(path))
+    assert {name: reading.text for name, reading in shown.fields.items()} == texts(SAMPLE)
+
+
+def test_unreadable_files_are_refused(tmp_path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(bytes(range(256)) * 40)
+    with pytest.raises(UserError, match="is not UTF-8 text"):
+        read_file(str(path))
+    path.write_bytes(b"nothing of the kind")
+    with pytest.raises(UserError, match="no printout"):
+        read_file(str(path))
+    with path.open("wb") as file:
+        file.truncate(100_000_000)
+    with pytest.raises(UserError, match=f"larger than {LARGEST_FILE:,} bytes"):
+        read_file(str(path))
+
+
+def test_truncated_anywhere_reads_or_is_refused() -> None:
+    for stop in range(len(SAMPLE)):
+        try:
+            (shown,) = read_printouts(SAMPLE[:stop])
+        except UserError:
+            assert stop < SAMPLE.index("IA=")
+            continue
+        whole = [name for name, reading in shown.fields.items() if not reading.cut]
+        expected = texts(SAMPLE)
+        assert all(shown.text(name) == expected[name] for name in whole if name not in ANGLES)

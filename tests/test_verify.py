@@ -1,0 +1,241 @@
+"""Verdicts on printouts, over the captured scenes and by hand."""
+
+from __future__ import annotations
+
+import json
+import random
+
+import pytest
+
+import captures
+import printouts
+from impact88.names import SCENE
+from impact88.printout import ANGLES, INPUTS, read_printouts
+from impact88.run import run
+from impact88.scene import sample
+from impact88.typedtext import stored_and_printed, texts_that_print
+from impact88.verify import Verdict, Verification, verify
+from installed import impact88
+from test_printout import SAMPLE
+
+
+def verified(text: str) -> Verification:
+    (shown,) = read_printouts(text)
+    return verify(shown)
+
+
+def differing(result: Verification) -> list[str]:
+    return [check.name for check in result.differing]
+
+
+# --- the captured scenes -------------------------------------------------------------------------
+
+
+@pytest.mark.captures
+def test_captured_printouts_verify_as_identical() -> None:
+    for row in printouts.sampled(printouts.normal_ends(), 80):
+        for text in (row["printout"], printouts.body(row["printout"])):
+            result = verified(text)
+            assert result.verdict is Verdict.IDENTICAL, row["scene"]
+            for name in SCENE:
+                if name != "MU":
+                    recovered = result.scene[name]
+                    assert recovered is not None
+                    angle = name in ANGLES
+                    seen = stored_and_printed(recovered, angle)
+                    typed = stored_and_printed(row["scene"][name], angle)
+                    assert seen is not None
+                    assert typed is not None
+                    assert seen[1] == typed[1]
+            assert float(result.scene["MU"] or "nan") == float(row["scene"]["MU"])
+
+
+@pytest.mark.captures
+@pytest.mark.parametrize("how", printouts.MANGLED)
+def test_mangled_printouts_verify_as_identical(how: str) -> None:
+    for row in printouts.sampled(printouts.normal_ends(), 6, seed=2):
+        text = printouts.MANGLED[how](printouts.body(row["printout"]))
+        assert verified(text).verdict is Verdict.IDENTICAL, (row["scene"], text)
+
+
+@pytest.mark.captures
+def test_captured_errors_verify() -> None:
+    """An error in the printout itself is compared; before it, only what is missing can be told."""
+    for row in captures.scenes():
+        if "VAX=" in row["printout"]:
+            continue
+        result = verified(row["printout"])
+        if "MA= " in row["printout"]:
+            assert result.verdict is Verdict.IDENTICAL
+        else:
+            assert result.verdict is Verdict.INCOMPLETE
+            assert {"MA", "IB", "GA"} <= set(result.missing)
+            assert result.scene["UX"] == row["scene"]["UX"]
+
+
+@pytest.mark.captures
+def test_one_output_digit_changed_is_the_one_field_reported() -> None:
+    rng = random.Random(3)
+    for row in printouts.sampled(printouts.normal_ends(), 12, seed=3):
+        text = printouts.body(row["printout"])
+        outputs = [place for place in printouts.places(text) if place.name not in INPUTS]
+        for place in outputs if printouts.SWEEP else [rng.choice(outputs)]:
+            result = verified(printouts.one_digit_changed(text, place, rng))
+            assert result.verdict is Verdict.DIFFERS
+            assert differing(result) == [place.name], row["scene"]
+
+
+@pytest.mark.captures
+def test_one_input_digit_changed_is_found_out_and_explained() -> None:
+    """Never identical unless the program prints just that; the true number among the first three
+    explanations in 95 % of the cases."""
+    rng = random.Random(4)
+    explained = []
+    for row in printouts.sampled(printouts.normal_ends(), 24, seed=4):
+        text = printouts.body(row["printout"])
+        inputs = [place for place in printouts.places(text) if place.name in INPUTS]
+        for place in inputs if printouts.SWEEP else [rng.choice(inputs)]:
+            changed = printouts.one_digit_changed(text, place, rng)
+            result = verified(changed)
+            if result.verdict is Verdict.IDENTICAL:
+                again = run({name: value or "" for name, value in result.scene.items()}, dos=False)
+                assert printouts.body(again.printout) == changed
+                continue
+            assert result.verdict is Verdict.DIFFERS
+            true = text[place.start : place.stop]
+            first = [(one.field, one.would_be) for one in result.explanations[:3]]
+            explained.append((place.name, true) in first)
+    assert sum(explained) >= 0.95 * len(explained) > 0
+
+
+@pytest.mark.captures
+def test_printouts_made_in_double_precision_are_recognised() -> None:
+    found = 0
+    for row in printouts.sampled(printouts.normal_ends(), 24, seed=5):
+        made = run(row["scene"], "float64").printout
+        if printouts.body(made) == printouts.body(run(row["scene"]).printout):
+            continue
+        result = verified(made)
+        assert result.verdict is Verdict.DIFFERS
+        assert result.explanations[0].kind == "IEEE double arithmetic", row["scene"]
+        found += 1
+    assert found
+
+
+# --- what a printout may lack --------------------------------------------------------------------
+
+
+def test_published_runs_are_identical() -> None:
+    for number in (1, 2, 3):
+        assert verified(run(sample(number)).printout).verdict is Verdict.IDENTICAL
+
+
+def test_a_missing_input_is_named_and_the_rest_still_checked() -> None:
+    result = verified(SAMPLE.replace("IA= 3728", ""))
+    assert result.verdict is Verdict.INCOMPLETE
+    assert result.missing == ["IA"]
+    assert result.scene["IA"] is None
+    same = {check.name: check.same for check in result.fields}
+    assert same["XB"] is True  # it depends on no inertia
+    assert same["VAX"] is None
+    wrong = verified(SAMPLE.replace("IA= 3728", "").replace("14.51", "14.52"))
+    assert wrong.verdict is Verdict.DIFFERS
+    assert differing(wrong) == ["XB"]
+
+
+def test_digits_that_fit_an_illegible_character() -> None:
+    result = verified(SAMPLE.replace("143.5", "1?3.5").replace("(XA=-8.78", "(XA=-8.?8"))
+    assert result.verdict is Verdict.INCOMPLETE
+    assert [(row["name"], row["fits"]) for row in result.illegible] == [
+        ("MA", ["143.5"]),
+        ("XAF", ["-8.78"]),
+    ]
+
+
+def test_a_printout_cut_short_is_incomplete() -> None:
+    for stop in (SAMPLE.index("VBY="), SAMPLE.index("19.982") + 3, SAMPLE.index("WA= -1.745")):
+        assert verified(SAMPLE[:stop]).verdict is Verdict.INCOMPLETE
+
+
+def test_row_of_angles_with_one_lost_is_missing() -> None:
+    result = verified(SAMPLE.replace("-19.8      ", ""))
+    assert result.verdict is Verdict.INCOMPLETE
+    assert result.missing == list(ANGLES) or set(result.missing) == set(ANGLES)
+
+
+def test_point_mass_without_final_spins() -> None:
+    text = run(sample(2)).printout
+    result = verified(text)
+    assert result.scene["M"] == "4"
+    assert "WAF" not in {check.name for check in result.fields}
+
+
+def test_a_wrong_error_line_differs() -> None:
+    scene = sample(1).replaced(dict.fromkeys(("UX", "UY", "VX", "VY"), "0"))
+    text = run(scene).printout
+    assert verified(text).verdict is Verdict.IDENTICAL
+    assert verified(text.replace("690", "680")).verdict is Verdict.DIFFERS
+
+
+def test_replies_bear_witness_too() -> None:
+    text = run(sample(1)).printout
+    assert "?\x00-29.04,0,0\n" in text
+    assert verified(text).verdict is Verdict.IDENTICAL
+    result = verified(text.replace("-29.04,0,0", "-28.04,0,0"))
+    assert result.verdict is Verdict.DIFFERS
+    assert differing(result) == []
+    assert result.explanations[0].would_be == "-29.04"
+
+
+# --- what was typed ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "typed", ["-64.42", ".1", "90315.8817", "1E12", "5E-03", "3.14159265", "123456789"]
+)
+def test_typed_texts_are_recovered(typed: str) -> None:
+    seen = stored_and_printed(typed)
+    assert seen is not None
+    assert stored_and_printed(texts_that_print(seen[1])[0]) == seen
+
+
+def test_angles_are_recovered_through_radians() -> None:
+    for tenths in range(-1800, 1801, 7):
+        typed = str(tenths / 10)
+        seen = stored_and_printed(typed, angle=True)
+        assert seen is not None
+        assert stored_and_printed(texts_that_print(seen[1], angle=True)[0], angle=True) == seen
+
+
+# --- the command ---------------------------------------------------------------------------------
+
+
+def test_json_one_object_a_printout_and_exit_status(tmp_path) -> None:
+    good, bad = tmp_path / "good.txt", tmp_path / "bad.txt"
+    good.write_text(SAMPLE + SAMPLE, encoding="utf-8")
+    bad.write_text(SAMPLE.replace("143.5", "148.5"), encoding="utf-8")
+    done = impact88("verify", "--json", str(good))
+    objects = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [one["verdict"] for one in objects] == ["identical", "identical"]
+    assert done.returncode == 0
+    done = impact88("verify", "--json", str(good), str(bad), str(tmp_path / "none.txt"))
+    assert done.returncode == 2
+    assert len(done.stdout.splitlines()) == 3
+    assert done.stderr.count("\n") == 1
+    (one,) = [
+        json.loads(line) for line in impact88("verify", "--json", str(bad)).stdout.splitlines()
+    ]
+    assert {"file", "verdict", "scene", "fields", "explanations", "warnings"} <= set(one)
+    assert {"name", "printed", "recomputed", "same", "exact"} <= set(one["fields"][0])
+    assert {"kind", "field", "printed", "would_be", "explains"} <= set(one["explanations"][0])
+    assert one["explanations"][0]["would_be"] == "143.5"
+
+
+def test_exact_values_and_warnings_stand_beside(tmp_path) -> None:
+    result = verified(run(sample(1).replaced({"GA": "150"})).printout)
+    assert result.verdict is Verdict.IDENTICAL
+    assert any(warning.startswith("ENERGY_GAINED") for warning in result.warnings)
+    exact = {check.name: check for check in verified(SAMPLE).fields}
+    assert exact["XB"].exact == "14.52"
+    assert exact["XB"].difference == "-0.01"
+    assert exact["XB"].same is True
