@@ -58,8 +58,8 @@ def _chosen(found: Bounds, outputs: Sequence[str] | None) -> list[str]:
 def histograms(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
     """The draws of up to twelve results, with quantiles, nominal value and bounds.
 
-    ``found`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks and
-    for more than fit.
+    ``found`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks
+    and for more than fit.
     """
     import numpy as np
 

@@ -272,7 +272,7 @@ def turning_arrow(
     first = math.radians(opening + sense * (360 - span) / 2)
     turn = math.radians(sense * span)
     head = min(1.7, radius)
-    steps = 40
+    steps = 24
     arc = tuple(
         (center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle))
         for angle in (first + turn * step / steps for step in range(steps + 1))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from .drawing import Box, Drawing, Path, Point, Text, text_box
+from .drawing import Box, Drawing, Path, Point, Text, extent, text_box
 
 DIRECTIONS = 24
 REACHES = (0.9, 2.0, 3.4, 5.0, 7.0, 10.0, 14.0, 20.0)
@@ -36,39 +36,56 @@ def place(drawing: Drawing, labels: Sequence[Label], frame: Box) -> None:
     crossed, near, and in the direction wished for."""
     taken = [text_box(text) for text in drawing.texts()]
     obstacles = [
-        (_strokes(item), _weight(item.role)) for item in drawing.items if isinstance(item, Path)
+        _obstacle(item) for item in drawing.items if isinstance(item, Path) and _weight(item.role)
     ]
     for label in labels:
         best: tuple[float, Text, float] | None = None
-        for reach in REACHES:
-            for step in range(DIRECTIONS):
-                angle = math.tau * step / DIRECTIONS
-                text, box = _beside(label, angle, reach)
-                cost = 0.6 * reach + 1.5 * (1 - _agreement(label.towards, angle))
-                cost += 4.0 * sum(
+        for cost, text, reach in _candidates(label):
+            if best is not None and cost >= best[0]:
+                continue
+            box = text_box(text)
+            cost += 1e4 * sum(box.overlaps(other, 0.9) for other in taken)
+            cost += 0.0 if frame.contains(box) else 1e3
+            if best is not None and cost >= best[0]:
+                continue
+            cost += 4.0 * sum(
+                weight
+                for around, strokes, weight in obstacles
+                if box.overlaps(around) and any(box.crosses(*stroke) for stroke in strokes)
+            )
+            if reach > LEADER_FROM:
+                start, end = _leader_ends(label.at, box)
+                between = extent((start, end))
+                cost += 1.0 + 2.0 * sum(
                     weight
-                    for strokes, weight in obstacles
-                    if any(box.crosses(*stroke) for stroke in strokes)
+                    for around, strokes, weight in obstacles
+                    if between.overlaps(around)
+                    and any(_cross(start, end, *stroke) for stroke in strokes)
                 )
-                if reach > LEADER_FROM:
-                    start, end = _leader_ends(label.at, box)
-                    cost += 1.0 + 2.0 * sum(
-                        weight
-                        for strokes, weight in obstacles
-                        if any(_cross(start, end, *stroke) for stroke in strokes)
-                    )
-                cost += 1e4 * sum(box.overlaps(other, 0.9) for other in taken)
-                cost += 0.0 if frame.contains(box) else 1e3
-                if best is None or cost < best[0]:
-                    best = (cost, text, reach)
+            if best is None or cost < best[0]:
+                best = (cost, text, reach)
         assert best is not None
         text = best[1]
         if best[2] > LEADER_FROM:
-            ends = _leader_ends(label.at, text_box(text))
-            drawing.items.append(Path(ends, label.colour, 0.12, role="leader"))
-            obstacles.append(([ends], 1.0))
+            leader = Path(_leader_ends(label.at, text_box(text)), label.colour, 0.12, role="leader")
+            drawing.items.append(leader)
+            obstacles.append(_obstacle(leader))
         drawing.items.append(text)
         taken.append(text_box(text))
+
+
+def _candidates(label: Label) -> Iterator[tuple[float, Text, float]]:
+    """Places for a label: what distance and direction alone cost, the text there, its reach."""
+    for reach in REACHES:
+        for step in range(DIRECTIONS):
+            angle = math.tau * step / DIRECTIONS
+            cost = 0.6 * reach + 1.5 * (1 - _agreement(label.towards, angle))
+            yield cost, _beside(label, angle, reach), reach
+
+
+def _obstacle(path: Path) -> tuple[Box, list[tuple[Point, Point]], float]:
+    """A path as something to keep off: the box around it, its pieces and its weight."""
+    return extent(path.points), _strokes(path), _weight(path.role)
 
 
 def _strokes(path: Path) -> list[tuple[Point, Point]]:
@@ -87,7 +104,7 @@ def _agreement(wish: Point, angle: float) -> float:
     return (wish[0] * math.cos(angle) + wish[1] * math.sin(angle)) / size
 
 
-def _beside(label: Label, angle: float, reach: float) -> tuple[Text, Box]:
+def _beside(label: Label, angle: float, reach: float) -> Text:
     """The text whose box touches a circle of radius ``reach`` around the point at ``angle``."""
     probe = Text(0, 0, label.text, label.size, "start", label.colour, label.bold, label.role)
     box = text_box(probe)
@@ -102,10 +119,9 @@ def _beside(label: Label, angle: float, reach: float) -> tuple[Text, Box]:
         label.at[0] + (reach + inner) * along[0],
         label.at[1] + (reach + inner) * along[1],
     )
-    text = probe._replace(
+    return probe._replace(
         x=middle[0] - half[0] - box.left, y=middle[1] - (box.top + box.bottom) / 2
     )
-    return text, text_box(text)
 
 
 def _leader_ends(at: Point, box: Box) -> tuple[Point, Point]:

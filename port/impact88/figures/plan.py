@@ -12,9 +12,9 @@ in -x; the struck rears of collisions 3 to 5 have PB = 168 ... 171).
 
 A scene has no outlines. A vehicle is drawn as the rectangle that has its radius of gyration when
 mass lies evenly on it, L² + W² = 12 I/m, at L/W = 2.6, a passenger car's; then lengthened or
-widened where the contact point would lie outside. A vehicle 10,000 times as heavy as the other is
-drawn as a wall behind the contact plane; point masses (both distances 0) are drawn moved apart
-along n until they touch. What reaches beyond the contact plane is drawn as crushed, dashed.
+widened where the contact point would lie outside. A vehicle 10,000 times as heavy as the other and
+at rest is drawn as a wall behind the contact plane; point masses (both distances 0) are drawn moved
+apart along n until they touch. What reaches beyond the contact plane is drawn as crushed, dashed.
 """
 
 from __future__ import annotations
@@ -152,7 +152,7 @@ def plan(scene: Any, result: Mapping[str, Any] | None = None) -> Plan:
                 width,
                 outline,
                 kept,
-                heavy >= WALL * light,
+                heavy >= WALL * light and before[name] == ((0.0, 0.0), 0.0),
                 before[name],
                 final.get(name),
             )
