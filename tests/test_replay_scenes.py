@@ -44,9 +44,7 @@ def printed_fields(printout: str) -> dict[str, str]:
         if old in fields:
             fields[new] = fields.pop(old)
     for mark, name in (("VAX", "A"), ("VBX", "B")):
-        line = re.search(
-            rf"{mark}= (\S+) V{name}Y= (\S+) \(X{name}=(\S+) Y{name}= (\S+)\)", after
-        )
+        line = re.search(rf"{mark}= (\S+) V{name}Y= (\S+) \(X{name}=(\S+) Y{name}= (\S+)\)", after)
         if line:
             names = (f"V{name}X", f"V{name}Y", f"X{name}F", f"Y{name}F")
             fields |= dict(zip(names, line.groups(), strict=True))

@@ -1,14 +1,14 @@
 """The listing's Applesoft arithmetic over numpy arrays, bit for bit.
 
-    unit         what a block of scenes shares: who failed first, scratch memory
-    reals        the 40-bit real over arrays: round, add, multiply, divide, INT, compare
-    functions    LOG EXP ^ SQR SIN COS TAN ATN
-    decimaltext  decimal texts to reals and back
-    elimination  lines 1000-1170
-    impact       lines 280-760
-    columns      what the caller gives, read
-    blocks       many scenes: sorted into kinds, cut into blocks, computed
-    result       what the caller gets
+unit         what a block of scenes shares: who failed first, scratch memory
+reals        the 40-bit real over arrays: round, add, multiply, divide, INT, compare
+functions    LOG EXP ^ SQR SIN COS TAN ATN
+decimaltext  decimal texts to reals and back
+elimination  lines 1000-1170
+impact       lines 280-760
+columns      what the caller gives, read
+blocks       many scenes: sorted into kinds, cut into blocks, computed
+result       what the caller gets
 """
 
 from __future__ import annotations
@@ -42,6 +42,5 @@ def replay(columns: Mapping[str, Any], fields: bool = False, threads: int | None
     """
     result = replay_scenes(read_columns(columns), threads)
     if fields:
-        for name in field_names():
-            result.printed(name)
+        result.write_fields()
     return result

@@ -69,9 +69,7 @@ def read_columns(columns: Mapping[str, Any]) -> Scenes:
     return Scenes(values, count, first)
 
 
-def _read_texts(
-    texts: dict[str, Sequence[str]], values: dict[str, Floats], first: Ints
-) -> None:
+def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], first: Ints) -> None:
     """Read some columns of texts as one."""
     every = [text for column in texts.values() for text in column]
     sizes = [len(column) for column in texts.values()]

@@ -220,6 +220,10 @@ def write(x: Reals) -> Strings:
     return _lay_out(number, d, x.v < 0)
 
 
+_SURELY_BELOW = 9e7
+"""Below this the comparison with 99,999,999.9 needs not be made."""
+
+
 def _nine_digits(x: Reals) -> tuple[Ints, Ints]:
     """The nine digits N written for |x|, and d with |x| = N * 10^d; N = 0 for zero."""
     v = np.abs(x.v)
@@ -233,8 +237,8 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints]:
     if rows.size:
         v[rows] = (_BILLION * part(rows)).v
         d[rows] = -9
-    rows = np.flatnonzero(nonzero)
     rounds = nonzero.copy()
+    rows = np.flatnonzero(v > _SURELY_BELOW)
     while rows.size:
         current = part(rows)
         order = compare(_NINE_DIGITS, current)
@@ -243,10 +247,11 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints]:
         if rows.size:
             v[rows] = over_ten(part(rows)).v
             d[rows] += 1
-    rows = np.flatnonzero(rounds)
-    done = rows
+    rows = done = np.flatnonzero(rounds)
     while rows.size:
-        rows = rows[compare(_EIGHT_DIGITS, part(rows)) <= 0]
+        doubtful = v[rows] > _SURELY_BELOW
+        if doubtful.any():
+            rows = rows[~doubtful | (compare(_EIGHT_DIGITS, part(rows)) <= 0)]
         if rows.size:
             v[rows] = times_ten(part(rows).within(1e8)).v
             d[rows] -= 1
@@ -257,49 +262,58 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints]:
 
 _WIDTH = 15
 """The longest field: sign, point, nine digits, exponent."""
+_ZERO, _POINT, _MINUS, _NOTHING = (np.uint8(ord(c)) for c in "0.-\0")
 
 
 def _lay_out(number: Ints, d: Ints, negative: Bools) -> Strings:
-    """Nine digits times ten to the d, as PRINT sets them (see the scalar `lay_out`)."""
+    """Nine digits times ten to the d, as PRINT sets them (see the scalar `lay_out`).
+
+    The characters are made place by place, all fields at a time: ``out[k]`` holds every field's
+    character k.
+    """
     length = number.size
-    digits = np.empty((length, 9), np.uint8)
-    rest = number
+    out = np.zeros((_WIDTH, length), np.uint8)
+    digits = np.empty((9, length), np.uint8)
+    last = np.zeros(length, np.int8)  # the last digit that is not zero
+    rest = number.astype(np.uint32)
     for place in range(8, -1, -1):
-        rest, digits[:, place] = np.divmod(rest, 10)
-    last = 8 - np.argmax(digits[:, ::-1] != 0, axis=1)  # the last digit that is not zero
-    digits += ord("0")
-    out = np.zeros((length, _WIDTH), np.uint8)
-    end = np.empty(length, np.int64)
-    low = int(d.min(initial=0))
-    kinds = (d - low) * 2 + negative
-    for kind in np.flatnonzero(np.bincount(kinds)).tolist():
-        rows = np.flatnonzero(kinds == kind)
-        exponent, sign = kind // 2 + low, kind % 2
-        if sign:
-            out[rows, 0] = ord("-")
-        plain = -10 <= exponent <= 0
-        point = exponent + 9 if plain else 1
-        if point < 0:
-            out[rows, sign] = ord(".")
-            out[rows, sign + 1] = ord("0")
-            out[rows, sign + 2 : sign + 11] = digits[rows]
-            end[rows] = sign + last[rows] + 3
-            continue
-        out[rows, sign : sign + point] = digits[rows, :point]
-        out[rows, sign + point] = ord(".")
-        out[rows, sign + point + 1 : sign + 10] = digits[rows, point:]
-        end[rows] = sign + np.where(last[rows] < point, point, last[rows] + 2)
-    out[np.arange(_WIDTH) >= end[:, np.newaxis]] = 0
-    rows = np.flatnonzero((d < -10) | (d > 0))
+        tens = rest // np.uint32(10)
+        digits[place] = rest - tens * np.uint32(10)
+        rest = tens
+    for place in range(1, 9):
+        last[digits[place] != 0] = place
+    digits += _ZERO
+    plain = (d >= -10) & (d <= 0)
+    point = np.where(plain, d + 9, 1).astype(np.int8)  # so many digits before the point
+    end = np.where(last < point, point, last + np.int8(2))
+    for place in range(10):
+        before = digits[place] if place < 9 else _POINT
+        after = digits[place - 1] if place else _POINT
+        character = np.where(point > place, before, after)
+        character[point == place] = _POINT
+        out[place] = np.where(end > place, character, _NOTHING)
+    rows = np.flatnonzero(point == -1)
+    if rows.size:  # below .1: the point, a zero and the digits
+        out[0, rows], out[1, rows] = _POINT, _ZERO
+        end[rows] = last[rows] + 3
+        for place in range(9):
+            out[place + 2, rows] = np.where(last[rows] >= place, digits[place, rows], _NOTHING)
+    rows = np.flatnonzero(~plain)
     if rows.size:
-        exponent = d[rows] + 8
         at = end[rows]
+        exponent = d[rows] + 8
         size = np.abs(exponent)
-        out[rows, at] = ord("E")
-        out[rows, at + 1] = np.where(exponent < 0, ord("-"), ord("+"))
-        out[rows, at + 2] = ord("0") + size // 10
-        out[rows, at + 3] = ord("0") + size % 10
+        out[at, rows] = ord("E")
+        out[at + 1, rows] = np.where(exponent < 0, ord("-"), ord("+"))
+        out[at + 2, rows] = ord("0") + size // 10
+        out[at + 3, rows] = ord("0") + size % 10
     zero = number == 0
-    out[zero] = 0
-    out[zero, 0] = ord("0")
-    return out.view(f"S{_WIDTH}").reshape(length).astype(np.str_)
+    if zero.any():
+        out[:, zero] = 0
+        out[0, zero] = _ZERO
+        negative = negative & ~zero
+    if negative.any():
+        for place in range(_WIDTH - 1, 0, -1):
+            out[place] = np.where(negative, out[place - 1], out[place])
+        out[0, negative] = _MINUS
+    return np.ascontiguousarray(out.T).astype(np.uint32).view(f"<U{_WIDTH}").reshape(length)

@@ -28,9 +28,7 @@ DONE = stamp(570, 900)
 C_1E_9 = from_number(scalar.read("1E-9")[0])
 
 
-def solve(
-    unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool = False
-) -> list[Reals]:
+def solve(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool = False) -> list[Reals]:
     """The solution, column M + 1, of the M equations in ``A``. Records zero determinants.
 
     With ``matrix``, ``A`` gets all elements as the program leaves them.

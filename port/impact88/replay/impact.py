@@ -98,7 +98,9 @@ def each(
     return results
 
 
-def _times(unit: Unit, places: Places, left: Sequence[Reals], right: Sequence[Reals]) -> list[Reals]:
+def _times(
+    unit: Unit, places: Places, left: Sequence[Reals], right: Sequence[Reals]
+) -> list[Reals]:
     """Products, leaving out the rows in which a factor is known to be zero."""
     rows = [i for i in range(len(places)) if left[i].high and right[i].high]
     done = each(
@@ -195,7 +197,9 @@ def run(
         functions.shifted_for_cosine,
         [turn for turn, cosine in zip(turns, shifted, strict=True) if cosine],
     )
-    turns = [for_cosine.pop(0) if cosine else turn for turn, cosine in zip(turns, shifted, strict=True)]
+    turns = [
+        for_cosine.pop(0) if cosine else turn for turn, cosine in zip(turns, shifted, strict=True)
+    ]
     sin_b, cos_b, sin_a, cos_a, sin, cos, *pivot_cosines = each(unit, places, functions.sin, turns)
     D1, D2, D3, D4 = _rounded(
         _times(unit, places[:4], [DB, DB, DA, DA], [sin_b, cos_b, sin_a, cos_a])
@@ -260,7 +264,9 @@ def run(
     A[5, last] = angular
 
     solution = elimination.solve(unit, A, M, matrix)
-    V = solution + [A[5, last], A[6, last]][M - 4 :]  # of M = 4, lines 700 and 710 read what is there
+    V = (
+        solution + [A[5, last], A[6, last]][M - 4 :]
+    )  # of M = 4, lines 700 and 710 read what is there
 
     squares = _squares(unit, [(580, 0)] * 4 + [(590, 0)] * (M - 4), V[:M])
     unit.at(580)

@@ -15,7 +15,7 @@ from .unit import Bools, Ints, Unit
 OTHER_M = 2
 """The code of a scene whose M is neither 4 nor 6: not replayed."""
 _KINDS = {code: kind for kind, code in CODES.items()}
-_CHUNK = 16384
+_AT_A_TIME = 32768
 """So many fields are written at a time."""
 
 
@@ -30,9 +30,7 @@ class Replay:
     (1160 for ZERO DETERMINANT), else 0. ``count``: the number of scenes.
     """
 
-    def __init__(
-        self, scenes: Scenes, six: Bools, unit: Unit, values: dict[str, Floats]
-    ) -> None:
+    def __init__(self, scenes: Scenes, six: Bools, unit: Unit, values: dict[str, Floats]) -> None:
         self.count = scenes.count
         self.code: Ints = unit.code()
         self.line: Ints = unit.line()
@@ -93,47 +91,57 @@ class Replay:
         """
         name = "MUP" if name == "MU" else name
         if name not in self._fields:
-            self._fields[name] = self._write(name)
+            self._write([name])
         return self._fields[name]
 
-    def _write(self, name: str) -> Strings:
-        present = self._unit.reached(impact.PRINTED[name]) & (self.code != OTHER_M)
-        if name in ("WAF", "WBF"):
-            present &= self._six
+    def write_fields(self) -> None:
+        """Write all fields now, which takes less time than one after another."""
+        names = [name for name in field_names() if name not in self._fields]
+        at_a_time = max(1, _AT_A_TIME // self.count)
+        for start in range(0, len(names), at_a_time):
+            self._write(names[start : start + at_a_time])
+
+    def _write(self, names: list[str]) -> None:
+        """Write some fields together."""
+        columns = [self._to_print(name) for name in names]
+        v = columns[0] if len(columns) == 1 else np.concatenate(columns)
+        parts = [
+            write(Reals(v[at : at + _AT_A_TIME], None, 2.0**-128, 2.0**127))
+            for at in range(0, v.size, _AT_A_TIME)
+        ]
+        texts = parts[0] if len(parts) == 1 else np.concatenate(parts)
+        start = 0
+        for name, column in zip(names, columns, strict=True):
+            field = texts[start : start + column.size]
+            self._fields[name] = np.where(self._printed(name), field, "")
+            start += column.size
+
+    def _printed(self, name: str) -> Bools:
+        """The scenes in which the program came to print a field."""
+        printed = self._unit.reached(impact.PRINTED[name]) & (self.code != OTHER_M)
+        return printed & self._six if name in ("WAF", "WBF") else printed
+
+    def _to_print(self, name: str) -> Floats:
+        """What PRINT gets for a field, extension included; of length 1 where all scenes share it."""
         if name == "LOSS":
             columns = [self._values["KI"], self._values["KF"]]
         elif name in self._values:
             columns = [self._values[name]]
         else:
             columns = [self._scenes.values[name]]
-        if all(column.size == 1 for column in columns):
-            return np.where(present, _field(name, columns), "")
-        columns = [np.broadcast_to(column, self.count) for column in columns]
-        parts = [
-            _field(name, [column[at : at + _CHUNK] for column in columns])
-            for at in range(0, self.count, _CHUNK)
-        ]
-        return np.where(present, np.concatenate(parts), "")
-
-
-def _field(name: str, columns: list[Floats]) -> Strings:
-    """The characters of one field of the printout."""
-    unit = Unit(columns[0].size)
-    with np.errstate(all="ignore"):
-        x, *more = (from_floats(column.copy(), unit, True) for column in columns)
-        if more:
-            x = impact.loss(x, *more)
-        elif name in impact.FLOORED:
-            x = impact.floored(name, x)
-        elif name in impact.ANGLES:
-            (angle,) = impact.radians(unit, [x])
-            x = (angle / impact.AG).rounded()
-        if x.v.size != columns[0].size:  # known to be zero throughout
-            x = Reals(np.zeros(columns[0].size), unit, 1.0, 0.0, True)
-        return write(x)
+        unit = Unit(columns[0].size)
+        with np.errstate(all="ignore"):
+            x, *more = (from_floats(column.copy(), unit, True) for column in columns)
+            if more:
+                x = impact.loss(x, *more)
+            elif name in impact.FLOORED:
+                x = impact.floored(name, x)
+            elif name in impact.ANGLES:
+                (angle,) = impact.radians(unit, [x])
+                x = (angle / impact.AG).rounded()
+        return x.v
 
 
 def field_names() -> tuple[str, ...]:
     """The fields of the printout, in its order."""
     return tuple(sorted(impact.PRINTED, key=impact.PRINTED.__getitem__))
-

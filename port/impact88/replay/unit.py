@@ -62,9 +62,7 @@ class Unit:
 
     def at_each(self, places: Sequence[tuple[int, int]]) -> None:
         """Go to several places at once: (line, position) of each row of a two-dimensional array."""
-        self._place = np.array(
-            [[key(line, position)] for line, position in places], dtype=np.int64
-        )
+        self._place = np.array([[key(line, position)] for line, position in places], dtype=np.int64)
 
     def at_every(self, places: Ints) -> None:
         """Go to a place of its own for each scene, given as `key`."""
