@@ -48,7 +48,7 @@ def colinear_inverse(
             "E = 0: the vehicles leave together whatever their approach (Equation 7), so the "
             "final velocities do not tell the initial ones; expected E above 0"
         )
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         initial = _equations_9_to_12(ma, mb, 1 / np.where(e == 0, np.nan, e), mu, *final)
         return report(ma, mb, e, mu, initial, final)
 
@@ -69,7 +69,7 @@ def report(
     Van, Vat, Vbn, Vbt = final
     ki = 0.5 * (ma * (van**2 + vat**2) + mb * (vbn**2 + vbt**2))
     kf = 0.5 * (ma * (Van**2 + Vat**2) + mb * (Vbn**2 + Vbt**2))
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         values = (
             *initial,
             *final,

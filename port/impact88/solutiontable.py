@@ -52,7 +52,7 @@ def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
     worst = {name: float(value) for name, value in solution.amplification.items()}
     bad = {name: value for name, value in worst.items() if not value < BADLY_CONDITIONED}
     if bad:
-        names = ", ".join(f"{name} {number(value, 2)} times" for name, value in bad.items())
+        names = ", ".join(f"{name} {number(value, 3)} times" for name, value in bad.items())
         found.append(f"badly conditioned: errors of the known velocities are amplified ({names})")
     status = Status(int(values.get("STATUS", 0)))
     found += [words for bit, words in WORDS.items() if status & bit]
@@ -139,7 +139,7 @@ def _friction(values: Mapping[str, float]) -> str:
 
 def _conditions(solution: Solution) -> list[str]:
     """How errors of the known velocities come through."""
-    cells = [f"{name} {number(value, 2)}" for name, value in solution.amplification.items()]
+    cells = [f"{name} {number(value, 3)}" for name, value in solution.amplification.items()]
     return paragraph(
         "Error amplification (error of the unknown when each known velocity errs independently by "
         "1; spins times the radius of gyration "

@@ -600,6 +600,11 @@ class _Equations:
             values[name] = np.where(determined, value * scale, np.nan)
         if self.problem.point:
             values["PM"] = np.zeros(self.count)
+            for before, after in (("WA", "WAF"), ("WB", "WBF")):
+                # nothing turns a point mass: a spin passes through
+                for name, other in ((before, after), (after, before)):
+                    if name in given or other in given:
+                        values[name] = given.get(name, given.get(other))
         nothing = np.zeros((self.count, len(self.known)))
         approach = self._quantity(self.normal_before)
         sliding = self._quantity(self._relative(1, INITIAL))

@@ -133,8 +133,9 @@ def _fits() -> str:
         ),
         *paragraph(
             f"With e_m held at Table 2's value, the fits differ from Table 2 by {rms_e:.4f} in e "
-            f"and {rms_mu:.4f} in mu (root mean square, without 8): what the unstated weights, bounds "
-            "(here e stops at 0 where Table 2 has .003 to .008) and the rounded velocities leave."
+            f"and {rms_mu:.4f} in mu (root mean square, without 8): what the unstated weights and "
+            "bounds (here e stops at 0 where Table 2 has .003 to .008) and the rounded velocities "
+            "leave."
         ),
         *paragraph(
             "8: V of vehicle A is lost and left out of the sum. 8*: with -10.2/10.6 put in its "

@@ -1,0 +1,302 @@
+"""The commands reconstruct, barrier, colinear, delta-v, staged and example, as users meet them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from impact88.cli import main
+from impact88.staged import collisions
+
+TABLE_3_AFTER = """
+title = "Table 3, after"
+MA = 96
+MB = 145
+IA = 1970
+IB = 3770
+DA = 4.5
+DB = 4
+GA = 0
+PA = 0
+PB = -40
+TA = 0
+TB = 90
+E = 0.25
+EM = -0.9
+MU = ".89"
+VAX = -7.46
+VAY = 25.994
+VBX = -19.338
+VBY = 41.456
+WAF = -2.9027
+WBF = "-.885"
+UX = ""            # as in a template: not known
+"""
+SECTION_7 = {"UY": 0, "VX": 0, "VAX": -10, "VAY": 20, "VBX": -20, "VBY": 45}
+CAR = "MA=143.5 IA=3728 DA=7.59 PA=-19.8 TA=0 GA=-30 E=.005 MU=.911 EM=-.715 UX=-29.04 UY=0 WA=0"
+REAR_END = "MA=154.7 MB=99.1 E=.071 MUP=-.008 UN=-56.76 UT=0 VN=0 VT=0"
+
+
+@pytest.fixture
+def after(tmp_path: Path) -> str:
+    path = tmp_path / "after.toml"
+    path.write_text(TABLE_3_AFTER, encoding="utf-8")
+    return str(path)
+
+
+def sets(pairs: str) -> list[str]:
+    return [part for pair in pairs.split() for part in ("--set", pair)]
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    status = main(arguments)
+    captured = capsys.readouterr()
+    return status, captured.out, captured.err
+
+
+def as_json(capsys: pytest.CaptureFixture[str], *arguments: str) -> Any:
+    status, out, err = run(capsys, *arguments, "--json")
+    assert (status, err) == (0, "")
+
+    def refuse(text: str) -> None:
+        pytest.fail(f"{text} is no JSON")
+
+    return json.loads(out, parse_constant=refuse)
+
+
+def test_reconstruct_shows_both_solutions_of_table_3(
+    after: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, err = run(capsys, "reconstruct", after, "--contact-time", ".15")
+    assert (status, err) == (0, "")
+    assert "SOLUTION 1 OF 2" in out
+    assert "SOLUTION 2 OF 2" in out
+    assert "-36.6661*" in out
+    assert "length/time" in out
+    assert "! friction reverses the sliding" in out
+    assert "11 o'clock" in out
+    assert all(len(line) <= 100 for line in out.splitlines())
+    first, second = as_json(capsys, "reconstruct", after, "--contact-time", ".15")["solutions"]
+    assert first["values"]["UX"] == pytest.approx(-36.6660802138826215, rel=1e-12)
+    assert first["solved_for"] == ["UX", "UY", "WA", "VX", "VY", "WB"]
+    assert first["values"]["DVA"] == pytest.approx(39.098, abs=1e-3)
+    assert first["values"]["FA"] == pytest.approx(first["values"]["P"] / 0.15)
+    assert first["units"]["FA"] == "mass·length/time²"
+    assert first["warnings"] == []
+    assert second["values"]["MUP"] == -0.89
+    assert second["status"] == 4
+
+
+def test_reconstruct_for_some_unknowns_only(after: str, capsys: pytest.CaptureFixture[str]) -> None:
+    vehicles = [f"{n}=" for n in ("E", "EM", "MU", "WAF", "WBF")]
+    known = " ".join([*vehicles, *(f"{n}={v}" for n, v in SECTION_7.items())])
+    status, out, err = run(capsys, "reconstruct", after, *sets(known))
+    assert status == 2
+    assert out == ""
+    assert "9 quantities are unknown" in err
+    assert "UX VY MUP could be found alone" in err
+    assert err.count("\n") == 1
+    (solution,) = as_json(capsys, "reconstruct", after, *sets(known), "--for", "ux,vy")["solutions"]
+    assert solution["values"]["UX"] == pytest.approx(-40.2083333333333333)
+    assert solution["values"]["VY"] == pytest.approx(58.2413793103448276)
+    assert "E" not in solution["values"]
+
+
+def test_reconstruct_flags_what_errors_do(after: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = run(capsys, "reconstruct", after, "--set", "E=.005")
+    assert status == 0
+    assert "! badly conditioned: errors of the known velocities are amplified" in out
+    _, out, _ = run(capsys, "reconstruct", after, *sets("UX=-36 UY=0 VX=0 VY=58.7"))
+    assert "! the known values contradict one another" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "nothing is known"),
+        (["nowhere.toml"], "nowhere.toml: cannot be read"),
+        (["AFTER", "--set", "E=0"], "after.toml: E = 0: Equation 15"),
+        (["AFTER", "--set", "EM=0"], "EM = 0: Equation 18"),
+        (["AFTER", "--set", "MU=-10"], "MU = -10 (pivot)"),
+        (["AFTER", "--set", "E=abc"], "--set: E = 'abc' is no number; expected coefficient of"),
+        (["AFTER", "--set", "e5"], "'e5' is no setting; expected NAME=VALUE"),
+        (["AFTER", "--set", "FOO=1"], "'FOO' has no place here"),
+        (["AFTER", "--set", "E=.1", "--set", "E=.2"], "E is given twice"),
+        (["AFTER", "--set", "MA="], "missing MA (mass of A)"),
+        (["AFTER", "--set", "MA=-1"], "MA is not positive"),
+        (["AFTER", "--set", "M=5"], "M must be 6"),
+        (["AFTER", "--for", "VAX"], "VAX is both known and wanted"),
+        (["AFTER", "--for", "XA"], "'XA' is no unknown"),
+        (["AFTER", "--contact-time", "0"], "contact time 0.0 is not positive"),
+        (["AFTER", "--contact-time", "x"], "--contact-time"),
+    ],
+)
+def test_reconstruct_refuses_in_one_line(
+    arguments: list[str], message: str, after: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    replaced = [after if argument == "AFTER" else argument for argument in arguments]
+    status, out, err = run(capsys, "reconstruct", *replaced)
+    assert (status, out) == (2, "")
+    assert message in err
+    assert err.startswith("impact88 reconstruct: ")
+    assert err.count("\n") == 1
+
+
+def test_a_file_with_a_wrong_key_is_told_with_its_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("ma = 96\n", encoding="utf-8")
+    status, _, err = run(capsys, "reconstruct", str(path))
+    assert status == 2
+    assert f"{path}: 'ma' has no place here; did you mean MA?" in err
+    path.write_text("MA = .5\n", encoding="utf-8")
+    status, _, err = run(capsys, "reconstruct", str(path))
+    assert "line 1: MA = .5 is not TOML; write 0.5" in err
+
+
+def test_barrier_forward_and_back(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = run(capsys, "barrier", *sets(CAR), "--contact-time", ".1")
+    assert status == 0
+    assert "7.3903*" in out
+    assert "peak force, at three times the average" in out
+    assert "B before" not in out
+    (there,) = as_json(capsys, "barrier", *sets(CAR))["solutions"]
+    values = there["values"]
+    assert values["VAX"] == pytest.approx(7.39034095247408067757753284521, rel=1e-12)
+    assert values["LOSS"] == pytest.approx(77.043776782084758018970643083, rel=1e-12)
+    assert "DVB" not in values
+    rebound = [f"{n}={values[n]!r}" for n in ("VAX", "VAY", "WAF")]
+    known = " ".join([*CAR.split()[:7], "EM=-.715", "E=.005", "MUP=.911", *rebound])
+    known = " ".join(dict.fromkeys(p for p in known.split() if not p.startswith("MU=")))
+    (back,) = as_json(capsys, "barrier", *sets(known))["solutions"]
+    assert back["values"]["UX"] == pytest.approx(-29.04, abs=1e-9)
+    assert back["badly_conditioned"]
+    status, _, err = run(capsys, "barrier", "--set", "VX=1")
+    assert status == 2
+    assert "'VX' has no place here" in err
+
+
+def test_colinear_forward_and_back(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = run(capsys, "colinear", *sets(REAR_END), "--contact-time", ".12")
+    assert status == 0
+    assert "-33.0237*" in out
+    assert "average force during contact" in out
+    there = as_json(capsys, "colinear", *sets(REAR_END))["values"]
+    assert there["VBN"] == pytest.approx(-37.0536123404255319, rel=1e-13)
+    after = " ".join(f"{n}={there[n]!r}" for n in ("VAN", "VAT", "VBN", "VBT"))
+    back = as_json(capsys, "colinear", *sets(" ".join(REAR_END.split()[:4])), *sets(after))
+    assert back["solved_for"] == ["UN", "UT", "VN", "VT"]
+    assert back["values"]["UN"] == pytest.approx(-56.76, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "message"),
+    [
+        ("MA=1", "missing MB E MUP UN UT VN VT"),
+        (f"{REAR_END} VAN=1", "are both given"),
+        (REAR_END.replace("MA=154.7", "MA=0"), "MA is not positive"),
+        ("MA=1 MB=1 E=0 MUP=0 VAN=1 VAT=0 VBN=1 VBT=0", "E = 0: the vehicles leave together"),
+    ],
+)
+def test_colinear_refuses_in_one_line(
+    pairs: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, err = run(capsys, "colinear", *sets(pairs))
+    assert (status, out) == (2, "")
+    assert message in err
+    assert err.count("\n") == 1
+
+
+SPEEDS = "MA=96 MB=145 SA=36.667 SB=58.667"
+
+
+def test_delta_v_says_which_equation_19(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = run(capsys, "delta-v", *sets(f"{SPEEDS} LOSS=37.4"))
+    assert status == 0
+    assert "39.0981" in out
+    assert "with the factor 2/3" in out
+    status, out, _ = run(capsys, "delta-v", *sets(f"{SPEEDS} LOSS=37.4"), "--as-printed")
+    assert "58.647" in out
+    assert "as printed, without the factor 2/3" in out
+    found = as_json(capsys, "delta-v", *sets(SPEEDS), "--like", "90-side")
+    assert [e["LOSS"] for e in found["estimates"]] == [38.9, 41.5]
+    assert "collisions 8, 9, 10" in found["loss_from"]
+    velocities = as_json(
+        capsys, "delta-v", *sets("MA=96 MB=145 UX=-36.667 UY=0 VX=0 VY=58.667 LOSS=37.4")
+    )
+    assert velocities["estimates"][0]["DVA"] == pytest.approx(39.0981, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "message"),
+    [
+        ("MA=96", "MB is missing"),
+        ("MA=96 MB=145 SA=1", "SB is missing; expected it, or VX and VY"),
+        (SPEEDS, "LOSS is missing"),
+        (f"{SPEEDS} LOSS=140", "LOSS is outside 0 ... 100"),
+        ("MA=96 MB=145 SA=-1 SB=1 LOSS=4", "SA is negative"),
+    ],
+)
+def test_delta_v_refuses_in_one_line(
+    pairs: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, err = run(capsys, "delta-v", *sets(pairs))
+    assert (status, out) == (2, "")
+    assert message in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ([], ["72 of 77 agree", "36.6 36.49!", "22.9  lost!", "factor 2/3"]),
+        (["--fit"], ["25 ft²", "0 <= e <= 1", "8*", "not data", "mu free"]),
+        (["--cells"], ["10/B, I: emended: 3008 -> 3808", "9/B, vy: emended: 31.9 -> 31.09"]),
+        (["--table", "1"], ["3808*", "lost*", "m slug"]),
+        (["--table", "2"], ["28.0*", "signed P_t/P_n"]),
+    ],
+)
+def test_staged_shows_its_tables(
+    options: list[str], expected: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, err = run(capsys, "staged", *options)
+    assert (status, err) == (0, "")
+    for text in expected:
+        assert text in out
+    for collision in collisions():
+        assert any(line.startswith(str(collision.number)) for line in out.splitlines()) or (
+            options == ["--cells"]
+        )
+
+
+def test_staged_as_json_holds_everything(capsys: pytest.CaptureFixture[str]) -> None:
+    found = as_json(capsys, "staged")
+    assert len(found["collisions"]) == 11
+    assert len(found["comparison"]) == 77
+    assert found["spin_weight_ft2"] == 25.0
+    eighth = next(c for c in found["collisions"] if c["number"] == 8)
+    assert eighth["measured"]["VAX"] is None
+
+
+def test_example_step_by_step(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, "example")
+    assert (status, err) == (0, "")
+    for text in ("-40.21", "58.24", "36.2", "24.0", "39.1", "25.9", "-43.6", "61.5"):
+        assert text in out
+    assert "DIFFERS" not in out
+    assert len(as_json(capsys, "example")["steps"]) == 6
+
+
+@pytest.mark.parametrize(
+    "command", ["reconstruct", "barrier", "colinear", "delta-v", "staged", "example"]
+)
+def test_help_has_examples_and_units(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = run(capsys, command, "--help")
+    assert status == 0
+    assert "examples:" in out
+    assert "nits" in out
+    assert "exit status" in out
