@@ -37,7 +37,8 @@ class Source(NamedTuple):
 
 
 def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int, ...]]:
-    """Check ``columns`` and return name -> source for every scene name, and the common shape.
+    """Check ``columns`` and return name -> source for every scene name, in the table's order, and
+    the common shape.
 
     Raises UserError for an unknown or missing name, a column that holds no numbers, and shapes
     that do not broadcast together. M may be missing (it is 6 in the published listing); when it is
@@ -59,7 +60,7 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
     except ValueError:
         shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
         raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
-    return {name: _source(array, shape) for name, array in arrays.items()}, shape
+    return {name: _source(arrays[name], shape) for name in SCENE}, shape
 
 
 def _numbers(name: str, values: object) -> Array:
@@ -178,7 +179,7 @@ def _kind(name: str, column: Floats) -> tuple[str, bool]:
     if name == "M":
         if alike and column[0] in (4, 6):
             return str(int(column[0])), True
-        return "mixed", False
+        return ("6" if alike else "mixed"), False
     if name in INERTIAS:
         low, high = column.min(), column.max()
         if not low > 0:

@@ -4,7 +4,7 @@ A formula is written with `Expression` operands and the usual operators. Buildin
 arithmetic; it records *what* would be computed, and leaves out on the spot what need not be:
 
 - equal subexpressions become one (same operation on the same operands);
-- an operand known to be exactly 0 or 1 disappears: x + 0, x · 1, 0 · x, sin 0, ...;
+- an operand known to be exactly 0, 1 or infinite disappears: x + 0, x · 1, 0 · x, sin 0, 1/inf;
 - what no wanted result depends on is never reached when a `plan` is made.
 
 None of these changes a bit of a result (but the sign of a zero), and no other rearrangement is
@@ -13,6 +13,7 @@ made: a scene gets the same digits alone, in a column, and on every path.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 Key = tuple[object, ...]
@@ -146,8 +147,9 @@ class Book:
     def divide(self, a: Expression, b: Expression) -> Expression:
         if b.is_constant(1.0):
             return a
-        if a.is_zero:
-            return a
+        if b.is_constant(math.inf):
+            return self.constant(0.0)
+        # 0 / b stays: b may be 0, and the quotient then is NaN
         return self._keep("divide", a, b)
 
     def negative(self, a: Expression) -> Expression:

@@ -177,7 +177,7 @@ def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...]) -> Plan:
     kind = dict(zip(SCENE, kinds, strict=True))
     scene: dict[str, Expression] = {}
     for name, what in kind.items():
-        if what in ("0", "1"):
+        if what in ("0", "1", "inf"):
             scene[name] = book.constant(float(what))
         else:
             scene[name] = book.column(name, varies=what.startswith(("array", "mixed")))

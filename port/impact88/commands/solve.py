@@ -111,8 +111,9 @@ def main(arguments: argparse.Namespace) -> int:
     to = arguments.to or (source_format if arguments.output == "-" else None)
     result_format = format_of(arguments.output, to)
     given = _given(arguments.set)
-    kind = {"float64": _Float64, "applesoft": _Applesoft}[arguments.arithmetic]
-    arithmetic: _Float64 | _Applesoft = kind(arguments.outputs)
+    kinds: dict[str, type[_Float64] | type[_Applesoft]]
+    kinds = {"float64": _Float64, "applesoft": _Applesoft}
+    arithmetic = kinds[arguments.arithmetic](arguments.outputs)
     complaints = _Complaints(arguments.errors)
     with ExitStack() as stack:
         source = stack.enter_context(open_reader(arguments.cases, source_format))

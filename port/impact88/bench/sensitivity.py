@@ -1,0 +1,45 @@
+"""How far final velocities move when the scene's numbers do: the condition of the data.
+
+A method is backward stable when its result is the exact result of nearly the given scene: when its
+error is a small multiple of the unit roundoff times the sensitivity given here. The condition of
+the six equations alone does not bound it: in a sideswipe the approach is a small difference of
+large velocities, and no arithmetic can know it better than they are known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..names import FINAL_VELOCITIES
+from ..solve import solve
+
+Floats = NDArray[np.float64]
+
+STEP = 2.0**-36
+"""Relative change of a number: far above rounding, far below the nearest singularity tried."""
+GROUPS = (FINAL_VELOCITIES[:4], FINAL_VELOCITIES[4:])
+
+
+def sensitivity(columns: Mapping[str, Floats]) -> Floats:
+    """For every scene, the largest change of a final velocity, relative to the largest of its group
+    (the four velocities, the two spins), per relative change of all numbers of the scene at their
+    worst: the sum over the numbers of the central differences' sizes. At least 1."""
+    present = solve(columns, FINAL_VELOCITIES)
+    moved = {name: np.zeros_like(present[name]) for name in FINAL_VELOCITIES}
+    for name, values in columns.items():
+        if name == "M" or (name == "MU" and np.all(np.asarray(values) == -10)):
+            continue
+        upper = solve({**columns, name: values * (1 + STEP)}, FINAL_VELOCITIES)
+        lower = solve({**columns, name: values * (1 - STEP)}, FINAL_VELOCITIES)
+        for result in FINAL_VELOCITIES:
+            moved[result] += np.abs(upper[result] - lower[result]) / (2 * STEP)
+    worst = np.ones_like(present["VAX"])
+    for group in GROUPS:
+        scale = np.max([np.abs(present[name]) for name in group], axis=0)
+        change = np.max([moved[name] for name in group], axis=0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            worst = np.fmax(worst, change / scale)
+    return worst
