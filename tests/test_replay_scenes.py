@@ -6,10 +6,10 @@ from __future__ import annotations
 import re
 from typing import Any
 
-import captures
 import numpy as np
 import pytest
 
+import captures
 import impact88
 from impact88.names import SCENE
 from impact88.replay import Replay, field_names

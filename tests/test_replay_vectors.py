@@ -7,10 +7,10 @@ import operator
 from collections.abc import Callable
 from pathlib import Path
 
-import captures
 import numpy as np
 import pytest
 
+import captures
 from impact88.applesoft.decimaltext import scan
 from impact88.replay import decimaltext, functions
 from impact88.replay.reals import Reals, compare, floor, from_floats
@@ -52,7 +52,7 @@ def values(stored: list[str], extensions: list[str], unit: Unit) -> Reals:
 
 
 def shown(result: Reals, unit: Unit) -> list[str]:
-    """Results as the files write them, the sign byte reduced to its top bit; "zero" for any zero."""
+    """Results as the files write them, the sign byte cut to its top bit; "zero" for any zero."""
     packed = result.packed()  # rounds, and so may overflow
     mantissas = (result.bits & (1 << 52) - 1 | 1 << 52) >> 13
     exponents = (result.bits >> 52 & 0x7FF) - 894

@@ -26,15 +26,15 @@ __all__ = ["Replay", "field_names", "replay"]
 def replay(columns: Mapping[str, Any], fields: bool = False, threads: int | None = None) -> Replay:
     """Run the 1988 listing's own arithmetic on many scenes at once: what an Apple II Plus computes.
 
-    ``columns``: the scene's names (`impact88.names.SCENE`; M may be left out and is then 6), each one
-    value for all scenes or a column of n. A value is decimal text, read as Applesoft reads it, digit
-    by digit (so "90315.8817" and "90315.88170" differ in the last bit), a whole number, taken as its
-    text, or a stored real: a uint64 of its five bytes (14.5 is 0x8468000000). Floats are refused: the
-    digits that were typed count.
+    ``columns``: the scene's names (`impact88.names.SCENE`; M may be left out and is then 6), each
+    one value for all scenes or a column of n. A value is decimal text, read as Applesoft reads it,
+    digit by digit (so "90315.8817" and "90315.88170" differ in the last bit), a whole number, taken
+    as its text, or a stored real: a uint64 of its five bytes (14.5 is 0x8468000000). Floats are
+    refused: the digits that were typed count.
 
-    Returns a `Replay`: final velocities and spins, contact velocities before and after, energies and
-    the friction coefficient as printed, as stored reals and as floats; each scene's error and line;
-    and on request the printed fields (``fields``: write them all now, else when asked for).
+    Returns a `Replay`: final velocities and spins, contact velocities before and after, energies
+    and the friction coefficient as printed, as stored reals and as floats; each scene's error and
+    line; and on request the printed fields (``fields``: write them all now, else when asked for).
     ``threads``: how many to use, by default as many as help.
 
     Every bit is the listing's (lines 280-760 and 1000-1170). Raises UserError for columns it cannot

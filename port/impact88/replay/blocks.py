@@ -22,19 +22,19 @@ WORTH_A_THREAD = 4096
 def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK) -> Replay:
     """Replay scenes that have been read. ``threads``: None for as many as there are processors, as
     long as each has enough to do."""
-    unit = Unit(scenes.count)
+    unit = Unit(scenes.size)
     unit.first[...] = scenes.first
     M = scenes.values["M"]
-    six = np.broadcast_to(M == 6, scenes.count)
-    known = np.broadcast_to((M == 4) | (M == 6), scenes.count)
+    six = np.broadcast_to(M == 6, scenes.size)
+    known = np.broadcast_to((M == 4) | (M == 6), scenes.size)
     pivot = compare(from_floats(scenes.values["MU"], None, True), impact.MINUS_10) == 0
-    pivot = np.broadcast_to(pivot, scenes.count)
+    pivot = np.broadcast_to(pivot, scenes.size)
     unit.at(350)
     unit.record(~known, OTHER_M)
-    values = {name: np.zeros(scenes.count) for name in impact.ASSIGNED}
-    useful = max(1, scenes.count // WORTH_A_THREAD)
+    values = {name: np.zeros(scenes.size) for name in impact.ASSIGNED}
+    useful = max(1, scenes.size // WORTH_A_THREAD)
     threads = min(threads if threads is not None else _processors(), useful)
-    block = max(1, min(block, -(-scenes.count // threads)))
+    block = max(1, min(block, -(-scenes.size // threads)))
     jobs = _blocks(known, six, pivot, block)
 
     def compute(job: tuple[Ints | slice, impact.Kind]) -> None:

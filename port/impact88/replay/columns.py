@@ -31,7 +31,7 @@ class Scenes(NamedTuple):
     scenes; and what reading recorded, see `Unit.first`."""
 
     values: dict[str, Floats]
-    count: int
+    size: int
     first: Ints
 
 
@@ -49,7 +49,8 @@ def read_columns(columns: Mapping[str, Any]) -> Scenes:
     packed: dict[str, Packed] = {}
     for name in SCENE:
         _sort_out(name, given[name], texts, packed)
-    sizes = {name: len(column) for name, column in {**texts, **packed}.items()}
+    sizes = {name: len(column) for name, column in texts.items()}
+    sizes |= {name: column.size for name, column in packed.items()}
     lengths = set(sizes.values()) - {1}
     if len(lengths) > 1:
         all_sizes = ", ".join(f"{name} {size}" for name, size in sizes.items() if size != 1)
@@ -59,13 +60,14 @@ def read_columns(columns: Mapping[str, Any]) -> Scenes:
     values = {name: from_packed(column, None).v for name, column in packed.items()}
     group: list[str] = []
     size = 0
-    for name in [*texts, None]:
-        if group and (name is None or size + sizes[name] > _AT_A_TIME):
-            _read_texts({name: texts[name] for name in group}, values, first)
+    for name in texts:
+        if group and size + sizes[name] > _AT_A_TIME:
+            _read_texts({member: texts[member] for member in group}, values, first)
             group, size = [], 0
-        if name is not None:
-            group.append(name)
-            size += sizes[name]
+        group.append(name)
+        size += sizes[name]
+    if group:
+        _read_texts({member: texts[member] for member in group}, values, first)
     return Scenes(values, count, first)
 
 

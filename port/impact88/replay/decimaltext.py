@@ -1,4 +1,4 @@
-"""Decimal texts to arrays of reals and back, as Applesoft reads constants and INPUT and writes PRINT.
+"""Decimal texts to arrays of reals and back, as Applesoft reads numbers and PRINT writes them.
 
 The scalar text of these rules is `impact88.applesoft.decimaltext`. Here all texts of a column are
 read together, a character place at a time, and all fields written together.
@@ -7,6 +7,7 @@ read together, a character place at a time, and all fields written together.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -53,7 +54,7 @@ def over_ten(x: Reals) -> Reals:
     return abs(x) / _TEN
 
 
-# --- reading ---------------------------------------------------------------------------------------
+# --- reading --------------------------------------------------------------------------------------
 
 
 def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals:
@@ -73,7 +74,7 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
     x = Reals(v, unit, 1.0, max(float(v.max(initial=0.0)), 1.0), True)
     for more, digit in numerals.further:
         rows = np.flatnonzero(more)
-        _treat(x, rows, lambda part, d=digit[rows]: _add_digit(times_ten(part), d))
+        _treat(x, rows, partial(_next_digit, digit=digit[rows]))
     exponent = np.where(numerals.exponent_negative, -numerals.exponent, numerals.exponent)
     steps = exponent - numerals.decimals
     for step, count in ((times_ten, steps), (over_ten, -steps)):
@@ -117,8 +118,8 @@ def _character_places(texts: Sequence[str], where: Callable[[int], str]) -> Iter
 class _Numerals:
     """The parts of many numbers' texts, taken in one character place after another.
 
-    Blanks count for nothing. ``value`` holds the first nine digits, ``further`` the others, as pairs
-    of which rows and which digit.
+    Blanks count for nothing. ``value`` holds the first nine digits, ``further`` the others, as
+    pairs of which rows and which digit.
     """
 
     def __init__(self, length: int) -> None:
@@ -186,16 +187,16 @@ class _Numerals:
         self.wrong |= ~(known | sign | is_e)
 
     def _exponent_digit(self, where: Bools, digit: Characters) -> None:
-        """One more digit of the exponent; after two that are worth ten or more it is one too many."""
+        """One more digit of the exponent; one too many if those before are worth ten or more."""
         too_many = where & (self.exponent >= 10)
         self.overflow |= too_many & ~self.exponent_negative
         next_exponent = np.where(too_many, 100, self.exponent * 10 + digit)
         np.copyto(self.exponent, next_exponent, where=where, casting="unsafe")
 
 
-def _add_digit(value: Reals, digit: Characters) -> Reals:
-    """ADDACC: the value rounded, and a digit added."""
-    return value + Reals(digit.astype(np.float64), value.unit, 1.0, 9.0, True)
+def _next_digit(value: Reals, digit: Characters) -> Reals:
+    """Ten times the value, and (ADDACC: that rounded) a digit added."""
+    return times_ten(value) + Reals(digit.astype(np.float64), value.unit, 1.0, 9.0, True)
 
 
 def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
@@ -211,7 +212,7 @@ def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
     x.unit.first[rows] = np.minimum(x.unit.first[rows], part.first)
 
 
-# --- writing ---------------------------------------------------------------------------------------
+# --- writing --------------------------------------------------------------------------------------
 
 
 def write(x: Reals) -> Strings:

@@ -1,8 +1,8 @@
 """Lines 1000-1170 over arrays: the listing's elimination with its own pivot search.
 
-All its oddities are kept: no scaling of rows; on a tie, and for the last pivot whatever its size, the
-later row; pivots judged against an absolute 1E-9; and RX, the row to exchange with, keeping its last
-value when a whole column is below that, even a row that is done already.
+All its oddities are kept: no scaling of rows; on a tie, and for the last pivot whatever its size,
+the later row; pivots judged against an absolute 1E-9; and RX, the row to exchange with, keeping its
+last value when a whole column is below that, even a row that is done already.
 
 Columns J of the rows being eliminated are left out: A(I,J) / AP is exactly 1, and what line 1040
 leaves in column J is never read again. (Not always zero: the ROM's multiplication by 1 can miss.)
@@ -83,7 +83,7 @@ def _bounds(part: Floats, unit: Unit) -> tuple[float, float]:
 
 
 def _pivot_rows(block: Floats, J: int, M: int, RX: Ints) -> Ints:
-    """Lines 1080-1110: the row of the largest element on or below the diagonal, the later of equals.
+    """Lines 1080-1110: the row of the largest element from the diagonal down, the later of equals.
 
     RX is left where nothing reaches 1E-9, but the very last element is always taken.
     """
@@ -112,7 +112,7 @@ def _exchange(block: Floats, filled: Bools, J: int, RX: Ints) -> None:
             block[[J, row], J:] = block[[row, J], J:]
             filled[[J, row], J:] = filled[[row, J], J:]
             continue
-        here = RX == row
+        here = row == RX
         mine, theirs = block[J, J:], block[row, J:]
         exchanged = np.where(here, theirs, mine)
         block[row, J:] = np.where(here, mine, theirs)

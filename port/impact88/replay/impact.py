@@ -1,15 +1,15 @@
 """The listing over arrays: lines 280 to 760 and what each leaves behind, for a block of scenes.
 
-The scenes of a block run the same statements: all with the same M, all pivots or none (`Kind`). Each
-value is computed by the listing's own expression, operation by operation and in its order, so every
-bit agrees. What is saved is repetition only, and only where it cannot change a bit:
+The scenes of a block run the same statements: all with the same M, all pivots or none (`Kind`).
+Each value is computed by the listing's own expression, operation by operation and in its order, so
+every bit agrees. What is saved is repetition only, and only where it cannot change a bit:
 
 - the sines and cosines, which several lines ask for, are computed once, and all together;
 - MA * (COS (GA) - MU * SIN (GA)) of line 530 is A(3,2) of line 410: a left operand is rounded, so
   being stored first changes nothing. Likewise UY - D4 * WA in line 540 is YA of line 340, and the
   sums of line 550 are A(5,2) and A(5,3);
-- (-EM) * MA is the negative of EM * MA (signs are apart from mantissas), but a quotient keeps its own
-  sign, because the ROM's division can lose it;
+- (-EM) * MA is the negative of EM * MA (signs are apart from mantissas), but a quotient keeps its
+  own sign, because the ROM's division can lose it;
 - a value known to be zero in every scene costs nothing (`reals`).
 """
 
@@ -43,7 +43,7 @@ class Kind(NamedTuple):
 ASSIGNED: dict[str, int] = {
     **{"KI": stamp(320), "XA": stamp(340, 1), "YA": stamp(340, 2)},
     **{"XB": stamp(340, 3), "YB": stamp(340, 4), "MUP": stamp(*PLACES["MU"])},
-    **{name: elimination.DONE for name in ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")},
+    **dict.fromkeys(("VAX", "VAY", "VBX", "VBY", "WAF", "WBF"), elimination.DONE),
     **{"KF": stamp(580), "LOSS": stamp(690, 2), "XAF": stamp(700, 1), "YAF": stamp(700, 2)},
     **{"XBF": stamp(710, 1), "YBF": stamp(710, 2)},
 }
@@ -264,9 +264,7 @@ def run(
     A[5, last] = angular
 
     solution = elimination.solve(unit, A, M, matrix)
-    V = (
-        solution + [A[5, last], A[6, last]][M - 4 :]
-    )  # of M = 4, lines 700 and 710 read what is there
+    V = solution + [A[5, last], A[6, last]][M - 4 :]  # M = 4: what lines 700 and 710 find
 
     squares = _squares(unit, [(580, 0)] * 4 + [(590, 0)] * (M - 4), V[:M])
     unit.at(580)
@@ -314,7 +312,7 @@ def _signed(MU: Reals, reverse: Bools) -> Reals:
 
 
 def _line_530(unit: Unit, MU: Reals, A32: Reals, A33: Reals, UY: Reals, VX: Reals) -> Reals:
-    """Lines 510-530: a MU of -10 or less, such as a 10 that line 400 has made -10, gets a pivot's 0."""
+    """Lines 510-530: a MU of -10 or less, such as 10 made -10 by line 400, gets a pivot's 0."""
     like_pivot = ~(MU > MINUS_10)
     unit.at(530)
     some = bool(like_pivot.any())

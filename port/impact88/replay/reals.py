@@ -121,7 +121,7 @@ class Reals:
         self.high = high
         self.stored = stored
         self.full = full
-        self._defects: Ints | None | bool = False
+        self._defects: Ints | bool | None = False
 
     def rounded(self) -> Reals:
         """As a variable keeps it: 32 bits, by the top bit of the extension alone."""
@@ -288,8 +288,8 @@ def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
     """left + right, or left + (-right).
 
     Both are scaled so that the larger one's 40-bit mantissa is a whole number; the smaller one is
-    cut off there. Where exponents and signs agree the ROM adds one unit of the extension: such a sum
-    always has 41 bits, so the extra unit rounds its halving up instead of down.
+    cut off there. Where exponents and signs agree the ROM adds one unit of the extension: such a
+    sum always has 41 bits, so the extra unit rounds its halving up instead of down.
     """
     left = left.rounded()
     if not right.high:
@@ -365,7 +365,7 @@ def _multiply(left: Reals, right: Reals) -> Reals:
         return ZERO
     unit = left.unit or right.unit
     shape = _shape(left.v, right.v)
-    (_, i0), (f1, _), (f2, _), (f3, i3), (f4, i4) = (unit or _nowhere()).buffers(shape)
+    (_, i0), (f1, _), (f2, _), (f3, i3), (_f4, i4) = (unit or _nowhere()).buffers(shape)
     v = np.empty(shape)
     bits = v.view(np.int64)
 
@@ -493,7 +493,7 @@ def _divide(left: Reals, right: Reals) -> Reals:
         return ZERO
     unit = left.unit or right.unit
     shape = _shape(left.v, right.v)
-    (_, i0), (f1, _), (f2, _), (f3, i3), (f4, i4) = (unit or _nowhere()).buffers(shape)
+    (_, i0), (f1, _), (f2, _), (f3, i3), (_f4, i4) = (unit or _nowhere()).buffers(shape)
     v = np.empty(shape)
     bits = v.view(np.int64)
 

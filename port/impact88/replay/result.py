@@ -25,13 +25,13 @@ class Replay:
     A scene that an error ended keeps what it had computed before, as on the machine, and has no
     later value: NaN as a float, 0 as a stored real, "" as a printed field (`present` tells).
 
-    ``code``: 0, or the Applesoft error's code (53, 69, 133), 1 for ZERO DETERMINANT, 2 for an M that
-    is neither 4 nor 6 (not replayed). ``line``: the line of the listing that ended the scene early
-    (1160 for ZERO DETERMINANT), else 0. ``count``: the number of scenes.
+    ``code``: 0, or the Applesoft error's code (53, 69, 133), 1 for ZERO DETERMINANT, 2 for an M
+    that is neither 4 nor 6 (not replayed). ``line``: the line of the listing that ended the scene
+    early (1160 for ZERO DETERMINANT), else 0. ``count``: the number of scenes.
     """
 
     def __init__(self, scenes: Scenes, six: Bools, unit: Unit, values: dict[str, Floats]) -> None:
-        self.count = scenes.count
+        self.count = scenes.size
         self.code: Ints = unit.code()
         self.line: Ints = unit.line()
         self._scenes = scenes
@@ -122,7 +122,7 @@ class Replay:
         return printed & self._six if name in ("WAF", "WBF") else printed
 
     def _to_print(self, name: str) -> Floats:
-        """What PRINT gets for a field, extension included; of length 1 where all scenes share it."""
+        """What PRINT gets for a field, extension included; length 1 where all scenes share it."""
         if name == "LOSS":
             columns = [self._values["KI"], self._values["KF"]]
         elif name in self._values:
