@@ -183,13 +183,14 @@ def barriers(rng: Generator, count: int) -> Columns:
     g = _casework(rng, count)
     which = rng.integers(0, 3, count)
     is_b = rng.random(count) < 0.5
-    for body, names in ((~is_b, ("MA", "IA", "UX", "UY", "WA")), (is_b, ("MB", "IB", "VX", "VY", "WB"))):  # fmt: skip
-        mass, inertia, vx, vy, spin = names
+    bodies = {"A": ("MA", "IA", "UX", "UY", "WA"), "B": ("MB", "IB", "VX", "VY", "WB")}
+    for name, (mass, inertia, vx, vy, spin) in bodies.items():
+        body = is_b if name == "B" else ~is_b
         no_shift, no_turn = body & (which != 1), body & (which != 2)
         g[mass] = np.where(no_shift, np.inf, g[mass])
         g[inertia] = np.where(no_turn, np.inf, g[inertia])
-        for name in (vx, vy):
-            g[name] = np.where(no_shift, 0.0, g[name])
+        for velocity in (vx, vy):
+            g[velocity] = np.where(no_shift, 0.0, g[velocity])
         g[spin] = np.where(no_turn, 0.0, g[spin])
     return g
 
