@@ -99,6 +99,10 @@ class Console:
             command, self._command = self._command, None
             self.disk_command(command.rstrip("\n"))
 
+    def select(self, slot: int) -> None:
+        """PR#: output goes to a slot from now on."""
+        self.slot = slot & 7
+
     def disk_command(self, command: str) -> None:
         """What the disk system does with a command line; only PR# concerns a program's output."""
         match = _SLOT_COMMAND.match(command)

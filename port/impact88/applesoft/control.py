@@ -7,11 +7,13 @@ out of reach, until RESUME or the manual's CALL -3288 clears it away.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 from .errors import ApplesoftError
-from .expressions import ROOM, STACK, TEMPORARIES
-from .real import add, compare, rounded
+from .pieces import ROOM, STACK, TEMPORARIES
+from .real import ZERO, Number, add, compare, rounded
+from .variables import Variables
 
 FOR_SIZE = 18
 FOR_ROOM = 74
@@ -37,13 +39,13 @@ class Frame(NamedTuple):
 
     slot: int
     back: int
-    limit: Any = None
-    step: Any = None
+    limit: Number = ZERO
+    step: Number = ZERO
     sign: int = 0
 
 
-class Deeper(Exception):
-    """The stack has grown past what the program's formulas leave free; go on carefully at ``pc``."""
+class Elsewhere(Exception):
+    """Go on at ``pc``, in another manner: the stack may have too little room for a formula now."""
 
     def __init__(self, pc: int) -> None:
         self.pc = pc
@@ -53,14 +55,14 @@ class Control:
     """The stack. ``pointer`` is the 6502's; ``safe`` is the lowest at which no formula of the
     program can run out of stack; below it steps are compiled to look."""
 
-    def __init__(self, values: list[Any], variables: Any) -> None:
+    def __init__(self, variables: Variables) -> None:
         self.frames: list[Frame] = []
         self.pointer = STACK
         self.safe = 0
         self.careful = False
         self.depth = 0
         self.lost = 0
-        self._values = values
+        self._values = variables.values
         self._variables = variables
 
     def clear(self) -> None:
@@ -75,7 +77,11 @@ class Control:
         careful = self.pointer < self.safe or self.lost > 0
         if careful != self.careful:
             self.careful = careful
-            raise Deeper(pc)
+            raise Elsewhere(pc)
+
+    def send_back(self, moved: Callable[[int], int]) -> None:
+        """The steps that loops and subroutines go back to have moved."""
+        self.frames[:] = [frame._replace(back=moved(frame.back)) for frame in self.frames]
 
     # --- what careful steps ask ---------------------------------------------------------------
 
@@ -89,10 +95,15 @@ class Control:
         if n + self.lost > TEMPORARIES:
             raise ApplesoftError("FORMULA TOO COMPLEX")
 
+    def watch(self, pc: int) -> None:
+        """Before a step that may lose a place: go on carefully."""
+        if not self.careful:
+            self.careful = True
+            raise Elsewhere(pc)
+
     def lose(self, condition: bool) -> bool:
         """IF with a string: one of the places stays taken."""
         self.lost += 1
-        self.careful = True
         return condition
 
     # --- FOR and NEXT -------------------------------------------------------------------------
@@ -109,7 +120,7 @@ class Control:
         if self.pointer < FOR_ROOM:
             raise ApplesoftError("OUT OF MEMORY")
 
-    def push_for(self, slot: int, back: int, limit: Any, step: Any) -> int:
+    def push_for(self, slot: int, back: int, limit: Number, step: Number) -> int:
         """A loop begins; returns where its body does."""
         sign = (-1 if step[2] else 1) if step[0] else 0
         self.frames.append(Frame(slot, back, limit, step, sign))

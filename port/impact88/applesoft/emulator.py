@@ -29,9 +29,9 @@ class Applesoft:
     """An Apple II Plus at the ``]`` prompt.
 
     ``keyboard`` is asked for a line when what `feed` queued is used up; ``screen`` and ``printer``
-    take what is sent to them, which `take_output` collects when no screen is given. ``dos``: whether
-    a disk system takes control-D lines; ``echo``: whether typed lines are part of the output;
-    ``blanks``: whether columns skipped by comma zones and HTAB come out as blanks.
+    take what is sent to them, which `take_output` collects when no screen is given. ``dos``:
+    whether a disk system takes control-D lines; ``echo``: whether typed lines are part of the
+    output; ``blanks``: whether columns skipped by comma zones and HTAB come out as blanks.
     """
 
     def __init__(
@@ -144,7 +144,7 @@ class Applesoft:
         return machine.error
 
     def _complain(self, error: ApplesoftError) -> ApplesoftError:
-        self.machine.out(f"\n?{error.kind} ERROR\a")
+        self.machine.output.out(f"\n?{error.kind} ERROR\a")
         self.machine.error = error
         return error
 
@@ -190,7 +190,7 @@ class Applesoft:
         return _shown(self.machine.variables.values[slot])
 
     def reals(self) -> dict[str, str]:
-        """Every real variable that exists: five stored bytes in hexadecimal, in order of creation."""
+        """Every real variable that exists, oldest first: five stored bytes in hexadecimal."""
         variables = self.machine.variables
         return {
             SIMPLE.names[slot].text: _shown(variables.values[slot])
@@ -199,7 +199,7 @@ class Applesoft:
         }
 
     def array(self, name: str) -> dict[str, Any] | None:
-        """An array: ``dims`` (sizes) and ``data``, first subscript fastest; None if there is none."""
+        """An array: ``dims`` (sizes) and ``data``, first subscript fastest. None without one."""
         kind = name[-1] if name[-1] in "%$" else REAL
         slot = ARRAYS.slots.get(Name(name.rstrip("%$")[:2], kind))
         arrays = self.machine.variables.arrays

@@ -1,108 +1,57 @@
 """Compiling expressions: tokens into Python text, in the ROM's order of events.
 
 The ROM reads and computes in one go, so an error of syntax or type shows only after everything to
-its left has been computed. Here a piece that ends in such an error is *dead*: it computes what comes
-before and then raises; nothing after it is read.
+its left has been computed. Here a piece that ends in such an error is *dead*: it computes what
+comes before and then raises; nothing after it is read.
 
-Values are the triples of `real` and ``str``. The rules in `real` round the left operand and keep the
-right one's extension, as the ROM does, so nothing of that stands here.
+Values are the triples of `real` and ``str``. The rules in `real` round the left operand and keep
+the right one's extension, as the ROM does, so nothing of that stands here.
 
-The 6502 stack is 192 bytes: each pending operator takes 12 of them, a parenthesis 5, and so on (the
-numbers below are the ROM's pushes and calls). ``at`` is how far below the statement's beginning the
-stack has come. In a *careful* compilation every step looks at the stack before it goes deeper.
+``at`` is how far below the statement's beginning the 6502 stack has come. In a *careful*
+compilation every formula looks at the stack before it goes deeper.
 """
 
 from __future__ import annotations
 
 from . import decimaltext
 from .errors import ApplesoftError
+from .pieces import (
+    ANYTHING,
+    CLOSE,
+    COMMA,
+    COMPARED,
+    FIRST_FUNCTION,
+    FN,
+    HIGHEST,
+    MAKING_TEXT,
+    MINUS,
+    NOT,
+    NUMBER,
+    NUMERIC,
+    OF_TEXT,
+    OPEN,
+    OPERATORS,
+    PARENTHESIS,
+    PENDING,
+    PLUS,
+    POINT,
+    REFUSED_FUNCTIONS,
+    RELATION_BITS,
+    RELATIONAL,
+    RELATIONS,
+    ROOM,
+    SLICES,
+    STACK,
+    TEMPORARIES,
+    TEXT,
+    USR,
+    Piece,
+)
 from .reader import QUOTE, Reader, is_digit, is_letter
 from .real import Number
 from .strings import Literal
 from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
 from .tokens import TOKENS
-
-NUMBER = "n"
-TEXT = "s"
-OPEN, CLOSE, COMMA, POINT = map(ord, "(),.")
-PLUS, MINUS, NOT, FN = (TOKENS[word] for word in ("+", "-", "NOT", "FN"))
-GREATER, EQUAL, LESS = (TOKENS[word] for word in (">", "=", "<"))
-FIRST_FUNCTION = TOKENS["SGN"]
-RELATION_BITS = {GREATER: 1, EQUAL: 2, LESS: 4}
-RELATIONS = {1: ">", 2: "==", 3: ">=", 4: "<", 5: "!=", 6: "<="}
-COMPARED = {1: "< 0", 2: "== 0", 3: "<= 0", 4: "> 0", 5: "!= 0", 6: ">= 0"}
-"""The same by what `real.compare` says of the right operand."""
-RELATIONAL = 0x64
-HIGHEST = 0x7F
-"""Precedence of the unary minus and of NOT, above ^."""
-OPERATORS = {
-    TOKENS["+"]: (0x79, "add"),
-    TOKENS["-"]: (0x79, "subtract"),
-    TOKENS["*"]: (0x7B, "multiply"),
-    TOKENS["/"]: (0x7B, "divide"),
-    TOKENS["^"]: (0x7D, "power"),
-    TOKENS["AND"]: (0x50, "&"),
-    TOKENS["OR"]: (0x46, "|"),
-}
-NUMERIC = {
-    TOKENS[word]: word for word in "SGN INT ABS SQR RND LOG EXP COS SIN TAN ATN PEEK".split()
-}
-ANYTHING = {TOKENS["FRE"]: "FRE", TOKENS["POS"]: "POS"}
-OF_TEXT = {TOKENS["LEN"]: "LEN", TOKENS["VAL"]: "VAL", TOKENS["ASC"]: "ASC"}
-MAKING_TEXT = {TOKENS["STR$"]: "STR", TOKENS["CHR$"]: "CHR"}
-SLICES = {TOKENS["LEFT$"]: "left", TOKENS["RIGHT$"]: "right", TOKENS["MID$"]: "mid"}
-USR = TOKENS["USR"]
-
-PENDING = 12
-PARENTHESIS = 5
-TEMPORARIES = 3
-"""Strings that may be pending at once."""
-STACK = 248
-"""The stack pointer when nothing is on the stack."""
-ROOM = 59
-"""An expression needs the stack pointer to be at least here."""
-
-
-class Piece:
-    """Python text for a value.
-
-    ``rounded``: it has no extension. ``truth``: text for a bool, whether it is not zero.
-    ``temporary``: a string that holds one of the three places. ``variable``: the bare value of a
-    string variable. ``whole``: the number itself when it is a constant 0 ... 32767.
-    """
-
-    __slots__ = ("code", "dead", "kind", "rounded", "temporary", "truth", "variable", "whole")
-
-    def __init__(
-        self,
-        code: str,
-        kind: str = NUMBER,
-        *,
-        rounded: bool = False,
-        truth: str | None = None,
-        dead: bool = False,
-        temporary: bool = False,
-        variable: bool = False,
-        whole: int | None = None,
-    ) -> None:
-        self.code = code
-        self.kind = kind
-        self.rounded = rounded
-        self.truth = truth
-        self.dead = dead
-        self.temporary = temporary
-        self.variable = variable
-        self.whole = whole
-
-    @property
-    def condition(self) -> str:
-        """Text for whether the number is not zero."""
-        return self.truth or f"({self.code}[0] != 0)"
-
-    @property
-    def stored(self) -> str:
-        """Text for the value as a variable takes it."""
-        return self.code if self.rounded else f"rounded({self.code})"
 
 
 class Expressions:
@@ -405,6 +354,8 @@ class Expressions:
             return self.fails("TYPE MISMATCH", argument)
         if token in MAKING_TEXT:
             return self.made(f"{MAKING_TEXT[token]}({argument.code})")
+        if token in REFUSED_FUNCTIONS:
+            return Piece(f"({argument.code}, refuse({REFUSED_FUNCTIONS[token]!r}))", dead=True)
         if token in NUMERIC:
             return Piece(f"{NUMERIC[token]}({argument.code})", rounded=token == TOKENS["PEEK"])
         return self.fails("SYNTAX", argument)

@@ -81,9 +81,7 @@ class Inputs:
         """RESTORE: READ begins with the first DATA again."""
         self.pointer = START - 1
 
-    def _take(
-        self, kind: str, place: Place, text: str, at: int, *, literal: bool = False
-    ) -> int:
+    def _take(self, kind: str, place: Place, text: str, at: int, *, literal: bool = False) -> int:
         """Read a value of a kind at ``at``, store it, and return where it ends, blanks passed."""
         values, index = place
         if kind == STRING:

@@ -8,17 +8,12 @@ monitor's routines for the screen, ONERR's cleaning-up and a bare RTS.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
 
+from . import layout
+from .parts import Parts
 from .program import START
-from .real import from_stored, integer, to_integer, to_stored
+from .real import from_stored, to_stored
 from .screen import BASE
-from .strings import Literal
-from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE
-from .variables import ARRAY_HEADER, ELEMENT_SIZES, VARIABLE_SIZE
-
-if TYPE_CHECKING:
-    from .machine import Machine
 
 WINDOW = {32: "left", 33: "width", 34: "top", 35: "bottom"}
 COLUMN, ROW, MASK = 36, 37, 50
@@ -31,7 +26,7 @@ RTS = 0x60
 ROM = 0xC000
 
 
-def _words(machine: Machine) -> dict[int, int]:
+def _words(machine: Parts) -> dict[int, int]:
     """The two-byte pointers on page 0."""
     variables, inputs = machine.variables, machine.inputs
     return {
@@ -41,7 +36,7 @@ def _words(machine: Machine) -> dict[int, int]:
         109: variables.end_of_arrays(),
         111: variables.strings.bottom,
         115: variables.strings.top,
-        117: machine.line_now(),
+        117: machine.line,
         123: inputs.data_line,
         125: inputs.pointer,
         175: machine.program.end,
@@ -49,7 +44,7 @@ def _words(machine: Machine) -> dict[int, int]:
     }
 
 
-def peek(machine: Machine, address: int) -> int:
+def peek(machine: Parts, address: int) -> int:
     """The byte at an address."""
     if address < 256:
         words = _words(machine)
@@ -64,14 +59,13 @@ def peek(machine: Machine, address: int) -> int:
         offset = address - START
         image = machine.program.image
         return image[offset] if 0 <= offset < len(image) else 0
-    cell = _cell(machine, address)
-    if cell is not None:
-        bytes_, offset, _ = cell
-        return bytes_()[offset]
+    field = layout.field_at(machine.variables, address)
+    if field is not None:
+        return field.read(address)
     return machine.ram.get(address, APPLE_II_PLUS.get(address, 0))
 
 
-def _page_zero(machine: Machine, address: int) -> int:
+def _page_zero(machine: Parts, address: int) -> int:
     screen, errors = machine.screen, machine.errors
     if address in WINDOW:
         return int(getattr(screen, WINDOW[address])) & 0xFF
@@ -83,14 +77,14 @@ def _page_zero(machine: Machine, address: int) -> int:
         MASK: lambda: screen.mask,
         ERROR_FLAG: lambda: errors.flag,
         ERROR_CODE: lambda: errors.code,
-        FLASH_BIT: lambda: machine.flash_bit,
+        FLASH_BIT: lambda: machine.output.flash_bit,
         TRACE_FLAG: lambda: 0x80 if machine.tracing else 0,
     }
     return known[address]() & 0xFF if address in known else machine.ram.get(address, 0)
 
 
-def poke(machine: Machine, address: int, value: int) -> None:
-    """Put a byte at an address."""
+def poke(machine: Parts, address: int, value: int) -> None:
+    """Put a byte at an address, other than in the program's text."""
     screen = machine.screen
     if address in SCREEN:
         screen.put_byte(address, value)
@@ -107,99 +101,20 @@ def poke(machine: Machine, address: int, value: int) -> None:
     elif address == ERROR_CODE:
         machine.errors.code = value
     elif address == FLASH_BIT:
-        machine.flash_bit = value
+        machine.output.flash_bit = value
     elif 201 <= address <= 205:
         stored = bytearray(to_stored(machine.seed))
         stored[address - 201] = value
         machine.seed = from_stored(bytes(stored))
-    elif START <= address < machine.program.end:
-        machine.poke_program(address, value)
     else:
-        cell = _cell(machine, address)
-        if cell is not None:
-            bytes_, offset, put = cell
-            changed = bytearray(bytes_())
-            changed[offset] = value
-            put(bytes(changed))
+        field = layout.field_at(machine.variables, address)
+        if field is not None:
+            field.write(address, value)
         elif address < ROM:
             machine.ram[address] = value
 
 
-Cell = tuple[Callable[[], bytes], int, Callable[[bytes], None]]
-
-
-def _cell(machine: Machine, address: int) -> Cell | None:
-    """What stands at an address among the variables: its bytes, the offset in them, and a function
-    that stores changed ones."""
-    variables = machine.variables
-    if not variables.start <= address < variables.end_of_arrays():
-        return None
-    offset = address - variables.start
-    index, offset = divmod(offset, VARIABLE_SIZE)
-    if index < len(variables.order):
-        slot = variables.order[index]
-        name = SIMPLE.names[slot]
-        values = variables.values
-
-        def simple() -> bytes:
-            return name.stored() + _bytes(values[slot], name.kind).ljust(5, b"\0")
-
-        def put(changed: bytes) -> None:
-            values[slot] = _value(values[slot], name.kind, changed[2:])
-
-        return simple, offset, put
-    return _array_cell(machine, address)
-
-
-def _array_cell(machine: Machine, address: int) -> Cell | None:
-    variables = machine.variables
-    offset = address - variables.end_of_variables()
-    for slot in variables.array_order:
-        array = variables.arrays[slot]
-        assert array is not None
-        size = ELEMENT_SIZES[array.kind]
-        header = ARRAY_HEADER + 2 * len(array.sizes)
-        total = header + size * len(array.data)
-        if offset < header:
-            head = ARRAYS.names[slot].stored() + total.to_bytes(2, "little")
-            head += bytes((len(array.sizes),))
-            head += b"".join(n.to_bytes(2, "big") for n in reversed(array.sizes))
-            return (lambda: head), offset, lambda changed: None
-        if offset < total:
-            index, offset = divmod(offset - header, size)
-            data, kind = array.data, array.kind
-
-            def put(changed: bytes) -> None:
-                data[index] = _value(data[index], kind, changed)
-
-            return (lambda: _bytes(data[index], kind)), offset, put
-        offset -= total
-    return None
-
-
-def _bytes(value: Any, kind: str) -> bytes:
-    """A value as it lies in memory; where a string lies is not modelled."""
-    if kind == REAL:
-        return to_stored(value)
-    if kind == INTEGER:
-        return (to_integer(value) & 0xFFFF).to_bytes(2, "big")
-    if kind == FUNCTION:
-        return b"\0" * 5
-    return bytes((len(value), 0, 0))
-
-
-def _value(old: Any, kind: str, changed: bytes) -> Any:
-    """The value that changed bytes stand for."""
-    if kind == REAL:
-        return from_stored(changed[:5])
-    if kind == INTEGER:
-        return integer(int.from_bytes(changed[:2], "big", signed=True))
-    if kind == FUNCTION:
-        return old
-    return Literal(old[: changed[0]].ljust(changed[0], "\0"))
-
-
-def call(machine: Machine, address: int) -> bool:
+def call(machine: Parts, address: int) -> bool:
     """CALL: whether the routine is known."""
     screen = machine.screen
     routines: dict[int, Callable[[], object]] = {
@@ -209,16 +124,14 @@ def call(machine: Machine, address: int) -> bool:
         0xFC70: screen.scroll,
         0xFC66: screen.line_feed,
         0xFC62: lambda: screen.write("\n"),
-        0xFD8E: lambda: machine.out("\n"),
-        0xFF3A: lambda: machine.out("\a"),
-        0xFBDD: lambda: machine.out("\a"),
+        0xFD8E: lambda: machine.output.out("\n"),
+        0xFF3A: lambda: machine.output.out("\a"),
+        0xFBDD: lambda: machine.output.out("\a"),
         0xFB2F: screen.full_window,
-        0xFE80: machine.inverse,
-        0xFE84: machine.normal,
-        0xF328: machine.forget_error,
-        0xF273: machine.normal,
+        0xFE80: machine.output.inverse,
+        0xFE84: machine.output.normal,
+        0xF273: machine.output.normal,
         0xD683: machine.control.clear,
-        0xD66C: machine.clear_variables,
         0xFCA8: lambda: None,
     }
     if address in routines:

@@ -39,17 +39,19 @@ class Screen:
 
     def write(self, text: str) -> None:
         """Show characters, and pass them on."""
-        skipped = self.column - self._expected
-        if skipped > 0 and self._blanks and text[:1] >= " ":
-            self._device(" " * skipped + text)
+        gap = self.column - self._expected
+        if gap > 0 and self._blanks:
+            shown, gap = _filled(text, gap)
+            self._device(shown)
         else:
+            gap = 0
             self._device(text)
         self._draw_later(text)
         if text.isprintable() and self.left + self.column + len(text) < self.left + self.width:
             self.column += len(text)
         else:
             self._move(text)
-        self._expected = self.column
+        self._expected = self.column - gap
 
     def _move(self, text: str) -> None:
         """Where the cursor's column goes."""
@@ -64,7 +66,7 @@ class Screen:
                 self.column = self.column - 1 if self.column else self.width - 1
 
     def typed(self) -> None:
-        """A line was typed on the terminal itself, which has shown it: the cursor is at the left."""
+        """A line was typed on a terminal, which has shown it: the cursor is at the left."""
         self._draw_later("\n")
         self.column = self._expected = 0
 
@@ -203,6 +205,17 @@ class Screen:
         setattr(self, edge, value)
         self.bottom = max(self.bottom, self.top + 1)
         self._row = min(self._row, HEIGHT - 1)
+
+
+def _filled(text: str, gap: int) -> tuple[str, int]:
+    """``text`` with blanks before the first character that shows on this line, and how many are
+    still to come."""
+    for n, character in enumerate(text):
+        if character >= " ":
+            return text[:n] + " " * gap + text[n:], 0
+        if character == "\n":
+            return text, 0
+    return text, gap
 
 
 def _cell(address: int) -> tuple[int, int]:

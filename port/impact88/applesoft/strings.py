@@ -35,6 +35,10 @@ class StringArea:
         self._floor = floor
         self._live = live
 
+    def put_top(self, address: int) -> None:
+        """HIMEM: strings that exist stay where they are, above or below."""
+        self.top = self.bottom = address
+
     def clear(self) -> None:
         """CLEAR: no strings."""
         self.bottom = self.top

@@ -99,6 +99,12 @@ class Variables:
         """STREND."""
         return self._end + self._arrays_size
 
+    def free(self, _: object) -> Number:
+        """FRE, whatever its argument: the room left, past 32767 as a negative number."""
+        self.strings.collect()
+        room = self.strings.bottom - self.end_of_arrays()
+        return integer((room + 0x8000 & 0xFFFF) - 0x8000)
+
     def _live_characters(self) -> int:
         total = 0
         for slot in self.order:
