@@ -23,6 +23,7 @@ COMMANDS = {
     "basic": "the ] prompt with the restored listing, or run any Applesoft program",
     "scene": "print a scene file to fill in, or a sample's",
     "verify": "say whether an old printout is right, digit for digit, and if not, why",
+    "oracle": "answer scenes with all that is known of them, for checking other programs",
     "solve": "solve a table of scenes: double precision, or Applesoft's arithmetic, fast",
     "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",
     "figure": "draw a scene, its bounds or a figure of the chapter (extra: plot)",

@@ -1,0 +1,102 @@
+"""Reads JSON Lines {"id": ..., "scene": {"MA": 143.5, ...}} from a file or standard input, numbers
+or decimal strings, and answers each line with one: the printout; each result as Applesoft has it
+(printed text, five bytes, exact decimal), in double precision, to 30 digits where mpmath is there;
+condition, error bound, STATUS. A line that cannot be used is answered with its number and what is
+wrong. With --vectors it writes labelled test vectors instead, the same for the same seed.
+
+examples:
+  impact88 oracle < scenes.jsonl > answers.jsonl
+  echo '{"id": 1, "scene": {"E": 0.1, ...}}' | impact88 oracle
+  impact88 oracle --vectors 1000 --seed 7 -o vectors.jsonl
+
+exit status: 0 every line was answered; 1 some lines could not be used; 2 no usable input at all
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import nullcontext
+from typing import IO, Any
+
+from ..errors import UserError
+from ..files import replacing
+from ..oracle import Request, answer
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 oracle`."""
+    parser.add_argument("scenes", nargs="?", default="-", metavar="SCENES.jsonl")
+    parser.add_argument("-o", "--output", default="-", metavar="FILE", help="default: stdout")
+    parser.add_argument("--no-reference", action="store_true", help="leave out the 30 digits")
+    parser.add_argument("--vectors", type=int, metavar="N", help="write N test vectors")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the test vectors")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Answer every line, or write test vectors."""
+    if args.vectors is not None and args.vectors < 1:
+        raise UserError(f"--vectors is {args.vectors}; expected a number above 0")
+    if args.vectors is not None and args.scenes != "-":
+        raise UserError("--vectors makes its own scenes; expected no file beside it")
+    counts = {"answered": 0, "refused": 0}
+    with nullcontext(sys.stdout) if args.output == "-" else replacing(args.output) as out:
+        if args.vectors is not None:
+            from ..vectors import vectors
+
+            _write(vectors(args.vectors, args.seed, not args.no_reference), out, counts)
+        else:
+            for batch in _batches(args.scenes):
+                _write(answer(batch, not args.no_reference), out, counts)
+                out.flush()
+    if not counts["answered"]:
+        raise UserError(
+            f"no line could be used ({counts['refused']} refused)"
+            if counts["refused"]
+            else 'nothing to answer; expected lines such as {"id": 1, "scene": {...}}'
+        )
+    return int(counts["refused"] > 0)
+
+
+def _write(answers: Iterator[dict[str, Any]], out: IO[str], counts: dict[str, int]) -> None:
+    for one in answers:
+        counts["refused" if "error" in one else "answered"] += 1
+        out.write(json.dumps(one, ensure_ascii=False) + "\n")
+
+
+def _batches(path: str) -> Iterator[list[Request]]:
+    """The requests that have arrived, some at a time: a program that asks line by line over a pipe
+    is answered line by line, a file in larger batches."""
+    from ..oracle import BATCH, LONGEST_LINE
+
+    try:
+        source = sys.stdin.buffer if path == "-" else open(path, "rb")  # noqa: SIM115
+    except OSError as error:
+        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
+    number = 0
+    rest = b""
+    with nullcontext(source) if path == "-" else source:
+        while True:
+            arrived = source.read1(1 << 16)
+            lines = (rest + arrived).split(b"\n")
+            rest = lines.pop() if arrived else b""
+            if len(rest) > LONGEST_LINE:
+                raise UserError(
+                    f"line {number + len(lines) + 1} is longer than {LONGEST_LINE:,} "
+                    "bytes; expected one JSON object a line",
+                    path,
+                )
+            batch = []
+            for line in lines:
+                number += 1
+                if number == 1:
+                    line = line.removeprefix(b"\xef\xbb\xbf")
+                text = line.decode("utf-8", "replace").strip()
+                if text:
+                    batch.append(Request(number, text))
+            for at in range(0, len(batch), BATCH):
+                yield batch[at : at + BATCH]
+            if not arrived:
+                return
