@@ -25,6 +25,7 @@ COMMANDS = {
     "verify": "say whether an old printout is right, digit for digit, and if not, why",
     "oracle": "answer scenes with all that is known of them, for checking other programs",
     "solve": "solve a table of scenes: double precision, or Applesoft's arithmetic, fast",
+    "bench": "run time against error of every method, measured on this machine",
     "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",
     "figure": "draw a scene, its bounds or a figure of the chapter (extra: plot)",
     "reconstruct": "solve the impact equations for any unknowns: velocities, coefficients",
@@ -45,6 +46,11 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> None:  # type: ignore[override]
         raise UserError(f"{message} (see {self.prog} --help)")
+
+
+def _help_formatter(prog: str) -> argparse.HelpFormatter:
+    """Help as wide as this project's text; argparse would load shutil to ask the terminal."""
+    return argparse.RawDescriptionHelpFormatter(prog, width=96)
 
 
 def _overview() -> str:
@@ -83,7 +89,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
         prog=f"impact88 {name}",
         description=COMMANDS[name][0].upper() + COMMANDS[name][1:] + ".",
         epilog=module.__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=_help_formatter,
     )
     module.add_arguments(parser)
     return int(module.main(parser.parse_args(rest)))

@@ -1,0 +1,148 @@
+"""The methods compared: each takes a population's scenes and gives their final velocities."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..applesoft.real import Real
+from ..elimination import ORDER, fill, lapack
+from ..replay import replay
+from ..run import run
+from ..scene import Scene
+from ..solve import solve
+from .populations import Columns, texts
+
+Floats = NDArray[np.float64]
+
+DOUBLE = 2.0**-53
+APPLESOFT = 2.0**-32
+
+
+class Prepared(NamedTuple):
+    """Scenes in the form a method takes, made outside the timing."""
+
+    size: int
+    columns: Columns
+    texts: dict[str, list[str]]
+
+
+def prepare(columns: Columns) -> Prepared:
+    return Prepared(len(columns["MA"]), columns, texts(columns))
+
+
+class Method(NamedTuple):
+    """``ready`` turns scenes into what ``solve`` takes, untimed; ``solve`` gives an (n, 6) array,
+    NaN where there is no answer. ``timed``: how many scenes to time; ``roundoff``: the unit
+    roundoff of its numbers."""
+
+    key: str
+    name: str
+    roundoff: float
+    timed: int
+    solve: Callable[[Any], Floats]
+    ready: Callable[[Prepared], Any] = lambda prepared: prepared
+
+
+def _port(arithmetic: str, read: Callable[[Any], float]) -> Callable[[list[Scene]], Floats]:
+    def solve_each(scenes: list[Scene]) -> Floats:
+        out = np.full((len(scenes), 6), np.nan)
+        for i, scene in enumerate(scenes):
+            result = run(scene, arithmetic)
+            if result.error is None and not result.zero_determinant and result.A is not None:
+                # the last column of A(6,7), first subscript fastest
+                rows = result.A["dims"][0]
+                out[i] = [read(x) for x in result.A["data"][-rows:][1:]]
+        return out
+
+    return solve_each
+
+
+def _scene_list(prepared: Prepared) -> list[Scene]:
+    names, columns = list(prepared.texts), list(prepared.texts.values())
+    rows = zip(*columns, strict=True)
+    return [Scene.from_mapping(dict(zip(names, row, strict=True))) for row in rows]
+
+
+def _replay(columns: dict[str, list[str]]) -> Floats:
+    found = replay(columns)
+    return np.stack([found.floats(name) for name in ORDER], axis=1)
+
+
+def _lapack_filled(prepared: Prepared) -> Floats:
+    return lapack(*fill(prepared.columns))
+
+
+def _lapack_ready(matrices: tuple[Floats, Floats]) -> Floats:
+    return lapack(*matrices)
+
+
+def _closed_form(threads: int) -> Callable[[Prepared], Floats]:
+    def solve_all(prepared: Prepared) -> Floats:
+        found = solve(prepared.columns, ORDER, threads=threads)
+        return np.stack([found[name] for name in ORDER], axis=1)
+
+    return solve_all
+
+
+def closed_form_columns(prepared: Prepared, threads: int = 1) -> None:
+    """What is timed of the closed form: the results as it gives them, six columns."""
+    solve(prepared.columns, ORDER, threads=threads)
+
+
+METHODS: Sequence[Method] = (
+    Method(
+        "applesoft",
+        "Applesoft port",
+        APPLESOFT,
+        200,
+        _port("applesoft", lambda x: float(Real.from_stored(x))),
+        _scene_list,
+    ),
+    Method("replay", "replay (Applesoft, arrays)", APPLESOFT, 20_000, _replay, lambda p: p.texts),
+    Method("float64", "port in float64", DOUBLE, 500, _port("float64", float), _scene_list),
+    Method(
+        "lapack",
+        "LAPACK, matrices ready",
+        DOUBLE,
+        100_000,
+        _lapack_ready,
+        lambda p: fill(p.columns),
+    ),
+    Method("lapack-fill", "LAPACK, filled and solved", DOUBLE, 100_000, _lapack_filled),
+    Method("closed-form", "closed form, one core", DOUBLE, 1_000_000, _closed_form(1)),
+    Method("closed-form-2", "closed form, two cores", DOUBLE, 1_000_000, _closed_form(2)),
+)
+"""In the order of the table; the reference itself is measured beside them."""
+
+
+def reference(prepared: Prepared) -> tuple[Floats, Floats]:
+    """The final velocities by `impact88.reference`, each as the sum of two doubles (hi, lo)."""
+    from ..reference import exact
+
+    hi, lo = (np.full((prepared.size, 6), np.nan) for _ in range(2))
+    for i in range(prepared.size):
+        true = exact({name: float(values[i]) for name, values in prepared.columns.items()})
+        if true is not None:
+            for j, name in enumerate(ORDER):
+                hi[i, j] = float(true[name])
+                lo[i, j] = float(true[name] - hi[i, j])
+    return hi, lo
+
+
+def relative_errors(found: Floats, hi: Floats, lo: Floats) -> Floats:
+    """Every scene's largest relative error, velocities by the largest velocity, spins by the larger
+    spin (as `impact88.reference.relative_error`); infinite where there is no answer."""
+    with np.errstate(all="ignore"):
+        error = np.abs((found - hi) - lo)
+        parts = []
+        for group in (slice(0, 4), slice(4, 6)):
+            scale = np.abs(hi[:, group]).max(axis=1)
+            worst = error[:, group].max(axis=1)
+            parts.append(np.where(worst == 0, 0.0, worst / scale))
+    largest = np.maximum(*parts)
+    return np.where(np.isnan(largest), math.inf, largest)

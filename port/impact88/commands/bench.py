@@ -1,0 +1,130 @@
+"""Run time against error, measured in one run on this machine: the Applesoft port, the replay over
+arrays, the port in double precision, LAPACK on the 6x6 matrices, the closed form, and 50-digit
+arithmetic, which is also the reference. Needs pip install 'impact88[bench]'; --figure also impact88[plot].
+
+populations:
+{populations}
+
+examples:
+  impact88 bench                             the table, about two minutes
+  impact88 bench --scenes 300 --repeats 3    a quick look
+  impact88 bench --figure work-precision.pdf --json > bench.json
+  impact88 bench --paths                     what skipping saves, path by path
+  impact88 bench --sizes                     growth to ten million scenes (takes 2 GB)
+
+exit status: 0 done; 2 bad input
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import asdict
+from typing import Any
+
+from ..bench.populations import BENCHMARK, POPULATIONS
+from ..errors import UserError
+from ..plaintable import plain
+
+__doc__ = (__doc__ or "").format(
+    populations="\n".join(f"  {p.name:<14} {p.level:<8} {p.meaning}" for p in POPULATIONS.values())
+)
+
+PATH_SCENES = 500_000
+SIZES = (1_000, 10_000, 100_000, 1_000_000, 10_000_000)
+
+
+def _count(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise ValueError(text)
+    return number
+
+
+_count.__name__ = "positive whole number"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 bench`."""
+    finite = [name for name in POPULATIONS if name != "barriers"]
+    parser.add_argument(
+        "--populations",
+        nargs="+",
+        choices=finite,
+        default=list(BENCHMARK),
+        metavar="NAME",
+        help=f"default: {' '.join(BENCHMARK)}",
+    )
+    parser.add_argument(
+        "--scenes", type=_count, default=2000, help="of each population (%(default)s)"
+    )
+    parser.add_argument("--seed", type=int, default=1988, help="of the populations (%(default)s)")
+    parser.add_argument(
+        "--repeats", type=_count, default=5, help="times are medians of so many (%(default)s)"
+    )
+    parser.add_argument("--paths", action="store_true", help="what skipping saves, instead")
+    parser.add_argument("--sizes", action="store_true", help="growth with the scenes, instead")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    parser.add_argument("--figure", metavar="FILE", help="draw error against time: .svg .png .pdf")
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Measure, and print tables or JSON."""
+    if arguments.seed < 0:
+        raise UserError(f"--seed {arguments.seed}: expected 0 or more")
+    if arguments.figure:
+        from ..figures.canvas import check_ending
+
+        check_ending(arguments.figure)
+    if arguments.paths or arguments.sizes:
+        return _skipping(arguments)
+    from ..bench import figure, measure, tables
+    from ..progress import progress
+
+    total = measure.steps(arguments.populations, arguments.repeats)
+    with progress(total, "bench") as meter:
+        rows = measure.measure(
+            arguments.populations, arguments.scenes, arguments.seed, arguments.repeats, meter
+        )
+    if arguments.figure:
+        from ..figures.canvas import save
+
+        save(figure.work_precision(rows), arguments.figure)
+    told = measure.machine()
+    if arguments.json:
+        found = {"machine": told, "seed": arguments.seed, "results": measure.as_json(rows)}
+        _print_json(found)
+    else:
+        print(tables.machine(told), end="\n\n")
+        print(tables.results(rows))
+        print("\n" + tables.ratios(rows))
+    return 0
+
+
+def _skipping(arguments: argparse.Namespace) -> int:
+    from ..bench import measure, paths, tables
+
+    found: dict[str, Any] = {"machine": measure.machine()}
+    texts = [tables.machine(found["machine"])]
+    if arguments.paths:
+        by_kind, by_output = paths.paths(PATH_SCENES, arguments.repeats)
+        floor = paths.floor(PATH_SCENES, arguments.repeats)
+        found["paths"] = [asdict(path) for path in by_kind]
+        found["outputs"] = [asdict(path) for path in by_output]
+        found["floor"] = asdict(floor)
+        texts += [tables.paths(by_kind, by_output), tables.floor(floor)]
+    if arguments.sizes:
+        grown = paths.sizes(SIZES, arguments.repeats)
+        found["sizes"] = [asdict(size) for size in grown]
+        texts.append(tables.sizes(grown))
+    if arguments.json:
+        _print_json(found)
+    else:
+        print("\n\n".join(texts))
+    return 0
+
+
+def _print_json(found: dict[str, Any]) -> None:
+    json.dump(plain(found), sys.stdout, indent=1)
+    print()
