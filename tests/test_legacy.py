@@ -8,9 +8,14 @@ from __future__ import annotations
 
 import re
 from importlib.resources import files
+from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+
+from impact88.run import run
+from impact88.scene import sample
+from installed import impact88
 
 LEGACY = files("impact88.legacy")
 RUNS = ("run1", "run2", "table3")
@@ -139,6 +144,30 @@ def test_printed_numbers_keep_the_last_two_digits_but_for_two(errata: Errata) ->
         restored for restored, printed in errata.numbers if printed[-2:] != f"{restored % 100:02}"
     }
     assert cut == {680, 690}
+
+
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        (340, "UX= -29.04 UY= 0 WA= 0 XA= 0 YA= 0\n"),
+        (700, "?SYNTAX ERROR\a IN 700\n"),
+        (710, "?SYNTAX ERROR\a IN 710\n"),
+        (730, "(XA=-8.78 YA= 15.91\n"),
+        (740, "(XB=-8.09 YB= 17.35\n"),
+    ],
+)
+def test_what_a_line_as_printed_does(line: int, shown: str, errata: Errata, tmp_path: Path) -> None:
+    """The evidence for the character emendations: what Applesoft makes of each line without it."""
+    without = [row for row in errata.characters if row[0] != line]
+    assert len(without) == len(errata.characters) - 1
+    program = tmp_path / "as-printed.bas"
+    program.write_text(
+        restore(text("listing-as-printed.txt"), errata._replace(characters=without)),
+        encoding="ascii",
+    )
+    printout = impact88("basic", str(program), input="-29.04,0,0\n14.52,25.15,0\n").stdout
+    assert shown in printout
+    assert shown not in run(sample(1)).printout
 
 
 def jumps(statement: str) -> list[int]:
