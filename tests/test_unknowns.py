@@ -207,6 +207,19 @@ def test_unusable_values_are_refused(changes: dict[str, Any], message: str) -> N
         solve_for(without(table_3(), *FINAL) | changes)
 
 
+def test_arrays_that_do_not_fit_and_bodies_that_cannot_be_are_refused() -> None:
+    known = without(table_3(), *INITIAL)
+    with pytest.raises(UserError, match="do not broadcast together: E"):
+        solve_for(known | {"E": np.ones(3), "VAX": np.ones(2)})
+    with pytest.raises(UserError, match="MA and MB are both infinite"):
+        solve_for(known | {"MA": np.inf, "MB": np.inf})
+    with pytest.raises(UserError, match=r"pivot's -10 in some scenes only"):
+        solve_for(known | {"MUP": np.array([0.5, -10.0])})
+    with pytest.raises(UnsolvableError):
+        solve_for(known | {"MA": 1e-320, "MB": 1e-320})
+    assert solve_for(known | {"E": np.empty((0, 2))}) == []
+
+
 def test_missing_vehicles_and_wrong_wishes_are_refused() -> None:
     known = without(table_3(), *FINAL)
     with pytest.raises(UserError, match="missing MA"):

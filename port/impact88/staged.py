@@ -197,8 +197,10 @@ def collisions() -> tuple[Collision, ...]:
 
 def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
     """The MU to type so that line 400 leaves the signed P_t/P_n: it changes it where gt > 0."""
-    sliding = Geometry.of(scene).relative([scene[name] for name in _BEFORE])[1]
-    return np.where(sliding > 0, -np.asarray(signed), signed)
+    signed = np.asarray(signed, np.float64)
+    # line 400 looks at the velocities alone: the other coefficients may be any
+    left = solve({**scene, "E": 0.0, "EM": 0.0, "MU": signed}, ("MUP",))["MUP"]
+    return np.where(left == signed, signed, -signed)
 
 
 def forward(
