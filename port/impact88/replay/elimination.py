@@ -54,12 +54,17 @@ def solve(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool = Fa
         _exchange(block, filled, J, RX)
         columns = np.flatnonzero(filled[J, :] & (np.arange(M + 2) > J - matrix))
         rows = np.flatnonzero(filled[:, J] & (np.arange(M + 1) != J))
+        if not columns.size:
+            continue
         unit.at(1150, order=stamp(570, 100 * J + 1))
         pivot_row = (
             Reals(block[J, columns], unit, low, high, True)
             / Reals(AP, unit, max(low, 2.0**-30), high, True, True)
         ).rounded()
         block[J, columns] = pivot_row.v
+        low, high = min(low, pivot_row.low), max(high, pivot_row.high)
+        if not rows.size:
+            continue
         unit.at(1040, order=stamp(570, 100 * J + 2))
         if low < 2.0**-60:  # too low a bound to rule out underflow: look again
             low, high = _bounds(block[1:, J:], unit)
@@ -68,8 +73,7 @@ def solve(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool = Fa
         others = (Reals(block[here], unit, low, high, True) - pivot_row * AR).rounded()
         block[here] = others.v
         filled[here] = True
-        low = min(low, pivot_row.low, others.low)
-        high = max(high, pivot_row.high, others.high)
+        low, high = min(low, others.low), max(high, others.high)
     if matrix:
         for place in places:
             A[place] = from_floats(block[place], unit, True)
