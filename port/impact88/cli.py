@@ -24,6 +24,7 @@ COMMANDS = {
     "scene": "print a scene file to fill in, or a sample's",
     "verify": "say whether an old printout is right, digit for digit, and if not, why",
     "oracle": "answer scenes with all that is known of them, for checking other programs",
+    "compare": "say where another program's results agree with these, and if not, why",
     "solve": "solve a table of scenes: double precision, or Applesoft's arithmetic, fast",
     "bench": "run time against error of every method, measured on this machine",
     "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",

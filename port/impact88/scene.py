@@ -21,9 +21,7 @@ DATA_LINES = (280, 290, 310)
 M_LINE = 350
 LISTING = "impact.bas"
 
-_ASSIGNMENT = re.compile(r"\b([A-Z][A-Z]?) = ([^:]*?) *(?=:|$)")
-_ENTRY = re.compile(r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)""")
-_BARE = re.compile(r"[^#]*")
+_ENTRY = r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)"""
 
 
 class Scene(Mapping[str, str]):
@@ -168,15 +166,14 @@ def _raw_values(text: str, source: str) -> dict[str, tuple[int, str]]:
                 "text over several lines is not used here; expected one value a line",
                 f"{source}, line {number}",
             )
-        if match := _ENTRY.match(line):
+        if match := re.match(_ENTRY, line):
             key = next(group for group in match.groups()[:3] if group is not None)
             if key in raw:
                 raise UserError(
                     f"{key} is given twice (first in line {raw[key][0]})",
                     f"{source}, line {number}",
                 )
-            bare = _BARE.match(match.group(4))
-            raw[key] = (number, bare.group(0).strip() if bare else "")
+            raw[key] = (number, match.group(4).partition("#")[0].strip())
     return raw
 
 
@@ -230,7 +227,9 @@ def published_data() -> dict[str, str]:
     for line in packaged_text("impact88.legacy", LISTING).splitlines():
         number, _, statements = line.partition(" ")
         if int(number) in (*DATA_LINES, M_LINE):
-            data.update(_ASSIGNMENT.findall(statements.partition(": REM")[0]))
+            for statement in statements.partition(": REM")[0].split(":"):
+                name, _, text = statement.partition(" = ")
+                data[name] = text
     return {name: data[name] for name in SCENE if name in data}
 
 

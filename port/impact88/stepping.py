@@ -18,11 +18,10 @@ from typing import Any, NamedTuple
 from . import listing
 from .applesoft.arrays import Array
 
-_COMMENT = re.compile(r" *# (\d+) (.*)")
+_COMMENT = r" *# (\d+) (.*)"
 _FILE = listing.impact.__code__.co_filename
-_VARIABLE = re.compile(r"[A-Z][A-Z0-9]?$")
-_ASSIGNED = re.compile(r"(?:^|:|THEN )\s*([A-Z][A-Z0-9]?) = ")
-_INPUT = re.compile(r"INPUT ([A-Z0-9,]+)$")
+_ASSIGNED = r"(?:^|:|THEN )\s*([A-Z][A-Z0-9]?) = "
+_INPUT = r"INPUT ([A-Z0-9,]+)$"
 _NO_REALS = ("A", "NL")
 AfterLine = Callable[[int, "Variables"], object]
 
@@ -42,7 +41,7 @@ def _comments() -> tuple[list[int], list[tuple[int, str]]]:
     places: list[int] = []
     lines: list[tuple[int, str]] = []
     for place, text in enumerate(linecache.getlines(_FILE, listing.__dict__), 1):
-        if match := _COMMENT.match(text):
+        if match := re.match(_COMMENT, text):
             places.append(place)
             lines.append((int(match.group(1)), match.group(2).rstrip("\n")))
     return places, lines
@@ -83,19 +82,23 @@ def variables(names: Mapping[str, Any], unset: object) -> Variables:
     """The listing's variables among the local names of `listing.impact`; ``unset`` marks those not
     assigned."""
     reals = {
-        name: value
-        for name, value in names.items()
-        if _VARIABLE.match(name) and name not in _NO_REALS and value is not unset
+        name: value for name, value in names.items() if _is_variable(name) and value is not unset
     }
     return Variables(reals, names["A"])
+
+
+def _is_variable(name: str) -> bool:
+    """Whether a local name of `listing.impact` is one of BASIC's reals: the port's own have an
+    underscore, small letters or a third character."""
+    return len(name) <= 2 and name.isupper() and name.isalnum() and name not in _NO_REALS
 
 
 def begun_assignment(line: int, known: Mapping[str, Any]) -> str | None:
     """The variable that an error in ``line`` left as a fresh zero: the first one the line assigns
     that has no value yet. Applesoft makes the variable before it works out the value."""
     text = dict(_comments()[1])[line]
-    match = _INPUT.match(text)
-    names = match.group(1).split(",") if match else _ASSIGNED.findall(text)
+    match = re.match(_INPUT, text)
+    names = match.group(1).split(",") if match else re.findall(_ASSIGNED, text)
     return next((name for name in names if name not in known), None)
 
 

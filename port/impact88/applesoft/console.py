@@ -30,7 +30,7 @@ Device = Callable[[str], object]
 Number = TypeVar("Number")
 Read = Callable[[str, int], "tuple[Number, int]"]
 
-_SLOT_COMMAND = re.compile(r" *PR *# *([0-7])", re.IGNORECASE)
+_SLOT_COMMAND = r" *[Pp][Rr] *# *([0-7])"
 
 
 class Keys(str):
@@ -105,7 +105,7 @@ class Console:
 
     def disk_command(self, command: str) -> None:
         """What the disk system does with a command line; only PR# concerns a program's output."""
-        match = _SLOT_COMMAND.match(command)
+        match = re.match(_SLOT_COMMAND, command)
         if match:
             self.slot = int(match.group(1))
 

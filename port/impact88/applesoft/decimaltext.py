@@ -7,7 +7,6 @@ a value in flight, so PRINT can show more than the variable would hold.
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple
 
 from .errors import overflow
@@ -26,11 +25,6 @@ from .real import (
     rounded,
     to_integer,
 )
-
-_NUMBER = re.compile(
-    r"(?: *([+-]))?((?: *[0-9])*)(?: *\.((?: *[0-9])*))?(?: *E(?: *([+-]))?((?: *[0-9])*))?"
-)
-"""Blanks may stand anywhere; every part may be missing, so this matches any text."""
 
 TEN = integer(10)
 HALF = from_stored("8000000000")
@@ -72,12 +66,33 @@ class Numeral(NamedTuple):
 
 def scan(text: str, start: int = 0) -> Numeral:
     """The parts of the number that begins at ``start``; no number at all has empty parts."""
-    match = _NUMBER.match(text, start)
-    assert match is not None  # the pattern matches the empty text
-    sign, whole, decimals, exponent_sign, exponent_digits = (
-        part.replace(" ", "") for part in match.groups(default="")
-    )
-    return Numeral(sign, whole, decimals, exponent_sign, exponent_digits, match.end())
+    rest = text[start:].replace(" ", "")
+    length = len(rest)
+    sign, rest = _sign(rest)
+    whole, rest = _digits(rest)
+    decimals = exponent_sign = exponent_digits = ""
+    if rest.startswith("."):
+        decimals, rest = _digits(rest[1:])
+    if rest.startswith("E"):
+        exponent_sign, rest = _sign(rest[1:])
+        exponent_digits, rest = _digits(rest)
+    end = start
+    for _ in range(length - len(rest)):
+        while text[end] == " ":
+            end += 1
+        end += 1
+    return Numeral(sign, whole, decimals, exponent_sign, exponent_digits, end)
+
+
+def _sign(text: str) -> tuple[str, str]:
+    """A leading + or -, and the rest."""
+    return (text[0], text[1:]) if text.startswith(("+", "-")) else ("", text)
+
+
+def _digits(text: str) -> tuple[str, str]:
+    """The leading digits, and the rest."""
+    rest = text.lstrip("0123456789")
+    return text[: len(text) - len(rest)], rest
 
 
 def read(text: str, start: int = 0) -> tuple[Number, int]:
@@ -112,7 +127,8 @@ def _exponent(sign: str, digits: str) -> int:
 
 def is_number(text: str) -> bool:
     """Whether INPUT takes the whole of ``text`` for one number."""
-    return _NUMBER.fullmatch(text.rstrip(" ")) is not None and bool(text.strip(" "))
+    text = text.rstrip(" ")
+    return bool(text) and scan(text).end == len(text)
 
 
 def number(text: str) -> Number:
