@@ -2,8 +2,8 @@
 
 The six final velocities come from `impact88.reference`; contact velocities, energies and impulses
 follow from them by their definitions (lines 320 to 340, 580 to 590, 700 to 710; Equations 13 to
-17), in 50 digits throughout. For point masses (M = 4) the arms count as 0 and the spins stay out of the
-energies.
+17), in 50 digits throughout. For point masses (M = 4) the arms count as 0 and the spins stay out of
+the energies.
 """
 
 from __future__ import annotations

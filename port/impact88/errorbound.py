@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .names import RESULTS
+
 Floats = NDArray[np.float64]
 
 DOUBLE = 2.0**-53
@@ -30,36 +32,38 @@ def relative_bound(condition: float, unit: float = DOUBLE) -> float:
     return FACTOR * condition * unit
 
 
-def absolute_bounds(
-    scene: Mapping[str, Any], solved: Mapping[str, Any], names: list[str], unit: float = DOUBLE
-) -> dict[str, Floats]:
-    """For each of ``names`` how far rounding may move it, scene by scene (arrays of n).
+def relative_bounds(condition: Any, unit: float = DOUBLE) -> Floats:
+    """The bound for scenes of an array of conditions."""
+    condition = np.asarray(condition, float)
+    return FACTOR * unit * np.maximum(np.nan_to_num(condition, nan=np.inf), 1.0)
 
-    ``solved`` holds at least COND, the final velocities and ``names``. Energies and impulses take
-    twice the relative bound of the velocities they are made of.
+
+def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Floats]:
+    """For each result the size that errors of it are measured by, scene by scene.
+
+    ``scene`` and ``solved`` are columns of n; ``solved`` holds every result of `impact88.solve`.
+    Energies and impulses are made of two velocities, so they count twice.
     """
     with np.errstate(all="ignore"):
-        relative = FACTOR * unit * np.maximum(np.asarray(solved["COND"], float), 1.0)
         value = {**scene, **solved}
         point = np.asarray(scene["M"], float) == 4
-        arm = np.where(point, 0.0, np.maximum(np.abs(scene["DA"]), np.abs(scene["DB"])))
+        arm = np.where(point, 0.0, np.fmax(np.abs(scene["DA"]), np.abs(scene["DB"])))
         spin = _largest(value, _SPINS)
-        speed = np.maximum(_largest(value, _SPEEDS), arm * spin)
-        spin = np.maximum(spin, np.where(arm > 0, speed / np.where(arm > 0, arm, 1.0), 0.0))
-        mass = np.maximum(_finite(scene["MA"]), _finite(scene["MB"]))
-        energy = np.maximum(np.abs(solved.get("KI", 0.0)), mass * speed**2)
-        scale = {
+        speed = np.fmax(_largest(value, _SPEEDS), arm * spin)
+        spin = np.fmax(spin, np.where(arm > 0, speed / np.where(arm > 0, arm, 1.0), 0.0))
+        mass = np.fmax(_finite(scene["MA"]), _finite(scene["MB"]))
+        inertia = np.fmax(_finite(scene["IA"]), _finite(scene["IB"]))
+        energy = np.fmax(np.abs(solved["KI"]), np.abs(solved["KF"]))
+        size = {
+            **dict.fromkeys(RESULTS, speed),
             **dict.fromkeys(_SPINS, spin),
             **dict.fromkeys(("KI", "KF"), 2 * energy),
-            "LOSS": 200 * energy / np.abs(solved.get("KI", np.nan)),
+            "LOSS": 200 * energy / np.abs(solved["KI"]),
             **dict.fromkeys(("PN", "PT"), 2 * mass * speed),
-            "PM": 2 * mass * speed * np.maximum(arm, 1.0),
-            **{name: np.abs(solved.get(name, np.nan)) * 4 for name in ("MUP", "MUC", "COND")},
+            "PM": 2 * np.fmax(inertia * spin, mass * speed * arm),
+            **{name: np.abs(solved[name]) for name in ("MUP", "MUC", "COND")},
         }
-        bounds = {}
-        for name in names:
-            bounds[name] = np.nan_to_num(relative * scale.get(name, speed), nan=0.0)
-    return bounds
+        return {name: np.nan_to_num(column) for name, column in size.items()}
 
 
 def _largest(value: Mapping[str, Any], names: tuple[str, ...]) -> Floats:

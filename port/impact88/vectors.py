@@ -1,8 +1,8 @@
 """Test vectors for other implementations: labelled scenes with everything the oracle knows.
 
-Three classes, mixed evenly: ``casework`` (scenes as reports hold them), ``edge`` (one limit or special
-case each), ``failure`` (the 1988 program stops, or goes wrong without a word). The label says which
-case. The same count and seed give the same scenes on any machine.
+Three classes, mixed evenly: ``casework`` (scenes as reports hold them), ``edge`` (one limit or
+special case each), ``failure`` (the 1988 program stops, or goes wrong without a word). The label
+says which case. The same count and seed give the same scenes on any machine.
 """
 
 from __future__ import annotations

@@ -79,7 +79,7 @@ def _batches(path: str) -> Iterator[list[Request]]:
     rest = b""
     with nullcontext(source) if path == "-" else source:
         while True:
-            arrived = source.read1(1 << 16)
+            arrived = source.read1(1 << 16)  # type: ignore[union-attr]
             lines = (rest + arrived).split(b"\n")
             rest = lines.pop() if arrived else b""
             if len(rest) > LONGEST_LINE:

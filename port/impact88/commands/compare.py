@@ -1,0 +1,94 @@
+"""THEIRS is a CSV or JSON Lines table of another program's results: a row a scene, with columns
+named as the scene's (impact88 scene lists them; M may be missing) and any of the results: VAX VAY
+VBX VBY WAF WBF, contact velocities XA YA XB YB before and XAF YAF XBF YBF after, KI KF LOSS DVA DVB
+PN PT PM MUP MUC. Each result agrees to the double, or to the digits it is written with, or not.
+Rows that disagree are grouped by their likely cause: units of angle, signs, conventions, precision.
+
+examples:
+  impact88 compare theirs.csv
+  impact88 compare theirs.jsonl --json
+  impact88 compare theirs.csv --set EM=1 --set M=6
+
+exit status: 0 everything agrees; 1 something does not, or a row could not be read; 2 bad input
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+
+from ..compare import Comparison, compare_file
+from ..errors import UserError
+from ..scene import check_names, check_value
+from ..tables import format_of
+
+SHOWN = 20
+"""Unreadable rows told on stderr."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 compare`."""
+    parser.add_argument("theirs", metavar="THEIRS", help="the table (- is standard input, CSV)")
+    parser.add_argument(
+        "--format", choices=("csv", "jsonl", "npz"), help="if its name does not tell"
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="a value of the scene for all rows, where the table has no such column; repeatable",
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Compare a table."""
+    given = {}
+    for text in args.set:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise UserError(f"--set {text!r}; expected NAME=VALUE")
+        check_names({name: value}, "--set")
+        given[name] = check_value(name, value, "--set")
+    done = compare_file(args.theirs, format_of(args.theirs, args.format), given)
+    if args.json:
+        print(json.dumps(done.as_json(), ensure_ascii=False))
+    else:
+        print("\n".join(_lines(done)))
+    for bad in done.bad[:SHOWN]:
+        print(f"impact88 compare: {bad}", file=sys.stderr)
+    if len(done.bad) > SHOWN:
+        print(f"impact88 compare: and {len(done.bad) - SHOWN} more", file=sys.stderr)
+    return int(done.differing > 0 or bool(done.bad))
+
+
+def _lines(done: Comparison) -> Iterator[str]:
+    yield f"{done.rows} rows: {done.agreeing} agree, {done.differing} disagree"
+    yield ""
+    yield "result  compared  to the double  to digits claimed      not  largest difference"
+    for name, tally in done.tallies.items():
+        yield (
+            f"{name:<6}  {tally.compared:>8}  {tally.double:>13}  {tally.digits:>17}"
+            f"  {tally.differ:>7}  {tally.largest:>18.2g}"
+        )
+    yield "(difference relative to the scene's largest velocity, spin or energy)"
+    if done.causes:
+        yield ""
+        yield "rows that disagree, by likely cause:"
+        for cause, count in done.causes.most_common():
+            yield f"  {count:>7}  {cause}"
+        yield ""
+        yield "worst first:"
+        for one in done.worst:
+            place = f"row {one.row}" + (f" (line {one.line})" if one.line else "")
+            name = f", id {one.id}" if one.id else ""
+            yield (
+                f"  {place}{name}: {one.result} {one.theirs}, here {one.ours:.12g}, "
+                f"off by {one.relative:.2g}; {one.cause}"
+            )
+    if done.ignored:
+        yield ""
+        yield f"columns not looked at: {' '.join(done.ignored)}"
