@@ -41,7 +41,7 @@ class Machine(Parts):
 
     ``after_line(number)`` is called each time the program leaves a line; ``statements_left`` limits
     what it may do; ``refused`` collects the statements that were asked for and are not done here;
-    ``broken`` tells whether control-C ended the last program.
+    ``broken`` tells whether control-C ended the last program, ``last_line`` where it ended.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Machine(Parts):
         self.broken = False
         self._continue: int | None = None
         self._here = 0
-        self._line = 0
+        self.last_line = 0
         self._names: dict[str, Any] = {}
         self.code = Steps(self.program, self.control, self._names)
         self._names.update(names(self), **self._methods())
@@ -179,7 +179,7 @@ class Machine(Parts):
     def _halted(self, pc: int) -> None:
         line = self.code.lines[pc]
         if line < DIRECT:
-            self._line = line
+            self.last_line = line
             if pc == self.code.end:
                 self._continue = pc
             if self.after_line and len(self.program):
@@ -193,7 +193,7 @@ class Machine(Parts):
         if self.errors.on:
             return self._to_handler(error, line, pc)
         if here < DIRECT:
-            self._line = here
+            self.last_line = here
             if self.after_line:
                 self.after_line(here)
         error.line = line if line < DIRECT else None
@@ -265,7 +265,7 @@ class Machine(Parts):
             return self.code.first[number]
         except ApplesoftError as error:
             # the machine has taken 256 from the line number, whatever it was
-            error.line = _RUN_LINES.start | self._line & 0xFF
+            error.line = _RUN_LINES.start | self.last_line & 0xFF
             raise
 
     def clear(self) -> None:

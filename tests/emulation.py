@@ -1,0 +1,109 @@
+"""Helpers for tests of the emulator: programs as the captures typed them, and lockstep."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from impact88 import emulated
+from impact88.applesoft.emulator import Applesoft
+from impact88.run import run as run_port
+from impact88.scene import Scene
+
+Report = tuple[int, dict[str, str], list[str] | None]
+PLENTY = 3_000_000
+"""Statements that no test program needs."""
+
+
+def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
+    """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up.
+
+    Returns the machine and all that was displayed after the echo of RUN up to the final prompt.
+    """
+    machine = Applesoft(blanks=blanks)
+    for line in program.split("\n"):
+        if line:
+            machine.type_line(line)
+    machine.take_output()
+    machine.feed_keys(keys)
+    machine.machine.statements_left = PLENTY
+    machine.run()
+    machine.prompt()
+    displayed = machine.take_output()
+    assert displayed.endswith("\n]")
+    return machine, displayed.removesuffix("\n]")
+
+
+def displayed(program: str, keys: str = "") -> str:
+    """What `session` displays, without the NULs of the prompts."""
+    return session(program, keys)[1].replace("\0", "")
+
+
+def stored(text: str) -> str:
+    """Stored bytes; all zeros alike, because the ROM leaves odd mantissas in them."""
+    return "00" * 5 if text.startswith("00") else text
+
+
+def left_behind(reals: dict[str, str], a: dict[str, Any] | None) -> tuple[Any, Any]:
+    """Variables and array in a form that compares."""
+    return (
+        {name: stored(value) for name, value in reals.items()},
+        a and (a["dims"], [stored(value) for value in a["data"]]),
+    )
+
+
+def changes(reports: list[Report]) -> list[Report]:
+    """The reports whose variables differ from the report before: a line that only decides or prints
+    is left by port and emulator at different moments, but every value is born in one line."""
+    kept: list[Report] = []
+    state: tuple[Any, Any] = ({}, None)
+    for line, reals, data in reports:
+        if (reals, data) != state:
+            state = (reals, data)
+            kept.append((line, reals, data))
+    return kept
+
+
+def port_reports(scene: Scene) -> tuple[list[Report], Any]:
+    """The port's variables after every line, and its run."""
+    reports: list[Report] = []
+
+    def after(line: int, variables: Any) -> None:
+        reals = {name: stored(x.stored().hex()) for name, x in variables.reals.items()}
+        data = variables.A and [stored(x.stored().hex()) for x in variables.A.data]
+        reports.append((line, reals, data))
+
+    return reports, run_port(scene, dos=False, after_line=after)
+
+
+def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report], Any]:
+    """The emulator's variables after every line of the listing, and its run."""
+    reports: list[Report] = []
+
+    def after(line: int, machine: emulated.Emulated) -> None:
+        a = machine.A
+        reals = {name: stored(value) for name, value in machine.reals.items()}
+        reports.append((line, reals, a and [stored(value) for value in a["data"]]))
+
+    return reports, emulated.Emulated(scene, dos=False, text=text).run(after)
+
+
+def first_difference(scene: Scene, text: str | None = None) -> Any:
+    """Where port and emulator part on a scene: the two reports, or None if they agree on every bit
+    after every line."""
+    port, port_run = port_reports(scene)
+    emulator, emulator_run = emulator_reports(scene, text)
+    mine, theirs = changes(port), changes(emulator)
+    if emulator_run.error and len(theirs) == len(mine) + 1:
+        # the variable that the failing line has made, not filled yet; the port adds it at the end
+        theirs.pop()
+    for one, other in zip(mine, theirs, strict=False):
+        if one != other:
+            return one, other
+    if len(mine) != len(theirs):
+        return len(mine), len(theirs)
+    whole = (port_run._replace(reals={}, A=None), left_behind(port_run.reals, port_run.A))
+    other = (
+        emulator_run._replace(reals={}, A=None),
+        left_behind(emulator_run.reals, emulator_run.A),
+    )
+    return None if whole == other else (whole, other)

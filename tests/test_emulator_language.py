@@ -1,0 +1,275 @@
+"""What Applesoft does where no captured program looks: each by the ROM's rule, in a few lines."""
+
+from __future__ import annotations
+
+import pytest
+
+from emulation import displayed, session
+from impact88.applesoft.console import EndOfInput
+from impact88.applesoft.emulator import Applesoft
+from impact88.applesoft.errors import ApplesoftError
+from impact88.applesoft.lister import untokenised
+from impact88.applesoft.machine import TooManyStatements
+from impact88.applesoft.tokens import TOKENS, split_number, tokenise
+
+BEL = "\a"
+
+
+@pytest.mark.parametrize(
+    ("text", "tokens"),
+    [
+        ("PRINT", bytes([TOKENS["PRINT"]])),
+        ("P R I N T A", bytes([TOKENS["PRINT"]]) + b"A"),
+        ("A T N", bytes([TOKENS["AT"]]) + b"N"),
+        ("A TN", bytes([TOKENS["ATN"]])),
+        ("ATO", b"A" + bytes([TOKENS["TO"]])),
+        ("ATTO", bytes([TOKENS["AT"], TOKENS["TO"]])),
+        ("TOTAL", bytes([TOKENS["TO"]]) + b"TAL"),
+        ("GOTOTO", bytes([TOKENS["GOTO"], TOKENS["TO"]])),
+        ("HGR2", bytes([TOKENS["HGR2"]])),
+        ("print", b"print"),
+        ('? "a ?"', bytes([TOKENS["PRINT"]]) + b'"a ?"'),
+        ("DATA  ?A: ?A", bytes([TOKENS["DATA"]]) + b"  ?A:" + bytes([TOKENS["PRINT"]]) + b"A"),
+        ('DATA ":": A', bytes([TOKENS["DATA"]]) + b' ":":A'),
+        ("REM  FOR : ?", bytes([TOKENS["REM"]]) + b"  FOR : ?"),
+        ("1E - 9", b"1E" + bytes([TOKENS["-"]]) + b"9"),
+    ],
+)
+def test_tokens(text, tokens):
+    assert tokenise(text) == tokens
+    assert tokenise(untokenised(tokens)) == tokens
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "rest"),
+    [("10PRINT", 10, "PRINT"), (" 1 2 A", 12, "A"), ("63999", 63999, ""), ("0A", 0, "A")],
+)
+def test_line_numbers(text, number, rest):
+    assert split_number(text) == (number, rest)
+
+
+def test_line_numbers_end_at_63999():
+    assert split_number("PRINT 1") is None
+    with pytest.raises(ValueError, match="63999"):
+        split_number("64000 END")
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [
+        ("10 FOR I=3 TO 1:PRINT I:NEXT", "3\n"),
+        ("10 FOR I=1 TO 3:PRINT I;:I=I+1:NEXT", "13"),
+        ('10 PRINT "A",,"B"', "A" + " " * 31 + "B\n"),
+        ('10 A$="AB":B$=A$:A$="C":PRINT B$;A$', "ABC\n"),
+        ("10 DIM A(1,2,3):A(1,2,3)=7:A(0,2,3)=6:PRINT A(1,2,3);A(0,2,3)", "76\n"),
+        ("10 IF 1 THEN IF 0 THEN PRINT 1\n20 PRINT 2", "2\n"),
+        ("10 IF 1 GOTO 30\n20 PRINT 2\n30 PRINT 3", "3\n"),
+        ("10 ON 3 GOTO 20,30:PRINT 1\n20 PRINT 2\n30 PRINT 3", "1\n2\n3\n"),
+        ("10 ON 2 GOSUB 20,30:PRINT 1:END\n20 PRINT 2:RETURN\n30 PRINT 3:RETURN", "3\n1\n"),
+        ("10 DEF FN A(X)=X*2:DEF FN B(X)=FN A(X)+X:PRINT FN B(3)", "9\n"),
+        ('10 READ A$,B$:PRINT A$B$:RESTORE:READ A$:PRINT A$:DATA X,"Y', "XY\nX\n"),
+        ("10 DATA 1,,3\n20 READ A,B$,C:PRINT A;B$;C", "13\n"),
+        ("10 A%=-1.5:A=A%:PRINT A", "-2\n"),
+        ("10 PRINT 1<=>2;1=>2", "10\n"),
+        ("10 PRINT NOT 1=0;-2^2;2^-1^2", "14.25\n"),
+        ("10 PRINT (1=1)+(2=2)", "2\n"),
+        ('10 PRINT LEFT$("ABC",2)+RIGHT$("ABC",1)+MID$("ABC",2,1)', "ABCB\n"),
+        ("10 GOTO 20X\n20 PRINT 1", "1\n"),
+        ("10 POP:PRINT 1", f"\n?RETURN WITHOUT GOSUB ERROR{BEL} IN 10"),
+        ("10 PRINT 1;:PRINT A+", f"1\n?SYNTAX ERROR{BEL} IN 10"),
+        ('10 PRINT "A"+1', f"\n?TYPE MISMATCH ERROR{BEL} IN 10"),
+        ("10 A$=1", f"\n?TYPE MISMATCH ERROR{BEL} IN 10"),
+        ("10 PRINT 1/0+)", f"\n?DIVISION BY ZERO ERROR{BEL} IN 10"),
+        ("10 PRINT 1/0*+)", f"\n?DIVISION BY ZERO ERROR{BEL} IN 10"),
+        ("10 PRINT 1/(0*)", f"\n?SYNTAX ERROR{BEL} IN 10"),
+        ("10 FOR I%=1 TO 2", f"\n?SYNTAX ERROR{BEL} IN 10"),
+        ("10 A%=32768", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
+        ("10 A%=-32768:PRINT A%", "-32768\n"),
+        ("10 PRINT CHR$(256)", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
+        ("10 DIM A(5):DIM A(5)", f"\n?REDIM'D ARRAY ERROR{BEL} IN 10"),
+        ("10 PRINT A(-1)", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
+        ("10 GR", f"\n?SYNTAX ERROR{BEL} IN 10"),
+        ('10 FOR I=1 TO 9:A$=A$+A$+"XX":NEXT', f"\n?STRING TOO LONG ERROR{BEL} IN 10"),
+        (
+            '10 FOR I=1 TO 5:IF "A" THEN PRINT I\n20 NEXT',
+            f"1\n2\n3\n\n?FORMULA TOO COMPLEX ERROR{BEL} IN 10",
+        ),
+    ],
+)
+def test_programs(program, expected):
+    assert displayed(program) == expected
+
+
+def test_a_keyword_inside_hides_the_rest():
+    # XOR is X OR: 5X is 5 and then a variable
+    assert displayed("10 X=1:PRINT 5 XOR 3") == "51\n"
+
+
+def nested(n: int) -> str:
+    names = "ABCDEFGHIJKLM"[:n]
+    return "".join(f"{10 * i} FOR {v}=1 TO 1\n" for i, v in enumerate(names, 1)) + "900 PRINT 1\n"
+
+
+def test_ten_loops_deep_and_no_deeper():
+    assert displayed(nested(10)) == "1\n"
+    assert displayed(nested(11)) == f"\n?OUT OF MEMORY ERROR{BEL} IN 110"
+
+
+def test_parentheses_as_deep_as_the_stack():
+    def program(n: int) -> str:
+        return f"10 PRINT {'(' * n}1{')' * n}"
+
+    deepest = next(n for n in range(100) if "MEMORY" in displayed(program(n)))
+    # PRINT begins 4 bytes down, each parenthesis takes 5, 59 of 248 must stay
+    assert deepest == (248 - 59 - 4) // 5 + 1
+
+
+def test_the_stack_decides_at_the_moment():
+    """25 subroutines deep an addition has no room, a constant has."""
+    program = "10 N=N+1:IF N<{n} THEN GOSUB 10\n20 PRINT {what}:END"
+    assert displayed(program.format(n=24, what="N+N")) == "48\n"
+    error = f"\n?OUT OF MEMORY ERROR{BEL} IN 10"
+    assert displayed(program.format(n=99, what="N")) == error
+
+
+def test_an_error_under_onerr_hides_the_loops_until_resume():
+    program = (
+        "10 ONERR GOTO 50\n20 FOR I=1 TO 2:D=1-1:PRINT 1/D:NEXT\n40 END\n"
+        "50 PRINT PEEK(222):N=N+1:IF N=2 THEN POKE 216,0\n60 {way}"
+    )
+    assert displayed(program.format(way="NEXT")) == f"133\n0\n\n?NEXT WITHOUT FOR ERROR{BEL} IN 60"
+    assert displayed(program.format(way="CALL -3288:NEXT")) == ("133\n133\n")
+
+
+def test_stop_and_cont():
+    assert displayed("10 PRINT 1:STOP:PRINT 2\n20 PRINT 3", "CONT\nCONT\n") == (
+        f"1\n\nBREAK{BEL} IN 10\n]CONT\n2\n3\n\n]CONT\n"
+    )
+
+
+def test_run_of_a_missing_line_shows_what_becomes_of_the_line_number():
+    _, shown = session("20 PRINT 1", "RUN 99\n")
+    assert shown.endswith(f"?UNDEF'D STATEMENT ERROR{BEL} IN 65044")
+
+
+def test_a_loop_typed_at_the_prompt():
+    assert displayed("10 REM", "FOR I=1 TO 3:PRINT I;:NEXT:PRINT\n") == (
+        "\n]FOR I=1 TO 3:PRINT I;:NEXT:PRINT\n123\n"
+    )
+
+
+def test_trace_counts_statements_not_ifs():
+    program = '10 TRACE:FOR I=1 TO 2:IF I=1 THEN PRINT "A"\n20 NEXT:NOTRACE'
+    assert displayed(program) == "#10 #10 A\n#20 #10 #20 #20 "
+
+
+def test_get_of_a_wrong_key_believes_it_is_at_the_prompt():
+    assert displayed("10 GET A", "X") == f"\n?SYNTAX ERROR{BEL}"
+
+
+def test_a_bad_reply_under_onerr_is_code_254():
+    program = "10 ONERR GOTO 30\n20 INPUT A:PRINT A:END\n30 PRINT PEEK(222):RESUME"
+    assert displayed(program, "X\n7\n") == "?X\n254\n?7\n7\n"
+
+
+def test_control_c_as_a_reply_breaks():
+    assert displayed("10 INPUT A", "\x03\nPRINT 5\n") == f"?\nBREAK{BEL} IN 10\n]PRINT 5\n5\n"
+
+
+def test_input_into_an_integer_variable():
+    assert displayed("10 INPUT A%:PRINT A%", "3.7\n") == "?3.7\n3\n"
+
+
+def test_strings_take_room_unless_the_program_holds_them():
+    program = '10 A$="X":B$=A$:C$=A$+"Y":D$="":PRINT {}'
+    free = 0xC000 - (0x801 + len(tokenise(program.format("FRE(0)")[3:])) + 7) - 4 * 7
+    assert displayed(program.format("FRE(0)")) == f"{free - 2 - 65536}\n"
+
+
+def test_himem_and_lomem_bound_the_room():
+    assert displayed("10 HIMEM:2200:DIM A(50)") == f"\n?OUT OF MEMORY ERROR{BEL} IN 10"
+    assert displayed("10 A=1:LOMEM:4000:PRINT A;PEEK(105)+256*PEEK(106)") == "04000\n"
+
+
+def test_poke_changes_a_token_of_the_running_program():
+    # line 20's + becomes -
+    program = "10 POKE 2049+{at},201\n20 PRINT 5+2"
+    at = 4 + len(tokenise("POKE 2049+99,201")) + 1 + 4 + 2
+    assert displayed(program.format(at=at)) == "3\n"
+
+
+def test_flash_sets_a_bit_in_what_is_sent():
+    machine, shown = session('10 HOME:FLASH:PRINT "A1":NORMAL')
+    assert shown == "Aq\n"
+    assert machine.screen_text().startswith("A1\n")
+
+
+def test_the_text_window():
+    machine, _ = session('10 HOME:POKE 32,10:POKE 33,5:HOME:PRINT "ABCDEFG"')
+    assert machine.screen_text().startswith(" " * 10 + "ABCDE\n" + " " * 10 + "FG\n")
+
+
+def test_what_is_not_done_is_said():
+    machine, shown = session("10 CALL 24576", "GR\nPRINT PDL(0)\n")
+    assert shown.count("?SYNTAX ERROR") == 3
+    assert machine.machine.refused == ["CALL 24576", "GR", "PDL"]
+
+
+def test_a_program_in_python():
+    machine = Applesoft()
+    machine.load('10 INPUT A\n20 B$="Xy":C%=2.5:PRINT A/3\n30 DIM D(1)')
+    machine.feed("1")
+    assert machine.run() is None
+    assert machine.take_output() == "?\x001\n.333333333\n"
+    assert machine.reals() == {"A": "8100000000"}
+    assert machine.value("A") == "8100000000"
+    assert machine.value("B$") == "Xy"
+    assert machine.value("C%") == "8200000000"
+    assert machine.value("Z") is None
+    assert machine.array("D") == {"dims": [2], "data": ["0000000000"] * 2}
+    assert machine.array("E") is None
+    assert machine.source() == '10 INPUT A\n20 B$ = "Xy":C% = 2.5: PRINT A / 3\n30 DIM D(1)\n'
+
+
+def test_what_a_program_cannot_be():
+    machine = Applesoft()
+    for text, words in [
+        ("PRINT 1", "row 1 has no line number"),
+        ("10 A\n64000 B", "row 2"),
+        ("10 " + "A" * 300, "row 1 has 303 characters"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            machine.load(text)
+    with pytest.raises(ApplesoftError, match="OUT OF MEMORY"):
+        machine.load("".join(f"{n} REM {'X' * 200}\n" for n in range(300)))
+
+
+def test_the_keyboard_ends_and_statements_run_out():
+    machine = Applesoft()
+    machine.load("10 INPUT A")
+    with pytest.raises(EndOfInput):
+        machine.run()
+    machine.load("10 GOTO 10")
+    machine.machine.statements_left = 1000
+    with pytest.raises(TooManyStatements):
+        machine.run()
+
+
+def test_a_break_from_outside():
+    machine = Applesoft()
+    machine.load("10 N=N+1:GOTO 10")
+    machine.machine.interrupted = True
+    machine.run()
+    assert machine.machine.broken
+    assert machine.take_output() == f"\nBREAK{BEL} IN 10"
+    machine.machine.statements_left = 10_000
+    with pytest.raises(TooManyStatements):
+        machine.enter("CONT")
+
+
+def test_machines_do_not_share_values():
+    one, other = Applesoft(), Applesoft()
+    one.type_line("A=1:DIM B(3)")
+    other.type_line("A=2")
+    assert (one.value("A"), other.value("A")) == ("8100000000", "8200000000")
+    assert other.array("B") is None
