@@ -6,5 +6,7 @@ Analysis" in *Automotive Engineering and Litigation* (Garland Law Publishing, Ne
 ``listing-as-printed.txt`` is the Appendix's listing as the chapter's text carries it, and
 ``impact.bas`` the same listing restored so that it runs. ``run1-as-printed.txt``,
 ``run2-as-printed.txt`` and ``table3-as-printed.txt`` are the three published printouts.
+``table1.csv`` and ``table2.csv`` hold Tables 1 and 2, each cell as printed and as it must be read,
+``emendations.csv`` the evidence for every cell that is not as printed or is doubtful.
 ``ERRATA.md`` tells every difference, its evidence, and what cannot be restored.
 """

@@ -167,23 +167,25 @@ def _table(number: int) -> str:
     from ..plaintable import table
     from ..staged import COLUMNS_1, COLUMNS_2, cells
 
-    columns = COLUMNS_1 if number == 1 else COLUMNS_2
+    columns = [c for c in (COLUMNS_1 if number == 1 else COLUMNS_2) if c != "category"]
     rows: dict[str, list[str]] = {}
+    categories: dict[str, list[str]] = {}
     for cell in cells():
-        if cell.table == number:
-            changed = cell.remark is not None
-            text = cell.emended or "lost"
-            rows.setdefault(cell.row, [cell.row]).append(f"{text}{'*' if changed else ' '}")
+        if cell.table != number:
+            continue
+        text = f"{cell.emended or 'lost'}{'*' if cell.remark else ' '}"
+        if cell.column == "category":
+            categories.setdefault(cell.emended, []).append(cell.row)
+        else:
+            rows.setdefault(cell.row, [cell.row]).append(text)
     units = {
         1: "m slug, I ft-lb-s², d ft, angles degrees, velocities ft/s, Omega (final) rad/s",
         2: "loss percent, dV ft/s; mu is the signed P_t/P_n",
     }
-    lines = table(
-        rows.values(), ["no.", *(f"{c} " for c in columns)], left=(0, 1) if number == 1 else (0,)
-    )
-    return "\n".join(
-        [f"Table {number}, emended ({units[number]})", "", *lines, "", "* see --cells"]
-    )
+    lines = [f"Table {number}, emended ({units[number]})", ""]
+    lines += [*table(rows.values(), ["no.", *(f"{c} " for c in columns)]), ""]
+    lines += [f"{category}: {' '.join(numbers)}" for category, numbers in categories.items()]
+    return "\n".join([*lines, "* emended, moved, lost or doubtful: see --cells"])
 
 
 def _everything() -> dict[str, Any]:
