@@ -2,7 +2,8 @@
 
 In a ``console`` block a line that begins with ``$`` is a command and what follows is its output, in
 order of appearance on the terminal; a line ``...`` stands for any lines. All blocks share one
-folder. ``pycon`` blocks are doctests. Control characters are not compared: they cannot be seen in
+folder, where a ``csv`` block stands under the name given before it. The ``pycon`` blocks are one
+Python session. Control characters are not compared: they cannot be seen in
 README, and other tests compare them.
 """
 
@@ -44,8 +45,12 @@ def examples() -> list[tuple[str, str]]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the examples run, one after the other."""
-    return tmp_path_factory.mktemp("readme")
+    """Where the examples run, one after the other; legacy/ is found there as in the checkout."""
+    folder = tmp_path_factory.mktemp("readme")
+    (folder / "legacy").symlink_to(ROOT / "legacy")
+    for name, table in re.findall(r"With `(\S+)`:\n\n```csv\n(.*?)^```$", README, re.M | re.S):
+        (folder / name).write_text(table, encoding="utf-8")
+    return folder
 
 
 def visible(text: str) -> list[str]:
@@ -74,15 +79,14 @@ def test_example_prints_what_readme_shows(command: str, shown: str, folder: Path
         assert visible(done.stdout) == visible(shown)
 
 
-@pytest.mark.parametrize("block", blocks("pycon"))
-def test_python_example(
-    block: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_python_session(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(folder)
-    test = doctest.DocTestParser().get_doctest(block, {}, "README.md", "README.md", 0)
+    session = "\n".join(blocks("pycon"))
+    test = doctest.DocTestParser().get_doctest(session, {}, "README.md", "README.md", 0)
     assert test.examples
-    result = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(test)
-    assert result.failed == 0, capsys.readouterr().out
+    assert doctest.DocTestRunner().run(test).failed == 0, capsys.readouterr().out
 
 
 def test_first_screen_holds_the_two_commands() -> None:
