@@ -257,6 +257,8 @@ STALE_RX = dict(
     )
 )
 """The scene whose answer is wrong without a message, because RX keeps a row that is done."""
+LAST_PIVOT_ZERO = {**impact88.sample(1), "EM": ".5", "DA": "0", "DB": "0"}
+"""Row 6 is all zero, and the last pivot is taken all the same: ZERO DETERMINANT."""
 
 
 @pytest.fixture(scope="module")
@@ -266,7 +268,7 @@ def awkward() -> list[dict[str, Any]]:
         choose.choice((casework, odd, tiny, all_zero))(choose) for _ in range(AGAINST_THE_PORT)
     ]
     runs = []
-    for scene in [STALE_RX, *scenes]:
+    for scene in [STALE_RX, LAST_PIVOT_ZERO, *scenes]:
         run = impact88.run(scene, dos=False)
         runs.append({"scene": scene, "printout": run.printout, "reals": run.reals, "A": run.A})
     return runs
