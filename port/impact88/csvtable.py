@@ -99,15 +99,13 @@ class _CsvReader:
 
     def _block(self) -> tuple[list[list[str]], list[int]]:
         rows, lines = [], []
+        filled = (row for row in self._rows if row)  # an empty line is no row
         try:
-            for row in islice(self._rows, BLOCK_ROWS):
-                if row:  # an empty line is no row
-                    rows.append(row)
-                    lines.append(self._rows.line_num)
+            for row in islice(filled, BLOCK_ROWS):
+                rows.append(row)
+                lines.append(self._rows.line_num)
         except csv.Error as error:
             raise UserError(f"line {self._rows.line_num}: {error}", self._where) from None
-        if not rows and lines:
-            return self._block()
         return rows, lines
 
 

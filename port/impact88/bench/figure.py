@@ -18,6 +18,7 @@ MARKS = {
     "applesoft": ("s", VERMILION, False),
     "replay": ("s", VERMILION, True),
     "float64": ("o", BLUE, False),
+    "elimination": ("v", BLUE, True),
     "lapack": ("^", GREY, True),
     "lapack-fill": ("^", GREY, False),
     "closed-form": ("D", ORANGE, True),
@@ -67,14 +68,14 @@ def _panel(axes: Axes, name: str, rows: Sequence[Measured]) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(1e-8, 2e-2)
-    axes.set_ylim(1e-17, 1e2)
+    axes.set_ylim(1e-17, 1e4)
     axes.xaxis.set_major_locator(LogLocator(numticks=20))
     axes.yaxis.set_major_locator(LogLocator(base=1000, numticks=20))
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(which="minor", length=0)
     axes.grid(which="major", color="#dddddd", linewidth=0.4)
     axes.set_axisbelow(True)
-    axes.set_title(f"{name}: {POPULATIONS[name].meaning}", fontsize=6.5)
+    axes.set_title(f"{name}\n{POPULATIONS[name].meaning}", fontsize=6, linespacing=1.4)
     reference = next((row for row in rows if row.method == "mpmath"), None)
     for row in rows:
         if row.method not in MARKS:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import platform
 import statistics
 import time
@@ -59,8 +60,7 @@ class Measured:
 
 
 def machine() -> dict[str, Any]:
-    """What the run ran on."""
-    import os
+    """What the run ran on; ``load``: how many processes wanted a core in the minute before."""
 
     name = platform.processor() or platform.machine()
     try:
@@ -77,6 +77,7 @@ def machine() -> dict[str, Any]:
         "python": platform.python_version(),
         "numpy": np.__version__,
         "impact88": __version__,
+        "load": round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None,
     }
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..applesoft.real import Real
-from ..elimination import ORDER, fill, lapack
+from ..elimination import ORDER, eliminate, fill, lapack
 from ..replay import replay
 from ..run import run
 from ..scene import Scene
@@ -73,6 +73,16 @@ def _replay(columns: dict[str, list[str]]) -> Floats:
     return np.stack([found.floats(name) for name in ORDER], axis=1)
 
 
+def _listing_elimination(matrices: tuple[Floats, Floats]) -> Floats:
+    """Lines 1000 to 1170 on matrices made with exact pi: what is left is the elimination's."""
+    out = np.full(matrices[1].shape, np.nan)
+    for i, (A, b) in enumerate(zip(matrices[0].tolist(), matrices[1].tolist(), strict=True)):
+        found = eliminate([[*row, right] for row, right in zip(A, b, strict=True)], 1e-9)
+        if found is not None:
+            out[i] = found
+    return out
+
+
 def _lapack_filled(prepared: Prepared) -> Floats:
     return lapack(*fill(prepared.columns))
 
@@ -105,6 +115,14 @@ METHODS: Sequence[Method] = (
     ),
     Method("replay", "replay (Applesoft, arrays)", APPLESOFT, 20_000, _replay, lambda p: p.texts),
     Method("float64", "port in float64", DOUBLE, 500, _port("float64", float), _scene_list),
+    Method(
+        "elimination",
+        "listing's elimination, pi exact",
+        DOUBLE,
+        2000,
+        _listing_elimination,
+        lambda p: fill(p.columns),
+    ),
     Method(
         "lapack",
         "LAPACK, matrices ready",

@@ -217,9 +217,9 @@ POPULATIONS: dict[str, Population] = {
     population.name: population
     for population in (
         Population("casework", "easy", "cars as in the chapter's Table 1", casework),
-        Population("heavy", "easy", "a moving B up to 1e12 times heavier than A", heavy),
+        Population("heavy", "easy", "a moving B, to 1e12 times heavier than A", heavy),
         Population("singular", "hard", "friction within 1e-1 to 1e-9 of singular", near_singular),
-        Population("units", "average", "the same cars in tiny and huge units", units, False),
+        Population("units", "average", "the same cars in tiny and huge units", units),
         Population("tangential", "easy", "approach 1e-2 to 1e-9 of the sliding", tangential),
         Population("cancelling", "easy", "gn nearly 0: spins undo the approach", cancelling),
         Population("em-half", "average", "EM within 1e-1 to 1e-16 of 1/2", em_half),

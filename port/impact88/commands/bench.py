@@ -1,6 +1,7 @@
 """Run time against error, measured in one run on this machine: the Applesoft port, the replay over
 arrays, the port in double precision, LAPACK on the 6x6 matrices, the closed form, and 50-digit
-arithmetic, which is also the reference. Needs pip install 'impact88[bench]'; --figure also impact88[plot].
+arithmetic, which is also the reference. Needs pip install 'impact88[bench]', and for --figure
+impact88[plot].
 
 populations:
 {populations}
@@ -82,6 +83,7 @@ def main(arguments: argparse.Namespace) -> int:
     from ..bench import figure, measure, tables
     from ..progress import progress
 
+    told = measure.machine()
     total = measure.steps(arguments.populations, arguments.repeats)
     with progress(total, "bench") as meter:
         rows = measure.measure(
@@ -91,7 +93,6 @@ def main(arguments: argparse.Namespace) -> int:
         from ..figures.canvas import save
 
         save(figure.work_precision(rows), arguments.figure)
-    told = measure.machine()
     if arguments.json:
         found = {"machine": told, "seed": arguments.seed, "results": measure.as_json(rows)}
         _print_json(found)

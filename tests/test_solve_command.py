@@ -1,0 +1,232 @@
+"""impact88 solve, from file to file."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from impact88 import csvtable, replay, solve
+from impact88.bench.populations import scenes, texts
+from impact88.cli import main
+from impact88.names import RESULTS, SCENE
+
+NAMES = list(SCENE)
+
+
+@pytest.fixture
+def cases(tmp_path):
+    """Twelve scenes as CSV, one of them a point mass; an id before and a note after."""
+    columns = texts(scenes("casework", 12, 6))
+    columns["M"][3] = "4"
+    rows = [[f"c{i}", *(columns[n][i] for n in NAMES), "a, b"] for i in range(12)]
+    path = tmp_path / "cases.csv"
+    with path.open("w", newline="") as file:
+        csv.writer(file).writerows([["id", *NAMES, "note"], *rows])
+    return path
+
+
+def table(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def edit(path, row, **cells):
+    rows = table(path)
+    rows[row].update(cells)
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def expected(path):
+    rows = table(path)
+    return solve({n: np.array([float(row[n]) for row in rows]) for n in NAMES})
+
+
+def test_results_are_those_of_solve_and_read_back_exactly(cases, tmp_path):
+    out = tmp_path / "r.csv"
+    assert main(["solve", str(cases), "-o", str(out)]) == 0
+    rows = table(out)
+    assert list(rows[0]) == ["id", *NAMES, "note", *RESULTS]
+    assert [row["id"] for row in rows] == [f"c{i}" for i in range(12)]
+    assert rows[0]["note"] == "a, b"
+    found = expected(cases)
+    for name in RESULTS:
+        assert [float(row[name]) for row in rows] == found[name].tolist(), name
+    assert [row["MA"] for row in rows] == [row["MA"] for row in table(cases)]  # as typed
+
+
+def test_outputs_and_results_only(cases, tmp_path):
+    out = tmp_path / "r.csv"
+    asked = ["solve", str(cases), "-o", str(out), "--outputs", "WBF,LOSS", "--results-only"]
+    assert main(asked) == 0
+    assert list(table(out)[0]) == ["id", "note", "WBF", "LOSS"]
+
+
+def test_other_formats_give_the_same(cases, tmp_path):
+    for form in ("jsonl", "npz"):
+        assert main(["solve", str(cases), "-o", str(tmp_path / f"r.{form}")]) == 0
+    found = expected(cases)
+    rows = [json.loads(line) for line in (tmp_path / "r.jsonl").read_text().splitlines()]
+    arrays = np.load(tmp_path / "r.npz")
+    for name in RESULTS:
+        assert [row[name] for row in rows] == found[name].tolist()
+        assert arrays[name].tolist() == found[name].tolist()
+    assert arrays["id"].tolist() == [f"c{i}" for i in range(12)]
+    for form in ("jsonl", "npz"):  # and from them
+        out = tmp_path / f"again-{form}.csv"
+        assert main(["solve", str(tmp_path / f"r.{form}"), "-o", str(out)]) == 0
+        assert [float(row["VAX"]) for row in table(out)] == found["VAX"].tolist()
+
+
+class TestBadRows:
+    @pytest.fixture
+    def spoiled(self, cases):
+        edit(cases, 1, MA="heavy")
+        edit(cases, 4, IB="")
+        edit(cases, 5, M="5")
+        edit(cases, 7, MB="inf", IB="inf")
+        edit(cases, 9, GA="nan")
+        return cases
+
+    BAD = (1, 4, 5, 7, 9)
+
+    def test_are_told_and_the_others_solved(self, spoiled, cases, tmp_path, capsys):
+        out = tmp_path / "r.csv"
+        assert main(["solve", str(spoiled), "-o", str(out), "--outputs", "VAX,STATUS"]) == 1
+        told = capsys.readouterr().err
+        assert "row 2 (line 3), MA: 'heavy' is no number" in told
+        assert "row 5 (line 6), IB: is empty; expected a number" in told
+        assert "row 6 (line 7), M: 5.0 is neither 4 nor 6" in told
+        assert "row 8 (line 9), VX:" in told
+        assert "a barrier is at rest" in told
+        assert "row 10 (line 11), GA: nan is not finite" in told
+        assert told.count("\n") == 5
+        rows = table(out)
+        assert len(rows) == 12
+        for i, row in enumerate(rows):
+            assert (row["VAX"] == "nan") == (i in self.BAD)
+            assert (row["STATUS"] == "64") == (i in self.BAD)
+
+    def test_error_file(self, spoiled, tmp_path, capsys):
+        errors = tmp_path / "bad.csv"
+        out = tmp_path / "r.csv"
+        assert main(["solve", str(spoiled), "-o", str(out), "--errors", str(errors)]) == 1
+        rows = table(errors)
+        assert list(rows[0]) == ["row", "line", "column", "reason"]
+        assert [row["row"] for row in rows] == [str(i + 1) for i in self.BAD]
+        assert [row["column"] for row in rows] == ["MA", "IB", "M", "VX", "GA"]
+        assert "5 rows could not be solved" in capsys.readouterr().err
+
+    def test_without_bad_rows_the_error_file_has_a_header_only(self, cases, tmp_path):
+        errors, out = tmp_path / "bad.csv", tmp_path / "r.csv"
+        assert main(["solve", str(cases), "-o", str(out), "--errors", str(errors)]) == 0
+        assert errors.read_text() == "row,line,column,reason\n"
+
+
+class TestApplesoft:
+    def test_is_replay_on_the_texts(self, cases, tmp_path):
+        edit(cases, 2, MA="90315.8817")
+        edit(cases, 6, UX="0", UY="0", VX="0", VY="0", WA="0", WB="0")
+        edit(cases, 8, MA="0")
+        out = tmp_path / "r.csv"
+        asked = ["solve", str(cases), "-o", str(out), "--arithmetic", "applesoft"]
+        assert main(asked) == 1  # a division by zero
+        rows, typed = table(out), table(cases)
+        found = replay({name: [row[name] for row in typed] for name in NAMES})
+        for name in ("VAX", "WBF", "LOSS", "KI", "XAF"):
+            told = [float(row[name]) for row in rows]
+            np.testing.assert_array_equal(told, found.floats(name))
+        assert rows[6]["ERROR"] == "?DIVISION BY ZERO ERROR IN 690"
+        assert rows[6]["LINE"] == "690"
+        assert rows[8]["ERROR"] == "ZERO DETERMINANT"
+        assert rows[0]["ERROR"] == ""
+        assert rows[0]["LINE"] == "0"
+
+    def test_zero_determinant_is_a_normal_end(self, cases, tmp_path):
+        edit(cases, 8, MA="0")
+        asked = ["solve", str(cases), "-o", str(tmp_path / "r.csv"), "--arithmetic", "applesoft"]
+        assert main(asked) == 0
+
+    def test_bad_rows(self, cases, tmp_path, capsys):
+        edit(cases, 1, MA="heavy")
+        edit(cases, 2, GA="inf")
+        out = tmp_path / "r.csv"
+        asked = ["solve", str(cases), "-o", str(out), "--arithmetic", "applesoft"]
+        assert main([*asked, "--outputs", "VAX"]) == 1
+        told = capsys.readouterr().err
+        assert "row 2 (line 3), MA:" in told
+        assert "row 3 (line 4), GA:" in told
+        assert [row["VAX"] == "nan" for row in table(out)][:4] == [False, True, True, False]
+
+    def test_knows_only_what_the_listing_computes(self, cases, tmp_path, capsys):
+        asked = ["solve", str(cases), "-o", "x.csv", "--arithmetic", "applesoft"]
+        assert main([*asked, "--outputs", "COND"]) == 2
+        assert "'COND' is no result of --arithmetic applesoft" in capsys.readouterr().err
+
+
+def test_set_gives_a_value_for_all_rows(cases, tmp_path):
+    out = tmp_path / "r.csv"
+    assert main(["solve", str(cases), "-o", str(out), "--set", "MU=-10", "--set", "M=6"]) == 0
+    assert {row["MUP"] for row in table(out)} == {"-10.0"}
+    few = tmp_path / "few.csv"
+    few.write_text("E,MU,GA,MA,MB,UX,UY,WA,VX,VY,WB\n.1,.5,0,100,90,-30,0,1,0,20,0\n")
+    assert main(["solve", str(few), "-o", str(out), "--set", "M=4", "--outputs", "WAF"]) == 0
+    assert table(out)[0]["WAF"] == "1.0"
+
+
+def test_standard_input_and_output(cases, capsys, monkeypatch):
+    stdin = io.TextIOWrapper(io.BufferedReader(io.BytesIO(cases.read_bytes())))
+    monkeypatch.setattr("sys.stdin", stdin)
+    assert main(["solve", "-", "--outputs", "KI", "--results-only"]) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert out[0] == "id,note,KI"
+    assert float(out[1].rpartition(",")[2]) == expected(cases)["KI"][0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["none.csv", "-o", "r.csv"], "none.csv: cannot be read"),
+        (["cases.xls", "-o", "r.csv"], "cannot tell its format"),
+        (["{cases}", "-o", "r.csv", "--outputs", "VAX,SPEED"], "'SPEED' is no result"),
+        (["{cases}", "-o", "r.csv", "--set", "MX=1"], "--set MX=1: expected NAME=VALUE"),
+        (["{cases}", "-o", "r.csv", "--set", "MU=x"], "'x' is no number"),
+        (["{cases}", "-o", "nowhere/r.csv"], "cannot be written"),
+        (["{few}", "-o", "r.csv"], "no column MU EM"),
+    ],
+)
+def test_unusable(cases, tmp_path, monkeypatch, capsys, arguments, told):
+    monkeypatch.chdir(tmp_path)
+    few = tmp_path / "few.csv"
+    few.write_text("E\n1\n")
+    filled = [a.replace("{cases}", str(cases)).replace("{few}", str(few)) for a in arguments]
+    assert main(["solve", *filled]) == 2
+    err = capsys.readouterr().err
+    assert told in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "r.csv").exists()
+
+
+def test_memory_does_not_grow_with_the_file(cases, tmp_path, monkeypatch):
+    monkeypatch.setattr(csvtable, "BLOCK_ROWS", 500)
+    lines = cases.read_text().splitlines(keepends=True)
+    peaks = []
+    for rows in (200, 2_000, 8_000):  # the first only to have everything imported
+        big = tmp_path / "big.csv"
+        with big.open("w") as file:
+            file.write(lines[0])
+            file.writelines(lines[1 + i % 12] for i in range(rows))
+        tracemalloc.start()
+        try:
+            main(["solve", str(big), "-o", str(tmp_path / "r.csv"), "--outputs", "VAX"])
+            peaks.append(tracemalloc.get_traced_memory()[1])
+        finally:
+            tracemalloc.stop()
+    assert peaks[2] < 1.1 * peaks[1]

@@ -1,0 +1,227 @@
+"""Tables of scenes: what is read, passed through, written, and what is refused, in all formats."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import struct
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from impact88.errors import UserError
+from impact88.names import SCENE
+from impact88.tables import (
+    BLOCK_ROWS,
+    BadCell,
+    check_scene_columns,
+    format_of,
+    numbers,
+    open_reader,
+    open_writer,
+    shortest,
+)
+
+TEXTS = {name: str(i + 0.5) for i, name in enumerate(SCENE)} | {"M": "6"}
+
+
+def csv_text(rows, names=(*SCENE, "note"), delimiter=","):
+    out = io.StringIO()
+    writer = csv.writer(out, delimiter=delimiter)
+    writer.writerow(names)
+    for row in rows:
+        writer.writerow([row.get(name, "") for name in names])
+    return out.getvalue()
+
+
+def read(path, form=None):
+    with open_reader(str(path), format_of(str(path), form)) as source:
+        return source.names, list(source)
+
+
+def copy(path, out, form, to, results, solved):
+    """From one table to another, with results added."""
+    with (
+        open_reader(str(path), form) as source,
+        open_writer(str(out), to, source, results, True) as writer,
+    ):
+        for rows in source:
+            writer.write(rows, solved(rows))
+
+
+@given(st.floats(allow_nan=False))
+def test_floats_read_back_to_the_same_bits(value):
+    (text,) = shortest(np.array([value]))
+    assert struct.pack("<d", float(text)) == struct.pack("<d", value)
+
+
+class TestCsv:
+    def test_texts_stay_texts(self, tmp_path):
+        path = tmp_path / "a.csv"
+        path.write_text(csv_text([{**TEXTS, "MA": "090.50", "note": 'say "x, y"\nand z'}]))
+        names, (rows,) = read(path)
+        assert names == [*SCENE, "note"]
+        assert rows.columns["MA"] == ("090.50",)
+        assert rows.others["note"] == ('say "x, y"\nand z',)
+        assert numbers(rows)["MA"].tolist() == [90.5]
+
+    @pytest.mark.parametrize("delimiter", [",", ";", "\t"])
+    @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+    def test_delimiters_and_encodings(self, tmp_path, delimiter, encoding):
+        path = tmp_path / "a.csv"
+        text = csv_text([{**TEXTS, "note": "é"}], delimiter=delimiter)
+        path.write_bytes(text.encode(encoding))
+        _, (rows,) = read(path)
+        assert rows.others["note"] == ("é",)
+        assert rows.columns["E"] == (TEXTS["E"],)
+
+    def test_blocks_rows_and_lines(self, tmp_path):
+        path = tmp_path / "a.csv"
+        count = BLOCK_ROWS + 3
+        lines = csv_text([{**TEXTS, "note": str(i)} for i in range(count)]).splitlines()
+        lines.insert(1, "")  # an empty line is no row
+        lines[5] = lines[5] + ",more"
+        path.write_text("\n".join(lines) + "\n")
+        _, blocks = read(path)
+        assert [(b.first, b.count) for b in blocks] == [(1, BLOCK_ROWS), (BLOCK_ROWS + 1, 3)]
+        assert blocks[0].bad == [BadCell(4, 6, "", "has 23 fields; expected 22, as in the header")]
+        assert blocks[1].others["note"][-1] == str(count - 1)
+        assert blocks[1].cell(0, "E", "x").line == BLOCK_ROWS + 3
+
+    @pytest.mark.parametrize(
+        ("text", "told"),
+        [
+            ("", "is empty"),
+            ("E,MU,E\n1,2,3\n", "two columns named 'E'"),
+            ('E,MU\n"1,2\n', "line 2"),
+        ],
+    )
+    def test_unusable(self, tmp_path, text, told):
+        path = tmp_path / "a.csv"
+        path.write_text(text)
+        with pytest.raises(UserError, match=told):
+            read(path)
+
+    def test_not_text(self, tmp_path):
+        path = tmp_path / "a.csv"
+        path.write_bytes(b"E,MU\n\xff\xfe\xfa,1\n")
+        with pytest.raises(UserError, match="no utf-8 text"):
+            read(path)
+        with pytest.raises(UserError, match="cannot be read"):
+            read(tmp_path / "none.csv")
+
+
+class TestJsonLines:
+    def test_numbers_keep_their_text(self, tmp_path):
+        path = tmp_path / "a.jsonl"
+        path.write_text('{"MA": 90.50, "MB": "1E3", "id": 007}\n'.replace("007", "7"))
+        names, (rows,) = read(path)
+        assert names == ["MA", "MB", "id"]
+        assert rows.columns == {"MA": ["90.50"], "MB": ["1E3"]}
+
+    def test_rows_that_are_no_objects(self, tmp_path):
+        path = tmp_path / "a.jsonl"
+        path.write_text('{"E": 1}\n\n[1]\n{"E": \n{"E": true, "MU": null}\n')
+        _, (rows,) = read(path)
+        assert rows.lines == [1, 3, 4, 5]
+        assert [(bad.row, bad.line) for bad in rows.bad] == [(2, 3), (3, 4)]
+        found = numbers(rows)
+        assert found["E"].tolist()[0] == 1
+        reasons = {(bad.row, bad.column): bad.reason for bad in rows.bad}
+        assert reasons[4, "MU"] == "is empty; expected a number" or (4, "E") in reasons
+
+    def test_written_rows_are_json_and_pass_everything_through(self, tmp_path):
+        path, out = tmp_path / "a.jsonl", tmp_path / "b.jsonl"
+        told = {"id": {"deep": [1.50, None, "é"]}, "E": 1.25, "VAX": "old"}
+        path.write_text(json.dumps(told) + "\n" + json.dumps({"E": 2, "late": [True]}) + "\n")
+        found = {
+            "VAX": np.array([0.1, math.nan]),
+            "COND": np.array([math.inf, 1.0]),
+            "STATUS": np.array([3, 64], np.uint8),
+        }
+        copy(path, out, "jsonl", "jsonl", list(found), lambda rows: found)
+        first, second = (json.loads(line) for line in out.read_text().splitlines())
+        assert "1.5" in out.read_text()
+        assert first["id"] == told["id"]
+        assert (first["VAX"], first["COND"], first["STATUS"]) == (0.1, math.inf, 3)
+        assert second["VAX"] is None
+        assert second["late"] == [True]
+
+
+class TestNpz:
+    def test_arrays_and_single_values(self, tmp_path):
+        path = tmp_path / "a.npz"
+        np.savez(path, MA=np.arange(3), MB=2.5, id=np.array(["a", "b", "c"]), E=["1", "x", "3"])
+        names, (rows,) = read(path)
+        assert names == ["MA", "MB", "id", "E"]
+        found = numbers(rows)
+        assert found["MB"].tolist() == [2.5] * 3
+        assert [(bad.row, bad.column) for bad in rows.bad] == [(2, "E")]
+
+    def test_unusable(self, tmp_path):
+        path = tmp_path / "a.npz"
+        np.savez(path, MA=np.arange(3), MB=np.arange(4))
+        with pytest.raises(UserError, match="MA 3, MB 4"):
+            read(path)
+        np.savez(path, MA=np.zeros((2, 2)))
+        with pytest.raises(UserError, match="more than one dimension"):
+            read(path)
+        np.savez(path, MA=np.array([{}], dtype=object))
+        with pytest.raises(UserError, match="plain arrays"):
+            read(path)
+        path.write_text("no archive")
+        with pytest.raises(UserError, match="plain arrays"):
+            read(path)
+
+
+@pytest.mark.parametrize("form", ["csv", "jsonl", "npz"])
+@pytest.mark.parametrize("to", ["csv", "jsonl", "npz"])
+def test_any_format_to_any_other(tmp_path, form, to):
+    values = np.array([0.1, -1e-300, 12345.678901234567])
+    source_path, path = tmp_path / f"a.{form}", tmp_path / f"b.{to}"
+    if form == "csv":
+        source_path.write_text(
+            "E,tag\n" + "".join(f"{v!r},t{i}\n" for i, v in enumerate(values.tolist()))
+        )
+    elif form == "jsonl":
+        source_path.write_text(
+            "".join(json.dumps({"E": v, "tag": f"t{i}"}) + "\n" for i, v in enumerate(values))
+        )
+    else:
+        np.savez(source_path, E=values, tag=[f"t{i}" for i in range(3)])
+    copy(source_path, path, form, to, ["KI"], lambda rows: {"KI": numbers(rows)["E"] * 3})
+    names, (rows,) = read(path)
+    assert names == ["E", "tag", "KI"]
+    assert numbers(rows)["E"].tolist() == values.tolist()
+    assert [str(tag) for tag in rows.others["tag"]] == ["t0", "t1", "t2"]
+    assert [float(x) for x in rows.others["KI"]] == (values * 3).tolist()
+
+
+def test_nothing_half_written(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text(csv_text([TEXTS]))
+    out = tmp_path / "b.csv"
+    out.write_text("before")
+    with pytest.raises(KeyError):
+        copy(path, out, "csv", "csv", ["VAX"], lambda rows: {})
+    assert out.read_text() == "before"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.csv", "b.csv"]
+
+
+def test_formats_are_told_by_name():
+    assert format_of("a.CSV", None) == "csv"
+    assert format_of("x.ndjson", None) == "jsonl"
+    assert format_of("-", None) == "csv"
+    assert format_of("a.dat", "npz") == "npz"
+    with pytest.raises(UserError, match=r"a\.xls"):
+        format_of("a.xls", None)
+
+
+def test_missing_columns_are_named():
+    check_scene_columns(list(SCENE)[:-1], [], ["M"])
+    with pytest.raises(UserError, match="no column GA PA"):
+        check_scene_columns([n for n in SCENE if n not in ("GA", "PA", "M")], [], ["M"])
