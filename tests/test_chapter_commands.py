@@ -300,3 +300,32 @@ def test_help_has_examples_and_units(command: str, capsys: pytest.CaptureFixture
     assert "examples:" in out
     assert "nits" in out
     assert "exit status" in out
+
+
+@pytest.mark.parametrize(
+    ("command", "pairs", "expected"),
+    [("barrier", CAR, "7.3903*"), ("colinear", REAR_END, "-33.0237*")],
+)
+def test_a_template_filled_in_is_a_problem(
+    command: str, pairs: str, expected: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, text, _ = run(capsys, command, "--template")
+    assert status == 0
+    for pair in pairs.split():
+        name, value = pair.split("=")
+        assert f'\n{name} = ""' in text
+        text = text.replace(f'\n{name} = ""', f'\n{name} = "{value}"')
+    path = tmp_path / "filled.toml"
+    path.write_text(text, encoding="utf-8")
+    status, out, err = run(capsys, command, str(path))
+    assert (status, err) == (0, "")
+    assert expected in out
+
+
+def test_the_reconstruction_template_names_everything_that_can_be_known(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    _, text, _ = run(capsys, "reconstruct", "--template")
+    for name in ("MA", "GA", "E", "MU", "MUP", "UX", "WB", "VAX", "WBF"):
+        assert f'\n{name} = ""' in text
+    assert "rad/time" in text

@@ -43,6 +43,17 @@ def givens(path: str | None, settings: Sequence[str], allowed: Collection[str]) 
     return values
 
 
+def template(names: Sequence[str]) -> str:
+    """A file to fill in with what is known of ``names``."""
+    lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
+    for name in names:
+        quantity = SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
+        meaning = "signed P_t/P_n, in place of MU" if name == "MUP" else quantity.meaning
+        entry = f'{name} = "6"' if name == "M" else f'{name} = ""'
+        lines.append(f"{entry:<12} # {quantity.symbol}: {meaning} [{quantity.unit}]")
+    return "\n".join(lines)
+
+
 def _put(
     values: dict[str, float], name: str, text: str, allowed: Collection[str], where: str
 ) -> None:

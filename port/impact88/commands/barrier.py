@@ -11,6 +11,7 @@ comes from, clockwise from the vehicle's front.
 examples:
   impact88 barrier --set MA=143.5 --set IA=3728 --set DA=7.59 --set PA=-19.8 --set TA=0 \\
       --set GA=-30 --set E=.005 --set MU=.911 --set EM=-.715 --set UX=-29.04 --set UY=0 --set WA=0
+  impact88 barrier --template > car.toml        a file to fill in
   impact88 barrier car.toml --contact-time .1
   impact88 barrier rebound.toml --json          VAX VAY WAF known, UX UY WA left out
 
@@ -22,7 +23,7 @@ from __future__ import annotations
 import argparse
 
 from ..errors import UserError
-from ..givens import givens
+from ..givens import givens, template
 from .reconstruct import add_solution_arguments, show
 
 KNOWABLE = (
@@ -41,6 +42,9 @@ def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
     from ..barrier import BARRIER, BARRIER_AFTER
 
+    if args.template:
+        print(template(KNOWABLE))
+        return 0
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     known = givens(args.file, args.set, KNOWABLE)

@@ -6,6 +6,7 @@ Equation 8: no rule chooses its sign here. Units: any consistent set.
 examples:
   impact88 colinear --set MA=154.7 --set MB=99.1 --set E=.071 --set MUP=-.008 \\
       --set UN=-56.76 --set UT=0 --set VN=0 --set VT=0
+  impact88 colinear --template > rear-end.toml          a file to fill in
   impact88 colinear rear-end.toml --contact-time .12
   impact88 colinear rear-end.toml --json
 
@@ -19,7 +20,7 @@ import json
 import math
 
 from ..errors import UserError
-from ..givens import givens
+from ..givens import givens, template
 from .reconstruct import add_solution_arguments
 
 COMMON = ("MA", "MB", "E", "MUP")
@@ -37,6 +38,9 @@ def main(args: argparse.Namespace) -> int:
     """Print the velocities that were not given, and what follows from them."""
     from ..colinear import colinear, colinear_inverse
 
+    if args.template:
+        print(template((*COMMON, *BEFORE, *AFTER)))
+        return 0
     known = givens(args.file, args.set, (*COMMON, *BEFORE, *AFTER))
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
     missing = [name for name in COMMON if name not in known]

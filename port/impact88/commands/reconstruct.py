@@ -17,6 +17,7 @@ signed P_t/P_n instead. Units: any consistent set; angles in degrees, spins in r
 PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
 
 examples:
+  impact88 reconstruct --template > after.toml          a file to fill in
   impact88 reconstruct after.toml                       all that the file leaves out
   impact88 reconstruct after.toml --set E=.1            a value changed
   impact88 reconstruct after.toml --set E= --set MU=    two values no longer known
@@ -33,7 +34,7 @@ import json
 from collections.abc import Mapping
 
 from ..errors import UserError
-from ..givens import givens
+from ..givens import givens, template
 from ..names import SCENE
 
 KNOWABLE = (*SCENE, "MUP", "VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
@@ -66,11 +67,15 @@ def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="T",
         help="duration of contact (usually .1 to .2 s): average and peak force",
     )
+    parser.add_argument("--template", action="store_true", help="print a file to fill in")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
 def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
+    if args.template:
+        print(template(KNOWABLE))
+        return 0
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     known = givens(args.file, args.set, KNOWABLE)
