@@ -56,15 +56,18 @@ def printed_fields(printout: str) -> dict[str, str]:
     for old, new in (("KE", "KI"), ("MU", "MUP")):
         if old in fields:
             fields[new] = fields.pop(old)
-    for mark, name in (("VAX", "A"), ("VBX", "B")):
-        line = re.search(rf"{mark}= (\S+) V{name}Y= (\S+) \(X{name}=(\S+) Y{name}= (\S+)\)", after)
+    for name in "AB":  # a line may end at an error
+        line = re.search(
+            rf"V{name}X= (\S+)(?: V{name}Y= (\S+)(?: \(X{name}=(\S+)(?: Y{name}= (\S+)\))?)?)?",
+            after,
+        )
         if line:
             names = (f"V{name}X", f"V{name}Y", f"X{name}F", f"Y{name}F")
             fields |= dict(zip(names, line.groups(), strict=True))
-    spins = re.search(r" WA= (\S+) WB= (\S+)", after)
+    spins = re.search(r" WA= (\S+)(?: WB= (\S+))?", after)
     if spins:
         fields |= {"WAF": spins.group(1), "WBF": spins.group(2)}
-    return fields
+    return {name: text for name, text in fields.items() if text is not None}
 
 
 def check_errors(runs: list[dict[str, Any]], replayed: Replay) -> None:

@@ -23,14 +23,20 @@ import numpy as np
 from ..applesoft import decimaltext as scalar
 from . import elimination, functions
 from .columns import PLACES
-from .reals import LARGEST, ZERO, Bools, Reals, constant, floor, from_number, select, stack
+from .reals import LARGEST, ZERO, Reals, constant, floor, from_number, select, stack
 from .unit import Unit, stamp
 
 C_1E3 = from_number(scalar.read("1E3")[0])
 C_1E4 = from_number(scalar.read("1E4")[0])
 AG = (from_number(scalar.read("3.14159265")[0]) / 180).rounded()
 """Line 300's radians per degree."""
-C_2, C_100, C_10000, MINUS_10 = constant(2), constant(100), constant(10000), constant(-10)
+C_1, C_2, C_100, C_10000, MINUS_10 = (
+    constant(1),
+    constant(2),
+    constant(100),
+    constant(10000),
+    constant(-10),
+)
 
 
 class Kind(NamedTuple):
@@ -71,25 +77,32 @@ FLOORED: dict[str, Reals] = {
 }
 """Field -> the factor of its INT (factor * x) / factor."""
 
-Places = Sequence[tuple[int, int]]
+Rows = Sequence[Reals]
+Places = int | Sequence[tuple[int, int]]
+"""Where rows are computed: a line for all of them, or a line and a position for each."""
+
+WIDE = 8192
+"""Rows of so many scenes are computed one by one: together they would fall out of the cache."""
 
 
 def each(
-    unit: Unit, places: Places, operation: Callable[..., Reals], *operands: Sequence[Reals]
+    unit: Unit, where: Places, operation: Callable[..., Reals], *operands: Rows
 ) -> list[Reals]:
-    """An operation on several rows of operands at once, each row at its own place in the program.
+    """An operation on each row of operands, computed together where that saves time.
 
     What all scenes share (arrays of length 1) is kept apart from what each has of its own, and so
     computed once.
     """
-    count = len(places)
+    count = len(operands[0])
+    places = [(where, 0)] * count if isinstance(where, int) else where
     results = [ZERO] * count
-    wide = [any(column[i].v.shape[-1] > 1 for column in operands) for i in range(count)]
-    for rows in ([i for i in range(count) if wide[i]], [i for i in range(count) if not wide[i]]):
-        if len(rows) == 1:
-            (i,) = rows
-            unit.at(*places[i])
-            results[i] = operation(*(column[i] for column in operands))
+    lengths = [max(column[i].v.shape[-1] for column in operands) for i in range(count)]
+    for shared in (False, True):
+        rows = [i for i in range(count) if (lengths[i] == 1) == shared]
+        if len(rows) == 1 or (rows and lengths[rows[0]] >= WIDE):
+            for i in rows:
+                unit.at(*places[i])
+                results[i] = operation(*(column[i] for column in operands))
         elif rows:
             unit.at_each([places[i] for i in rows])
             done = operation(*(stack([column[i] for i in rows], unit) for column in operands))
@@ -98,67 +111,60 @@ def each(
     return results
 
 
-def _times(
-    unit: Unit, places: Places, left: Sequence[Reals], right: Sequence[Reals]
-) -> list[Reals]:
+def _some(
+    unit: Unit, where: Places, operation: Callable[..., Reals], rows: list[int], *operands: Rows
+) -> dict[int, Reals]:
+    """`each`, of some rows only."""
+    places = where if isinstance(where, int) else [where[i] for i in rows]
+    chosen = [[column[i] for i in rows] for column in operands]
+    return dict(zip(rows, each(unit, places, operation, *chosen), strict=True)) if rows else {}
+
+
+def times(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Products, leaving out the rows in which a factor is known to be zero."""
-    rows = [i for i in range(len(places)) if left[i].high and right[i].high]
-    done = each(
-        unit,
-        [places[i] for i in rows],
-        Reals.__mul__,
-        [left[i] for i in rows],
-        [right[i] for i in rows],
-    )
-    results = [ZERO] * len(places)
-    for i, product in zip(rows, done, strict=True):
-        results[i] = product
-    return results
+    rows = [i for i in range(len(left)) if left[i].high and right[i].high]
+    done = _some(unit, where, Reals.__mul__, rows, left, right)
+    return [done.get(i, ZERO) for i in range(len(left))]
 
 
-def _squares(unit: Unit, places: Places, values: Sequence[Reals]) -> list[Reals]:
+def plus(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
+    """Sums, leaving out the rows in which a term is known to be zero."""
+    rows = [i for i in range(len(left)) if left[i].high and right[i].high]
+    done = _some(unit, where, Reals.__add__, rows, left, right)
+    return [done[i] if i in done else left[i] + right[i] for i in range(len(left))]
+
+
+def over(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
+    """Quotients. Known zeros are divided one by one, to find the divisors that are zero."""
+    rows = [i for i in range(len(left)) if left[i].high]
+    done = _some(unit, where, Reals.__truediv__, rows, left, right)
+    for i in range(len(left)):
+        if i not in done:
+            unit.at(*((where, 0) if isinstance(where, int) else where[i]))
+            done[i] = left[i] / right[i]
+    return [done[i] for i in range(len(left))]
+
+
+def squares(unit: Unit, where: Places, values: Rows) -> list[Reals]:
     """x ^ 2 of each, which is EXP (2 * LOG (x)); 0 ^ 2 is 0."""
-    rows = [i for i in range(len(places)) if values[i].high]
-    done = each(unit, [places[i] for i in rows], _square, [values[i] for i in rows])
-    results = [ZERO] * len(places)
-    for i, square in zip(rows, done, strict=True):
-        results[i] = square
-    return results
+    rows = [i for i in range(len(values)) if values[i].high]
+    done = _some(unit, where, _square, rows, values)
+    return [done.get(i, ZERO) for i in range(len(values))]
 
 
 def _square(x: Reals) -> Reals:
     return functions.power(x, C_2)
 
 
-def _over(unit: Unit, places: Places, left: Sequence[Reals], right: Sequence[Reals]) -> list[Reals]:
-    """Quotients. A known zero is divided by itself apart, to find the divisors that are zero."""
-    results = list(left)
-    rows = [i for i in range(len(places)) if left[i].high]
-    for i in range(len(places)):
-        if not left[i].high:
-            unit.at(*places[i])
-            results[i] = left[i] / right[i]
-    done = each(
-        unit,
-        [places[i] for i in rows],
-        Reals.__truediv__,
-        [left[i] for i in rows],
-        [right[i] for i in rows],
-    )
-    for i, quotient in zip(rows, done, strict=True):
-        results[i] = quotient
-    return results
-
-
-def _rounded(values: list[Reals]) -> list[Reals]:
-    """Stored."""
+def stored(values: list[Reals]) -> list[Reals]:
+    """As variables keep them: rounded."""
     return [value.rounded() for value in values]
 
 
-def radians(unit: Unit, angles: Sequence[Reals]) -> list[Reals]:
+def radians(unit: Unit, angles: Rows) -> list[Reals]:
     """Line 300."""
     places = [(300, i) for i in range(len(angles))]
-    return _rounded(_times(unit, places, angles, [AG] * len(angles)))
+    return stored(times(unit, places, angles, [AG] * len(angles)))
 
 
 def run(
@@ -174,167 +180,164 @@ def run(
     MA, MB, IA, IB = (scene[name] for name in ("MA", "MB", "IA", "IB"))
     UX, UY, WA, VX, VY, WB = (scene[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB"))
     M, pivot = kind
+    last = M + 1
 
+    # 300 GA = GA * AG: ...
     GA, PA, PB, TA, TB = radians(unit, [scene[name] for name in ANGLES])
 
-    UX2, UY2, VX2, VY2, WA2, WB2 = _squares(unit, [(320, 0)] * 6, [UX, UY, VX, VY, WA, WB])
-    unit.at(320)
-    KI = ((MA * (UX2 + UY2) + MB * (VX2 + VY2) + IA * WA2 + IB * WB2) / 2).rounded()
+    # 320 KI = (MA * (UX ^ 2 + UY ^ 2) + MB * (VX ^ 2 + VY ^ 2) + IA * (WA ^ 2) + IB * (WB ^ 2)) / 2
+    UX2, UY2, VX2, VY2, WA2, WB2 = squares(unit, 320, [UX, UY, VX, VY, WA, WB])
+    U2, V2 = plus(unit, 320, [UX2, VX2], [UY2, VY2])
+    t1, t2, t3, t4 = times(unit, 320, [MA, MB, IA, IB], [U2, V2, WA2, WB2])
+    KI = ((t1 + t2 + t3 + t4) / 2).rounded()
 
-    unit.at(330)
-    B, A_ = TB + PB, TA + PA  # angles of the lines from the centers of gravity to the contact point
-    turns = [B, B, A_, A_, GA, GA]
-    places = [(330, 1), (330, 2), (330, 3), (330, 4), *[(430 if pivot else 400, 0)] * 2]
-    shifted = [False, True, False, True, False, True]
-    if pivot:
-        unit.at(440)
-        turns += [A_ - GA, B - GA]
-        places += [(440, 1), (440, 2)]
-        shifted += [True, True]
-    for_cosine = each(
-        unit,
-        [place for place, cosine in zip(places, shifted, strict=True) if cosine],
-        functions.shifted_for_cosine,
-        [turn for turn, cosine in zip(turns, shifted, strict=True) if cosine],
-    )
-    turns = [
-        for_cosine.pop(0) if cosine else turn for turn, cosine in zip(turns, shifted, strict=True)
-    ]
-    sin_b, cos_b, sin_a, cos_a, sin, cos, *pivot_cosines = each(unit, places, functions.sin, turns)
-    D1, D2, D3, D4 = _rounded(
-        _times(unit, places[:4], [DB, DB, DA, DA], [sin_b, cos_b, sin_a, cos_a])
-    )
+    # 330 D1 = DB * SIN (TB + PB):D2 = DB * COS (TB + PB):D3 = DA * SIN (TA + PA):D4 = ...
+    TBPB, TAPA = plus(unit, 330, [TB, TA], [PB, PA])
+    (sin_b, sin_a, sin), (cos_b, cos_a, cos, *pivot_cosines) = _turns(unit, TBPB, TAPA, GA, pivot)
+    D1, D2, D3, D4 = stored(times(unit, 330, [DB, DB, DA, DA], [sin_b, cos_b, sin_a, cos_a]))
 
+    # 340 XA = UX + D3 * WA:YA = UY - D4 * WA:XB = VX - D1 * WB:YB = VY + D2 * WB
     places = [(340, i) for i in range(1, 5)]
-    d3wa, d4wa, d1wb, d2wb = _times(unit, places, [D3, D4, D1, D2], [WA, WA, WB, WB])
-    XA, YA, XB, YB = _contact(unit, places, (UX, UY, VX, VY), (d3wa, d4wa, d1wb, d2wb))
+    d3wa, d4wa, d1wb, d2wb = times(unit, places, [D3, D4, D1, D2], [WA, WA, WB, WB])
+    XA, YA, XB, YB = stored(plus(unit, places, [UX, UY, VX, VY], [d3wa, -d4wa, -d1wb, d2wb]))
 
+    # 370 A(1,1) = MA:A(1,3) = MB: ... 380 A(2,2) = MA:A(2,4) = MB: ...
     A = {(row, column): ZERO for row in range(1, 7) for column in range(1, 8)}
     A[1, 1] = A[2, 2] = MA
     A[1, 3] = A[2, 4] = MB
+
+    # 390 IF MU = -10 THEN 430
     MUP = MU
     if not pivot:
-        unit.at(400)
-        MUP = _signed(MU, XA * sin - YA * cos < XB * sin - YB * cos)
-        unit.at(410)
-        A[3, 2] = (MA * (cos - MUP * sin)).rounded()
-        A[3, 3] = (MB * (sin + MUP * cos)).rounded()
+        # 400 IF (XA * SIN (GA) - YA * COS (GA)) < (XB * SIN (GA) - YB * COS (GA)) THEN MU = -MU
+        t1, t2, t3, t4 = times(unit, 400, [XA, YA, XB, YB], [sin, cos, sin, cos])
+        of_a, of_b = plus(unit, 400, [t1, t3], [-t2, -t4])
+        reverse = of_a < of_b
+        if reverse.any():
+            MUP = select(reverse, -MU, MU)
+        # 410 A(3,2) = MA * (COS (GA) - MU * SIN (GA)):A(3,3) = MB * (SIN (GA) + MU * COS (GA)): ...
+        t1, t2 = times(unit, 410, [MUP, MUP], [sin, cos])
+        t1, t2 = plus(unit, 410, [cos, sin], [-t1, t2])
+        A[3, 2], A[3, 3] = stored(times(unit, 410, [MA, MB], [t1, t2]))
     else:
+        # 430 A(3,1) = SIN (GA):A(3,2) = -COS (GA):A(3,3) = -A(3,1):A(3,4) = -A(3,2)
         A[3, 1], A[3, 2] = sin.rounded(), -(cos.rounded())
         A[3, 3], A[3, 4] = -A[3, 1], -A[3, 2]
-        A[3, 5], A[3, 6] = _rounded(_times(unit, [(440, 1), (440, 2)], [DA, DB], pivot_cosines))
-    A[4, 1], A[4, 2] = cos.rounded(), sin.rounded()
+        # 440 A(3,5) = DA * COS (PA + TA - GA):A(3,6) = DB * COS (PB + TB - GA)
+        A[3, 5], A[3, 6] = stored(times(unit, 440, [DA, DB], pivot_cosines))
+
+    # 450 A(4,1) = COS (GA):A(4,2) = SIN (GA):A(4,3) = -A(4,1):A(4,4) = -A(4,2)
+    A[4, 1], A[4, 2] = stored([cos, sin])
     A[4, 3], A[4, 4] = -A[4, 1], -A[4, 2]
-    unit.at(460)
-    A[4, 5] = (D3 * cos - D4 * sin).rounded()
-    A[4, 6] = (D1 * cos - D2 * sin).rounded()
-    unit.at(470)
-    A[5, 2] = (MA * (D2 + D4)).rounded()
-    A[5, 3] = (MB * (D1 + D3)).rounded()
+    # 460 A(4,5) = D3 * COS (GA) - D4 * SIN (GA):A(4,6) = D1 * COS (GA) - D2 * SIN (GA)
+    t1, t2, t3, t4 = times(unit, 460, [D3, D4, D1, D2], [cos, sin, cos, sin])
+    A[4, 5], A[4, 6] = stored(plus(unit, 460, [t1, t3], [-t2, -t4]))
+    # 470 A(5,2) = MA * (D2 + D4):A(5,3) = MB * (D1 + D3):A(5,5) = IA:A(5,6) = IB: ...
+    A[5, 2], A[5, 3] = stored(times(unit, 470, [MA, MB], plus(unit, 470, [D2, D1], [D4, D3])))
     A[5, 5], A[5, 6] = IA, IB
-
+    # 480 A(6,1) = -EM * MA * D3 / IA:A(6,2) = EM * MA * D4 / IA:A(6,3) = -EM * MB * D1 / IB: ...
+    em_a, em_b = times(unit, [(480, 1), (480, 3)], [EM, EM], [MA, MB])
     places = [(480, i) for i in range(1, 5)]
-    em_a, em_b = _times(unit, [(480, 1), (480, 3)], [EM, EM], [MA, MB])
-    A[6, 1], A[6, 2], A[6, 3], A[6, 4] = _rounded(
-        _over(
-            unit,
-            places,
-            _times(unit, places, [-em_a, em_a, -em_b, em_b], [D3, D4, D1, D2]),
-            [IA, IA, IB, IB],
-        )
-    )
+    products = times(unit, places, [-em_a, em_a, -em_b, em_b], [D3, D4, D1, D2])
+    A[6, 1], A[6, 2], A[6, 3], A[6, 4] = stored(over(unit, places, products, [IA, IA, IB, IB]))
+    # 490 A(6,5) = 2 * EM - 1:A(6,6) = 1 - 2 * EM
     unit.at(490)
-    A[6, 5], A[6, 6] = (2 * EM - 1).rounded(), (1 - 2 * EM).rounded()
+    twice = 2 * EM
+    A[6, 5], A[6, 6] = stored(plus(unit, 490, [twice, C_1], [-C_1, -twice]))
 
-    last = M + 1
-    unit.at(500)
-    A[1, last] = (MA * UX + MB * VX).rounded()
-    A[2, last] = (MA * UY + MB * VY).rounded()
-    if pivot:
-        A[3, last] = ZERO
-    else:
-        A[3, last] = _line_530(unit, MUP, A[3, 2], A[3, 3], UY, VX)
-    unit.at(540)
-    A[4, last] = (-E * ((YA - VY - d2wb) * sin + (XA - VX + d1wb) * cos)).rounded()
-    unit.at(550)
-    angular = (A[5, 2] * UY + A[5, 3] * VX + IA * WA + IB * WB).rounded()
-    t1, t2, t3, t4 = _moments(unit, (-MA, MA, MB, MB), (D3, D4, D1, D2), (UX, UY, VX, VY), IA, IB)
-    unit.at(560)
+    # 500 A(1,M + 1) = MA * UX + MB * VX:A(2,M + 1) = MA * UY + MB * VY
+    t1, t2, t3, t4 = times(unit, 500, [MA, MB, MA, MB], [UX, VX, UY, VY])
+    A[1, last], A[2, last] = stored(plus(unit, 500, [t1, t3], [t2, t4]))
+    A[3, last] = ZERO if pivot else _line_530(unit, MUP, A[3, 2], A[3, 3], UY, VX)
+    # 540 A(4,M + 1) = -E * ((UY - D4 * WA - VY - D2 * WB) * SIN (GA)
+    #                        + (UX + D3 * WA - VX + D1 * WB) * COS (GA))
+    relative = plus(unit, 540, plus(unit, 540, [YA, XA], [-VY, -VX]), [-d2wb, d1wb])
+    t1, t2 = times(unit, 540, relative, [sin, cos])
+    A[4, last] = (-E * (t1 + t2)).rounded()
+    # 550 A(5,M + 1) = MA * (D2 + D4) * UY + MB * (D1 + D3) * VX + IA * WA + IB * WB
+    t1, t2, t3, t4 = times(unit, 550, [A[5, 2], A[5, 3], IA, IB], [UY, VX, WA, WB])
+    angular = (t1 + t2 + t3 + t4).rounded()
+    # 560 A(6,M + 1) = EM * (-MA * D3 * UX / IA + MA * D4 * UY / IA - MB * D1 * VX / IB
+    #                        + MB * D2 * VY / IB + WA - WB)
+    products = times(unit, 560, [-MA, MA, MB, MB], [D3, D4, D1, D2])
+    products = times(unit, 560, products, [UX, UY, VX, VY])
+    t1, t2, t3, t4 = over(unit, 560, products, [IA, IA, IB, IB])
     A[6, last] = (EM * (t1 + t2 - t3 + t4 + WA - WB)).rounded()
-    A[5, last] = angular
+    A[5, last] = angular  # not before: of M = 4 it takes the place of IA
 
+    # 570 GOSUB 1000
     solution = elimination.solve(unit, A, M, matrix)
     V = solution + [A[5, last], A[6, last]][M - 4 :]  # M = 4: what lines 700 and 710 find
 
-    squares = _squares(unit, [(580, 0)] * 4 + [(590, 0)] * (M - 4), V[:M])
-    unit.at(580)
-    KF = ((MA * (squares[0] + squares[1]) + MB * (squares[2] + squares[3])) / 2).rounded()
+    # 580 KF = (MA * (A(1,M + 1) ^ 2 + A(2,M + 1) ^ 2) + MB * (A(3,M + 1) ^ 2 + A(4,M + 1) ^ 2)) / 2
+    places = [(580, 0)] * 4 + [(590, 0)] * (M - 4)
+    VAX2, VAY2, VBX2, VBY2, *spins = squares(unit, places, V[:M])
+    t1, t2 = times(unit, 580, [MA, MB], plus(unit, 580, [VAX2, VBX2], [VAY2, VBY2]))
+    KF = ((t1 + t2) / 2).rounded()
     results = {"KF580": KF}
     if M == 6:
-        unit.at(590)
-        KF = (KF + (IA * squares[4] + IB * squares[5]) / 2).rounded()
+        # 590 IF N = M THEN KF = KF + (IA * A(5,M + 1) ^ 2 + IB * A(6,M + 1) ^ 2) / 2
+        t1, t2 = times(unit, 590, [IA, IB], spins)
+        KF = (KF + (t1 + t2) / 2).rounded()
 
-    for name, angle in zip(ANGLES, (GA, PA, PB, TA, TB), strict=True):
-        if angle.high / AG.low > LARGEST / 4:
-            unit.at(600, ("TA", "TB", "PA", "PB", "GA").index(name))
+    # 600 TA = TA / AG:TB = TB / AG:PA = PA / AG:PB = PB / AG:GA = GA / AG
+    for position, angle in enumerate((TA, TB, PA, PB, GA)):
+        if angle.high / AG.low > LARGEST / 4:  # the angles themselves are worked out when printed
+            unit.at(600, position)
             _ = (angle / AG).rounded()
+
+    # 660 PRINT : PRINT ... INT (100 * XA) / 100; ... 690 ...( INT (1E4 * (KI - KF) / KI)) / 100
     results |= {"KI": KI, "KF": KF, "XA": XA, "YA": YA, "XB": XB, "YB": YB, "MUP": MUP}
     for name in ("XA", "YA", "XB", "YB"):
         _check(unit, name, results[name])
     unit.at(*_place("LOSS"))
     results["LOSS"] = loss(KI, KF).rounded()
 
+    # 700 XA = A(1,M + 1) + D3 * A(5,M + 1):YA = A(2,M + 1) - D4 * A(5,M + 1)
+    # 710 XB = A(3,M + 1) - D1 * A(6,M + 1):YB = A(4,M + 1) + D2 * A(6,M + 1)
     places = [(700, 1), (700, 2), (710, 1), (710, 2)]
-    turned = _times(unit, places, [D3, D4, D1, D2], [V[4], V[4], V[5], V[5]])
-    final = dict(
-        zip(("XAF", "YAF", "XBF", "YBF"), _contact(unit, places, V[:4], turned), strict=True)
-    )
+    t3, t4, t1, t2 = times(unit, places, [D3, D4, D1, D2], [V[4], V[4], V[5], V[5]])
+    contact = stored(plus(unit, places, V[:4], [t3, -t4, -t1, t2]))
+
+    # 730 PRINT : PRINT "VAX= "; INT (1E3 * A(1,M + 1)) / 1E3; ...
+    final = dict(zip(("XAF", "YAF", "XBF", "YBF"), contact, strict=True))
     final |= dict(zip(("VAX", "VAY", "VBX", "VBY", "WAF", "WBF"), V[:M], strict=False))
     for name, value in final.items():
         _check(unit, name, value)
     if matrix:
         results |= {f"A({row},{column})": value for (row, column), value in A.items()}
-        results |= {"D1": D1, "D2": D2, "D3": D3, "D4": D4}
     return results | final
 
 
-def _contact(
-    unit: Unit, places: Places, velocities: Sequence[Reals], turned: Sequence[Reals]
-) -> list[Reals]:
-    """Lines 340 and 700-710: u + d3 w, v - d4 w; u - d1 w, v + d2 w."""
-    d3, d4, d1, d2 = turned
-    return _rounded(each(unit, places, Reals.__add__, velocities, [d3, -d4, -d1, d2]))
-
-
-def _signed(MU: Reals, reverse: Bools) -> Reals:
-    """Line 400's MU = -MU."""
-    return select(reverse, -MU, MU) if reverse.any() else MU
+def _turns(
+    unit: Unit, TBPB: Reals, TAPA: Reals, GA: Reals, pivot: bool
+) -> tuple[list[Reals], list[Reals]]:
+    """All sines and cosines of lines 330 to 460: of TB + PB, TA + PA and GA; for pivots also line
+    440's cosines of PA + TA - GA and PB + TB - GA."""
+    angles = [TBPB, TAPA, GA]
+    places = [(330, 0), (330, 0), (430 if pivot else 400, 0)]
+    cosine_places = list(places)
+    turned = list(angles)
+    if pivot:
+        turned += plus(unit, 440, [TAPA, TBPB], [-GA, -GA])
+        cosine_places += [(440, 0), (440, 0)]
+    shifted = each(unit, cosine_places, functions.shifted_for_cosine, turned)
+    sines = each(unit, places + cosine_places, functions.sin, angles + shifted)
+    return sines[:3], sines[3:]
 
 
 def _line_530(unit: Unit, MU: Reals, A32: Reals, A33: Reals, UY: Reals, VX: Reals) -> Reals:
     """Lines 510-530: a MU of -10 or less, such as 10 made -10 by line 400, gets a pivot's 0."""
     like_pivot = ~(MU > MINUS_10)
-    unit.at(530)
     some = bool(like_pivot.any())
     if some:
         unit.elsewhere = np.broadcast_to(like_pivot, unit.first.shape)
-    value = (A32 * UY + A33 * VX).rounded()
+    # 530 A(3,M + 1) = MA * (COS (GA) - MU * SIN (GA)) * UY + MB * (SIN (GA) + MU * COS (GA)) * VX
+    t1, t2 = times(unit, 530, [A32, A33], [UY, VX])
+    unit.at(530)
+    value = (t1 + t2).rounded()
     unit.elsewhere = None
     return select(like_pivot, ZERO, value) if some else value
-
-
-def _moments(
-    unit: Unit,
-    masses: Sequence[Reals],
-    arms: Sequence[Reals],
-    velocities: Sequence[Reals],
-    IA: Reals,
-    IB: Reals,
-) -> list[Reals]:
-    """The terms of line 560, M * D * U / I."""
-    places = [(560, 0)] * 4
-    products = _times(unit, places, _times(unit, places, masses, arms), velocities)
-    return _over(unit, places, products, [IA, IA, IB, IB])
 
 
 def loss(KI: Reals, KF: Reals) -> Reals:
