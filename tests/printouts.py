@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import captures
 from impact88.printout import ANGLES, FIELDS
 
-SWEEP = bool(os.environ.get("IMPACT88_SWEEP"))
-"""Set: every captured scene and many changes of each; else a sample that takes seconds."""
+SWEEP = int(os.environ.get("IMPACT88_SWEEP") or 0)
+"""Set to n: every captured scene, and n changes of each; else a sample that takes seconds."""
 
 _NUMBER = re.compile(r"-?[.0-9]+(?:E[+-][0-9]{2})?")
 _WORDS = {
@@ -67,6 +67,11 @@ def normal_ends() -> list[dict[str, Any]]:
 def sampled(rows: list[Any], count: int, seed: int = 1) -> list[Any]:
     """``count`` of the rows, or all of them in a sweep."""
     return rows if SWEEP else random.Random(seed).sample(rows, min(count, len(rows)))
+
+
+def chosen(places: list[Place], rng: random.Random) -> list[Place]:
+    """The places of one scene to change: one, or n of them in a sweep."""
+    return rng.sample(places, min(SWEEP or 1, len(places)))
 
 
 def body(printout: str) -> str:

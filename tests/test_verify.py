@@ -79,7 +79,7 @@ def test_one_output_digit_changed_is_the_one_field_reported() -> None:
     for row in printouts.sampled(printouts.normal_ends(), 12, seed=3):
         text = printouts.body(row["printout"])
         outputs = [place for place in printouts.places(text) if place.name not in INPUTS]
-        for place in outputs if printouts.SWEEP else [rng.choice(outputs)]:
+        for place in printouts.chosen(outputs, rng):
             result = verified(printouts.one_digit_changed(text, place, rng))
             assert result.verdict is Verdict.DIFFERS
             assert differing(result) == [place.name], row["scene"]
@@ -94,7 +94,7 @@ def test_one_input_digit_changed_is_found_out_and_explained() -> None:
     for row in printouts.sampled(printouts.normal_ends(), 24, seed=4):
         text = printouts.body(row["printout"])
         inputs = [place for place in printouts.places(text) if place.name in INPUTS]
-        for place in inputs if printouts.SWEEP else [rng.choice(inputs)]:
+        for place in printouts.chosen(inputs, rng):
             changed = printouts.one_digit_changed(text, place, rng)
             result = verified(changed)
             if result.verdict is Verdict.IDENTICAL:

@@ -25,6 +25,7 @@ COMMANDS = {
     "verify": "say whether an old printout is right, digit for digit, and if not, why",
     "oracle": "answer scenes with all that is known of them, for checking other programs",
     "compare": "say where another program's results agree with these, and if not, why",
+    "selfcheck": "replay the packaged captures here, and say pass or fail, for the record",
     "solve": "solve a table of scenes: double precision, or Applesoft's arithmetic, fast",
     "bench": "run time against error of every method, measured on this machine",
     "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",

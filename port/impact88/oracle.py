@@ -60,9 +60,10 @@ class Request:
         wrong = [name for name, value in values.items() if not isinstance(value, str)]
         if wrong:
             raise ValueError(f"{wrong[0]} is no number; expected a number or its decimal text")
-        self.scene = Scene({"M": DEFAULT_M, **values}, source="scene")
-        if float(self.scene["M"]) not in (4, 6):
-            raise ValueError(f"M is {self.scene['M']}; expected 6 or 4")
+        scene = Scene({"M": DEFAULT_M, **values}, source="scene")
+        if _float(scene["M"]) not in (4, 6):
+            raise ValueError(f"M is {scene['M']}; expected 6 or 4")
+        self.scene = scene
 
 
 def answers(lines: Iterable[str], reference: bool = True) -> Iterator[dict[str, Any]]:

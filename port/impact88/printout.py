@@ -186,6 +186,12 @@ class Printout:
         return reading.text if reading else None
 
 
+def outcome_fields(text: str) -> dict[str, str]:
+    """The fields of what one run printed, by name; none where it stopped before printing any."""
+    (shown,) = read_printouts(text)
+    return {name: reading.text for name, reading in shown.fields.items()}
+
+
 def read_file(path: str) -> list[Printout]:
     """The printouts in a file (``-``: standard input), UTF-8 or UTF-16.
 

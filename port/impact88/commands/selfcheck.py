@@ -1,0 +1,54 @@
+"""Replays the packaged captures of a real Apple II Plus and the published runs on this machine, and
+prints what was checked, counts, hashes and versions: the record of an installation qualification.
+
+examples:
+  impact88 selfcheck
+  impact88 selfcheck --json > qualification.json
+
+exit status: 0 everything came out as captured; 1 something did not
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+
+from ..selfcheck import CHECKS, Check, checks, record
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 selfcheck`."""
+    parser.add_argument("--json", action="store_true", help="print the record as one JSON object")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Run all checks and print the record."""
+    found: list[Check] = []
+    names = iter(CHECKS)
+    talk = args.json and sys.stderr.isatty()
+    for check in checks():
+        found.append(check)
+        if talk:
+            print(f"{next(names)}: {'pass' if check.passed else 'FAIL'}", file=sys.stderr)
+        elif not args.json:
+            print(_line(check), flush=True)
+    whole = record(found)
+    if args.json:
+        print(json.dumps(whole, indent=2))
+    else:
+        print()
+        for group in ("versions", "hashes"):
+            for name, text in whole[group].items():
+                print(f"{name + (' SHA-256' if group == 'hashes' else ''):<17} {text}")
+        print(f"{'time':<17} {whole['seconds']} s")
+        print(f"{'result':<17} {'PASS' if whole['passed'] else 'FAIL'}")
+    return 0 if whole["passed"] else 1
+
+
+def _line(check: Check) -> str:
+    verdict = "pass" if check.passed else "FAIL"
+    line = f"{verdict}  {check.name:<12} {check.right:>6} of {check.total:>6} {check.compared}"
+    if not check.passed:
+        line += f"\n      first wrong: {check.first_wrong or 'nothing to compare'}"
+    return line

@@ -1,0 +1,270 @@
+"""Checking an installation: what the captures of the real machine say, replayed here and now.
+
+Each check replays packaged captures (or another folder laid out like them) and counts what came
+out as captured, bit for bit. Together with the hashes and versions this is the record a laboratory
+files when it qualifies an installation.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import time
+from collections.abc import Callable, Iterator, Mapping
+from importlib import resources
+from typing import Any, NamedTuple, Protocol
+
+from . import provenance
+from .applesoft import decimaltext, functions, real
+from .applesoft.errors import ApplesoftError
+from .names import SCENE
+from .printout import FIELDS, outcome_fields
+from .run import run
+from .scene import sample
+
+PLENTY = 3_000_000
+"""Statements that no captured program needs."""
+GOLDEN_RUNS = {1: "run1", 2: "run2", 3: "table3"}
+
+
+class Folder(Protocol):
+    """A folder of captures: a `pathlib.Path`, or a packaged one."""
+
+    @property
+    def name(self) -> str: ...
+
+    def joinpath(self, *names: str) -> Any: ...
+
+    def iterdir(self) -> Iterator[Any]: ...
+
+
+class Check(NamedTuple):
+    """One check: its name, what it compared, how many of how many came out right, how long it took,
+    and the first that did not."""
+
+    name: str
+    compared: str
+    total: int
+    right: int
+    seconds: float
+    first_wrong: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether there was something to compare and all of it came out right."""
+        return self.right == self.total > 0
+
+
+Counted = Iterator[tuple[str, bool]]
+"""What was compared, and whether it was right."""
+
+
+def checks(folder: Folder | None = None) -> Iterator[Check]:
+    """All checks, one after the other. ``folder``: other captures than the packaged ones."""
+    golden = folder or resources.files("impact88.golden")
+    for name, (compared, cases) in CHECKS.items():
+        start = time.perf_counter()
+        total = right = 0
+        first_wrong = ""
+        for case, ok in _guarded(cases, golden):
+            total += 1
+            right += ok
+            if not ok and not first_wrong:
+                first_wrong = case
+        yield Check(name, compared, total, right, time.perf_counter() - start, first_wrong)
+
+
+def _guarded(cases: Callable[[Any], Counted], golden: Any) -> Counted:
+    """The cases; a check that breaks down is a check that fails, with the reason."""
+    try:
+        yield from cases(golden)
+    except Exception as error:
+        yield f"broke down: {type(error).__name__}: {error}", False
+
+
+def record(found: list[Check]) -> dict[str, Any]:
+    """The record as one object: versions, hashes, checks, verdict."""
+    return {
+        "passed": all(check.passed for check in found),
+        "versions": provenance.versions(),
+        "hashes": {
+            "listing": provenance.listing_hash(),
+            "captures": provenance.captures_hash(),
+        },
+        "checks": [{**check._asdict(), "passed": check.passed} for check in found],
+        "seconds": round(sum(check.seconds for check in found), 2),
+    }
+
+
+# --- what is compared ----------------------------------------------------------------------------
+
+
+def _lines(golden: Any, name: str) -> Iterator[dict[str, Any]]:
+    data = gzip.decompress(golden.joinpath(f"{name}.jsonl.gz").read_bytes()).decode()
+    for line in data.splitlines():
+        yield json.loads(line)
+
+
+_BINARY: Mapping[str, Callable[[real.Number, real.Number], real.Number]] = {
+    "add": real.add,
+    "sub": real.subtract,
+    "mul": real.multiply,
+    "div": real.divide,
+    "pow": functions.power,
+}
+_UNARY: Mapping[str, Callable[[real.Number], real.Number]] = {
+    "neg": real.negate,
+    "abs": real.absolute,
+    "sgn": functions.sign,
+    "int": real.floor,
+    "sqr": functions.square_root,
+    "exp": functions.exponential,
+    "log": functions.logarithm,
+    "sin": functions.sine,
+    "cos": functions.cosine,
+    "tan": functions.tangent,
+    "atn": functions.arc_tangent,
+}
+
+
+def _arithmetic(golden: Any) -> Counted:
+    for file in sorted(golden.joinpath("arithmetic").iterdir(), key=lambda one: one.name):
+        if not file.name.endswith(".tsv.gz"):
+            continue
+        for row in gzip.decompress(file.read_bytes()).decode().splitlines():
+            operation, first, second, extension, result = row.split("\t")
+            got = _computed(operation, first, second, int(extension or "0", 16))
+            yield row, got == _captured(result)
+
+
+def _computed(operation: str, first: str, second: str, extension: int) -> str:
+    """A captured call made again, its result as `_captured` puts it."""
+    try:
+        if operation == "fin":
+            return _shown(decimaltext.read(first)[0])
+        x = real.from_stored(first, 0 if second else extension)
+        if operation == "fout":
+            return decimaltext.write(x)
+        if operation == "cmp":
+            order = real.compare(x, real.from_stored(second, extension))
+            return {1: "01", 0: "00", -1: "ff"}[order]
+        if operation in _BINARY:
+            return _shown(_BINARY[operation](x, real.from_stored(second, extension)))
+        return _shown(_UNARY[operation](x))
+    except ApplesoftError as error:
+        return f"E{error.code}"
+
+
+def _shown(x: real.Number) -> str:
+    e, m, s = x
+    if not e:
+        return "zero"
+    return f"{real.to_stored(x).hex()}:{e:02x}{m >> 8:08x}{s}:{m & 0xFF:02x}"
+
+
+def _captured(result: str) -> str:
+    """A captured result: zeros are one, and of the sign byte only its top bit counts."""
+    if result.count(":") != 2:
+        return result
+    stored, raw, extension = result.split(":")
+    if raw.startswith("00"):
+        return "zero"
+    return f"{stored}:{raw[:10]}{int(raw[10:], 16) >> 7}:{extension}"
+
+
+def _values(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[Any, Any]:
+    """Variables and array, all zeros alike."""
+
+    def stored(text: str) -> str:
+        return "00" * 5 if text.startswith("00") else text
+
+    return (
+        {name: stored(text) for name, text in reals.items()},
+        a and (a["dims"], [stored(text) for text in a["data"]]),
+    )
+
+
+def _port(golden: Any) -> Counted:
+    for row in _lines(golden, "scenes"):
+        done = run(row["scene"], dos=False)
+        same = done.printout == row["printout"]
+        yield row["id"], same and _values(done.reals, done.A) == _values(row["reals"], row["A"])
+
+
+def _replay(golden: Any) -> Counted:
+    from .replay import replay
+
+    rows = list(_lines(golden, "scenes"))
+    done = replay({name: [row["scene"][name] for row in rows] for name in SCENE})
+    printed = {name: done.printed(name).tolist() for name in FIELDS}
+    for index, row in enumerate(rows):
+        fields = {name: column[index] for name, column in printed.items() if column[index]}
+        yield row["id"], fields == outcome_fields(row["printout"])
+
+
+def _programs(golden: Any) -> Counted:
+    from .applesoft.emulator import Applesoft
+
+    def displayed(program: str, keys: str, blanks: bool) -> str:
+        machine = Applesoft(blanks=blanks)
+        for line in program.split("\n"):
+            if line:
+                machine.type_line(line)
+        machine.take_output()
+        machine.feed_keys(keys)
+        machine.machine.statements_left = PLENTY
+        machine.run()
+        machine.prompt()
+        return machine.take_output().removesuffix("\n]").replace("\0", "")
+
+    files = {file.name: file for file in golden.joinpath("programs").iterdir()}
+    for name in sorted(files):
+        if name.endswith(".bas"):
+            stem = name.removesuffix(".bas")
+            texts = [
+                files[one].read_bytes().decode("latin-1") if one in files else ""
+                for one in (name, f"{stem}.in", f"{stem}.out")
+            ]
+            yield stem, displayed(texts[0], texts[1], True) == texts[2]
+    for row in _lines(golden, "fuzz"):
+        yield row["name"], displayed(row["program"], row["keyboard"], False) == row["output"]
+
+
+def _published(golden: Any) -> Counted:
+    for number, name in GOLDEN_RUNS.items():
+        expected = golden.joinpath("printouts", f"{name}.txt").read_bytes().decode()
+        yield name, run(sample(number)).printout == expected
+
+
+def _closed_form(golden: Any) -> Counted:
+    """Momentum, linear and angular, before and after, by the closed form in double precision."""
+    import numpy as np
+
+    from . import errorbound
+    from .solve import solve
+
+    rows = [row for row in _lines(golden, "scenes") if row["scene"]["M"] == "6"]
+    g = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
+    with np.errstate(all="ignore"):
+        found = {name: column.astype(float) for name, column in solve(g).items()}
+        bound = errorbound.relative_bounds(found["COND"])
+        usable = np.isfinite(found["VAX"]) & np.isfinite(found["WAF"])
+        ok = np.ones(len(rows), bool)
+        for a, b, before in (("VAX", "VBX", ("UX", "VX")), ("VAY", "VBY", ("UY", "VY"))):
+            parts = [g["MA"] * found[a], g["MB"] * found[b]]
+            parts += [-g["MA"] * g[before[0]], -g["MB"] * g[before[1]]]
+            ok &= np.abs(sum(parts)) <= bound * 2 * np.max(np.abs(parts), axis=0)
+    for row, good, used in zip(rows, ok.tolist(), usable.tolist(), strict=True):
+        if used:
+            yield row["id"], good
+
+
+CHECKS: dict[str, tuple[str, Callable[[Any], Counted]]] = {
+    "arithmetic": ("calls of the ROM's arithmetic, every bit", _arithmetic),
+    "port": ("runs of the listing: printout, variables, array", _port),
+    "replay": ("the same runs over arrays: every printed field", _replay),
+    "emulator": ("Applesoft programs: every character displayed", _programs),
+    "published": ("runs published in 1988: every character", _published),
+    "closed form": ("scenes in double precision: momentum conserved", _closed_form),
+}
+"""Name of a check -> what it compares, and the check."""

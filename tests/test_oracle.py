@@ -1,0 +1,174 @@
+"""The oracle's answers, and the test vectors it writes."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections import Counter
+from decimal import Decimal
+from fractions import Fraction
+
+import pytest
+
+import captures
+from impact88.names import RESULTS, SCENE
+from impact88.oracle import answers, decimal_of, look_up
+from impact88.run import run
+from impact88.scene import sample
+from impact88.vectors import EDGES, FAILURES, casework, scenes, vectors
+from installed import COMMAND, impact88
+
+SCENE1 = dict(sample(1))
+
+
+def answered(*lines: object) -> list[dict]:
+    texts = [line if isinstance(line, str) else json.dumps(line) for line in lines]
+    return list(answers(texts))
+
+
+def test_an_answer_has_everything() -> None:
+    (one,) = answered({"id": "a", "scene": SCENE1})
+    assert one["id"] == "a"
+    assert one["printout"] == run(sample(1)).printout
+    xb = one["results"]["XB"]
+    assert (xb["printed"], xb["double"], xb["reference"]) == ("14.51", 14.52, "14.52")
+    vax = one["results"]["VAX"]
+    assert vax["stored"] == "84d433d66f"
+    assert vax["decimal"] == "-13.2626556716859340667724609375"
+    assert len(vax["reference"].lstrip("-").replace(".", "")) in (29, 30)
+    assert abs(Decimal(vax["reference"]) - Decimal(vax["double"])) < Decimal("1e-13")
+    assert 1 <= one["condition"] < 100
+    assert one["status"] == []
+
+
+@pytest.mark.captures
+def test_stored_values_are_those_of_the_rom() -> None:
+    rows = [row for row in captures.scenes() if "VAX=" in row["printout"]][:40]
+    found = look_up([row["scene"] for row in rows], reference=False)
+    for row, one in zip(rows, found, strict=True):
+        size, last = row["A"]["dims"][0], int(row["scene"]["M"]) + 1
+        for place, name in enumerate(("VAX", "VAY", "VBX", "VBY"), 1):
+            stored = row["A"]["data"][place + size * last]
+            mine = one["results"][name]["stored"]
+            assert mine == ("00" * 5 if stored.startswith("00") else stored)
+        assert one["results"]["KI"]["stored"] == row["reals"]["KI"]
+
+
+def test_reference_agrees_with_the_double_within_the_bound() -> None:
+    """On casework, for every result; the bound is of the velocities, others get ten of it."""
+    for one in vectors(30, seed=5):
+        if one["class"] != "casework":
+            continue
+        speeds = [abs(float(one["scene"][name])) for name in ("UX", "UY", "VX", "VY")]
+        for name in ("VAX", "VAY", "VBX", "VBY"):
+            row = one["results"][name]
+            off = abs(Fraction(row["reference"]) - Fraction(row["double"]))
+            assert off <= one["error_bound"]["double"] * max(*speeds, 1)
+        for name in RESULTS:
+            if name in one["results"]:
+                row = one["results"][name]
+                assert row["reference"] is not None, name
+                exact = float(row["reference"])
+                assert row["double"] == pytest.approx(exact, rel=1e-9, abs=1e-9), name
+
+
+def test_numbers_keep_their_digits() -> None:
+    text = json.dumps({"scene": SCENE1}).replace('"3728"', "90315.88170")
+    other = text.replace("90315.88170", "90315.8817")
+    one, two = (next(answers([line])) for line in (text, other))
+    assert (one["scene"]["IA"], two["scene"]["IA"]) == ("90315.88170", "90315.8817")
+    assert one["results"]["KI"]["printed"] == two["results"]["KI"]["printed"]
+
+
+def test_a_malformed_line_is_answered_and_the_stream_goes_on() -> None:
+    good = {"id": 9, "scene": SCENE1}
+    found = answered(
+        "{",
+        "[]",
+        {"id": 2},
+        {"id": 3, "scene": {**SCENE1, "MA": "heavy"}},
+        {"id": 4, "scene": {**SCENE1, "XX": 1}},
+        {"id": 5, "scene": {**SCENE1, "M": 5}},
+        {"id": 6, "scene": {**SCENE1, "MA": [1]}},
+        "",
+        good,
+    )
+    assert [one["error"]["line"] for one in found[:-1]] == [1, 2, 3, 4, 5, 6, 7]
+    assert [one["id"] for one in found] == [None, None, 2, 3, 4, 5, 6, 9]
+    assert all("\n" not in one["error"]["message"] for one in found[:-1])
+    assert "results" in found[-1]
+
+
+def test_errors_of_the_program_are_answers() -> None:
+    (one,) = answered({"scene": {**SCENE1, "IA": "0"}})
+    assert one["ending"] == "?DIVISION BY ZERO ERROR IN 480"
+    assert one["results"]["VAX"]["stored"] is None
+    assert one["results"]["XA"]["printed"] is None
+    assert "NOT_FINITE" in one["status"]
+    (one,) = answered({"scene": {**SCENE1, "MA": "0"}})
+    assert one["ending"] == "ZERO DETERMINANT"
+
+
+def test_exact_decimals() -> None:
+    assert decimal_of(Fraction(-3, 8)) == "-0.375"
+    assert decimal_of(Fraction(2**130)) == str(2**130)
+    assert Fraction(decimal_of(Fraction(1, 2**150))) == Fraction(1, 2**150)
+
+
+def test_streaming_answers_line_by_line() -> None:
+    """A program that waits for each answer before it asks again is not kept waiting."""
+    with subprocess.Popen(
+        [COMMAND, "oracle", "--no-reference"], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as process:
+        assert process.stdin
+        assert process.stdout
+        for number in range(3):
+            process.stdin.write(json.dumps({"id": number, "scene": SCENE1}).encode() + b"\n")
+            process.stdin.flush()
+            assert json.loads(process.stdout.readline())["id"] == number
+        process.stdin.close()
+        assert process.wait(20) == 0
+
+
+def test_command_status_and_files(tmp_path) -> None:
+    path, out = tmp_path / "in.jsonl", tmp_path / "out.jsonl"
+    path.write_text(json.dumps({"scene": SCENE1}) + "\nrubbish\n", encoding="utf-8")
+    done = impact88("oracle", str(path), "-o", str(out))
+    assert (done.returncode, done.stdout) == (1, "")
+    assert len(out.read_text(encoding="utf-8").splitlines()) == 2
+    done = impact88("oracle", input="")
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+
+
+# --- test vectors --------------------------------------------------------------------------------
+
+
+def test_vectors_are_reproducible_labelled_and_complete() -> None:
+    found = list(vectors(9, seed=3, reference=False))
+    assert found == list(vectors(9, seed=3, reference=False))
+    assert found != list(vectors(9, seed=4, reference=False))
+    assert {one["class"] for one in found} == {"casework", "edge", "failure"}
+    assert all(set(one["scene"]) == set(SCENE) for one in found)
+    assert len({one["id"] for one in found}) == 9
+
+
+def test_every_label_occurs_and_failures_fail() -> None:
+    labels = Counter(label for _, label, _ in scenes(3 * len(EDGES) * len(FAILURES), 1))
+    assert set(EDGES) | set(FAILURES) <= set(labels)
+    endings: dict[str, set] = {}
+    for one in vectors(6 * len(FAILURES), seed=2, reference=False):
+        endings.setdefault(one["label"], set()).add(one["ending"])
+    assert endings["all at rest"] == {"?DIVISION BY ZERO ERROR IN 690"}
+    assert endings["IA is zero"] == {"?DIVISION BY ZERO ERROR IN 480"}
+    assert endings["MA is zero"] == endings["tiny units"] == {"ZERO DETERMINANT"}
+    assert endings["overflow"] == {"?OVERFLOW ERROR IN 320"}
+    assert endings["random"] == {None}
+
+
+def test_casework_closes_in() -> None:
+    from random import Random
+
+    rng = Random(0)
+    found = look_up([casework(rng) for _ in range(40)], reference=False)
+    assert not [one for one in found if "SEPARATING" in one["status"]]
