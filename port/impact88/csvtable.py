@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from .errors import UserError
 from .files import replacing
 from .names import SCENE
-from .tables import BLOCK_ROWS, BadCell, Column, Reader, Rows, Writer, shortest
+from .rows import BLOCK_ROWS, BadCell, Column, Reader, Rows, Writer, shortest
 
 
 @contextmanager
@@ -47,8 +47,6 @@ def open_text(path: str) -> Iterator[tuple[io.TextIOWrapper[Any], int | None]]:
         yield text, size
     except UnicodeDecodeError as error:
         raise UserError(f"holds bytes that are no {error.encoding} text", where) from None
-    except OSError as error:
-        raise UserError(f"cannot be read: {error.strerror or error}", where) from None
     finally:
         if path != "-":
             binary.close()

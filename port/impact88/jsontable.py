@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from .csvtable import open_text
 from .files import replacing
 from .names import SCENE
-from .tables import BLOCK_ROWS, BadCell, Column, Reader, Rows, Writer
+from .rows import BLOCK_ROWS, BadCell, Column, Reader, Rows, Writer
 
 
 class _Numeral(str):

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from .errors import UserError
 from .files import replacing
 from .names import SCENE
-from .tables import Column, Reader, Rows, Writer
+from .rows import Column, Reader, Rows, Writer
 
 
 class _NpzReader:

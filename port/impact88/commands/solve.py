@@ -41,18 +41,11 @@ from ..errors import UserError
 from ..files import replacing
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..progress import progress
+from ..rows import BadCell, Rows, check_scene_columns, numbers
 from ..scene import VALUE_LIMIT
 from ..solve import solve
 from ..status import Status
-from ..tables import (
-    BadCell,
-    Rows,
-    check_scene_columns,
-    format_of,
-    numbers,
-    open_reader,
-    open_writer,
-)
+from ..tables import format_of, open_reader, open_writer
 
 Results = dict[str, NDArray[Any]]
 
