@@ -24,9 +24,10 @@ from .errors import UserError
 from .names import DEFAULT_M, RESULTS, SCENE
 from .printout import FIELDS
 from .replay import replay
+from .rows import BadCell, Rows, check_scene_columns, numbers
 from .solve import solve
 from .status import Status
-from .tables import BadCell, Rows, check_scene_columns, numbers, open_reader
+from .tables import open_reader
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
