@@ -26,10 +26,11 @@ def givens(path: str | None, settings: Sequence[str], allowed: Collection[str]) 
     """
     values: dict[str, float] = {}
     if path is not None:
-        texts = toml_texts(read_text(path, limit=_LIMIT), path)
+        source = "standard input" if path == "-" else path
+        texts = toml_texts(read_text(path, limit=_LIMIT), source)
         texts.pop("title", None)
         for name, text in texts.items():
-            _put(values, name, text, allowed, path)
+            _put(values, name, text, allowed, source)
     seen: set[str] = set()
     for pair in settings:
         name, equals, text = pair.partition("=")

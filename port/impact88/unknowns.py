@@ -383,8 +383,9 @@ def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:
         missing = [name for name in missing if name in ("GA", "MA", "MB")]
         given = {n: np.zeros(()) for n in GEOMETRY} | {"IA": np.ones(()), "IB": np.ones(())} | given
     if missing:
-        wanted = "; ".join(f"{name} ({SCENE[name].meaning})" for name in missing)
-        raise UserError(f"missing {wanted}: the vehicles and their geometry must be known")
+        wanted = "; ".join(f"{name} ({SCENE[name].meaning})" for name in missing[:3])
+        more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
+        raise UserError(f"missing {wanted}{more}: the vehicles and their geometry must be known")
     if "MU" in given and "MUP" in given:
         raise UserError("MU and MUP are both given; give MUP (signed Pt/Pn) or MU, not both")
     return given

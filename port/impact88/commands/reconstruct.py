@@ -92,7 +92,8 @@ def show(known: Mapping[str, float], wanted: list[str] | None, args: argparse.Na
     try:
         solutions = solve_for(known, wanted)
     except UserError as error:
-        raise UserError(str(error), args.file) from None
+        source = "standard input" if args.file == "-" else args.file
+        raise UserError(str(error), source) from None
     tables = [(s, complete(known, s, args.contact_time)) for s in solutions]
     if args.json:
         print(json.dumps({"solutions": [as_json(known, s, v) for s, v in tables]}, allow_nan=False))
