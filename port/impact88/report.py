@@ -27,12 +27,12 @@ _PAGE = string.Template("""<!DOCTYPE html>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>$title</title>
 <style>
-@page { margin: 14mm 15mm; }
+@page { margin: 12mm 15mm; }
 * { box-sizing: border-box; }
 body { font: 9.5pt/1.35 "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif;
   color: #1a1a1a; background: #fff; max-width: 180mm; margin: 8mm auto; }
 h1 { font-size: 15pt; margin: 0 0 1mm; }
-h2 { font-size: 10.5pt; margin: 4mm 0 1.5mm; border-bottom: .3mm solid #999; }
+h2 { font-size: 10.5pt; margin: 3mm 0 1.2mm; border-bottom: .3mm solid #999; }
 section { break-after: page; }
 section:last-of-type { break-after: auto; }
 .source { color: #444; margin: 0 0 2.5mm; overflow-wrap: anywhere; }
@@ -40,12 +40,12 @@ section:last-of-type { break-after: auto; }
 .verdict b { font-size: 12pt; text-transform: uppercase; letter-spacing: .06em; }
 .identical { border-color: #00664b; } .differs { border-color: #a33c00; }
 .incomplete { border-color: #5b5b5b; }
-.two { display: flex; gap: 6mm; align-items: flex-start; }
-.two > .numbers { flex: 1 1 auto; } .two > .picture { flex: 0 0 72mm; }
+.two { display: flex; gap: 4mm; align-items: flex-start; }
+.two > .numbers { flex: 1 1 auto; } .two > .picture { flex: 0 0 66mm; }
 .picture svg { width: 100%; height: auto; max-height: 88mm; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-.numbers table { width: 100%; font-size: 8pt; line-height: 1.22; }
-th, td { text-align: right; padding: .12mm 1.2mm; vertical-align: top; white-space: nowrap; }
+.numbers table { width: 100%; font-size: 8pt; line-height: 1.18; }
+th, td { text-align: right; padding: .12mm .9mm; vertical-align: top; white-space: nowrap; }
 th { border-bottom: .2mm solid #999; font-weight: 600; }
 td:first-child, th:first-child { text-align: left; }
 tr.new td { border-top: .1mm solid #ccc; }
@@ -54,7 +54,7 @@ tr.unknown td { color: #666; font-style: italic; }
 .picture table { font-size: 8pt; line-height: 1.22; width: 100%; }
 .picture td { text-align: left; } .picture td:nth-child(even) { padding-right: 3mm; }
 .picture ol { font-size: 8.5pt; }
-ol, ul { margin: 0; padding-left: 5mm; } li { margin-bottom: .6mm; }
+ol, ul { margin: 0; padding-left: 5mm; } li { margin-bottom: .4mm; font-size: 8.5pt; }
 .provenance { font-size: 7.5pt; color: #333; }
 .provenance td { white-space: normal; overflow-wrap: anywhere; text-align: left; }
 .provenance td:first-child { white-space: nowrap; padding-right: 4mm; }
@@ -135,7 +135,7 @@ def _numbers(checks: Sequence[FieldCheck]) -> str:
 
     rows = [
         "<table><thead><tr><th>field</th><th>printed</th><th>recomputed</th><th>exact</th>"
-        "</tr></thead><tbody>"
+        "<th>printed − exact</th></tr></thead><tbody>"
     ]
     line = 0
     for check in checks:
@@ -143,7 +143,13 @@ def _numbers(checks: Sequence[FieldCheck]) -> str:
         if FIELDS[check.name].line != line:
             line = FIELDS[check.name].line
             kinds.append("new")
-        cells = (check.name, check.printed or "–", check.recomputed or "–", check.exact or "")
+        cells = (
+            check.name,
+            check.printed or "–",
+            check.recomputed or "–",
+            check.exact or "",
+            (check.difference or "").replace("-", "−"),
+        )
         row = "".join(f"<td>{escape(cell)}</td>" for cell in cells)
         rows.append(f'<tr class="{" ".join(kinds)}">{row}</tr>')
     return "\n".join([*rows, "</tbody></table>"])
