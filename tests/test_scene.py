@@ -69,6 +69,7 @@ def test_digits_are_kept_as_typed(line, text):
     [
         ("UX = .911", ["line", "UX = .911", '0.911 or ".911"']),
         ("UX = 5.", ["line", '5.0 or "5."']),
+        ("UX = 1 2", ["line", 'write "1 2"']),
         ("UX =", ["line", "UX has no value"]),
         ("UX = true", ["line", "UX is a truth value", "number"]),
         ("UX = [1]", ["UX is a list"]),

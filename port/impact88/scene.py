@@ -188,7 +188,8 @@ def _syntax_error(
         if line == number and decimaltext.is_number(value.upper()):
             whole = re.sub(r"^([+-]?)\.", r"\g<1>0.", value)
             whole = re.sub(r"\.(?![0-9])", ".0", whole)
-            return UserError(f'{key} = {value} is not TOML; write {whole} or "{value}"', where)
+            bare = f"{whole} or " if _plain_toml(whole) else ""
+            return UserError(f'{key} = {value} is not TOML; write {bare}"{value}"', where)
         if line == number and not value:
             return UserError(f"{key} has no value; expected a number", where)
     return UserError(f"not TOML: {message}", where)
