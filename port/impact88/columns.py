@@ -8,7 +8,7 @@ numbers cannot be used. The answers choose the plan.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +23,8 @@ Floats = NDArray[np.float64]
 PIVOT = -10.0
 ANGLES = ("GA", "PA", "PB", "TA", "TB")
 INERTIAS = ("MA", "MB", "IA", "IB")
+BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
+"""Mass, inertia, velocities and spin of A and of B."""
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """What a point-mass scene (M = 4) does not look at."""
 
@@ -116,7 +118,8 @@ class Block(NamedTuple):
     - ``array``, ``scalar``, ``0`` or ``1`` (for all scenes of the block);
     - MA MB IA IB: also ``array with infinities`` and ``inf``;
     - MU: ``pivot`` or ``mixed`` (some pivots), else no pivot is in it;
-    - M: ``6``, ``4`` or ``mixed``.
+    - M: ``6``, ``4`` or ``mixed``;
+    - ``unused`` where all scenes are point masses and do not look at it.
 
     ``refused``: a boolean array, True where the numbers cannot be used, or None if nowhere.
     """
@@ -128,32 +131,36 @@ class Block(NamedTuple):
 
 
 def examine(values: Mapping[str, Floats]) -> Block:
-    """Find out what kind of block this is. ``values``: columns of one length, or of length 1."""
+    """Find out what kind of block this is. ``values``: columns of one length, or of length 1.
+
+    Every column is read once or twice, no more; only where something may be unusable are the
+    scenes looked at one by one.
+    """
     fixed: dict[str, Floats] = {}
     varying: dict[str, Floats] = {}
-    kinds: list[str] = []
+    kinds: dict[str, str] = {}
     usable = True
+    only_points = bool((values["M"] == 4).all())
     for name, column in values.items():
+        if only_points and name in UNUSED_BY_POINTS:
+            kinds[name] = "unused"
+            fixed[name] = column[:1]
+            continue
         if len(column) > 1 and _same_throughout(column):
             column = column[:1]
-        kind, fine = _kind(name, column)
-        if kind in _CONSTANT_KINDS:
-            column = column[:1]
+        if name in ANGLES:
+            column, kind, fine = _angle(column)
+        else:
+            kind, fine = _kind(name, column)
+        kinds[name] = kind
         usable = usable and fine
-        if name in ANGLES and not _sum_of_squares(column) < _LARGE_ANGLE**2:
-            with np.errstate(invalid="ignore"):
-                turned = np.fmod(column, 360.0)
-            column = np.where(np.abs(column) > _LARGE_ANGLE, turned, column)
         (fixed if len(column) == 1 else varying)[name] = column
-        kinds.append(kind)
-    together = {**fixed, **varying}
-    if usable and "4" not in kinds[-1] and not any("inf" in kind for kind in kinds):
-        return Block(fixed, varying, tuple(kinds), None)
-    refused = _refused(together, max(map(len, together.values())))
-    return Block(fixed, varying, tuple(kinds), refused if refused.any() else None)
-
-
-_CONSTANT_KINDS = ("scalar", "0", "1", "inf", "pivot", "4", "6")
+    ordered = tuple(kinds[name] for name in SCENE)
+    if usable and _at_rest_where_infinite(kinds):
+        return Block(fixed, varying, ordered, None)
+    together = {name: fixed[name] if name in fixed else varying[name] for name in SCENE}
+    refused = _refused(together, max(map(len, values.values())))
+    return Block(fixed, varying, ordered, refused if refused.any() else None)
 
 
 def _same_throughout(column: Floats) -> bool:
@@ -163,14 +170,32 @@ def _same_throughout(column: Floats) -> bool:
     )
 
 
+def _all_finite(column: Floats) -> bool:
+    """False if some value is not finite (or the sum overflows: then they are looked at one by one);
+    far cheaper than ``isfinite``."""
+    return bool(np.isfinite(np.add.reduce(column)))
+
+
 def _sum_of_squares(column: Floats, piece: int = 8192) -> float:
-    """Finite exactly when all values are (unless they are beyond 1e150); far cheaper than
-    ``isfinite``. In pieces, because BLAS starts threads of its own for long ones."""
-    return float(sum(np.dot(p, p) for p in _pieces(column, piece)))
+    # in pieces, because BLAS starts threads of its own for long arrays
+    pieces = (column[i : i + piece] for i in range(0, len(column), piece))
+    return float(sum(np.dot(p, p) for p in pieces))
 
 
-def _pieces(column: Floats, size: int) -> Iterable[Floats]:
-    return (column[i : i + size] for i in range(0, len(column), size))
+def _angle(column: Floats) -> tuple[Floats, str, bool]:
+    """An angle's column with what is very large taken modulo 360, its kind, and whether finite."""
+    squares = _sum_of_squares(column)
+    if not squares < _LARGE_ANGLE**2:
+        with np.errstate(invalid="ignore"):
+            turned = np.fmod(column, 360.0)
+        column = np.where(np.abs(column) > _LARGE_ANGLE, turned, column)
+    if len(column) > 1:
+        return column, "array", bool(np.isfinite(squares))
+    return column, _constant_kind(column), bool(np.isfinite(squares))
+
+
+def _constant_kind(column: Floats) -> str:
+    return {0.0: "0", 1.0: "1"}.get(float(column[0]), "scalar")
 
 
 def _kind(name: str, column: Floats) -> tuple[str, bool]:
@@ -181,24 +206,32 @@ def _kind(name: str, column: Floats) -> tuple[str, bool]:
             return str(int(column[0])), True
         return ("6" if alike else "mixed"), False
     if name in INERTIAS:
-        low, high = column.min(), column.max()
-        if not low > 0:
-            return ("scalar" if alike else "array with infinities"), False
-        if high == np.inf:
-            return ("inf" if alike else "array with infinities"), True
-        return ("scalar" if alike else "array"), True
+        positive = bool(column.min() > 0)
+        if positive and _all_finite(column):
+            return ("scalar" if alike else "array"), True
+        if alike:
+            return ("inf" if column[0] == np.inf else "scalar"), positive
+        return "array with infinities", False
     if name == "MU" and not column.min() > PIVOT:
         fine = bool(np.isfinite(column).all())
         pivots = column == PIVOT
-        if alike and pivots[0]:
-            return "pivot", True
         if pivots.any():
-            return "mixed", fine
+            return ("pivot" if alike else "mixed"), fine
         return ("scalar" if alike else "array"), fine
-    if alike:
-        value = column[0]
-        return {0.0: "0", 1.0: "1"}.get(float(value), "scalar"), bool(np.isfinite(value))
-    return "array", bool(np.isfinite(_sum_of_squares(column)))
+    return (_constant_kind(column) if alike else "array"), _all_finite(column)
+
+
+def _at_rest_where_infinite(kinds: Mapping[str, str]) -> bool:
+    """Whether the kinds alone show that infinite bodies are at rest, and one at most."""
+    infinite = []
+    for mass, inertia, velocities, spin in BODIES:
+        no_shift, no_turn = kinds[mass] == "inf", kinds[inertia] == "inf"
+        if no_shift and any(kinds[name] != "0" for name in velocities):
+            return False
+        if no_turn and kinds[spin] != "0":
+            return False
+        infinite.append(no_shift or no_turn)
+    return not all(infinite)
 
 
 class Refusal(NamedTuple):
@@ -224,10 +257,7 @@ def refusals(columns: Mapping[str, Floats]) -> Iterator[Refusal]:
         else:
             yield Refusal(name, "is not finite", ~np.isfinite(column) & asked)
     infinite = []
-    for mass, inertia, velocities, spin in (
-        ("MA", "IA", ("UX", "UY"), "WA"),
-        ("MB", "IB", ("VX", "VY"), "WB"),
-    ):
+    for mass, inertia, velocities, spin in BODIES:
         no_shift = columns[mass] == np.inf
         no_turn = (columns[inertia] == np.inf) & ~point
         for name in velocities:

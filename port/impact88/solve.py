@@ -179,6 +179,8 @@ def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...]) -> Plan:
     for name, what in kind.items():
         if what in ("0", "1", "inf"):
             scene[name] = book.constant(float(what))
+        elif what == "unused":
+            scene[name] = book.constant(0.0)
         else:
             scene[name] = book.column(name, varies=what.startswith(("array", "mixed")))
     pivot: bool | Expression = kind["MU"] == "pivot"
