@@ -27,6 +27,7 @@ _LAZY = {
     "delta_v": "deltav",
     "solve": "solve",
     "bounds": "bounds",
+    "scene_svg": "figures.plan_svg",
     "replay": "replay",
 }
 """Public name -> the module that holds it."""
