@@ -221,22 +221,20 @@ class _Applesoft:
     def __call__(self, rows: Rows, optional: Sequence[str]) -> Results:
         from ..replay import replay
 
-        columns = {
-            name: _texts(column) for name, column in _complete(rows, optional).columns.items()
-        }
+        complete = _complete(rows, optional)
+        columns = {name: _texts(column) for name, column in complete.columns.items()}
         unread = {bad.row - rows.first for bad in rows.bad}
-        for name, column in columns.items():
-            for index, text in enumerate(column):
-                reason = _unreadable(name, text)
-                if reason is None and index not in unread:
-                    continue
-                if index not in unread:
-                    unread.add(index)
-                    rows.bad.append(rows.cell(index, name, str(reason)))
-        for index in unread:
+        try:
+            # nearly always all cells can be read, and looking at each takes as long as solving
+            found = None if unread else replay(columns)
+        except UserError:
+            found = None
+        if found is None:
+            unread |= _complain(rows, columns, unread)
             for column in columns.values():
-                column[index] = "6"
-        found = replay(columns)
+                for index in unread:
+                    column[index] = "6"
+            found = replay(columns)
         error = np.where(found.zero_determinant, "ZERO DETERMINANT", found.error)
         results: Results = {name: found.floats(name) for name in self.names}
         results |= {"ERROR": error, "LINE": found.line}
@@ -253,7 +251,20 @@ def _texts(column: Any) -> list[Any]:
     return [text.strip().upper() if isinstance(text, str) else text for text in column]
 
 
-def _unreadable(name: str, text: Any) -> str | None:
+def _complain(rows: Rows, columns: dict[str, list[Any]], unread: set[int]) -> set[int]:
+    """Add what Applesoft cannot read to ``rows.bad``, the first of every row not yet ``unread``;
+    return those rows."""
+    found: set[int] = set()
+    for name, column in columns.items():
+        for index, text in enumerate(column):
+            reason = _unreadable(text)
+            if reason is not None and index not in unread and index not in found:
+                found.add(index)
+                rows.bad.append(rows.cell(index, name, reason))
+    return found
+
+
+def _unreadable(text: Any) -> str | None:
     """Why Applesoft would not take ``text`` for a number, or None."""
     if text is None or text == "":
         return "is empty; expected a number"
