@@ -13,15 +13,19 @@ from .reals import Floats, Reals, compare, from_floats
 from .result import OTHER_M, Replay
 from .unit import Bools, Ints, Unit, stamp
 
-BLOCK = 16384
-"""Scenes computed at a time, at most: fewer make numpy's calls dear, more fall out of the cache."""
-WORTH_A_THREAD = 4096
+BLOCK = 8192
+"""Scenes computed at a time by one thread: fewer make numpy's calls dear, more fall out of the
+cache."""
+SHARED_BLOCK = 16384
+"""The same when threads share the work: a thread holds the interpreter between numpy's calls, so
+the calls should be long."""
+WORTH_A_THREAD = 8192
 """Fewer scenes are not shared out: threads would wait for each other more than they compute."""
 
 
-def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK) -> Replay:
+def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None = None) -> Replay:
     """Replay scenes that have been read. ``threads``: None for as many as there are processors, as
-    long as each has enough to do."""
+    long as each has enough to do. ``block``: how many scenes at a time, at most."""
     unit = Unit(scenes.size)
     unit.first[...] = scenes.first
     M = scenes.values["M"]
@@ -34,6 +38,8 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK
     values = {name: np.zeros(scenes.size) for name in impact.ASSIGNED}
     useful = max(1, scenes.size // WORTH_A_THREAD)
     threads = min(threads if threads is not None else _processors(), useful)
+    if block is None:
+        block = BLOCK if threads == 1 else SHARED_BLOCK
     block = max(1, min(block, -(-scenes.size // threads)))
     jobs = _blocks(known, six, pivot, block)
 

@@ -81,14 +81,11 @@ Rows = Sequence[Reals]
 Places = int | Sequence[tuple[int, int]]
 """Where rows are computed: a line for all of them, or a line and a position for each."""
 
-WIDE = 8192
-"""Rows of so many scenes are computed one by one: together they would fall out of the cache."""
-
 
 def each(
     unit: Unit, where: Places, operation: Callable[..., Reals], *operands: Rows
 ) -> list[Reals]:
-    """An operation on each row of operands, computed together where that saves time.
+    """An operation on each row of operands, all rows computed together.
 
     What all scenes share (arrays of length 1) is kept apart from what each has of its own, and so
     computed once.
@@ -99,10 +96,10 @@ def each(
     lengths = [max(column[i].v.shape[-1] for column in operands) for i in range(count)]
     for shared in (False, True):
         rows = [i for i in range(count) if (lengths[i] == 1) == shared]
-        if len(rows) == 1 or (rows and lengths[rows[0]] >= WIDE):
-            for i in rows:
-                unit.at(*places[i])
-                results[i] = operation(*(column[i] for column in operands))
+        if len(rows) == 1:
+            (i,) = rows
+            unit.at(*places[i])
+            results[i] = operation(*(column[i] for column in operands))
         elif rows:
             unit.at_each([places[i] for i in rows])
             done = operation(*(stack([column[i] for i in rows], unit) for column in operands))

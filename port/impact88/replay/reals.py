@@ -81,6 +81,10 @@ _ONE = np.uint64(1)
 _TWO_BITS = np.uint64(2**62)  # 2.0
 _52 = np.uint64(52)
 
+_TOP = np.int64(1 << 52)
+_EIGHT, _LAST_BYTE = np.uint64(8), np.uint64(0xFF)
+_BYTE_SHIFTS = [np.uint64(8 * position) for position in range(5)]
+
 _minimum = np.minimum.reduce
 _maximum = np.maximum.reduce
 
@@ -441,37 +445,46 @@ def _apply_defect(v: Floats, left: Reals, right: Reals, defects: Ints) -> None:
 
     After a second zero byte in a row the upper 32 bits of what has been built move one bit too far.
     """
-    if right.v.shape == v.shape:
-        where = np.unravel_index(defects, v.shape)
-    else:  # along the axes where the right operand is broadcast, everywhere
-        own = (1,) * (v.ndim - right.v.ndim) + right.v.shape
-        spread = [axis for axis in range(v.ndim) if own[axis] != v.shape[axis]]
-        grid = np.ogrid[tuple(slice(v.shape[axis]) for axis in spread)]
-        at = np.unravel_index(defects, own)
-        shape = (-1,) + (1,) * len(spread)
-        where = tuple(
-            grid[spread.index(axis)][np.newaxis] if axis in spread else at[axis].reshape(shape)
-            for axis in range(v.ndim)
-        )
-    bits1 = np.broadcast_to(left.bits, v.shape)[where]
-    bits2 = np.broadcast_to(right.bits, v.shape)[where]
-    top = np.int64(1 << 52)
-    m1 = ((bits1 & _FRACTION | top) >> 21).view(np.uint64)
-    m2 = ((bits2 & _FRACTION | top) >> 13).view(np.uint64)
-    built = np.zeros(m1.shape, np.uint64)
-    previous = np.ones(m1.shape, bool)
-    eight, nine, last = np.uint64(8), np.uint64(9), np.uint64(0xFF)
-    for position in range(5):
-        byte = m2 >> np.uint64(8 * position) & last
-        built = built + (byte * m1 << eight) >> eight
-        double = (byte == 0) & ~previous
-        built = np.where(double, built >> nine << eight | built & last, built)
-        previous = byte != 0
+    where: Any
+    if right.v.shape == v.shape and left.v.shape in (v.shape, (1,)):
+        where = defects
+        v = v.reshape(-1)
+        bits1 = left.bits.take(defects, mode="clip")  # clip: a lone left operand is everybody's
+        bits2 = right.bits.take(defects)
+    else:
+        where = _spread(right.v.shape, v.shape, defects)
+        bits1 = np.broadcast_to(left.bits, v.shape)[where]
+        bits2 = np.broadcast_to(right.bits, v.shape)[where]
+    m1 = ((bits1 & _FRACTION | _TOP) >> 21).view(np.uint64)
+    m2 = ((bits2 & _FRACTION | _TOP) >> 13).view(np.uint64)
+    bytes_ = [m2 >> shift & _LAST_BYTE for shift in _BYTE_SHIFTS]
+    zero = [byte == 0 for byte in bytes_]
+    built = bytes_[0] * m1  # is shifted left and right by 8
+    for position in range(1, 5):
+        built = (bytes_[position] * m1 << _EIGHT) + built >> _EIGHT
+        # nothing is built yet after zeros at 0 and 1, and byte 4 is never zero
+        if position in (2, 3):
+            double = zero[position] & zero[position - 1]
+            built = built >> _EIGHT + double << _EIGHT | built & _LAST_BYTE
     # 39 or 40 bits long, byte 4 sees to that; the bit a shorter one leaves empty is zero, as after
     # normalising
     product = built.astype(np.float64) * 2.0**-38
     sign_and_power = (bits1 & ~_FRACTION).view(np.float64) * (bits2 & ~_FRACTION).view(np.float64)
     v[where] = product * sign_and_power
+
+
+def _spread(own: tuple[int, ...], shape: tuple[int, ...], at: Ints) -> tuple[Ints, ...]:
+    """Where elements of an array come to stand when it is broadcast: flat indices ``at`` of one of
+    shape ``own`` as indices into one of ``shape``."""
+    own = (1,) * (len(shape) - len(own)) + own
+    spread = [axis for axis in range(len(shape)) if own[axis] != shape[axis]]
+    grid = np.ogrid[tuple(slice(shape[axis]) for axis in spread)]
+    indices = np.unravel_index(at, own)
+    column = (-1,) + (1,) * len(spread)
+    return tuple(
+        grid[spread.index(axis)][np.newaxis] if axis in spread else indices[axis].reshape(column)
+        for axis in range(len(shape))
+    )
 
 
 def _divide(left: Reals, right: Reals) -> Reals:
