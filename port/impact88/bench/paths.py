@@ -1,9 +1,14 @@
 """What skipping saves: every short path and some selections of results, timed side by side; and how
-the closed form compares with its floor (sines and cosines) and grows with the number of scenes."""
+the closed form compares with its floor (sines and cosines) and grows with the number of scenes.
+
+All on one thread, in processor time: these are comparisons of work, and other programs' turns on
+the machine are no part of it.
+"""
 
 from __future__ import annotations
 
 import statistics
+import time
 import tracemalloc
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,7 +21,7 @@ from ..degrees import sine_and_cosine
 from ..elimination import ORDER
 from ..names import RESULTS
 from ..solve import TILE, plan_for, solve
-from .measure import clock, enlarged
+from .measure import enlarged
 from .populations import Columns, scenes
 
 GENERAL = "general"
@@ -85,6 +90,13 @@ def passes(columns: Any, outputs: Sequence[str]) -> int:
     buffers = Buffers(count)
     block = examine({name: buffers.block(name, s, 0, count) for name, s in given.items()})
     return plan_for(block.kinds, tuple(outputs)).passes
+
+
+def clock(work: Callable[[], object]) -> float:
+    """Processor time in seconds."""
+    start = time.process_time()
+    work()
+    return time.process_time() - start
 
 
 def _rounds(works: Sequence[Callable[[], object]], repeats: int) -> list[float]:
@@ -157,7 +169,7 @@ def floor(count: int, repeats: int) -> Floor:
 
 @dataclass
 class Size:
-    """How the closed form grows: seconds for ``scenes``, and bytes allocated beyond the results."""
+    """How the closed form grows: seconds for ``scenes``, and bytes allocated beside the results."""
 
     scenes: int
     seconds: float
@@ -165,8 +177,7 @@ class Size:
 
 
 def sizes(counts: Sequence[int], repeats: int) -> list[Size]:
-    """Time the six velocities for growing numbers of scenes (one velocity column and MU vary in
-    memory, the rest is read from short columns again and again), one core."""
+    """Time the six velocities for growing numbers of scenes."""
     out = []
     base = _moving()
     for count in counts:

@@ -10,7 +10,7 @@ examples:
   impact88 bench                             the table, about two minutes
   impact88 bench --scenes 300 --repeats 3    a quick look
   impact88 bench --figure work-precision.pdf --json > bench.json
-  impact88 bench --paths                     what skipping saves, path by path
+  impact88 bench --paths                     what skipping saves, path by path (processor time)
   impact88 bench --sizes                     growth to ten million scenes (takes 2 GB)
 
 exit status: 0 done; 2 bad input
