@@ -247,7 +247,7 @@ class Impact:
     def _RQ(self) -> Expression:
         """det Q / R."""
         sn, st = self.sigma
-        return self.R + (self.J_times(sn * sn) + self.J_times(st * st))
+        return self.R + (self._J_times(sn * sn) + self._J_times(st * st))
 
     @cached_property
     def _pivot_products(self) -> tuple[Expression, Expression, Expression, Expression]:
@@ -258,8 +258,8 @@ class Impact:
         """
         (sn, st), (kn, kt) = self.sigma, self.kappa
         rn, rt = -self.v, -self.gt
-        kQk = self.R * (kn * kn + kt * kt) + self.J_times(self._cross * self._cross)
-        kQr = self.R * (kn * rn + kt * rt) + self.J_times(self._cross * (st * rn - sn * rt))
+        kQk = self.R * (kn * kn + kt * kt) + self._J_times(self._cross * self._cross)
+        kQr = self.R * (kn * rn + kt * rt) + self._J_times(self._cross * (st * rn - sn * rt))
         RRQ = self.R * self._RQ
         return RRQ, kQk, kQr, self.z * RRQ - self._y_times(kQk)
 
@@ -270,16 +270,16 @@ class Impact:
         RRQ, _, kQr, determinant = self._pivot_products
         h = -((self.w * RRQ + self._y_times(kQr)) / determinant)
         xn, xt = -self.v - kn * h, -self.gt - kt * h
-        turned = self.J_times((st * xn - sn * xt) / self.R)
+        turned = self._J_times((st * xn - sn * xt) / self.R)
         return (xn + st * turned) / self._RQ, (xt - sn * turned) / self._RQ, h
 
-    def J_times(self, x: Expression) -> Expression:
+    def _J_times(self, x: Expression) -> Expression:
         return x if x.is_zero else self.J * x
 
     def _y_times(self, x: Expression) -> Expression:
         return x if x.is_zero else self.y * x
 
-    def Ired_times(self, x: Expression) -> Expression:
+    def _Ired_times(self, x: Expression) -> Expression:
         return x if x.is_zero else self.Ired * x
 
     # -- impulse
@@ -312,7 +312,7 @@ class Impact:
     @cached_property
     def _common_spin(self) -> Expression:
         """J sigma·P: what the impulse adds to both spins alike."""
-        return self.J_times(self._times_impulse("sigma"))
+        return self._J_times(self._times_impulse("sigma"))
 
     @cached_property
     def PM(self) -> Expression:
@@ -322,12 +322,12 @@ class Impact:
             Q, _, D, kappa_n = self._friction
             turn = self.Ired * self._along_impulse[1]
             spin = self.gw if self.gw.is_zero else self.gw * (Q + turn * kappa_n)
-            return (1.0 - self.EM) * self.Ired_times(self._along_impulse[1] * self.v - spin) / D
+            return (1.0 - self.EM) * self._Ired_times(self._along_impulse[1] * self.v - spin) / D
 
         def pivot() -> Expression:
             RRQ, kQk, kQr, determinant = self._pivot_products
-            spin = self.gw if self.gw.is_zero else self.gw * (RRQ + self.Ired_times(kQk))
-            return -((1.0 - self.EM) * self.Ired_times(spin + kQr) / determinant)
+            spin = self.gw if self.gw.is_zero else self.gw * (RRQ + self._Ired_times(kQk))
+            return -((1.0 - self.EM) * self._Ired_times(spin + kQr) / determinant)
 
         return self._unless_point(self._by_kind(friction, pivot))
 
@@ -520,14 +520,14 @@ class Impact:
 
         def friction() -> Expression:
             mu = absolute(self.mu)
-            straight = self.R * (1.0 + mu) + self.J_times(sn * (sn + mu * st))
+            straight = self.R * (1.0 + mu) + self._J_times(sn * (sn + mu * st))
             moment = absolute(self._y_times(kn * (kn + mu * kt)))
             return (absolute(self.z) * straight + moment) / absolute(self._friction[2])
 
         def pivot() -> Expression:
             RRQ, _, _, determinant = self._pivot_products
             cross = absolute(self._cross) * (st * kn + sn * kt)
-            moment = self.R * (kn * kn + kt * kt) + self.J_times(cross)
+            moment = self.R * (kn * kn + kt * kt) + self._J_times(cross)
             return (absolute(self.z) * RRQ + absolute(self._y_times(moment))) / absolute(
                 determinant
             )

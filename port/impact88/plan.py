@@ -99,6 +99,7 @@ class Plan:
         """Give every pass its places: fixed values and columns first, then working arrays, then
         the results, which are written where the caller wants them."""
         self._index = {id(e): i for i, e in enumerate(self._fixed)}
+        self._fixed_steps = [self._fixed_step(e) for e in self._fixed]
         count = len(self._fixed)
         for e in tiled:
             if e.operation == "column":
@@ -171,6 +172,23 @@ class Plan:
             release(e, moment)
         self._base = base
 
+    def _fixed_step(
+        self, e: Expression
+    ) -> tuple[Callable[..., object] | None, Array | str | int | None, tuple[int, ...], Any]:
+        """(operation, payload, places of the operands, dtype) of a value that does not vary; the
+        payload of what is no operation: a constant's array, a column's name, a projection's row, or
+        None for a sine and cosine."""
+        operands = tuple(self._index[id(operand)] for operand in e.operands)
+        if e.operation == "constant":
+            return None, np.array([e.value], dtype=np.float64), (), None
+        if e.operation == "column":
+            return None, str(e.value), (), None
+        if e.operation in _PROJECTIONS:
+            return None, _PROJECTIONS.index(e.operation), operands, None
+        if e.operation == "sine_and_cosine":
+            return None, None, operands, None
+        return OPERATIONS[e.operation], None, operands, _DTYPES[e.dtype]
+
     @staticmethod
     def _find(tiled: Sequence[Expression], both: Expression, half: str) -> Expression | None:
         for e in tiled:
@@ -187,24 +205,26 @@ class Plan:
 
         ``columns``: arrays of length 1 for the columns that do not vary.
         """
-        values: dict[int, Array] = {}
-        for e in self._fixed:
-            if e.operation == "constant":
-                values[id(e)] = np.array([e.value], dtype=np.float64)
-            elif e.operation == "column":
-                values[id(e)] = columns[str(e.value)]
-            elif e.operation in _PROJECTIONS:
-                values[id(e)] = values[id(e.operands[0])][_PROJECTIONS.index(e.operation)]
-            elif e.operation == "sine_and_cosine":
-                sine, cosine, *work = (np.empty(1) for _ in range(6))
-                angle = values[id(e.operands[0])]
-                sine_and_cosine(angle, sine, cosine, (work[0], work[1], work[2], work[3]))
-                values[id(e)] = np.array([sine, cosine])
+        values: list[Array] = []
+        for operation, payload, operands, dtype in self._fixed_steps:
+            if operation is not None:
+                out: Array = np.empty(1, dtype)
+                operation(*[values[i] for i in operands], out)
+                values.append(out)
+            elif isinstance(payload, str):
+                values.append(columns[payload])
+            elif isinstance(payload, int):
+                # a projection: row 0 or 1 of what sine_and_cosine left
+                values.append(values[operands[0]][payload])
+            elif payload is None:
+                both = np.empty((2, 1))
+                work = np.empty((4, 1))
+                angle = values[operands[0]]
+                sine_and_cosine(angle, both[0], both[1], (work[0], work[1], work[2], work[3]))
+                values.append(both)
             else:
-                out: Array = np.empty(1, _DTYPES[e.dtype])
-                OPERATIONS[e.operation](*(values[id(o)] for o in e.operands), out)
-                values[id(e)] = out
-        return [values[id(e)] for e in self._fixed]
+                values.append(payload)
+        return values
 
     def run(
         self,
