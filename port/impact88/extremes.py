@@ -223,6 +223,8 @@ class _Curvature:
     def _learn(self, who: NDArray[np.intp], place: Array, slope: Array) -> None:
         moved, turned = place - self.place[who], self.slope[who] - slope
         self.place[who], self.slope[who] = place, slope
+        # on a face a coordinate takes no part: its slope's change says nothing of the others
+        turned = np.where((moved == 0) & ((place <= 0) | (place >= 1)), 0.0, turned)
         product = (moved * turned).sum(axis=1)
         square = np.square(turned).sum(axis=1)
         good = product > 1e-10 * np.sqrt(np.square(moved).sum(axis=1) * square)
