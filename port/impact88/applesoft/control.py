@@ -22,15 +22,18 @@ GOSUB_ROOM = 64
 GOSUB = -2
 LEFTOVER = -3
 _LEFT_BY = {
-    "DIVISION BY ZERO": 11,
+    "DIVISION BY ZERO": 9,
     "OVERFLOW": 11,
-    "ILLEGAL QUANTITY": 15,
-    "BAD SUBSCRIPT": 13,
+    "ILLEGAL QUANTITY": 13,
+    "BAD SUBSCRIPT": 11,
     "UNDEF'D FUNCTION": 9,
-    "TYPE MISMATCH": 6,
-    "UNDEF'D STATEMENT": 4,
+    "REDIM'D ARRAY": 6,
+    "TYPE MISMATCH": 5,
+    "SYNTAX": 4,
+    "RETURN WITHOUT GOSUB": 0,
 }
-"""Bytes an error leaves on the stack, about: that depends on where in a formula it happens."""
+"""Bytes an error leaves on the stack (else 2), as in the plainest statement that runs into it; in
+a longer formula it may leave more."""
 
 
 class Frame(NamedTuple):
@@ -210,8 +213,9 @@ class Control:
     def leave(self, kind: str) -> None:
         """What an error leaves on the stack."""
         size = _LEFT_BY.get(kind, 2)
-        self.frames.append(Frame(LEFTOVER, 0, sign=size))
-        self.pointer -= size
+        if size:
+            self.frames.append(Frame(LEFTOVER, 0, sign=size))
+            self.pointer -= size
         self.careful = self.pointer < self.safe or self.lost > 0
 
     def cut(self, frames: int) -> None:

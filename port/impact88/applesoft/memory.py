@@ -123,6 +123,8 @@ def call(machine: Parts, address: int) -> bool:
         0xFC42: screen.clear_to_end,
         0xFC70: screen.scroll,
         0xFC66: screen.line_feed,
+        0xFC1A: screen.step_up,
+        0xFC10: screen.step_back,
         0xFC62: lambda: screen.write("\n"),
         0xFD8E: lambda: machine.output.out("\n"),
         0xFF3A: lambda: machine.output.out("\a"),

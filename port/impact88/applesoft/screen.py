@@ -175,6 +175,19 @@ class Screen:
         self._draw()
         self._line_feed()
 
+    def step_back(self) -> None:
+        """CALL -1008: the cursor one column to the left."""
+        self._draw()
+        self.column -= 1
+        if self.column < 0:
+            self.column = self.width - 1
+            self.step_up()
+
+    def step_up(self) -> None:
+        """CALL -998: the cursor one row up, not past the window's top."""
+        self._draw()
+        self._row = max(self._row - 1, self.top)
+
     def move_to_row(self, row: int) -> None:
         """VTAB."""
         self._draw()

@@ -1,0 +1,109 @@
+"""How fast the emulator runs the listing, beside the port, scene by scene, in one run.
+
+    python tests/benchmarks/emulator.py [--pcbasic COMMAND]
+
+Both run the same scenes in turns, in process; the ratio is the median of the scenes' ratios. Typing
+a scene's lines into the emulator and compiling them is counted apart: it is done once, the run as
+often as wanted. With --pcbasic the same listing, its INPUT lines replaced by assignments, runs as a
+process under PC-BASIC (``pip install pcbasic``), beside ``impact88 basic`` on the very same file.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import captures
+from impact88 import emulated
+from impact88.files import packaged_text
+from impact88.run import run
+from impact88.scene import Scene, sample
+from installed import COMMAND
+
+SCENES = 100
+ROUNDS = 5
+PROCESSES = 7
+
+
+def in_process() -> None:
+    """Port and emulator on the captured scenes."""
+    scenes = [Scene(case["scene"]) for case in captures.scenes()[:SCENES]]
+    run(scenes[0], dos=False)
+    emulated.run(scenes[0], dos=False)
+    port: list[list[float]] = [[] for _ in scenes]
+    emulator: list[list[float]] = [[] for _ in scenes]
+    typing: list[float] = []
+    for _ in range(ROUNDS):
+        for n, scene in enumerate(scenes):
+            start = time.process_time()
+            run(scene, dos=False)
+            middle = time.process_time()
+            machine = emulated.Emulated(scene, dos=False)
+            typed = time.process_time()
+            machine.run()
+            port[n].append((middle - start) * 1e3)
+            typing.append((typed - middle) * 1e3)
+            emulator[n].append((time.process_time() - typed) * 1e3)
+    ours = [statistics.median(times) for times in emulator]
+    theirs = [statistics.median(times) for times in port]
+    ratios = [one / other for one, other in zip(ours, theirs, strict=True)]
+    print(f"port      {statistics.median(theirs):6.2f} ms a scene (slowest {max(theirs):.2f})")
+    print(f"emulator  {statistics.median(ours):6.2f} ms a scene (slowest {max(ours):.2f})")
+    print(f"ratio     {statistics.median(ratios):6.2f} (largest {max(ratios):.2f})")
+    print(f"typing in {statistics.median(typing):6.2f} ms a scene")
+
+
+def assigned() -> str:
+    """The listing with sample 1's velocities assigned in lines 210 and 230."""
+    text = packaged_text("impact88.legacy", "impact.bas")
+    scene = sample(1)
+    for line, names in (("210 INPUT UX,UY,WA", "UX UY WA"), ("230 INPUT VX,VY,WB", "VX VY WB")):
+        number = line.split(" ", 1)[0]
+        values = ":".join(f"{name}={scene[name]}" for name in names.split())
+        text = text.replace(line, f"{number} {values}")
+    return text
+
+
+def processes(pcbasic: str) -> None:
+    """PC-BASIC and ``impact88 basic`` as processes, and the run alone in process."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "IMPACT.BAS"
+        # GW-BASIC needs the statement separators and CRs it is used to, and SYSTEM to leave
+        text = assigned()
+        path.write_text(text.replace("\n", "\r\n"), newline="")
+        commands = {
+            "pcbasic": [pcbasic, "-b", "-q", f"--run={path}"],
+            "impact88 basic": [COMMAND, "basic", str(path)],
+            "python -c pass": [sys.executable, "-c", "pass"],
+        }
+        times: dict[str, list[float]] = {name: [] for name in commands}
+        for _ in range(PROCESSES):
+            for name, command in commands.items():
+                start = time.perf_counter()
+                subprocess.run(
+                    command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, check=False
+                )
+                times[name].append(time.perf_counter() - start)
+    for name, values in times.items():
+        print(f"{name:16} {statistics.median(values) * 1e3:8.1f} ms a process")
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="emulator against port and PC-BASIC")
+    parser.add_argument("--pcbasic", metavar="COMMAND", help="the pcbasic command to compare with")
+    arguments = parser.parse_args()
+    in_process()
+    if arguments.pcbasic:
+        processes(arguments.pcbasic)
+
+
+if __name__ == "__main__":
+    main()
