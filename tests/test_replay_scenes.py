@@ -1,7 +1,7 @@
 """Whole scenes through the array engine: every stored real, every element of A, every error with
 its line, and every printed field; against the captures, and against the port on awkward scenes.
 
-IMPACT88_REPLAY_SCENES sets how many of those (20000: about a minute for every two processors).
+IMPACT88_REPLAY_SCENES sets how many of those (20000: a minute or two).
 """
 
 from __future__ import annotations
