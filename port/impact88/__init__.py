@@ -14,6 +14,7 @@ from typing import Any
 __version__ = "0.1.0"
 
 _LAZY = {
+    "Applesoft": "applesoft.emulator",
     "Scene": "scene",
     "sample": "scene",
     "run": "run",
