@@ -190,7 +190,7 @@ class Impact:
 
     @cached_property
     def w(self) -> Expression:
-        return (1.0 - self.EM) * self.Ired * self.gw if not self.gw.is_zero else self.gw
+        return (1.0 - self.EM) * self.Ired * self.gw
 
     @cached_property
     def y(self) -> Expression:
@@ -222,8 +222,8 @@ class Impact:
         sigma_mu, kappa_mu = self._along_impulse
         sigma_n = self._a[0] + self._b[0]
         kappa_n = self._kappa(0)
-        Q = self.R if sigma_n.is_zero else self.R + self.J * sigma_n * sigma_mu
-        g = kappa_mu if kappa_mu.is_zero else self.y * kappa_mu
+        Q = self.R + self.J * sigma_n * sigma_mu
+        g = self.y * kappa_mu
         return Q, g, self.z * Q - g * kappa_n, kappa_n
 
     @cached_property
@@ -247,7 +247,7 @@ class Impact:
     def _RQ(self) -> Expression:
         """det Q / R."""
         sn, st = self.sigma
-        return self.R + (self._J_times(sn * sn) + self._J_times(st * st))
+        return self.R + (self.J * (sn * sn) + self.J * (st * st))
 
     @cached_property
     def _pivot_products(self) -> tuple[Expression, Expression, Expression, Expression]:
@@ -258,29 +258,20 @@ class Impact:
         """
         (sn, st), (kn, kt) = self.sigma, self.kappa
         rn, rt = -self.v, -self.gt
-        kQk = self.R * (kn * kn + kt * kt) + self._J_times(self._cross * self._cross)
-        kQr = self.R * (kn * rn + kt * rt) + self._J_times(self._cross * (st * rn - sn * rt))
+        kQk = self.R * (kn * kn + kt * kt) + self.J * (self._cross * self._cross)
+        kQr = self.R * (kn * rn + kt * rt) + self.J * (self._cross * (st * rn - sn * rt))
         RRQ = self.R * self._RQ
-        return RRQ, kQk, kQr, self.z * RRQ - self._y_times(kQk)
+        return RRQ, kQk, kQr, self.z * RRQ - self.y * kQk
 
     @cached_property
     def _pivot(self) -> tuple[Expression, Expression, Expression]:
         """(Pn, Pt, h) for no tangential relative velocity at separation."""
         (sn, st), (kn, kt) = self.sigma, self.kappa
         RRQ, _, kQr, determinant = self._pivot_products
-        h = -((self.w * RRQ + self._y_times(kQr)) / determinant)
+        h = -((self.w * RRQ + self.y * kQr) / determinant)
         xn, xt = -self.v - kn * h, -self.gt - kt * h
-        turned = self._J_times((st * xn - sn * xt) / self.R)
+        turned = self.J * ((st * xn - sn * xt) / self.R)
         return (xn + st * turned) / self._RQ, (xt - sn * turned) / self._RQ, h
-
-    def _J_times(self, x: Expression) -> Expression:
-        return x if x.is_zero else self.J * x
-
-    def _y_times(self, x: Expression) -> Expression:
-        return x if x.is_zero else self.y * x
-
-    def _Ired_times(self, x: Expression) -> Expression:
-        return x if x.is_zero else self.Ired * x
 
     # -- impulse
 
@@ -312,7 +303,7 @@ class Impact:
     @cached_property
     def _common_spin(self) -> Expression:
         """J sigma·P: what the impulse adds to both spins alike."""
-        return self._J_times(self._times_impulse("sigma"))
+        return self.J * self._times_impulse("sigma")
 
     @cached_property
     def PM(self) -> Expression:
@@ -321,13 +312,13 @@ class Impact:
         def friction() -> Expression:
             Q, _, D, kappa_n = self._friction
             turn = self.Ired * self._along_impulse[1]
-            spin = self.gw if self.gw.is_zero else self.gw * (Q + turn * kappa_n)
-            return (1.0 - self.EM) * self._Ired_times(self._along_impulse[1] * self.v - spin) / D
+            spin = self.gw * (Q + turn * kappa_n)
+            return (1.0 - self.EM) * self.Ired * (self._along_impulse[1] * self.v - spin) / D
 
         def pivot() -> Expression:
             RRQ, kQk, kQr, determinant = self._pivot_products
-            spin = self.gw if self.gw.is_zero else self.gw * (RRQ + self._Ired_times(kQk))
-            return -((1.0 - self.EM) * self._Ired_times(spin + kQr) / determinant)
+            spin = self.gw * (RRQ + self.Ired * kQk)
+            return -((1.0 - self.EM) * self.Ired * (spin + kQr) / determinant)
 
         return self._unless_point(self._by_kind(friction, pivot))
 
@@ -435,10 +426,7 @@ class Impact:
         """Lines 320, 580 and 590; a point mass's spins are 0 here."""
         moving = self._finite(self.MA) * (ax * ax + ay * ay)
         moving = moving + self._finite(self.MB) * (bx * bx + by * by)
-        if not wa.is_zero:
-            moving = moving + self._finite(self.IA) * (wa * wa)
-        if not wb.is_zero:
-            moving = moving + self._finite(self.IB) * (wb * wb)
+        moving = moving + self._finite(self.IA) * (wa * wa) + self._finite(self.IB) * (wb * wb)
         return 0.5 * moving
 
     @cached_property
@@ -473,7 +461,7 @@ class Impact:
         normal = ((1.0 - self.E) * self.gn) * self.PN
         sliding = self.PT * (self.gt + self.Gt)
         spins = self._ia + self._ib
-        turning = self.PM if self.PM.is_zero else self.PM * (self.gw + (self.gw + spins * self.h))
+        turning = self.PM * (self.gw + (self.gw + spins * self.h))
         return -(normal + sliding + turning)
 
     @cached_property
@@ -520,17 +508,15 @@ class Impact:
 
         def friction() -> Expression:
             mu = absolute(self.mu)
-            straight = self.R * (1.0 + mu) + self._J_times(sn * (sn + mu * st))
-            moment = absolute(self._y_times(kn * (kn + mu * kt)))
+            straight = self.R * (1.0 + mu) + self.J * (sn * (sn + mu * st))
+            moment = absolute(self.y * (kn * (kn + mu * kt)))
             return (absolute(self.z) * straight + moment) / absolute(self._friction[2])
 
         def pivot() -> Expression:
             RRQ, _, _, determinant = self._pivot_products
             cross = absolute(self._cross) * (st * kn + sn * kt)
-            moment = self.R * (kn * kn + kt * kt) + self._J_times(cross)
-            return (absolute(self.z) * RRQ + absolute(self._y_times(moment))) / absolute(
-                determinant
-            )
+            moment = self.R * (kn * kn + kt * kt) + self.J * cross
+            return (absolute(self.z) * RRQ + absolute(self.y * moment)) / absolute(determinant)
 
         return 3.0 * self._by_kind(friction, pivot)
 
