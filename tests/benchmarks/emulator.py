@@ -1,6 +1,6 @@
 """How fast the emulator runs the listing, beside the port, scene by scene, in one run.
 
-    python tests/benchmarks/emulator.py [--pcbasic COMMAND]
+    python tests/benchmarks/emulator.py [--pcbasic PYTHON]
 
 Both run the same scenes in turns, in process; the ratio is the median of the scenes' ratios. Typing
 a scene's lines into the emulator and compiling them is counted apart: it is done once, the run as
@@ -14,7 +14,6 @@ import argparse
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -22,14 +21,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import captures
 from impact88 import emulated
+from impact88.applesoft.emulator import Applesoft
 from impact88.files import packaged_text
 from impact88.run import run
 from impact88.scene import Scene, sample
-from installed import COMMAND
 
 SCENES = 100
 ROUNDS = 5
-PROCESSES = 7
 
 
 def in_process() -> None:
@@ -71,38 +69,48 @@ def assigned() -> str:
     return text
 
 
-def processes(pcbasic: str) -> None:
-    """PC-BASIC and ``impact88 basic`` as processes, and the run alone in process."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "IMPACT.BAS"
-        # GW-BASIC needs the statement separators and CRs it is used to, and SYSTEM to leave
-        text = assigned()
-        path.write_text(text.replace("\n", "\r\n"), newline="")
-        commands = {
-            "pcbasic": [pcbasic, "-b", "-q", f"--run={path}"],
-            "impact88 basic": [COMMAND, "basic", str(path)],
-            "python -c pass": [sys.executable, "-c", "pass"],
-        }
-        times: dict[str, list[float]] = {name: [] for name in commands}
-        for _ in range(PROCESSES):
-            for name, command in commands.items():
-                start = time.perf_counter()
-                subprocess.run(
-                    command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, check=False
-                )
-                times[name].append(time.perf_counter() - start)
-    for name, values in times.items():
-        print(f"{name:16} {statistics.median(values) * 1e3:8.1f} ms a process")
+PCBASIC = """
+import sys, time
+from pcbasic import Session
+text = sys.stdin.read()
+with Session(input_streams=None, output_streams=None) as session:
+    for line in text.splitlines():
+        session.execute(line)
+    for _ in range({rounds}):
+        start = time.process_time()
+        session.execute("RUN")
+        print((time.process_time() - start) * 1e3)
+"""
+
+
+def against_pcbasic(python: str) -> None:
+    """The same listing, velocities assigned, under PC-BASIC and in the emulator: RUN alone."""
+    text = assigned()
+    script = PCBASIC.format(rounds=ROUNDS)
+    done = subprocess.run(
+        [python, "-c", script], input=text, capture_output=True, text=True, check=True
+    )
+    theirs = statistics.median(map(float, done.stdout.split()))
+    machine = Applesoft(dos=True)
+    machine.load(text)
+    machine.run()
+    ours = []
+    for _ in range(5 * ROUNDS):
+        start = time.process_time()
+        machine.run()
+        ours.append((time.process_time() - start) * 1e3)
+    median = statistics.median(ours)
+    print(f"PC-BASIC  {theirs:6.1f} ms, emulator {median:.2f} ms: {theirs / median:.0f} times")
 
 
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description="emulator against port and PC-BASIC")
-    parser.add_argument("--pcbasic", metavar="COMMAND", help="the pcbasic command to compare with")
+    parser.add_argument("--pcbasic", metavar="PYTHON", help="a Python that has PC-BASIC installed")
     arguments = parser.parse_args()
     in_process()
     if arguments.pcbasic:
-        processes(arguments.pcbasic)
+        against_pcbasic(arguments.pcbasic)
 
 
 if __name__ == "__main__":
