@@ -1,0 +1,121 @@
+"""Expressions and plans: leaving out changes nothing, and no value is overwritten too early."""
+
+from __future__ import annotations
+
+import math
+import operator
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from impact88.expressions import Book
+from impact88.plan import Plan
+
+LENGTH = 7
+PLAIN = {"+": operator.add, "-": operator.sub, "*": operator.mul}
+COLUMNS = {
+    "a": np.linspace(-2, 3, LENGTH),
+    "b": np.linspace(0.5, 4, LENGTH),
+    "fixed": np.array([1.75]),
+}
+
+
+def run(plan):
+    results = {name: np.empty(LENGTH) for name in plan.results}
+    fixed = plan.fixed_values({"fixed": COLUMNS["fixed"]})
+    varying = {name: COLUMNS[name] for name in plan.varying}
+    with np.errstate(all="ignore"):
+        plan.run(fixed, varying, results, plan.workspace(LENGTH))
+    return results
+
+
+@given(st.data())
+def test_any_formulas_give_what_numpy_gives(data):
+    """Random formulas over columns and constants, several results sharing parts."""
+    book = Book()
+    pool = [
+        (book.column("a", True), COLUMNS["a"]),
+        (book.column("b", True), COLUMNS["b"]),
+        (book.column("fixed", False), COLUMNS["fixed"]),
+        *((book.constant(c), np.array([c])) for c in (0.0, 1.0, -1.0, 2.5)),
+    ]
+    pick = st.integers(0, 10**6)
+    for _ in range(data.draw(st.integers(1, 25))):
+        (x, vx), (y, vy) = (pool[data.draw(pick) % len(pool)] for _ in range(2))
+        kind = data.draw(st.sampled_from("+-*/nchsg"))
+        with np.errstate(all="ignore"):
+            if kind in PLAIN:
+                pool.append((PLAIN[kind](x, y), PLAIN[kind](vx, vy)))
+            elif kind == "/":
+                if not np.all(vy):  # 0 / 0 and infinities are not what is tested here
+                    continue
+                pool.append((x / y, vx / vy))
+            elif kind == "n":
+                pool.append((-x, -vx))
+            elif kind == "c":
+                s, c = book.sine_and_cosine(x)
+                pool.append((c, np.cos(np.radians(vx))))
+                pool.append((s, np.sin(np.radians(vx))))
+            elif kind == "h":
+                pool.append((book.hypotenuse(x, y), np.hypot(vx, vy)))
+            elif kind == "s":
+                pool.append((book.against(x, y), np.where(vy > 0, -vx, vx)))
+            else:
+                condition = book.equals(x, 1.75)
+                pool.append((book.choose(condition, x, y), np.where(vx == 1.75, vx, vy)))
+        if not np.all(np.abs(pool[-1][1]) < 1e6):
+            pool.pop()
+    wanted = [pool[data.draw(pick) % len(pool)] for _ in range(data.draw(st.integers(1, 4)))]
+    found = run(Plan({f"r{i}": e for i, (e, _) in enumerate(wanted)}))
+    for i, (_, value) in enumerate(wanted):
+        np.testing.assert_allclose(
+            found[f"r{i}"], np.broadcast_to(value, LENGTH), rtol=1e-7, atol=1e-7
+        )
+
+
+def test_what_disappears():
+    book = Book()
+    a, b = book.column("a", True), book.column("b", True)
+    zero, one, endless = book.constant(0.0), book.constant(1.0), book.constant(math.inf)
+    assert a + zero is a
+    assert zero + a is a
+    assert a - zero is a
+    assert a * one is a
+    assert a / one is a
+    assert (a * zero).is_zero
+    assert (zero - a) is -a
+    assert book.negative(-a) is a
+    assert a + -b is a - b
+    assert a - -b is a + b
+    assert (-a) * (-b) is a * b
+    assert (one / endless).is_zero
+    assert a * b is a * b
+    assert not (zero / a).is_zero  # a may be 0
+    assert book.sine_and_cosine(zero)[1].is_constant(1.0)
+    assert book.sine_and_cosine(-a)[1] is book.sine_and_cosine(a)[1]
+
+
+def test_only_what_is_wanted_is_planned():
+    book = Book()
+    a, b = book.column("a", True), book.column("b", True)
+    shared = a * b
+    costly = book.hypotenuse(shared, a)
+    plan = Plan({"x": shared + a})
+    assert plan.passes == 2
+    assert Plan({"x": costly, "y": costly + 1.0}).passes == 3
+    assert Plan({"x": a * 2.0}).columns == ["a"]
+    constant = Plan({"x": book.column("fixed", False) * 2.0})
+    assert constant.passes == 0
+    assert run(constant)["x"].tolist() == [3.5] * LENGTH
+
+
+@pytest.mark.parametrize("zero", [0.0, -0.0])
+def test_sign_rule_keeps_the_sign_on_either_zero(zero):
+    book = Book()
+    plan = Plan({"x": book.against(book.column("a", True), book.column("b", True))})
+    found = {"x": np.empty(3)}
+    columns = {"a": np.array([1.5, -1.5, 2.0]), "b": np.array([zero, zero, 5e-324])}
+    plan.run(plan.fixed_values({}), columns, found, plan.workspace(3))
+    assert found["x"].tolist() == [1.5, -1.5, -2.0]
