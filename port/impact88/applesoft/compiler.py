@@ -7,7 +7,7 @@ machines share it: loading a program that was run before costs next to nothing.
 from __future__ import annotations
 
 from functools import lru_cache
-from types import CodeType
+from types import CodeType, FunctionType
 from typing import Any, NamedTuple
 
 from .statements import Statements
@@ -20,12 +20,12 @@ _LOOK_AROUND = ("PEEK(", "POKE(", "CALL(")
 class Line(NamedTuple):
     """A compiled line.
 
-    ``code`` defines the functions ``step0``, ``step1`` ... ; ``constants`` are the names it uses;
-    ``begins`` and ``needs`` tell of each step whether a statement begins there and how deep it goes
-    into the stack.
+    ``codes`` are the bodies of its steps; ``constants`` the names they use; ``begins`` and
+    ``needs`` tell of each step whether a statement begins there and how deep it goes into the
+    stack.
     """
 
-    code: CodeType
+    codes: tuple[CodeType, ...]
     constants: dict[str, Any]
     begins: tuple[bool, ...]
     needs: tuple[int, ...]
@@ -33,8 +33,7 @@ class Line(NamedTuple):
     def functions(self, names: Namespace) -> list[Any]:
         """The steps as functions that find the machine in ``names``."""
         names.update(self.constants)
-        exec(self.code, names)
-        return [names[f"step{n}"] for n in range(len(self.begins))]
+        return [FunctionType(code, names) for code in self.codes]
 
 
 @lru_cache(maxsize=8192)
@@ -55,7 +54,7 @@ def compiled(tokens: bytes, *, careful: bool = False, direct: bool = False) -> L
         text = [f"def step{n}(pc): bad('OUT OF MEMORY')" for n in range(len(line.steps))]
         code = compile("\n".join(text), "<basic>", "exec")
     return Line(
-        code,
+        tuple(each for each in code.co_consts if isinstance(each, CodeType)),
         line.formulas.constants,
         tuple(step.begins for step in line.steps),
         tuple(step.need for step in line.steps),
