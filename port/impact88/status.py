@@ -27,7 +27,10 @@ WORDS: dict[Status, str] = {
     Status.PULLING: "the normal impulse pulls the vehicles together (Pn < 0)",
     Status.SLIDING_REVERSED: "friction reverses the sliding: |MU| is above the critical value MUC",
     Status.ENERGY_GAINED: "kinetic energy is gained in the impact",
-    Status.COEFFICIENT_OUT_OF_RANGE: "E is outside 0 ... 1 or EM outside -1 ... 0",
+    Status.COEFFICIENT_OUT_OF_RANGE: (
+        "E is outside 0 ... 1, EM outside -1 ... 0, or MU, with the sign it is used with, is -10 or"
+        " below (which the listing takes for a pivot)"
+    ),
     Status.SINGULAR: "the equations are singular or nearly so",
     Status.NOT_FINITE: "a value is missing, not finite or not allowed, or the result is not finite",
 }
