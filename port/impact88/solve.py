@@ -69,8 +69,8 @@ def solve(
     or MU = 10 that the sign rule makes -10 (there line 510 zeroes a right-hand side that is not a
     pivot's), is taken as the friction coefficient it is, with COEFFICIENT_OUT_OF_RANGE in STATUS.
 
-    SINGULAR in STATUS means COND >= 2**26 (half of a double's digits may be lost), ENERGY_GAINED more
-    than 1e-12 of KI, SLIDING_REVERSED |MU| > |MUC|; `impact88.status` says all bits in words.
+    SINGULAR in STATUS means COND >= 2**26 (half of a double's digits may be lost), ENERGY_GAINED
+    more than 1e-12 of KI, SLIDING_REVERSED |MU| > |MUC|; `impact88.status` says all in words.
 
     Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast.
     """
