@@ -71,7 +71,7 @@ def test_rounded_instead_of_floored() -> None:
     scene = sample(1)
     rounded = {
         name: rounded_text(value, FIELDS[name].places or 0)
-        for name, value in trial.unfloored(scene).items()
+        for name, value in trial.run_whole(scene)[1].items()
     }
     assert rounded["XB"] == "14.52"
     found = first(_printed(scene, rounded))

@@ -153,7 +153,7 @@ def test_unreadable_files_are_refused(tmp_path) -> None:
 
 
 def test_truncated_anywhere_reads_or_is_refused() -> None:
-    for stop in range(len(SAMPLE)):
+    for stop in range(0, len(SAMPLE), 3):
         try:
             (shown,) = read_printouts(SAMPLE[:stop])
         except UserError:

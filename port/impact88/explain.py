@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from . import misreading, trial
 from .printout import ANGLES, FIELDS, INPUTS, Printout
-from .recovery import FieldCheck, Recovered, disagreeing, opposite, printable
+from .recovery import FieldCheck, Recovered, disagreeing, fits, opposite, printable, same_value
 from .typedtext import stored_and_printed, texts_that_print
 
 MOST = 8
@@ -128,33 +128,73 @@ def _misread_alone(
 
 
 def _misread_inputs(shown: Printout, recovered: Recovered, base: set[str]) -> list[Explanation]:
+    """Every slip in every input, put right and replayed."""
     printed = {
         name: recovered.assumed.get(name, reading.text)
         for name, reading in shown.fields.items()
         if name in INPUTS
     }
     trials = [one for name, text in printed.items() for one in _trials(name, text, recovered.scene)]
-    outcomes = trial.run_all([one.scene for one in trials])
+    if not trials:
+        return []
+    found, typed_mu = _tested(shown, base, trials)
     # line 400 flips MU by the geometry, so another input may mean that MU was typed the other way
-    mu = printed.get("MUP")
+    mu = opposite(printed.get("MUP", ""))
     flipped = [
         one._replace(scene={**one.scene, "MU": opposite(one.scene["MU"])})
-        for one, outcome in zip(trials, outcomes, strict=True)
-        if mu and one.field != "MUP" and outcome.fields.get("MUP") == opposite(mu)
+        for one, text in zip(trials, typed_mu, strict=True)
+        if text == mu and one.field != "MUP"
     ]
-    trials += flipped
-    outcomes += trial.run_all([one.scene for one in flipped])
-    found = []
-    for one, outcome in zip(trials, outcomes, strict=True):
-        if outcome.fields.get(one.field, one.would_be) != one.would_be:
-            continue
-        assumed = {**recovered.assumed, one.field: one.would_be}
-        left = disagreeing(shown, one.scene, assumed, outcome)
-        explains = len(base.difference(left))
-        found.append(
-            Explanation(one.kind, one.field, one.printed, one.would_be, explains, len(left))
-        )
+    if flipped:
+        found += _tested(shown, base, flipped)[0]
     return found
+
+
+def _tested(
+    shown: Printout, base: set[str], trials: Sequence[_Trial]
+) -> tuple[list[Explanation], list[str]]:
+    """The trials, each with what it explains and what it leaves; and the MU each prints.
+
+    An input prints as it is assumed to, or the trial had not been made; so only what is computed is
+    compared, and of the inputs those that did not print back as shown."""
+    import numpy as np
+
+    names = [name for name in shown.fields if name not in INPUTS or name == "MUP"]
+    endings, columns = trial.run_columns([one.scene for one in trials], [*names, "MUP"])
+    would_be = {name: [one.field == name for one in trials] for name in base & {*INPUTS}}
+    left = np.zeros(len(trials), int)
+    explained = np.zeros(len(trials), int)
+
+    def count(name: str, agrees: Any) -> None:
+        nonlocal left, explained
+        left += ~agrees
+        if name in base:
+            explained += agrees
+
+    for name in names:
+        reading = shown.fields[name]
+        if name == "MUP":
+            assumed = [one.would_be if one.field == name else reading.text for one in trials]
+            agrees = columns[name] == np.array(assumed)
+        elif reading.legible and not reading.alternatives and not reading.cut:
+            agrees = columns[name] == reading.text
+        else:
+            agrees = np.array([fits(reading, text) for text in columns[name].tolist()])
+        count(name, agrees)
+    for name, itself in would_be.items():
+        if name != "MUP":
+            count(name, np.array(itself))
+    for name, reading in shown.replies.items():
+        same = [same_value(reading.text, one.scene[name]) for one in trials]
+        count(f"reply {name}", np.array(same))
+    if shown.ending is not None:
+        count("ENDING", np.array(endings) == shown.ending)
+    found = [
+        Explanation(one.kind, one.field, one.printed, one.would_be, explains, remains)
+        for one, explains, remains in zip(trials, explained.tolist(), left.tolist(), strict=True)
+        if explains
+    ]
+    return found, columns["MUP"].tolist()
 
 
 def _trials(name: str, text: str, scene: Mapping[str, str]) -> Iterator[_Trial]:
@@ -207,13 +247,11 @@ def _other_runs(shown: Printout, recovered: Recovered, base: set[str]) -> Iterat
         note = "as if computed with DA = DB = 0, though the printout shows others"
         yield tested(POINT_MASS, run, outcome, note)
     for run in _as_typed(shown, recovered):
-        outcome = trial.run_once(run, "float64")
+        outcome, values = trial.run_whole(run, "float64")
         yield tested(DOUBLE, run, outcome, _NOT_APPLESOFT)
-        rounded = trial.Outcome({**outcome.fields, **_rounded(run, "float64")}, outcome.ending)
-        yield tested(DOUBLE_ROUNDED, run, rounded, _NOT_APPLESOFT)
-    outcome = trial.run_once(scene)
-    rounded = trial.Outcome({**outcome.fields, **_rounded(scene, "applesoft")}, outcome.ending)
-    yield tested(ROUNDED, scene, rounded, _NOT_APPLESOFT)
+        yield tested(DOUBLE_ROUNDED, run, _rounded(outcome, values), _NOT_APPLESOFT)
+    outcome, values = trial.run_whole(scene)
+    yield tested(ROUNDED, scene, _rounded(outcome, values), _NOT_APPLESOFT)
 
 
 def _as_typed(shown: Printout, recovered: Recovered) -> Iterator[dict[str, str]]:
@@ -230,12 +268,12 @@ def _as_typed(shown: Printout, recovered: Recovered) -> Iterator[dict[str, str]]
         yield {**scene, "MU": opposite(scene["MU"])}
 
 
-def _rounded(scene: Mapping[str, str], arithmetic: str) -> dict[str, str]:
-    """The floored fields as rounding to the same places would print them."""
-    return {
-        name: rounded_text(value, FIELDS[name].places or 0)
-        for name, value in trial.unfloored(scene, arithmetic).items()
+def _rounded(outcome: trial.Outcome, values: Mapping[str, float]) -> trial.Outcome:
+    """The outcome with the floored fields as rounding to the same places would print them."""
+    rounded = {
+        name: rounded_text(value, FIELDS[name].places or 0) for name, value in values.items()
     }
+    return trial.Outcome({**outcome.fields, **rounded}, outcome.ending)
 
 
 def rounded_text(value: float, places: int) -> str:

@@ -6,10 +6,13 @@ Few scenes go through the port itself, many through the array replay, which give
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import printout
 from .names import SCENE
+
+if TYPE_CHECKING:
+    from .run import Run
 
 _FEW = 6
 """Up to this many scenes the port is as quick as the replay, and needs no numpy."""
@@ -25,10 +28,18 @@ class Outcome(NamedTuple):
 
 def run_once(scene: Mapping[str, str], arithmetic: str = "applesoft") -> Outcome:
     """The outcome of one scene in the port."""
+    return run_whole(scene, arithmetic)[0]
+
+
+def run_whole(
+    scene: Mapping[str, str], arithmetic: str = "applesoft"
+) -> tuple[Outcome, dict[str, float]]:
+    """The outcome of one scene in the port, and the values that lines 660 to 760 floor before they
+    print them, unfloored (none when the run does not reach its end)."""
     from .run import run
 
     done = run(scene, arithmetic)
-    return outcome_of(done.printout)
+    return outcome_of(done.printout), _unfloored(done)
 
 
 def outcome_of(text: str) -> Outcome:
@@ -41,31 +52,38 @@ def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
     """The outcome of each scene, in order."""
     if len(scenes) <= _FEW:
         return [run_once(scene) for scene in scenes]
-    from .replay import replay
-
-    columns = {}
-    for name in SCENE:
-        column = [scene[name] for scene in scenes]
-        columns[name] = column[0] if column.count(column[0]) == len(column) else column
-    done = replay(columns)
-    endings: list[str | None] = [text or None for text in done.error.tolist()]
-    for index in done.zero_determinant.nonzero()[0].tolist():
-        endings[index] = printout.ZERO_DETERMINANT
-    outcomes = [Outcome({}, ending) for ending in endings]
-    for name in printout.FIELDS:
-        for outcome, text in zip(outcomes, done.printed(name).tolist(), strict=True):
+    endings, columns = run_columns(scenes, tuple(printout.FIELDS))
+    outcomes = [Outcome({}, ending or None) for ending in endings]
+    for name, column in columns.items():
+        for outcome, text in zip(outcomes, column.tolist(), strict=True):
             if text:
                 outcome.fields[name] = text
     return outcomes
 
 
-def unfloored(scene: Mapping[str, str], arithmetic: str = "applesoft") -> dict[str, float]:
-    """The values that lines 660 to 760 floor before they print them, unfloored; empty when the run
-    does not reach its end."""
-    from .applesoft.real import Real
-    from .run import run
+def run_columns(
+    scenes: Sequence[Mapping[str, str]], names: Sequence[str]
+) -> tuple[list[str], dict[str, Any]]:
+    """The ending of each scene ("" for a normal one), and for each of ``names`` the printed fields
+    as an array of texts ("" where the run does not get as far)."""
+    from .replay import replay
 
-    done = run(scene, arithmetic)
+    scene_columns = {}
+    for name in SCENE:
+        column = [scene[name] for scene in scenes]
+        same = column.count(column[0]) == len(column)
+        # a list of one keeps the result an array however much the scenes share
+        scene_columns[name] = column[0] if same and name != "M" else column
+    done = replay(scene_columns)
+    endings = done.error.tolist()
+    for index in done.zero_determinant.nonzero()[0].tolist():
+        endings[index] = printout.ZERO_DETERMINANT
+    return endings, {name: done.printed(name) for name in names}
+
+
+def _unfloored(done: Run) -> dict[str, float]:
+    from .applesoft.real import Real
+
     if done.error or done.zero_determinant or done.A is None:
         return {}
 
