@@ -15,6 +15,7 @@ from impact88.columns import Buffers, examine, sources
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.solve import BLOCK, plan_for
+from impact88.staged import collisions, forward
 from impact88.status import Status
 from worked_cases import RUN_1, reference_cases, scene_of
 
@@ -287,6 +288,15 @@ class TestStatus:
             assert Status.COEFFICIENT_OUT_OF_RANGE in self.status(**change)
         assert self.status(E=1.0, EM=-1.0, MU=0.0) == Status(0)
         assert Status.SINGULAR in self.status(MU=3.19214397)
+
+    def test_staged_collisions_whose_friction_reverses_the_sliding(self):
+        """Table 2's fitted coefficients do what friction cannot in five of the eleven."""
+        reversed_in = {
+            collision.number
+            for collision in collisions()
+            if int(forward(collision)["STATUS"]) & Status.SLIDING_REVERSED
+        }
+        assert reversed_in == {3, 8, 9, 10, 11}
 
     def test_turned_surface_gains_what_the_listing_prints(self):
         assert np.floor(100 * solve({**RUN_1, "GA": 150})["LOSS"]) / 100 == -40.98

@@ -181,6 +181,13 @@ def test_set_gives_a_value_for_all_rows(cases, tmp_path):
     assert table(out)[0]["WAF"] == "1.0"
 
 
+def test_a_table_without_rows_gives_one_without_rows(cases, tmp_path):
+    empty, out = tmp_path / "empty.csv", tmp_path / "r.csv"
+    empty.write_text(cases.read_text().splitlines()[0] + "\n")
+    assert main(["solve", str(empty), "-o", str(out), "--outputs", "VAX"]) == 0
+    assert out.read_text().splitlines() == [",".join(["id", *NAMES, "note", "VAX"])]
+
+
 def test_standard_input_and_output(cases, capsys, monkeypatch):
     stdin = io.TextIOWrapper(io.BufferedReader(io.BytesIO(cases.read_bytes())))
     monkeypatch.setattr("sys.stdin", stdin)
