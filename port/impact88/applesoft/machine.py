@@ -7,7 +7,6 @@ A program is a row of functions, its steps; each takes its own place and returns
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import repeat
 from typing import Any
 
 from . import functions, memory
@@ -126,8 +125,13 @@ class Machine(Parts):
                 while self.control.careful or self.tracing or self.after_line:
                     pc = self._step(pc)
                 while True:
-                    for _ in repeat(None, self._chunk()):
-                        pc = steps[pc](pc)
+                    done = 0
+                    try:
+                        for done in range(1, self._chunk() + 1):  # noqa: B007
+                            pc = steps[pc](pc)
+                    finally:
+                        if self.statements_left is not None:
+                            self.statements_left -= done
                     if self.interrupted:
                         raise KeyboardInterrupt
             except Elsewhere as elsewhere:
@@ -147,11 +151,9 @@ class Machine(Parts):
         """How many steps to do before looking round. Raises TooManyStatements."""
         if self.statements_left is None:
             return CHUNK
-        chunk = min(CHUNK, self.statements_left)
-        if chunk <= 0:
+        if self.statements_left <= 0:
             raise TooManyStatements
-        self.statements_left -= chunk
-        return chunk
+        return min(CHUNK, self.statements_left)
 
     def _step(self, pc: int) -> int:
         """One step, with everything that may be asked of it."""

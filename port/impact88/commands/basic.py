@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
 
-from ..applesoft.console import EndOfInput
+from ..applesoft.console import PRINTER_SLOT, EndOfInput
 from ..applesoft.emulator import Applesoft
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.machine import TooManyStatements
@@ -127,6 +127,11 @@ def main(args: argparse.Namespace) -> int:
     """Run a program, or talk at the prompt."""
     if args.prompt and not args.program:
         raise UserError("--prompt needs a FILE.bas; without one the prompt comes anyway")
+    if args.slot not in (0, PRINTER_SLOT) and not args.no_dos:
+        raise UserError(
+            f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
+            "or --no-dos"
+        )
     terminal = Terminal()
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
