@@ -207,6 +207,14 @@ def test_angles_are_recovered_through_radians() -> None:
         assert stored_and_printed(texts_that_print(seen[1], angle=True)[0], angle=True) == seen
 
 
+def test_more_digits_typed_than_are_printed() -> None:
+    """The tenth digit is not on the page, but in the sums."""
+    for typed in ("90315.88174", "90315.88177", "90315.88170"):
+        scene = sample(1).replaced({"IA": typed, "WA": "3.3"})
+        result = verified(run(scene).printout)
+        assert result.verdict is Verdict.IDENTICAL, typed
+
+
 # --- the command ---------------------------------------------------------------------------------
 
 

@@ -45,6 +45,7 @@ _RANK = (
     misreading.COUNT,
 )
 _NOT_APPLESOFT = "then this program on an Apple II did not print it"
+_FLOAT64 = f"float64 prints so; {_NOT_APPLESOFT}"
 
 
 @dataclass
@@ -248,8 +249,8 @@ def _other_runs(shown: Printout, recovered: Recovered, base: set[str]) -> Iterat
         yield tested(POINT_MASS, run, outcome, note)
     for run in _as_typed(shown, recovered):
         outcome, values = trial.run_whole(run, "float64")
-        yield tested(DOUBLE, run, outcome, _NOT_APPLESOFT)
-        yield tested(DOUBLE_ROUNDED, run, _rounded(outcome, values), _NOT_APPLESOFT)
+        yield tested(DOUBLE, run, outcome, _FLOAT64)
+        yield tested(DOUBLE_ROUNDED, run, _rounded(outcome, values), _FLOAT64)
     outcome, values = trial.run_whole(scene)
     yield tested(ROUNDED, scene, _rounded(outcome, values), _NOT_APPLESOFT)
 

@@ -21,6 +21,9 @@ _TYPED_ZEROS = 3
 _NEIGHBOURS = 3
 """How far from the printed text, in units of its last digit, a typed one is looked for."""
 
+_PRINTED_DIGITS = 9
+"""Digits a number is printed with at most."""
+
 _DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:[.]([0-9]*))?(?:E([+-]?[0-9]{1,2}))?")
 
 
@@ -61,9 +64,13 @@ def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
             _keep(found, text, printed, angle)
             if found:
                 break
-    for text in list(found.values()):
-        for other in _with_zeros(text):
-            _keep(found, other, printed, angle)
+    texts = list(found.values())
+    others = [other for text in texts for other in _with_zeros(text)]
+    if texts and min(map(_digits, texts)) >= _PRINTED_DIGITS:
+        # all the digits there are: more may have been typed than are printed
+        others += _neighbours(printed)
+    for other in others:
+        _keep(found, other, printed, angle)
     return tuple(found.values())
 
 
@@ -78,6 +85,12 @@ def _decimal(printed: str) -> Decimal | None:
         return Decimal(printed)
     except InvalidOperation:
         return None
+
+
+def _digits(text: str) -> int:
+    """How many significant digits a text has."""
+    value = _decimal(text)
+    return 0 if value is None else len(value.normalize().as_tuple().digits)
 
 
 def _text(value: Decimal, like: str) -> str:
@@ -117,7 +130,7 @@ def _neighbours(printed: str) -> list[str]:
     value = _decimal(printed)
     if value is None:
         return []
-    last = Decimal(1).scaleb(value.adjusted() - 8)
+    last = Decimal(1).scaleb(value.adjusted() - _PRINTED_DIGITS + 1)
     steps = [sign * step for step in range(1, _NEIGHBOURS + 1) for sign in (1, -1)]
     tenths = [sign * step for step in range(1, 10) for sign in (1, -1)]
     return [

@@ -79,6 +79,7 @@ class Verification:
                     "printed": one.printed,
                     "would_be": one.would_be,
                     "explains": one.explains,
+                    "remaining": one.remaining,
                     "note": one.note,
                 }
                 for one in self.explanations
