@@ -18,7 +18,7 @@ from impact88.reference import exact, relative_error
 @pytest.fixture(scope="module")
 def rows():
     with progress(None, "test") as meter:
-        return measure.measure(["casework", "heavy"], 40, 3, 1, meter)
+        return measure.measure(["casework", "heavy"], 40, 3, 1, meter, effort=0.02)
 
 
 def test_every_method_on_every_population(rows):
@@ -77,7 +77,7 @@ def test_figure(rows, tmp_path):
 
 def test_command(tmp_path, capsys):
     picture = tmp_path / "f.svg"
-    asked = ["bench", "--populations", "casework", "--scenes", "5", "--repeats", "1"]
+    asked = ["bench", "--populations", "casework", "--scenes", "5", "--repeats", "1", "--quick"]
     assert main([*asked, "--json", "--figure", str(picture)]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["seed"] == 1988

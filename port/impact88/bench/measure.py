@@ -101,14 +101,20 @@ def _work(method: Method, prepared: Prepared) -> Callable[[], object]:
 
 
 def measure(
-    populations: Sequence[str], count: int, seed: int, repeats: int, meter: Meter
+    populations: Sequence[str],
+    count: int,
+    seed: int,
+    repeats: int,
+    meter: Meter,
+    effort: float = 1.0,
 ) -> list[Measured]:
     """Measure all methods on ``populations``, ``count`` scenes of each. Times are medians of
-    ``repeats`` rounds; a round times every method once, so that all see the same machine."""
+    ``repeats`` rounds; a round times every method once, so that all see the same machine.
+    ``effort``: the share of `Method.timed` scenes to time."""
     return [
         row
         for name in populations
-        for row in _measure_population(name, count, seed, repeats, meter)
+        for row in _measure_population(name, count, seed, repeats, meter, effort)
     ]
 
 
@@ -118,7 +124,7 @@ def steps(populations: Sequence[str], repeats: int) -> int:
 
 
 def _measure_population(
-    name: str, count: int, seed: int, repeats: int, meter: Meter
+    name: str, count: int, seed: int, repeats: int, meter: Meter, effort: float
 ) -> list[Measured]:
     columns = scenes(name, count, seed)
     prepared = prepare(columns)
@@ -129,11 +135,12 @@ def _measure_population(
     condition, sensitive = equilibrated_condition(fill(columns)[0]), sensitivity(columns)
     errors: dict[str, Floats] = {}
     works: dict[str, Callable[[], object]] = {}
+    timed = {method.key: max(10, round(effort * method.timed)) for method in METHODS}
     for method in METHODS:
         if method.key in ("applesoft", "replay") and not POPULATIONS[name].listing:
             continue
         errors[method.key] = relative_errors(method.solve(method.ready(prepared)), hi, lo)
-        works[method.key] = _work(method, prepare_many(columns, method))
+        works[method.key] = _work(method, prepare_many(columns, method, timed[method.key]))
         meter.update(1)
     times: dict[str, list[float]] = {key: [] for key in works}
     for _ in range(repeats):
@@ -146,7 +153,7 @@ def _measure_population(
             continue
         error = errors[method.key]
         fine = np.isfinite(error)
-        seconds = statistics.median(times[method.key]) / method.timed
+        seconds = statistics.median(times[method.key]) / timed[method.key]
         told = error[fine]
         by_condition = told / (condition[fine] * method.roundoff)
         by_sensitivity = told / (sensitive[fine] * method.roundoff)
@@ -163,7 +170,7 @@ def _measure_population(
                 float(by_condition.max()),
                 float(by_sensitivity.max()),
                 seconds,
-                method.timed,
+                timed[method.key],
             )
         )
     nothing = (0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -173,12 +180,12 @@ def _measure_population(
     return [*rows, slow]
 
 
-def prepare_many(columns: Columns, method: Method) -> Prepared:
-    """As many scenes as the method is timed on; texts only where they are read."""
-    many = enlarged(columns, method.timed)
+def prepare_many(columns: Columns, method: Method, count: int) -> Prepared:
+    """``count`` scenes for a method; texts only where they are read."""
+    many = enlarged(columns, count)
     if method.key in ("applesoft", "replay", "float64"):
         return prepare(many)
-    return Prepared(method.timed, many, {})
+    return Prepared(count, many, {})
 
 
 def as_json(rows: Sequence[Measured]) -> list[dict[str, Any]]:
