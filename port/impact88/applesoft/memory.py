@@ -59,10 +59,19 @@ def peek(machine: Parts, address: int) -> int:
         offset = address - START
         image = machine.program.image
         return image[offset] if 0 <= offset < len(image) else 0
-    field = layout.field_at(machine.variables, address)
+    field = layout.field_at(machine.variables, address, _locate(machine))
     if field is not None:
         return field.read(address)
+    if machine.variables.strings.bottom <= address < machine.variables.strings.top:
+        for at, text in layout.strings_in_memory(machine.variables):
+            if at <= address < at + len(text):
+                return ord(text[address - at]) & 0xFF
     return machine.ram.get(address, APPLE_II_PLUS.get(address, 0))
+
+
+def _locate(machine: Parts) -> layout.Locate:
+    image = machine.program.image
+    return lambda text: layout.string_address(machine.variables, image, START, text)
 
 
 def _page_zero(machine: Parts, address: int) -> int:
@@ -107,7 +116,7 @@ def poke(machine: Parts, address: int, value: int) -> None:
         stored[address - 201] = value
         machine.seed = from_stored(bytes(stored))
     else:
-        field = layout.field_at(machine.variables, address)
+        field = layout.field_at(machine.variables, address, _locate(machine))
         if field is not None:
             field.write(address, value)
         elif address < ROM:
