@@ -270,18 +270,15 @@ def select(condition: Bools, yes: Reals, no: Reals) -> Reals:
 
 def stack(rows: list[Reals], unit: Unit) -> Reals:
     """Arrays one above the other, so that one operation computes them all."""
-    length = max(row.v.shape[-1] for row in rows)
-    v = np.empty((len(rows), length))
-    for place, row in zip(v, rows, strict=True):
-        place[...] = row.v
-    return Reals(
-        v,
-        unit,
-        min(row.low for row in rows),
-        max(row.high for row in rows),
-        all(row.stored for row in rows),
-        all(row.full for row in rows),
-    )
+    v = np.empty((len(rows), max([row.v.shape[-1] for row in rows])))
+    low, high, stored, full = rows[0].low, 0.0, True, True
+    for i, row in enumerate(rows):
+        v[i] = row.v
+        low = row.low if row.low < low else low
+        high = row.high if row.high > high else high
+        stored = stored and row.stored
+        full = full and row.full
+    return Reals(v, unit, low, high, stored, full)
 
 
 def _shape(left: Floats, right: Floats) -> tuple[int, ...]:
