@@ -186,7 +186,11 @@ class Book:
             sine, cosine = self.sine_and_cosine(degrees.operands[0])
             return self.negative(sine), cosine
         both = self._keep("sine_and_cosine", degrees)
-        return self._keep("sine", both), self._keep("cosine", both)
+        return self.half(both, "sine"), self.half(both, "cosine")
+
+    def half(self, both: Expression, name: str) -> Expression:
+        """The ``sine`` or ``cosine`` of a sine and cosine made together."""
+        return self._keep(name, both)
 
     def against(self, value: Expression, slip: Expression) -> Expression:
         """``value`` with its sign changed where ``slip`` > 0 (the rule of listing line 400)."""

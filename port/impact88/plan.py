@@ -61,21 +61,42 @@ def register(name: str, function: Callable[..., object]) -> None:
 
 
 class _Slots:
-    """Numbers working arrays; one that is free again is handed out first (it is still in cache)."""
+    """Allots working arrays; one that is free again is handed out first (it is still in cache).
 
-    def __init__(self) -> None:
+    ``index``: value -> its place; it holds those that are no working arrays, and is added to.
+    """
+
+    def __init__(self, index: dict[int, int]) -> None:
         self.dtypes: list[str] = []
+        self._index = index
+        self._first = len(index)
         self._free: dict[str, list[int]] = {}
+        self._taken: dict[int, int] = {}
 
-    def take(self, dtype: str) -> int:
+    def take(self, value: Expression) -> int:
+        """The place for a value: its own if it has one already (a result), else a working array."""
+        if id(value) not in self._index:
+            self._taken[id(value)] = self._next_free(value.dtype)
+            self._index[id(value)] = self._first + self._taken[id(value)]
+        return self._index[id(value)]
+
+    def _next_free(self, dtype: str) -> int:
         free = self._free.setdefault(dtype, [])
-        if free:
-            return free.pop()
-        self.dtypes.append(dtype)
-        return len(self.dtypes) - 1
+        if not free:
+            free.append(len(self.dtypes))
+            self.dtypes.append(dtype)
+        return free.pop()
 
-    def give_back(self, slot: int) -> None:
-        self._free[self.dtypes[slot]].append(slot)
+    def spare(self, dtype: str, count: int) -> list[int]:
+        """Places of ``count`` free working arrays, for the length of one pass."""
+        slots = [self._next_free(dtype) for _ in range(count)]
+        self._free[dtype] += slots
+        return [self._first + slot for slot in slots]
+
+    def give_back(self, value: Expression) -> None:
+        """The value is needed no more; its working array, if it has one, is free."""
+        if id(value) in self._taken:
+            self._free[value.dtype].append(self._taken.pop(id(value)))
 
 
 class Plan:
@@ -96,81 +117,46 @@ class Plan:
         self._schedule(tiled)
 
     def _schedule(self, tiled: Sequence[Expression]) -> None:
-        """Give every pass its places: fixed values and columns first, then working arrays, then
-        the results, which are written where the caller wants them."""
+        """Give every value its place and put the passes in order. A place is an index into what
+        `run` lays out: fixed values, columns, results (written where the caller wants them), and
+        working arrays, which are shared by values that are not needed at the same time."""
         self._index = {id(e): i for i, e in enumerate(self._fixed)}
         self._fixed_steps = [self._fixed_step(e) for e in self._fixed]
-        count = len(self._fixed)
         for e in tiled:
             if e.operation == "column":
-                self._index[id(e)] = count
-                count += 1
-        self._first_slot = count
-        slots = _Slots()
-        last_use: dict[int, int] = {}
-        for moment, e in enumerate(tiled):
-            for operand in e.operands:
-                last_use[id(operand)] = moment
-        self._steps: list[tuple[Callable[..., object] | None, tuple[int, ...]]] = []
-        self._outputs: list[tuple[str, int]] = []
-        wanted = {id(e) for e in self.results.values()}
-        direct: dict[int, str] = {}
+                self._index[id(e)] = len(self._index)
+        self._direct: list[str] = []
         for name, e in self.results.items():
-            if e.varies and e.operation != "column" and id(e) not in direct:
-                direct[id(e)] = name
-        self._direct = list(direct.values())
-        place_of_result = {i: count + k for k, i in enumerate(direct)}
-        base = count + len(direct)
-        self._slots = slots
-        live: dict[int, int] = {}
+            if e.varies and id(e) not in self._index:
+                self._index[id(e)] = len(self._index)
+                self._direct.append(name)
+        self._slots = slots = _Slots(self._index)
+        last_use = {id(operand): e for e in tiled for operand in e.operands}
 
-        def place(e: Expression) -> int:
-            return self._index[id(e)]
-
-        def allot(e: Expression) -> int:
-            if id(e) in wanted:
-                where = place_of_result[id(e)]
-            else:
-                slot = slots.take(e.dtype)
-                live[id(e)] = slot
-                where = base + slot
-            self._index[id(e)] = where
-            return where
-
-        def release(e: Expression, moment: int) -> None:
+        def release(e: Expression) -> None:
             for operand in e.operands:
-                if last_use[id(operand)] == moment and id(operand) in live:
-                    slots.give_back(live.pop(id(operand)))
+                if last_use[id(operand)] is e:
+                    slots.give_back(operand)
 
-        for moment, e in enumerate(tiled):
+        self._steps: list[tuple[Callable[..., object] | None, tuple[int, ...]]] = []
+        for e in tiled:
             if e.operation == "column" or e.operation in _PROJECTIONS:
                 continue
+            operands = tuple(self._index[id(operand)] for operand in e.operands)
             if e.operation == "sine_and_cosine":
-                both = [self._find(tiled, e, name) for name in _PROJECTIONS]
-                places = []
-                for half in both:
-                    if half is None:
-                        spare = slots.take("float")
-                        live[id(e)] = spare
-                        places.append(base + spare)
-                    else:
-                        places.append(allot(half))
-                work = [slots.take("float") for _ in range(4)]
-                indices = (place(e.operands[0]), *places, *(base + w for w in work))
-                self._steps.append((None, indices))
-                for w in work:
-                    slots.give_back(w)
-                if id(e) in live:
-                    slots.give_back(live.pop(id(e)))
+                halves = [e.book.half(e, half) for half in _PROJECTIONS]
+                places = [slots.take(half) for half in halves]
+                self._steps.append((None, (*operands, *places, *slots.spare("float", 4))))
+                for half in halves:
+                    if id(half) not in last_use:
+                        slots.give_back(half)
             else:
                 operation = OPERATIONS[e.operation]
-                operands = tuple(place(o) for o in e.operands)
                 if isinstance(operation, np.ufunc):
                     # it may write over an operand that nobody needs any more
-                    release(e, moment)
-                self._steps.append((operation, (*operands, allot(e))))
-            release(e, moment)
-        self._base = base
+                    release(e)
+                self._steps.append((operation, (*operands, slots.take(e))))
+            release(e)
 
     def _fixed_step(
         self, e: Expression
@@ -188,13 +174,6 @@ class Plan:
         if e.operation == "sine_and_cosine":
             return None, None, operands, None
         return OPERATIONS[e.operation], None, operands, _DTYPES[e.dtype]
-
-    @staticmethod
-    def _find(tiled: Sequence[Expression], both: Expression, half: str) -> Expression | None:
-        for e in tiled:
-            if e.operation == half and e.operands[0] is both:
-                return e
-        return None
 
     def workspace(self, tile: int) -> list[Array]:
         """The working arrays for tiles of up to ``tile`` scenes (one set for each thread)."""
