@@ -57,7 +57,7 @@ class Devices(StepCompiler):
                 self._emit(f"out({value.code if value.kind == TEXT else f'write({value.code})'})")
                 newline = True
         if newline:
-            self._emit("out('\\n')")
+            self._emit("newline()")
 
     def _input(self) -> None:
         reader = self.reader

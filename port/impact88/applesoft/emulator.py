@@ -144,7 +144,7 @@ class Applesoft:
         return machine.error
 
     def _complain(self, error: ApplesoftError) -> ApplesoftError:
-        self.machine.output.out(f"\n?{error.kind} ERROR\a")
+        self.machine.output.put(f"\n?{error.kind} ERROR\a")
         self.machine.error = error
         return error
 

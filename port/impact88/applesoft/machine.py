@@ -167,7 +167,7 @@ class Machine(Parts):
         line = code.lines[pc]
         direct = line >= DIRECT
         if self.tracing and code.begins[pc] and not direct:
-            self.output.out(f"#{line} ")
+            self.output.put(f"#{line} ")
         steps = code.careful() if self.control.careful and not direct else code.steps
         to = pc
         try:
@@ -201,7 +201,7 @@ class Machine(Parts):
         error.line = line if line < DIRECT else None
         self.error = error
         place = "" if error.line is None else f" IN {error.line}"
-        self.output.out(f"\n?{error.kind} ERROR{BELL}{place}")
+        self.output.put(f"\n?{error.kind} ERROR{BELL}{place}")
         self.control.clear()
         self._continue = None
         return -1
@@ -234,7 +234,7 @@ class Machine(Parts):
 
     def _say_break(self, pc: int) -> None:
         place = "" if self.code.is_direct(pc) else f" IN {self.code.lines[pc]}"
-        self.output.out(f"\nBREAK{BELL}{place}")
+        self.output.put(f"\nBREAK{BELL}{place}")
 
     # --- statements: what comes next ----------------------------------------------------------
 

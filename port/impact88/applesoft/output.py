@@ -25,7 +25,21 @@ class Output:
         self.flash_bit = 0
 
     def out(self, text: str) -> None:
-        """Show characters: high bit dropped, RETURN as newline."""
+        """PRINT's characters. A line feed moves down and leaves the column as it is."""
+        first, *others = text.split("\n")
+        self.put(first)
+        for other in others:
+            column = self._screen.column
+            self.put("\n")
+            self._screen.stay_at(column)
+            self.put(other)
+
+    def newline(self) -> None:
+        """What PRINT ends with."""
+        self._console.put("\n")
+
+    def put(self, text: str) -> None:
+        """Characters: high bit dropped, RETURN as newline."""
         if self.flash_bit or not text.isascii() or "\r" in text:
             bit = self.flash_bit & 0x7F
             codes = (ord(character) & 0x7F for character in text)
@@ -36,7 +50,7 @@ class Output:
         """The comma: on to the next zone, or to a new line."""
         column = self._screen.column
         if column >= LAST_ZONE_FROM:
-            self.out("\n")
+            self.put("\n")
         else:
             self._screen.move_to_column(column + ZONE & 0xF0)
 
@@ -44,17 +58,17 @@ class Output:
         """TAB: blanks up to a column, counted from 1; 0 counts as 256."""
         spaces = (column - 1 & 0xFF) - self._screen.column
         if spaces > 0:
-            self.out(" " * spaces)
+            self.put(" " * spaces)
 
     def spc(self, n: int) -> None:
         """SPC: n blanks."""
-        self.out(" " * n)
+        self.put(" " * n)
 
     def htab(self, column: int) -> None:
         """HTAB: to a column, counted from 1, on a later line if there is none such on this one."""
         column = column - 1 & 0xFF
         while column >= WIDTH:
-            self.out("\n")
+            self.put("\n")
             column -= WIDTH
         self._screen.move_to_column(column)
 
@@ -88,13 +102,13 @@ class Output:
     ) -> None:
         """LIST: the lines up to a number; ``check`` is called after each, to break."""
         for number, tokens in lines:
-            self.out("\n")
+            self.put("\n")
             if number > last:
                 break
             for piece in pieces(number, tokens):
-                self.out(piece)
+                self.put(piece)
                 if self._screen.column >= WRAP_COLUMN:
-                    self.out("\n")
+                    self.put("\n")
                     self._screen.move_to_column(INDENT)
             check()
-        self.out("\n")
+        self.put("\n")

@@ -193,6 +193,10 @@ class Screen:
         self._draw()
         self._row = row
 
+    def stay_at(self, column: int) -> None:
+        """After a line feed: the column is what it was, and nothing has been skipped."""
+        self.column = self._expected = column
+
     def move_to_column(self, column: int) -> None:
         """The cursor's column within the window, without showing anything."""
         self.column = column

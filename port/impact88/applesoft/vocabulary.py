@@ -116,6 +116,7 @@ def _outside(parts: Parts) -> dict[str, Any]:
     output, inputs = parts.output, parts.inputs
     return {
         "out": output.out,
+        "newline": output.newline,
         "zone": output.zone,
         "tab": output.tab,
         "spc": output.spc,
