@@ -23,6 +23,10 @@ PROMPT = "\0"
 """The prompt character Applesoft gives the monitor's line reader: it is sent, and shows nothing."""
 LINE_LIMIT = 239
 """What INPUT keeps of a line."""
+BUFFER = 256
+"""A line as long as this is abandoned, as if by control-X."""
+WARNING = 248
+BELL = "\a"
 PRINTER_SLOT = 1
 
 Keyboard = Callable[[], "str | None"]
@@ -157,7 +161,10 @@ class Console:
                 cancelled += "\\\n" + prompt
                 self._echo(kept.replace(CONTROL_X, cancelled) + cancelled)
                 typed = rest
-            self._echo(typed + "\n")
+            while len(typed) >= BUFFER:
+                self._echo(_warned(typed[:BUFFER]) + "\\\n" + prompt)
+                typed = typed[BUFFER:]
+            self._echo(_warned(typed) + "\n")
             return _edited(typed)[:LINE_LIMIT]
 
     def _echo(self, text: str) -> None:
@@ -230,6 +237,11 @@ class Reply(Generic[Number]):
 def capitals(typed: str) -> str:
     """What the monitor makes of the codes above capital letters: those, and ``{`` becomes ``[``."""
     return "".join(chr(n & 0x5F) if 0x60 <= n < 0x80 else chr(n & 0x7F) for n in map(ord, typed))
+
+
+def _warned(typed: str) -> str:
+    """What is shown of a line: near the end of the buffer every key rings the bell."""
+    return typed[:WARNING] + "".join(character + BELL for character in typed[WARNING:])
 
 
 def _edited(typed: str) -> str:
