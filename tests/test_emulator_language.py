@@ -215,6 +215,32 @@ def test_what_is_not_done_is_said():
     assert machine.machine.refused == ["CALL 24576", "GR", "PDL"]
 
 
+def test_a_line_feed_keeps_the_column():
+    assert displayed('10 PRINT "A";CHR$(10);"B";POS(0)') == "A\nB2\n"
+
+
+def test_a_string_is_where_its_descriptor_points():
+    show = (
+        "20 P=PEEK(105)+256*PEEK(106):S=PEEK(P+3)+256*PEEK(P+4)\n"
+        "30 FOR I=0 TO PEEK(P+2)-1:PRINT CHR$(PEEK(S+I));:NEXT"
+    )
+    assert displayed(f'10 A$="HELLO"\n{show}') == "HELLO"
+    assert displayed(f'10 A$="HE"+"Y"\n{show}') == "HEY"
+
+
+def test_a_reply_past_the_buffer_is_abandoned():
+    shown = displayed("10 INPUT A$:PRINT LEN(A$)", "X" * 258 + "\n")
+    assert shown == "?" + "X" * 248 + f"X{BEL}" * 8 + "\\\nXX\n2\n"
+
+
+def test_arrays_in_memory():
+    program = (
+        '10 DIM A(2,3):I=0:P=0:P=PEEK(107)+256*PEEK(108)\n20 FOR I=0 TO 8:PRINT PEEK(P+I);" ";:NEXT'
+    )
+    # name, length 9 + 12 * 5, two dimensions: 4 and 3 elements
+    assert displayed(program) == "65 0 69 0 2 0 4 0 3 "
+
+
 def test_a_program_in_python():
     machine = Applesoft()
     machine.load('10 INPUT A\n20 B$="Xy":C%=2.5:PRINT A/3\n30 DIM D(1)')
