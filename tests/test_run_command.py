@@ -97,8 +97,8 @@ def test_unusable_input_is_one_line(arguments, words):
     ("setting", "status", "ending"),
     [
         ("MA=0", 0, "\nZERO DETERMINANT\n"),
-        ("IA=0", 1, "\n?DIVISION BY ZERO ERROR\a IN 480\n"),
-        ("UX=1E39", 1, "\n?OVERFLOW ERROR\a IN 210\n"),
+        ("IA=0", 1, "\n?DIVISION BY ZERO ERROR\a IN 480"),
+        ("UX=1E39", 1, "\n?OVERFLOW ERROR\a IN 210"),
     ],
 )
 def test_exit_status(setting, status, ending):

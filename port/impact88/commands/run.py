@@ -150,8 +150,8 @@ def main(args: argparse.Namespace) -> int:
                 }
             )
         )
-    elif error is not None:
-        print()
+    elif error is not None and sys.stdout.isatty():
+        print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
     return 1 if error else 0
 
 
