@@ -299,3 +299,12 @@ def test_machines_do_not_share_values():
     other.type_line("A=2")
     assert (one.value("A"), other.value("A")) == ("8100000000", "8200000000")
     assert other.array("B") is None
+
+
+def test_a_terminal_shows_what_is_typed_itself():
+    """The cursor is at the left after it, and a control-D line may begin there."""
+    machine = Applesoft(dos=True, echo=False)
+    machine.load('10 INPUT A\n20 PRINT POS(0),"X"\n30 INPUT A\n40 PRINT CHR$(4);"PR#0"')
+    machine.feed("1", "2")
+    machine.run()
+    assert machine.take_output() == "?\x000" + " " * 15 + "X\n?\x00"

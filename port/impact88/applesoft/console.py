@@ -50,7 +50,8 @@ class EndOfInput(Exception):
 class Console:
     """A screen, a keyboard, and what stands between them and a program.
 
-    ``echo``: whether typed lines go into the output (False where a terminal has shown them).
+    ``echo``: whether typed lines go into the output (False where a terminal has shown them;
+    ``typed`` is called then).
     """
 
     def __init__(
@@ -71,6 +72,7 @@ class Console:
         self._line_begins = True
         self._command: str | None = None
         self._keys = ""
+        self.typed: Callable[[], object] = lambda: None
 
     # --- output -------------------------------------------------------------------------------
 
@@ -170,6 +172,9 @@ class Console:
     def _echo(self, text: str) -> None:
         if self.echo:
             self.put(text)
+        else:  # the terminal has shown it, RETURN included
+            self._line_begins = True
+            self.typed()
 
     def input(self, read: Read[Number], zero: Number) -> Iterator[Reply[Number]]:
         """INPUT of numbers: one Reply per attempt, to be called once for each variable.

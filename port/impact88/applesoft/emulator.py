@@ -32,6 +32,9 @@ class Applesoft:
     take what is sent to them, which `take_output` collects when no screen is given. ``dos``:
     whether a disk system takes control-D lines; ``echo``: whether typed lines are part of the
     output; ``blanks``: whether columns skipped by comma zones and HTAB come out as blanks.
+
+    `machine` is the machine itself; its ``after_line``, ``statements_left`` and ``interrupted`` are
+    there to be set.
     """
 
     def __init__(

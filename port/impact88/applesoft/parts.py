@@ -30,6 +30,7 @@ class Parts:
     ) -> None:
         self.screen = Screen(screen, blanks=blanks)
         self.console = Console(keyboard, self.screen.write, printer, dos=dos, echo=echo)
+        self.console.typed = self.screen.typed
         self.output = Output(self.console, self.screen)
         self.program = Program()
         self.variables = Variables()
