@@ -128,6 +128,7 @@ def test_error_messages_end_a_printout() -> None:
     (shown,) = read_printouts(head + "\n?DIVISION BY ZER0 ERROR\a IN 69O")
     assert shown.ending == "?DIVISION BY ZERO ERROR IN 690"
     assert "LOSS" not in shown.fields
+    assert not shown.remarks
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])

@@ -315,7 +315,8 @@ class _Reader:
                 stars += 1
             elif token.kind == "PA":
                 self._read_angles(start, stop)
-            else:
+            elif start < stop or following.kind != "ERROR":
+                # an error leaves the line unfinished, its last label without a number
                 self._read_number(token.kind, start, stop, open_end=following.kind == "STOP")
         before_last = self._tokens[-2].kind if len(self._tokens) > 1 else ""
         # the first row of asterisks stands before VAX, the final one after everything
