@@ -17,6 +17,8 @@ from .tokens import TOKENS
 
 LET_AT = 6
 """How deep the stack is when LET begins its formula; likewise elsewhere."""
+CALLED = 2
+"""A return address, when FOR calls LET."""
 TARGET_AT = 15
 """... when LET, READ or INPUT begins the first subscript of its variable."""
 EQUAL = TOKENS["="]
@@ -111,7 +113,7 @@ class StepCompiler:
         if not self.reader.take(EQUAL):
             self._fail("SYNTAX")
             return None
-        value = self.formulas.formula(LET_AT)
+        value = self.formulas.formula(LET_AT + CALLED if simple else LET_AT)
         if not value.dead and (value.kind == TEXT) != (kind == STRING):
             value = self.formulas.fails("TYPE MISMATCH", value)
         if value.dead:
