@@ -118,7 +118,7 @@ def check_value(name: str, text: str, source: str) -> str:
         raise UserError(f"{name} is {text!r}; expected the number's text", source)
     if not decimaltext.is_number(text.upper()):
         raise UserError(
-            f"{name} = {text!r} is no number; expected the {SCENE[name].meaning}, such as 1.5",
+            f"{name} = {text!r} is no number; expected one such as 1.5 ({SCENE[name].meaning})",
             source,
         )
     if len(text) > VALUE_LIMIT:
