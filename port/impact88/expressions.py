@@ -5,6 +5,7 @@ arithmetic; it records *what* would be computed, and leaves out on the spot what
 
 - equal subexpressions become one (same operation on the same operands);
 - an operand known to be exactly 0, 1 or infinite disappears: x + 0, x · 1, 0 · x, sin 0, 1/inf;
+- signs go into sums: a + (-b) · c becomes a - b · c;
 - what no wanted result depends on is never reached when a `plan` is made.
 
 None of these changes a bit of a result (but the sign of a zero), and no other rearrangement is
@@ -118,6 +119,8 @@ class Book:
             return a
         if b.operation == "negative":
             return self.subtract(a, b.operands[0])
+        if a.operation == "negative":
+            return self.subtract(b, a.operands[0])
         return self._fold("add", a, b, lambda x, y: x + y)
 
     def subtract(self, a: Expression, b: Expression) -> Expression:
@@ -140,8 +143,11 @@ class Book:
             return self.negative(b)
         if b.is_constant(-1.0):
             return self.negative(a)
-        if a.operation == b.operation == "negative":
-            return self.multiply(a.operands[0], b.operands[0])
+        # a sign is taken outwards, where a sum or another sign takes it up
+        if a.operation == "negative":
+            return self.negative(self.multiply(a.operands[0], b))
+        if b.operation == "negative":
+            return self.negative(self.multiply(a, b.operands[0]))
         return self._fold("multiply", a, b, lambda x, y: x * y)
 
     def divide(self, a: Expression, b: Expression) -> Expression:
