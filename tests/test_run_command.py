@@ -6,6 +6,8 @@ import json
 
 import pytest
 
+from impact88.applesoft.console import Console
+from impact88.arithmetics import APPLESOFT
 from impact88.run import run
 from impact88.scene import sample
 from installed import impact88
@@ -144,3 +146,12 @@ def test_without_dos_its_lines_show():
     done = impact88("run", "--sample", "1", "--no-dos", "--slot", "3")
     assert "\n\x04PR# 3\n" in done.stdout
     assert done.stdout.endswith("\n\x04PR#0\n")
+
+
+def test_a_refused_value_has_been_stored_as_far_as_it_is_a_number():
+    """12X leaves 12 in the variable and asks again; the values behind it are not looked at."""
+    replies = iter(["1,12X,3"])
+    console = Console(lambda: next(replies, None), lambda text: None)
+    reply = next(iter(console.input(APPLESOFT.read, APPLESOFT.zero)))
+    assert [APPLESOFT.write(reply(None)) for _ in range(3)] == ["1", "12", "0"]
+    assert reply.refused

@@ -207,14 +207,13 @@ class Reply(Generic[Number]):
         self.refused = False
 
     def __call__(self, old: Number | None) -> Number:
-        """The next value; ``old``, the variable's value so far, if this reply has been refused.
+        """The next value; ``old``, the variable's value so far, once this reply has been refused.
 
-        A variable that INPUT only names comes into being as zero. Raises ApplesoftError OVERFLOW
-        and EndOfInput.
+        A text that only begins as a number is refused after its beginning has been stored, as in
+        the ROM. Raises ApplesoftError OVERFLOW and EndOfInput.
         """
-        kept = self._zero if old is None else old
         if self.refused:
-            return kept
+            return self._zero if old is None else old
         if self._started:
             if self._at_end():
                 self._console.put("??")
@@ -227,7 +226,7 @@ class Reply(Generic[Number]):
         while self._line.startswith(" ", self._position):
             self._position += 1
         self.refused = not (self._at_end() or self._line[self._position] == ",")
-        return kept if self.refused else value
+        return value
 
     def _at_end(self) -> bool:
         """A colon ends a reply as it ends a statement."""
