@@ -7,6 +7,7 @@ a value in flight, so PRINT can show more than the variable would hold.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 from .errors import overflow
@@ -95,6 +96,7 @@ def _digits(text: str) -> tuple[str, str]:
     return text[: len(text) - len(rest)], rest
 
 
+@lru_cache(maxsize=512)  # scenes and programs repeat their numbers
 def read(text: str, start: int = 0) -> tuple[Number, int]:
     """The number that begins at ``start``, and where it ends; no number at all reads as zero.
 
