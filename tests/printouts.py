@@ -12,7 +12,8 @@ import captures
 from impact88.printout import ANGLES, FIELDS
 
 SWEEP = int(os.environ.get("IMPACT88_SWEEP") or 0)
-"""Set to n: every captured scene, and n changes of each; else a sample that takes seconds."""
+"""Set to n: every captured scene, and n changes of each; else a sample that takes seconds. A sweep
+takes minutes a test: add ``-o faulthandler_timeout=0`` to pytest's options."""
 
 _NUMBER = re.compile(r"-?[.0-9]+(?:E[+-][0-9]{2})?")
 _WORDS = {
