@@ -14,7 +14,7 @@ from impact88.bench.populations import POPULATIONS, scenes
 from impact88.columns import Buffers, examine, sources
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
-from impact88.solve import BLOCK, plan_for
+from impact88.solve import SHARED_TILE, plan_for
 from impact88.staged import collisions, forward
 from impact88.status import Status
 from worked_cases import RUN_1, reference_cases, scene_of
@@ -117,7 +117,7 @@ def test_a_selection_gets_the_same_bits_as_all():
 
 
 def test_threads_and_blocks_change_nothing():
-    count = 2 * BLOCK + 77
+    count = 2 * SHARED_TILE + 77
     g = {name: np.resize(v, count) for name, v in mixed_scenes(999).items()}
     one, two = solve(g, threads=1), solve(g, threads=2)
     for name in RESULTS:
