@@ -72,7 +72,7 @@ def test_captured_errors_and_replies_are_read() -> None:
 @pytest.mark.captures
 @pytest.mark.parametrize("how", printouts.MANGLED)
 def test_blanks_and_line_breaks_do_not_matter(how: str) -> None:
-    for row in printouts.sampled(printouts.normal_ends(), 40):
+    for row in printouts.sampled(printouts.normal_ends(), 15):
         (plain,) = read_printouts(row["printout"])
         (shown,) = read_printouts(printouts.MANGLED[how](row["printout"]))
         for name in FIELDS:
