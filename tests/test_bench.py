@@ -7,12 +7,12 @@ import json
 import numpy as np
 import pytest
 
+from impact88.accuracy.reference import exact, relative_error
 from impact88.bench import figure, measure, paths, tables
 from impact88.bench.methods import METHODS, prepare, reference, relative_errors
 from impact88.bench.populations import BENCHMARK, POPULATIONS, scenes, texts
 from impact88.cli import main
 from impact88.progress import progress
-from impact88.reference import exact, relative_error
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,11 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from impact88 import uncertain
-from impact88.bounds import (
+from impact88.errors import UserError
+from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES
+from impact88.scene import sample
+from impact88.uncertainty import uncertain
+from impact88.uncertainty.bounds import (
     RECONSTRUCTED,
     bounds,
     forward_model,
@@ -18,12 +21,9 @@ from impact88.bounds import (
     quantity,
     reconstruction_model,
 )
-from impact88.errors import UserError
-from impact88.extremes import extremes
-from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES
-from impact88.ranges import read_correlations, read_inputs
-from impact88.scene import sample
-from impact88.uncertain import Uncertain, fixed, read
+from impact88.uncertainty.extremes import extremes
+from impact88.uncertainty.ranges import read_correlations, read_inputs
+from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
 
 def values(number: int = 1, **ranges: str) -> dict[str, Uncertain]:

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from impact88.chapter.staged import collisions
 from impact88.cli import main
-from impact88.staged import collisions
 
 TABLE_3_AFTER = """
 title = "Table 3, after"

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from impact88 import colinear, colinear_inverse, solve
-from impact88.colinear import FINAL, INITIAL
+from impact88.chapter.colinear import FINAL, INITIAL
 from impact88.errors import UserError
 from reference_cases import Case, cases_of
 

@@ -10,11 +10,11 @@ import math
 import numpy as np
 import pytest
 
+from impact88.closedform.solve import solve
 from impact88.compare import CAUSES, Comparison, compare_file
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, SCENE
 from impact88.replay import replay
-from impact88.solve import solve
 from impact88.vectors import CASEWORK, scenes
 from installed import impact88
 
@@ -56,7 +56,7 @@ def test_our_own_results_agree_to_the_double(tmp_path) -> None:
 
 def test_a_solution_by_lapack_agrees_to_the_double(tmp_path) -> None:
     """Another way to the same numbers: the listing's elimination in IEEE double."""
-    from impact88 import trial
+    from impact88.casework import trial
 
     found = {name: [] for name in FINAL_VELOCITIES}
     for scene in ROWS:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from impact88.applesoft import decimaltext, real
 from impact88.applesoft.errors import ApplesoftError
-from impact88.applesoft.real import Real
+from impact88.applesoft.operators import Real
 
 stored_numbers = st.tuples(
     st.integers(1, 255), st.integers(1 << 31, (1 << 32) - 1), st.integers(0, 1)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impact88 import deltav
-from impact88.deltav import AS_PRINTED, AS_USED, delta_v, described
-from impact88.staged import collisions, predicted
+from impact88.chapter import deltav
+from impact88.chapter.deltav import AS_PRINTED, AS_USED, delta_v, described
+from impact88.chapter.staged import collisions, predicted
 
 SLIPS = {(6, "b")}
 

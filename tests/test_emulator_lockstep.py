@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import captures
 from emulation import first_difference
 from impact88 import arithmetics
-from impact88.applesoft import real
+from impact88.applesoft.operators import Real
 from impact88.files import packaged_text
 from impact88.scene import Scene, sample
 
@@ -64,12 +64,12 @@ def test_one_bit_in_the_port_is_caught(monkeypatch, n):
     """The last mantissa bit of the n-th value that the port stores."""
     left = n
 
-    def spoiled(x: real.Real) -> real.Real:
+    def spoiled(x: Real) -> Real:
         nonlocal left
         e, m, s = x.rounded().number
         if e:
             left -= 1
-        return real.Real((e, m ^ 0x100, s)) if e and not left else real.Real((e, m, s))
+        return Real((e, m ^ 0x100, s)) if e and not left else Real((e, m, s))
 
     monkeypatch.setattr(arithmetics.APPLESOFT, "LET", spoiled)
     assert first_difference(sample(1)) is not None

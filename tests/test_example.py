@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from impact88 import example
-from impact88.example import steps
+from impact88.chapter import example
+from impact88.chapter.example import steps
 from impact88.unknowns import solve_for
 from reference_cases import cases_of
 

@@ -6,13 +6,13 @@ from typing import Any
 
 import pytest
 
-from impact88 import trial
-from impact88.explain import Explanation, rounded_text
-from impact88.misreading import misreadings, slip
-from impact88.printout import FIELDS, read_printouts
+from impact88.casework import trial
+from impact88.casework.explain import Explanation, rounded_text
+from impact88.casework.misreading import misreadings, slip
+from impact88.casework.printout import FIELDS, read_printouts
+from impact88.casework.verify import verify
 from impact88.run import run
 from impact88.scene import Scene, sample
-from impact88.verify import verify
 from test_printout import SAMPLE
 
 

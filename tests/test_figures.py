@@ -12,8 +12,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from impact88.bounds import bounds
+from impact88.chapter.staged import collisions, experimental, forward, predicted
 from impact88.cli import main
+from impact88.closedform.solve import solve
 from impact88.commands import figure as command
 from impact88.commands.figure import solved
 from impact88.errors import UserError
@@ -34,10 +35,9 @@ from impact88.figures.labels import Label, place
 from impact88.figures.plan import plan, scene_drawing
 from impact88.figures.plan_svg import scene_svg
 from impact88.figures.svg import svg
-from impact88.ranges import read_inputs
 from impact88.scene import Scene, sample
-from impact88.solve import solve
-from impact88.staged import collisions, experimental, forward, predicted
+from impact88.uncertainty.bounds import bounds
+from impact88.uncertainty.ranges import read_inputs
 
 POINT = 25.4 / 72
 

@@ -6,8 +6,8 @@ import pytest
 
 import captures
 import printouts
+from impact88.casework.printout import ANGLES, FIELDS, LARGEST_FILE, read_file, read_printouts
 from impact88.errors import UserError
-from impact88.printout import ANGLES, FIELDS, LARGEST_FILE, read_file, read_printouts
 
 SAMPLE = """\
 MA= 143.5 MB= 95.8 IA= 3728 IB= 1961

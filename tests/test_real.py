@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from impact88.applesoft import decimaltext, real
 from impact88.applesoft.errors import CODES, ApplesoftError
-from impact88.applesoft.real import Real
+from impact88.applesoft.operators import Real
 
 numbers = st.one_of(
     st.just(real.ZERO),

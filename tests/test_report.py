@@ -7,11 +7,11 @@ from html.parser import HTMLParser
 
 import pytest
 
+from impact88.casework.printout import read_printouts
+from impact88.casework.provenance import captures_hash, listing_hash, sha256
+from impact88.casework.report import report, write_report
+from impact88.casework.verify import verify, verify_file
 from impact88.errors import UserError
-from impact88.printout import read_printouts
-from impact88.provenance import captures_hash, listing_hash, sha256
-from impact88.report import report, write_report
-from impact88.verify import verify, verify_file
 from installed import impact88
 from test_printout import SAMPLE
 

@@ -11,8 +11,8 @@ import pytest
 
 import captures
 from impact88 import selfcheck
+from impact88.casework.provenance import capture_hashes, listing_hash, sha256
 from impact88.commands.selfcheck import _line
-from impact88.provenance import capture_hashes, listing_hash, sha256
 
 GOLDEN = captures.ROOT / "golden"
 FEW = 12

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from impact88 import solve
 from impact88.bench.populations import POPULATIONS, scenes
-from impact88.columns import Buffers, examine, sources
+from impact88.chapter.staged import collisions, forward
+from impact88.closedform.columns import Buffers, examine, sources
+from impact88.closedform.solve import SHARED_TILE, plan_for
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
-from impact88.solve import SHARED_TILE, plan_for
-from impact88.staged import collisions, forward
 from impact88.status import Status
 from worked_cases import RUN_1, reference_cases, scene_of
 

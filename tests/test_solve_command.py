@@ -10,10 +10,11 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from impact88 import csvtable, replay, solve
+from impact88 import replay, solve
 from impact88.bench.populations import scenes, texts
 from impact88.cli import main
 from impact88.names import RESULTS, SCENE
+from impact88.tables import csvtable
 
 NAMES = list(SCENE)
 

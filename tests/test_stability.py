@@ -13,14 +13,22 @@ import mpmath
 import numpy as np
 import pytest
 
-from impact88 import reference, solve
-from impact88.applesoft.real import Real
+from impact88 import solve
+from impact88.accuracy import reference
+from impact88.accuracy.elimination import (
+    LISTING_PI,
+    ORDER,
+    eliminate,
+    equilibrated_condition,
+    fill,
+    lapack,
+)
+from impact88.accuracy.reference import exact, listing_elimination, relative_error, split
+from impact88.applesoft.operators import Real
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.bench.sensitivity import sensitivity
-from impact88.degrees import sin_cos
-from impact88.elimination import LISTING_PI, ORDER, eliminate, equilibrated_condition, fill, lapack
+from impact88.closedform.degrees import sin_cos
 from impact88.names import FINAL_VELOCITIES
-from impact88.reference import exact, listing_elimination, relative_error, split
 from impact88.run import run
 from impact88.scene import Scene, sample
 from impact88.status import Status

@@ -10,7 +10,7 @@ import pytest
 
 from captures import ROOT
 from impact88 import solve
-from impact88.staged import (
+from impact88.chapter.staged import (
     COLUMNS_1,
     COLUMNS_2,
     SPIN_WEIGHT,
@@ -131,7 +131,7 @@ def test_a_digit_changed_in_table_2_is_noticed(monkeypatch: pytest.MonkeyPatch) 
     changed = [
         replace(c, table2=c.table2 | {"dVa_comp": c.table2["dVa_comp"] + 0.2}) for c in collisions()
     ]
-    monkeypatch.setattr("impact88.staged.collisions", lambda: changed)
+    monkeypatch.setattr("impact88.chapter.staged.collisions", lambda: changed)
     found = {(c.collision, c.column) for c in comparison() if not c.agrees}
     assert found >= {(number, "dVa_comp") for number in ORDER}
     assert "not explained" in {c.explanation for c in comparison()}

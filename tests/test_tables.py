@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from impact88.errors import UserError
 from impact88.names import SCENE
-from impact88.rows import BLOCK_ROWS, BadCell, check_scene_columns, numbers, shortest
-from impact88.tables import format_of, open_reader, open_writer
+from impact88.tables.rows import BLOCK_ROWS, BadCell, check_scene_columns, numbers, shortest
+from impact88.tables.table import format_of, open_reader, open_writer
 
 TEXTS = {name: str(i + 0.5) for i, name in enumerate(SCENE)} | {"M": "6"}
 

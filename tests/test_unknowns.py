@@ -11,9 +11,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from impact88 import sample, solve, solve_for
+from impact88.chapter.outcome import outcome
+from impact88.chapter.reconstruction import initial_velocities
 from impact88.errors import UserError
-from impact88.outcome import outcome
-from impact88.reconstruction import initial_velocities
 from impact88.unknowns import (
     COEFFICIENTS,
     FINAL,

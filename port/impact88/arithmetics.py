@@ -13,7 +13,8 @@ from typing import Any
 
 from .applesoft import decimaltext, functions
 from .applesoft.errors import ApplesoftError, division_by_zero, illegal_quantity, overflow
-from .applesoft.real import ZERO, Number, Real, absolute, floor, integer
+from .applesoft.operators import Real
+from .applesoft.real import ZERO, Number, absolute, floor, integer
 from .errors import UserError
 
 

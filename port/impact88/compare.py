@@ -19,15 +19,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from . import errorbound
+from .accuracy import errorbound
+from .casework.printout import FIELDS
+from .closedform.solve import solve
 from .errors import UserError
 from .names import DEFAULT_M, RESULTS, SCENE
-from .printout import FIELDS
 from .replay import replay
-from .rows import BadCell, Rows, check_scene_columns, numbers
-from .solve import solve
 from .status import Status
-from .tables import open_reader
+from .tables.rows import BadCell, Rows, check_scene_columns, numbers
+from .tables.table import open_reader
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from . import errorbound, status
+from . import status
+from .accuracy import errorbound
 from .errors import UserError
 from .names import DEFAULT_M, RESULTS, SCENE
 from .scene import Scene
@@ -101,9 +102,9 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
         return []
     import numpy as np
 
+    from .closedform.solve import solve
     from .replay import replay
     from .run import run
-    from .solve import solve
 
     texts = {name: [scene[name] for scene in scenes] for name in SCENE}
     numbers = {name: np.array(list(map(_float, column))) for name, column in texts.items()}
@@ -155,7 +156,7 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
 
 def exact_decimal(stored: str) -> str:
     """The value of five stored bytes as an exact decimal, all its digits."""
-    from .applesoft.real import Real
+    from .applesoft.operators import Real
 
     return decimal_of(Real.from_stored(stored).fraction())
 
@@ -184,7 +185,7 @@ def _references(wanted: bool) -> Callable[[Mapping[str, str]], dict[str, str]]:
     """A function that gives a scene's results to 30 digits; an empty dict without mpmath."""
     if wanted:
         try:
-            from .digits import thirty_digits
+            from .accuracy.digits import thirty_digits
         except UserError:
             pass
         else:

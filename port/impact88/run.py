@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from . import arithmetics, listing, stepping
 from .applesoft.console import Console
 from .applesoft.errors import ApplesoftError
-from .applesoft.real import Real
+from .applesoft.operators import Real
 from .scene import Scene
 
 BELL = "\a"

@@ -14,11 +14,11 @@ from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
 from typing import Any, NamedTuple, Protocol
 
-from . import provenance
 from .applesoft import decimaltext, functions, real
 from .applesoft.errors import ApplesoftError
+from .casework import provenance
+from .casework.printout import FIELDS, outcome_fields
 from .names import SCENE
-from .printout import FIELDS, outcome_fields
 from .run import run
 from .scene import sample
 
@@ -240,8 +240,8 @@ def _closed_form(golden: Any) -> Counted:
     """Momentum, linear and angular, before and after, by the closed form in double precision."""
     import numpy as np
 
-    from . import errorbound
-    from .solve import solve
+    from .accuracy import errorbound
+    from .closedform.solve import solve
 
     rows = [row for row in _lines(golden, "scenes") if row["scene"]["M"] == "6"]
     g = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}

@@ -11,7 +11,7 @@ equations. Whatever is not given is unknown; `solve_for` finds what the equation
   then fitted by least squares (each equation written as a velocity, spins times the radius
   `gyration`, all with equal weight) and the mismatch is told.
 
-Rank and condition of the equations (`impact88.equations`) decide; a set that is not determined is
+Rank and condition of the equations (`chapter.equations`) decide; a set that is not determined is
 refused with the reason.
 
 Friction: ``MUP`` is the signed P_t/P_n as printed; ``MU`` is what line 280 would hold, whose sign
@@ -29,11 +29,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .equations import COEFFICIENTS, FINAL, IMPULSES, INITIAL, SPINS, Equations, Found
+from .chapter.equations import COEFFICIENTS, FINAL, IMPULSES, INITIAL, SPINS, Equations, Found
+from .chapter.geometry import NAMES as GEOMETRY
+from .closedform.solve import solve
 from .errors import UserError
-from .geometry import NAMES as GEOMETRY
 from .names import RESULTS, SCENE
-from .solve import solve
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from .errors import ApplesoftError, illegal_quantity
-from .real import Real, integer
+from .operators import Real
+from .real import integer
 
 SUBSCRIPT_LIMIT = 32768
 _PLACES = {integer(n): n for n in range(16)}

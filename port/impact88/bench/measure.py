@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import __version__
-from ..elimination import equilibrated_condition, fill
+from ..accuracy.elimination import equilibrated_condition, fill
 from ..progress import Meter
 from .methods import (  # fmt: skip
     METHODS,

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..applesoft.real import Real
-from ..elimination import ORDER, eliminate, fill, lapack
+from ..accuracy.elimination import ORDER, eliminate, fill, lapack
+from ..applesoft.operators import Real
+from ..closedform.solve import solve
 from ..replay import replay
 from ..run import run
 from ..scene import Scene
-from ..solve import solve
 from .populations import Columns, texts
 
 Floats = NDArray[np.float64]
@@ -139,8 +139,8 @@ METHODS: Sequence[Method] = (
 
 
 def reference(prepared: Prepared) -> tuple[Floats, Floats]:
-    """The final velocities by `impact88.reference`, each as the sum of two doubles (hi, lo)."""
-    from ..reference import exact
+    """The final velocities by `accuracy.reference`, each as the sum of two doubles (hi, lo)."""
+    from ..accuracy.reference import exact
 
     hi, lo = (np.full((prepared.size, 6), np.nan) for _ in range(2))
     for i in range(prepared.size):
@@ -154,7 +154,7 @@ def reference(prepared: Prepared) -> tuple[Floats, Floats]:
 
 def relative_errors(found: Floats, hi: Floats, lo: Floats) -> Floats:
     """Every scene's largest relative error, velocities by the largest velocity, spins by the larger
-    spin (as `impact88.reference.relative_error`); infinite where there is no answer."""
+    spin (as `accuracy.reference.relative_error`); infinite where there is no answer."""
     with np.errstate(all="ignore"):
         error = np.abs((found - hi) - lo)
         parts = []

@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from ..columns import Buffers, examine, sources
-from ..degrees import sine_and_cosine
-from ..elimination import ORDER
+from ..accuracy.elimination import ORDER
+from ..closedform.columns import Buffers, examine, sources
+from ..closedform.degrees import sine_and_cosine
+from ..closedform.solve import TILE, plan_for, solve
 from ..names import RESULTS
-from ..solve import TILE, plan_for, solve
 from .measure import enlarged
 from .populations import Columns, scenes
 
@@ -138,7 +138,7 @@ def _solving(columns: Any, outputs: Sequence[str]) -> Callable[[], object]:
 @dataclass
 class Floor:
     """Nanoseconds a scene: the six velocities, and six sines and cosines of three angles alone, by
-    numpy and by `impact88.degrees`."""
+    numpy and by `closedform.degrees`."""
 
     solve: float
     numpy_sines: float

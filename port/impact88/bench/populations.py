@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..degrees import sin_cos
+from ..closedform.degrees import sin_cos
 
 Floats = NDArray[np.float64]
 Columns = dict[str, Floats]

@@ -13,8 +13,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from ..closedform.solve import solve
 from ..names import FINAL_VELOCITIES
-from ..solve import solve
 
 Floats = NDArray[np.float64]
 

@@ -122,7 +122,7 @@ def paths(by_kind: Sequence[Path], by_output: Sequence[Path]) -> str:
 def floor(found: Floor) -> str:
     return (
         f"six velocities: {found.solve:.0f} ns a scene on one core; six sines and cosines alone: "
-        f"{found.numpy_sines:.0f} ns by numpy,\n{found.own_sines:.0f} ns by impact88.degrees "
+        f"{found.numpy_sines:.0f} ns by numpy,\n{found.own_sines:.0f} ns by closedform.degrees "
         f"({found.solve / found.own_sines:.1f} times that floor)"
     )
 

@@ -22,8 +22,8 @@ from __future__ import annotations
 
 import argparse
 
+from ..chapter.givens import givens, template
 from ..errors import UserError
-from ..givens import givens, template
 from .reconstruct import add_solution_arguments, show
 
 KNOWABLE = (
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
-    from ..barrier import BARRIER, BARRIER_AFTER
+    from ..chapter.barrier import BARRIER, BARRIER_AFTER
 
     if args.template:
         print(template(KNOWABLE))

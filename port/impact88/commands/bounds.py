@@ -37,11 +37,11 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
 from ..files import read_text
-from ..ranges import Inputs, read_correlations, read_inputs
 from ..scene import SAMPLES, sample, toml_texts
+from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
 
 if TYPE_CHECKING:
-    from ..bounds import Bounds
+    from ..uncertainty.bounds import Bounds
 
 DRIVERS_SHOWN = 4
 
@@ -132,7 +132,7 @@ def read_scene(args: argparse.Namespace) -> Inputs:
 
 def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = False) -> Bounds:
     """The bounds the options ask for, with progress on a terminal. Raises UserError."""
-    from ..bounds import bounds
+    from ..uncertainty.bounds import bounds
 
     inputs = read_scene(args)
     if args.seed < 0:
@@ -182,7 +182,7 @@ def _plain(value: float) -> float | None:
 
 def as_json(found: Bounds) -> dict[str, Any]:
     """Everything found, as JSON takes it; a value that does not exist is null."""
-    from ..bounds import quantity
+    from ..uncertainty.bounds import quantity
 
     return {
         "problem": found.problem,
@@ -243,7 +243,7 @@ def as_json(found: Bounds) -> dict[str, Any]:
 
 def table(found: Bounds) -> str:
     """What a reader wants to see, at most 100 characters wide."""
-    from ..bounds import quantity
+    from ..uncertainty.bounds import quantity
 
     lines = [f"Inputs that vary ({found.problem} problem)", ""]
     lines.append(f"{'':6}{'from':>12}{'to':>12}{'nominal':>12}  {'kind':<12}{'unit':<16}symbol")

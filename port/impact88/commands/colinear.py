@@ -19,8 +19,8 @@ import argparse
 import json
 import math
 
+from ..chapter.givens import givens, template
 from ..errors import UserError
-from ..givens import givens, template
 from .reconstruct import add_solution_arguments
 
 COMMON = ("MA", "MB", "E", "MUP")
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Print the velocities that were not given, and what follows from them."""
-    from ..colinear import colinear, colinear_inverse
+    from ..chapter.colinear import colinear, colinear_inverse
 
     if args.template:
         print(template((*COMMON, *BEFORE, *AFTER)))
@@ -60,7 +60,7 @@ def main(args: argparse.Namespace) -> int:
     values = {name: float(value) for name, value in solve(**known).items()}
     values = {"MA": known["MA"], "MB": known["MB"], "E": known["E"], **values}
     if args.contact_time is not None:
-        from ..impulse import forces
+        from ..chapter.impulse import forces
 
         values["P"] = math.hypot(values["PN"], values["PT"])
         values["TF"] = args.contact_time
@@ -71,8 +71,8 @@ def main(args: argparse.Namespace) -> int:
 
 def show(values: dict[str, float], found: tuple[str, ...], as_json: bool) -> None:
     """Print the table or the JSON object."""
+    from ..chapter.solutiontable import quantity
     from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
-    from ..solutiontable import quantity
 
     warnings = _warnings(values)
     if as_json:

@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from ..compare import Comparison, compare_file
 from ..errors import UserError
 from ..scene import check_names, check_value
-from ..tables import format_of
+from ..tables.table import format_of
 
 SHOWN = 20
 """Unreadable rows told on stderr."""

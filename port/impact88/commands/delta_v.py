@@ -21,8 +21,8 @@ import json
 from math import hypot
 from typing import Any
 
+from ..chapter.givens import givens
 from ..errors import UserError
-from ..givens import givens
 from ..names import SCENE
 
 CATEGORIES = {
@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Print the estimate, or its range."""
-    from ..deltav import AS_PRINTED, AS_USED, delta_v, described
+    from ..chapter.deltav import AS_PRINTED, AS_USED, delta_v, described
 
     known = givens(args.file, args.set, (*SCENE, "SA", "SB", "LOSS"))
     for name in ("MA", "MB"):
@@ -99,7 +99,7 @@ def _speed(known: dict[str, float], speed: str, x: str, y: str, source: str | No
 def _losses(known: dict[str, float], args: argparse.Namespace) -> tuple[list[float], str]:
     """The losses to take, in percent, and where they come from."""
     if args.like:
-        from ..staged import collisions
+        from ..chapter.staged import collisions
 
         if "LOSS" in known:
             raise UserError("LOSS and --like are both given; expected one")
@@ -118,8 +118,8 @@ def _losses(known: dict[str, float], args: argparse.Namespace) -> tuple[list[flo
 def _show(
     given: dict[str, float], estimates: list[dict[str, Any]], source: str, equation: str
 ) -> None:
+    from ..chapter.solutiontable import quantity
     from ..plaintable import number, table
-    from ..solutiontable import quantity
 
     rows = [[n, number(v), quantity(n).unit, quantity(n).meaning] for n, v in given.items()]
     print("\n".join(table(rows, left=(0, 2, 3))))

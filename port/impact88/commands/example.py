@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Print the steps."""
-    from ..example import steps
+    from ..chapter.example import steps
 
     agree = all(number.agrees is not False for step in steps() for number in step.numbers)
     if args.json:
@@ -39,7 +39,7 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _text() -> str:
-    from ..example import steps
+    from ..chapter.example import steps
     from ..plaintable import fixed, paragraph, table
 
     lines = ["Section VII: a reconstruction, step by step", ""]

@@ -124,9 +124,9 @@ def _scene(args: argparse.Namespace) -> Scene:
 
 def solved(scene: Scene) -> dict[str, Any]:
     """The results of one scene as numbers, for a drawing."""
+    from ..closedform.solve import solve
     from ..figures.plan import numbers_of
     from ..names import FINAL_VELOCITIES
-    from ..solve import solve
 
     found = solve(numbers_of(scene), (*FINAL_VELOCITIES, "STATUS"))
     return {name: value.item() for name, value in found.items()}

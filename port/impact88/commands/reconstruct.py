@@ -33,8 +33,8 @@ import argparse
 import json
 from collections.abc import Mapping
 
+from ..chapter.givens import givens, template
 from ..errors import UserError
-from ..givens import givens, template
 from ..names import SCENE
 
 KNOWABLE = (*SCENE, "MUP", "VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
@@ -86,7 +86,7 @@ def main(args: argparse.Namespace) -> int:
 
 def show(known: Mapping[str, float], wanted: list[str] | None, args: argparse.Namespace) -> None:
     """Print the solutions of one problem."""
-    from ..solutiontable import as_json, as_text, complete
+    from ..chapter.solutiontable import as_json, as_text, complete
     from ..unknowns import solve_for
 
     try:

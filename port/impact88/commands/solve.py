@@ -36,16 +36,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..applesoft.decimaltext import is_number
-from ..columns import UNUSED_BY_POINTS, refusals
+from ..closedform.columns import UNUSED_BY_POINTS, refusals
+from ..closedform.solve import solve
 from ..errors import UserError
 from ..files import replacing
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..progress import progress
-from ..rows import BadCell, Rows, check_scene_columns, numbers
 from ..scene import VALUE_LIMIT
-from ..solve import solve
 from ..status import Status
-from ..tables import format_of, open_reader, open_writer
+from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
+from ..tables.table import format_of, open_reader, open_writer
 
 Results = dict[str, NDArray[Any]]
 

@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Print the view asked for."""
-    from ..staged import comparison
+    from ..chapter.staged import comparison
 
     unexplained = [c for c in comparison() if not c.agrees and c.explanation == "not explained"]
     if args.json:
@@ -54,8 +54,8 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _comparison() -> str:
+    from ..chapter.staged import COLUMNS_2, collisions, comparison
     from ..plaintable import fixed, paragraph, table
-    from ..staged import COLUMNS_2, collisions, comparison
 
     columns = [c for c in COLUMNS_2 if c not in ("e", "em", "mu")]
     by_place = {(c.collision, c.column): c for c in comparison()}
@@ -90,8 +90,8 @@ def _comparison() -> str:
 
 
 def _fits() -> str:
+    from ..chapter.staged import collisions, fit, profile, undetermined_range, with_8a_reconstructed
     from ..plaintable import fixed, paragraph, table
-    from ..staged import collisions, fit, profile, undetermined_range, with_8a_reconstructed
 
     rows: list[list[str]] = []
     sums = []
@@ -149,8 +149,8 @@ def _fits() -> str:
 
 
 def _cells() -> str:
+    from ..chapter.staged import emendations
     from ..plaintable import paragraph
-    from ..staged import emendations
 
     lines = ["What is emended, moved, lost or doubtful in Tables 1 and 2 as printed", ""]
     for e in emendations():
@@ -164,8 +164,8 @@ def _cells() -> str:
 
 
 def _table(number: int) -> str:
+    from ..chapter.staged import COLUMNS_1, COLUMNS_2, cells
     from ..plaintable import table
-    from ..staged import COLUMNS_1, COLUMNS_2, cells
 
     columns = [c for c in (COLUMNS_1 if number == 1 else COLUMNS_2) if c != "category"]
     rows: dict[str, list[str]] = {}
@@ -191,7 +191,7 @@ def _table(number: int) -> str:
 def _everything() -> dict[str, Any]:
     from dataclasses import asdict
 
-    from ..staged import (
+    from ..chapter.staged import (
         SPIN_WEIGHT,
         cells,
         collisions,

@@ -20,8 +20,8 @@ import json
 import sys
 from collections.abc import Iterator
 
+from ..casework.verify import FieldCheck, Verdict, Verification, verify_file
 from ..errors import UserError
-from ..verify import FieldCheck, Verdict, Verification, verify_file
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,7 +54,7 @@ def main(args: argparse.Namespace) -> int:
             print(f"impact88 verify: {error}", file=sys.stderr)
             status = 2
     if args.report and results:
-        from ..report import write_report
+        from ..casework.report import write_report
 
         write_report(args.report, results, args.date)
     return int(status)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..bounds import Bounds
+    from ..uncertainty.bounds import Bounds
 
 MOST_PANELS = 12
 MOST_BARS = 8
@@ -39,7 +39,7 @@ def symbol(text: str) -> str:
 
 
 def _axis_label(name: str) -> str:
-    from ..bounds import quantity
+    from ..uncertainty.bounds import quantity
 
     what = quantity(name)
     return f"{symbol(what.symbol)}, {what.unit}"
@@ -125,7 +125,7 @@ def tornado(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
     Bars end at the results of the input's limits, whiskers where the result goes in between.
     Raises UserError for a result ``found`` lacks.
     """
-    from ..bounds import quantity
+    from ..uncertainty.bounds import quantity
 
     names = _chosen(found, outputs)
     bars = min(len(found.inputs), MOST_BARS)
@@ -186,7 +186,7 @@ def friction_sweep(scene: Any) -> Figure:
     """
     import numpy as np
 
-    from ..solve import solve
+    from ..closedform.solve import solve
 
     values: dict[str, Any] = numbers_of(scene)
     pivot = solve({**values, "MU": -10.0}, ["MUC", "STATUS"])
@@ -275,7 +275,7 @@ def figure_5() -> Figure:
     """Figure 5 from our own computation: the impact equations with Table 2's coefficients, and
     Equation 19 with its energy loss, against the measured ΔV (Table 2's where Table 1's is lost).
     """
-    from ..staged import collisions, experimental, forward, predicted
+    from ..chapter.staged import collisions, experimental, forward, predicted
 
     equations, equation_19 = [], []
     for collision in collisions():

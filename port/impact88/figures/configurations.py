@@ -17,7 +17,7 @@ _PAD = 3.5
 
 def configurations() -> Drawing:
     """One collision of each category as it stood at contact, velocities before, one scale."""
-    from ..staged import collisions
+    from ..chapter.staged import collisions
 
     chosen: dict[str, Any] = {}
     for collision in collisions():

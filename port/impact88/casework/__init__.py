@@ -1,0 +1,1 @@
+"""Casework: printouts read, verified digit by digit, explained and reported."""

@@ -1,0 +1,69 @@
+"""What stands beside a verdict and never changes it: exact values and warnings.
+
+Exact means the mechanics of Equations 13 to 18 in double precision by the closed form, with exact
+pi, for the recovered scene: what the program would print had its arithmetic cost nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from decimal import Decimal, InvalidOperation
+
+from .. import status
+from ..names import RESULTS
+from .printout import INPUTS
+from .recovery import FieldCheck
+
+_DIGITS = 12
+"""Digits an exact value is shown with: as many as double precision is sure of."""
+
+
+def add_exact_values(scene: Mapping[str, str], checks: Sequence[FieldCheck]) -> None:
+    """Set ``exact`` and ``difference`` (printed less exact) of every check of a result."""
+    wanted = [check for check in checks if check.name in RESULTS and check.name not in INPUTS]
+    values = solved(scene, [check.name for check in wanted])
+    for check in wanted:
+        value = values.get(check.name)
+        if value is None or value != value:
+            continue
+        check.exact = f"{value + 0.0:.{_DIGITS}g}"
+        if check.printed is not None:
+            try:
+                difference = Decimal(check.printed) - Decimal(check.exact)
+            except InvalidOperation:
+                continue
+            check.difference = f"{difference:+.3g}" if difference else "0"
+
+
+def warnings(scene: Mapping[str, str]) -> list[str]:
+    """What is unphysical about a scene (the bits of STATUS), and which of the program's known traps
+    it steps into, one sentence each."""
+    bits = status.Status(int(solved(scene, ["STATUS"])["STATUS"]))
+    found = [f"{bit.name}: {status.WORDS[bit]}" for bit in status.Status if bits & bit]
+    return found + list(_traps(scene))
+
+
+def solved(scene: Mapping[str, str], outputs: Sequence[str]) -> dict[str, float]:
+    """Results of one scene by the closed form, as Python floats."""
+    from ..closedform.solve import solve
+
+    columns = {name: float(text.upper().replace(" ", "") or 0) for name, text in scene.items()}
+    found = solve(columns, list(outputs))
+    return {name: float(found[name]) for name in outputs}
+
+
+def _traps(scene: Mapping[str, str]) -> list[str]:
+    value = {name: float(text) for name, text in scene.items()}
+    found = []
+    if value["M"] == 4 and (value["DA"] or value["DB"]):
+        found.append(
+            "M = 4 with DA or DB not zero: the XA, YA, XB, YB printed after the impact are "
+            "nonsense (line 550 stores a sum where line 700 expects a spin)"
+        )
+    if value["M"] == 4 and (value["WA"] or value["WB"]):
+        found.append("M = 4 with WA or WB not zero: the KE LOSS printed is wrong")
+    if value["MU"] == 10:
+        found.append("MU = 10, once line 400 flips it, is taken for a pivot's by line 510")
+    if value["MU"] < -10:
+        found.append("MU below -10: line 510 zeroes a right-hand side that is not a pivot's")
+    return found

@@ -1,0 +1,108 @@
+"""Trials: what the faithful program prints for scenes that a printout may have come from.
+
+Few scenes go through the port itself, many through the array replay, which gives the same digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..names import SCENE
+from . import printout
+
+if TYPE_CHECKING:
+    from ..run import Run
+
+_FEW = 6
+"""Up to this many scenes the port is as quick as the replay, and needs no numpy."""
+
+
+class Outcome(NamedTuple):
+    """What a run prints: the fields by name, and the error or ``ZERO DETERMINANT`` that ended it
+    (None: it ended normally)."""
+
+    fields: dict[str, str]
+    ending: str | None
+
+
+def run_once(scene: Mapping[str, str], arithmetic: str = "applesoft") -> Outcome:
+    """The outcome of one scene in the port."""
+    return run_whole(scene, arithmetic)[0]
+
+
+def run_whole(
+    scene: Mapping[str, str], arithmetic: str = "applesoft"
+) -> tuple[Outcome, dict[str, float]]:
+    """The outcome of one scene in the port, and the values that lines 660 to 760 floor before they
+    print them, unfloored (none when the run does not reach its end)."""
+    from ..run import run
+
+    done = run(scene, arithmetic)
+    return outcome_of(done.printout), _unfloored(done)
+
+
+def outcome_of(text: str) -> Outcome:
+    """The outcome shown by what one run printed."""
+    shown = printout.read_printouts(text)[0]
+    return Outcome({name: one.text for name, one in shown.fields.items()}, shown.ending)
+
+
+def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
+    """The outcome of each scene, in order."""
+    if len(scenes) <= _FEW:
+        return [run_once(scene) for scene in scenes]
+    endings, columns = run_columns(scenes, tuple(printout.FIELDS))
+    outcomes = [Outcome({}, ending or None) for ending in endings]
+    for name, column in columns.items():
+        for outcome, text in zip(outcomes, column.tolist(), strict=True):
+            if text:
+                outcome.fields[name] = text
+    return outcomes
+
+
+def run_columns(
+    scenes: Sequence[Mapping[str, str]], names: Sequence[str]
+) -> tuple[list[str], dict[str, Any]]:
+    """The ending of each scene ("" for a normal one), and for each of ``names`` the printed fields
+    as an array of texts ("" where the run does not get as far)."""
+    from ..replay import replay
+
+    scene_columns = {}
+    for name in SCENE:
+        column = [scene[name] for scene in scenes]
+        same = column.count(column[0]) == len(column)
+        # a list of one keeps the result an array however much the scenes share
+        scene_columns[name] = column[0] if same and name != "M" else column
+    done = replay(scene_columns)
+    endings = done.error.tolist()
+    for index in done.zero_determinant.nonzero()[0].tolist():
+        endings[index] = printout.ZERO_DETERMINANT
+    return endings, {name: done.printed(name) for name in names}
+
+
+def _unfloored(done: Run) -> dict[str, float]:
+    from ..applesoft.operators import Real
+
+    if done.error or done.zero_determinant or done.A is None:
+        return {}
+
+    def number(stored: str | float) -> float:
+        return float(Real.from_stored(stored)) if isinstance(stored, str) else stored
+
+    value = {name: number(stored) for name, stored in done.reals.items()}
+    rows = done.A["dims"][0]
+    column = int(value["M"]) + 1
+    solution = [number(done.A["data"][row + rows * column]) for row in range(1, 7)]
+    found = {
+        "XA": value["UX"] + value["D3"] * value["WA"],
+        "YA": value["UY"] - value["D4"] * value["WA"],
+        "XB": value["VX"] - value["D1"] * value["WB"],
+        "YB": value["VY"] + value["D2"] * value["WB"],
+        "LOSS": 100 * (value["KI"] - value["KF"]) / value["KI"],
+        **{f"{name}F": value[name] for name in ("XA", "YA", "XB", "YB")},
+        **dict(zip(("VAX", "VAY", "VBX", "VBY"), solution, strict=False)),
+    }
+    if value["M"] == value["N"]:
+        found |= {"WAF": solution[4], "WBF": solution[5]}
+    return found

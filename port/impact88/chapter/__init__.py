@@ -1,0 +1,1 @@
+"""The chapter's other problems: every equation, table and example around the program."""

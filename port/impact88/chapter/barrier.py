@@ -1,0 +1,51 @@
+"""A vehicle against a rigid barrier (chapter, Section IV-C).
+
+"Let all velocity components of one vehicle approach zero and its mass and moment of inertia become
+infinitely large": vehicle B is the barrier, at rest, with infinite MB and IB. Equations 13, 14 and
+17 then no longer hold (the ground takes the momentum); 15, 16 and 18 give the vehicle's three
+final velocities. In inverse masses that is `impact88.solve` with two zeros.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..closedform.solve import solve
+from ..errors import UserError
+
+BARRIER = {
+    **{"MB": np.inf, "IB": np.inf, "VX": 0.0, "VY": 0.0, "WB": 0.0},
+    **{"DB": 0.0, "PB": 0.0, "TB": 0.0},
+}
+"""The values of the scene that make B a barrier; where on it the vehicle hits is of no matter."""
+BARRIER_AFTER = {"VBX": 0.0, "VBY": 0.0, "WBF": 0.0}
+"""Its velocities after the impact, for `impact88.unknowns.solve_for`: rebound -> approach."""
+VEHICLE = ("E", "MU", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "UX", "UY", "WA")
+"""The values of the scene that are the vehicle's and the contact's."""
+RESULTS = (
+    *("VAX", "VAY", "WAF", "XA", "YA", "XAF", "YAF", "KI", "KF", "LOSS"),
+    *("DVA", "PN", "PT", "PM", "MUP", "MUC", "STATUS"),
+)
+"""The results a barrier leaves: B's stay as they were."""
+
+
+def barrier(columns: Mapping[str, Any], outputs: Sequence[str] | None = None) -> dict[str, Any]:
+    """The impact of vehicle A on a rigid barrier whose surface makes the angle GA with the y axis.
+
+    ``columns``: `VEHICLE` (numbers or arrays that broadcast), M 4 for a point mass; angles in
+    degrees, units any consistent set; ``outputs``: some of `RESULTS`, all by default. An approach
+    has the vehicle on the +n side of the barrier moving towards -n. Returns arrays by name. Raises
+    UserError for unknown or missing names.
+    """
+    for name in columns:
+        if name not in (*VEHICLE, "M"):
+            raise UserError(
+                f"{name!r} does not belong to a barrier impact; expected {' '.join(VEHICLE)}"
+            )
+    for name in outputs or ():
+        if name not in RESULTS:
+            raise UserError(f"{name!r} is no barrier result; expected some of {' '.join(RESULTS)}")
+    return solve({**BARRIER, **columns}, RESULTS if outputs is None else tuple(outputs))

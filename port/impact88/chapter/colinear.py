@@ -1,0 +1,92 @@
+"""Direct colinear impact: Equations 1-12 (chapter, Section III), forward and inverse.
+
+Two vehicles that do not turn, velocities along n (crush) and t (sliding). Equations 5-8 (momentum
+along n and t, restitution e, friction μ = P_t/P_n) solved for the final velocities are Equations
+9-12; the inverse is the same four lines with 1/e for e and initial and final exchanged, μ
+unchanged. There is no inverse at e = 0. μ is the *signed* P_t/P_n: no sign rule is applied here.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import UserError
+
+Array = NDArray[np.float64]
+
+INITIAL = ("UN", "UT", "VN", "VT")
+FINAL = ("VAN", "VAT", "VBN", "VBT")
+
+
+def colinear(
+    *, MA: Any, MB: Any, E: Any, MUP: Any, UN: Any, UT: Any, VN: Any, VT: Any
+) -> dict[str, Array]:
+    """Final velocities VAN VAT VBN VBT by Equations 9-12, and what `report` adds.
+
+    Masses MA MB, coefficients E and MUP (signed P_t/P_n), initial velocities of A (UN UT) and B
+    (VN VT) along n and t; all broadcast.
+    """
+    ma, mb, e, mu, *initial = _floats(MA, MB, E, MUP, UN, UT, VN, VT)
+    final = _equations_9_to_12(ma, mb, e, mu, *initial)
+    return report(ma, mb, e, mu, initial, final)
+
+
+def colinear_inverse(
+    *, MA: Any, MB: Any, E: Any, MUP: Any, VAN: Any, VAT: Any, VBN: Any, VBT: Any
+) -> dict[str, Array]:
+    """Initial velocities UN UT VN VT from the final ones, and what `report` adds.
+
+    Errors of the final normal velocities grow as 1/e. Elements with e = 0 are NaN; raises
+    UserError if e is 0 throughout: there is no inverse then.
+    """
+    ma, mb, e, mu, *final = _floats(MA, MB, E, MUP, VAN, VAT, VBN, VBT)
+    if not e.any():
+        raise UserError(
+            "E = 0: the vehicles leave together whatever their approach (Equation 7), so the "
+            "final velocities do not tell the initial ones; expected E above 0"
+        )
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        initial = _equations_9_to_12(ma, mb, 1 / np.where(e == 0, np.nan, e), mu, *final)
+        return report(ma, mb, e, mu, initial, final)
+
+
+def _equations_9_to_12(
+    ma: Array, mb: Array, e: Array, mu: Array, van: Array, vat: Array, vbn: Array, vbt: Array
+) -> list[Array]:
+    share = (1 + e) * (vbn - van) / (ma + mb)
+    return [van + mb * share, vat + mu * mb * share, vbn - ma * share, vbt - mu * ma * share]
+
+
+def report(
+    ma: Array, mb: Array, e: Array, mu: Array, initial: list[Array], final: list[Array]
+) -> dict[str, Array]:
+    """The velocities by name, and PN PT (Equations 1 and 2), DVA DVB, KI KF, LOSS in percent, and
+    MUC, the P_t/P_n that would just stop the sliding (more reverses it, which friction cannot)."""
+    van, vat, vbn, vbt = initial
+    Van, Vat, Vbn, Vbt = final
+    ki = 0.5 * (ma * (van**2 + vat**2) + mb * (vbn**2 + vbt**2))
+    kf = 0.5 * (ma * (Van**2 + Vat**2) + mb * (Vbn**2 + Vbt**2))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        values = (
+            *initial,
+            *final,
+            ma * (Van - van),
+            ma * (Vat - vat),
+            np.hypot(Van - van, Vat - vat),
+            np.hypot(Vbn - vbn, Vbt - vbt),
+            ki,
+            kf,
+            100 * (ki - kf) / ki,
+            mu,
+            (vat - vbt) / ((1 + e) * (van - vbn)),
+        )
+    names = (*INITIAL, *FINAL, "PN", "PT", "DVA", "DVB", "KI", "KF", "LOSS", "MUP", "MUC")
+    shape = np.broadcast_shapes(*(np.shape(value) for value in values))
+    return {n: np.broadcast_to(v, shape) for n, v in zip(names, values, strict=True)}
+
+
+def _floats(*values: Any) -> list[Array]:
+    return [np.asarray(value, np.float64) for value in values]

@@ -1,0 +1,138 @@
+"""Where and how two vehicles touch: lever arms and inverse inertias, over arrays.
+
+The contact plane makes the angle Γ with the y axis; n = (cos Γ, sin Γ) is normal to it, t =
+(-sin Γ, cos Γ) lies in it. The contact point is at (-d4, -d3) from A's center of gravity and at
+(d2, d1) from B's, so A is on the +n side. The impulse (P_n, P_t) and moment impulse M act on A,
+their opposites on B.
+
+`Geometry` states the two linear maps everything else is made of: velocities -> relative velocity
+at the contact point, and impulse -> velocity changes. Masses and inertias appear inverted only,
+so that a rigid barrier (infinite mass) is nothing special.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..closedform.degrees import sin_cos
+
+Array = NDArray[np.float64]
+
+NAMES = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
+"""The values of a scene that make its geometry; M (6 or 4) is optional."""
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Directions, contact point and inverse inertias of scenes, as arrays that broadcast.
+
+    ``cosine`` and ``sine`` of Γ; ``d1`` ... ``d4`` as in listing line 330; ``point`` where the
+    vehicles are point masses (M = 4: no lever arms, nothing turns them).
+    """
+
+    cosine: Array
+    sine: Array
+    d1: Array
+    d2: Array
+    d3: Array
+    d4: Array
+    inverse_ma: Array
+    inverse_mb: Array
+    inverse_ia: Array
+    inverse_ib: Array
+    point: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, columns: Mapping[str, Any]) -> Geometry:
+        """The geometry of scenes given by name (`NAMES`, and M where not 6), angles in degrees."""
+        value = {name: np.asarray(columns[name], np.float64) for name in NAMES}
+        point = np.asarray(columns.get("M", 6), np.float64) == 4
+        sine, cosine = sin_cos(value["GA"])
+        sine_a, cosine_a = sin_cos(value["TA"] + value["PA"])
+        sine_b, cosine_b = sin_cos(value["TB"] + value["PB"])
+        da, db = np.where(point, 0.0, value["DA"]), np.where(point, 0.0, value["DB"])
+        with np.errstate(divide="ignore"):
+            return cls(
+                cosine=cosine,
+                sine=sine,
+                d1=db * sine_b,
+                d2=db * cosine_b,
+                d3=da * sine_a,
+                d4=da * cosine_a,
+                inverse_ma=1 / value["MA"],
+                inverse_mb=1 / value["MB"],
+                inverse_ia=1 / value["IA"],
+                inverse_ib=1 / value["IB"],
+                point=point,
+            )
+
+    @cached_property
+    def an(self) -> Array:
+        """Normal lever arm of A: the spin's share in the contact point's normal velocity."""
+        return self.d3 * self.cosine - self.d4 * self.sine
+
+    @cached_property
+    def at(self) -> Array:
+        return -(self.d4 * self.cosine + self.d3 * self.sine)
+
+    @cached_property
+    def bn(self) -> Array:
+        """Normal lever arm of B, with the sign it has in the *relative* velocity A minus B."""
+        return self.d1 * self.cosine - self.d2 * self.sine
+
+    @cached_property
+    def bt(self) -> Array:
+        return -(self.d2 * self.cosine + self.d1 * self.sine)
+
+    @cached_property
+    def inverse_mass(self) -> Array:
+        """R = 1/m_a + 1/m_b."""
+        return self.inverse_ma + self.inverse_mb
+
+    @cached_property
+    def inverse_spin_inertia(self) -> Array:
+        """1/Ī = 1/I_a + 1/I_b."""
+        return self.inverse_ia + self.inverse_ib
+
+    def directions(self) -> tuple[tuple[Array | float, ...], ...]:
+        """Rows n, t and spin: multiplied with (UX UY WA VX VY WB), or the final velocities in that
+        order, they give the relative normal, tangential and angular velocity, A minus B."""
+        c, s = self.cosine, self.sine
+        return (
+            (c, s, self.an, -c, -s, self.bn),
+            (-s, c, self.at, s, -c, self.bt),
+            (0.0, 0.0, 1.0, 0.0, 0.0, -1.0),
+        )
+
+    def inverses(self) -> tuple[Array, ...]:
+        """What an impulse component is multiplied with for each velocity of A, then of B."""
+        a, b = self.inverse_ma, self.inverse_mb
+        return (a, a, self.inverse_ia, b, b, self.inverse_ib)
+
+    def relative(self, velocities: Sequence[Any]) -> tuple[Array, Array, Array]:
+        """Relative normal, tangential and angular velocity at the contact point."""
+        normal, tangential, spin = (
+            sum(arm * velocity for arm, velocity in zip(row, velocities, strict=True))
+            for row in self.directions()
+        )
+        return normal, tangential, spin
+
+    def changes(self, pn: Any, pt: Any, moment: Any) -> list[Array]:
+        """The changes of the six velocities an impulse makes (the reason no inertia is inverted
+        twice: the map is the transpose of `relative`'s, times the inverse inertias)."""
+        impulse = (pn, pt, moment)
+        return [
+            inverse
+            * sum(row[i] * part for row, part in zip(self.directions(), impulse, strict=True))
+            for i, inverse in enumerate(self.inverses())
+        ]
+
+    def contact_point(self) -> dict[str, Array]:
+        """The contact point from each center of gravity, along the scene's x and y."""
+        return {"CAX": -self.d4, "CAY": -self.d3, "CBX": self.d2, "CBY": self.d1}

@@ -1,0 +1,422 @@
+"""The eleven staged collisions: Tables 1 and 2 (chapter, Section V) as data, and what they say.
+
+The tables are kept as printed (``legacy/table1.csv``, ``table2.csv``) with every emendation and
+its evidence (``legacy/emendations.csv``). Three ways from Table 1 to Table 2:
+
+- `forward`: the impact solved with Table 2's own e, e_m and μ: energy loss and computed ΔV;
+- `fit`: e, e_m and μ by least squares from the measured velocities;
+- `predicted`: ΔV by Equation 19 (with the factor 2/3, see `chapter.deltav`).
+
+`comparison` puts them beside Table 2, cell by cell.
+
+The fit minimises  Σ(V - V_measured)² + 25 ft² Σ(Ω - Ω_measured)²  over the final velocities. The
+weight is not published; 25 ft² comes closest to Table 2 (with e_m held at the printed value: rms
+.006 in e and in μ). Bounds: 0 <= e <= 1, -1 <= e_m <= 0, μ free. For a given e_m the final
+velocities are linear in the impulse (P_n, P_t), so the minimum is found exactly, and e_m is then
+searched for alone. The profile in e_m tells why that number means little: the sum hardly changes.
+Units: ft, s, slug (Table 1).
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..closedform.solve import solve
+from ..files import packaged_text
+from .deltav import delta_v
+from .geometry import Geometry
+
+Array = NDArray[np.float64]
+
+SPIN_WEIGHT = 25.0
+"""Weight of a squared spin against a squared velocity, ft²."""
+E_BOUNDS = (0.0, 1.0)
+EM_BOUNDS = (-1.0, 0.0)
+_HALF_DIGIT_COEFFICIENT, _HALF_DIGIT = 0.0005, 0.05
+_BEFORE = ("UX", "UY", "WA", "VX", "VY", "WB")
+_AFTER = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
+
+# -- the tables
+
+
+@dataclass(frozen=True)
+class Emendation:
+    """One remark on a cell: ``kind`` is emended, moved (by the scan, number unchanged), lost,
+    doubtful (suspicious but kept) or slip (of Table 2: recomputation gives ``emended``). ``column``
+    ``*`` is a whole row."""
+
+    table: int
+    row: str
+    column: str
+    kind: str
+    printed: str
+    emended: str
+    evidence: str
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table: the text as printed (where it belongs, if the scan moved it) and as
+    emended, with the remark on it, if any."""
+
+    table: int
+    row: str
+    column: str
+    printed: str
+    emended: str
+    remark: Emendation | None
+
+
+COLUMNS_1 = ("category", "m", "I", "d", "phi", "theta", "Gamma", "vx", "vy", "Omega", "Vx", "Vy")
+COLUMNS_2 = (
+    *("loss", "e", "em", "mu", "dVa_exp", "dVb_exp"),
+    *("dVa_comp", "dVb_comp", "dVa_pred", "dVb_pred"),
+)
+
+
+def _rows(name: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(packaged_text("impact88.legacy", name).splitlines()))
+
+
+@cache
+def emendations() -> tuple[Emendation, ...]:
+    """Every remark on a cell of Tables 1 and 2, with its evidence."""
+    return tuple(Emendation(table=int(row.pop("table")), **row) for row in _rows("emendations.csv"))
+
+
+@cache
+def cells() -> tuple[Cell, ...]:
+    """Tables 1 and 2, cell by cell: as printed, as emended, and the evidence."""
+    found = []
+    for row in _rows("table1.csv"):
+        name = row["row"]
+        printed = _printed_1(row)
+        for column in COLUMNS_1:
+            key = f"{column}_deg" if column in ("phi", "theta", "Gamma") else column
+            found.append(Cell(1, name, column, printed[column], row[key], _remark(1, name, column)))
+    for row in _rows("table2.csv"):
+        name = row["collision"]
+        for column in COLUMNS_2:
+            key = {"loss": "loss_percent", "mu": "mu_signed_Pt_over_Pn"}.get(column, column)
+            remark = _remark(2, name, column)
+            emended = remark.emended if remark else row[key]
+            found.append(Cell(2, name, column, row[key], emended, remark))
+    return tuple(found)
+
+
+def _remark(table: int, row: str, column: str) -> Emendation | None:
+    """The remark on a cell, or else on its whole row."""
+    here = {e.column: e for e in emendations() if (e.table, e.row) == (table, row)}
+    return here.get(column) or here.get("*")
+
+
+def _printed_1(row: Mapping[str, str]) -> dict[str, str]:
+    """The printed cells by column; a row the scan moved as a whole is moved back."""
+    texts = [row[f"printed_cell_{number}"] for number in range(2, 12)]
+    moved = _remark(1, row["row"], "*")
+    if moved and moved.printed == "one cell right":
+        texts = [*texts[1:], ""]
+    elif moved:
+        texts = ["", *texts[:-1]]
+    category, m, inertia, d, phi, theta, gamma, before, spin, after = (
+        text.replace("- ", "-") for text in texts
+    )
+    vx, _, vy = before.partition("/")
+    ax, _, ay = after.partition("/")
+    values = (category, m, inertia, d, phi, theta, gamma, vx, vy, spin, ax, ay)
+    return {name: value.strip() for name, value in zip(COLUMNS_1, values, strict=True)}
+
+
+@dataclass(frozen=True)
+class Collision:
+    """One staged collision, emended, as numbers.
+
+    ``scene``: its values by the listing's names without the coefficients (initial spins are 0, as
+    Section V says); ``measured``: the final velocities, NaN where lost; ``table2``: Table 2's row
+    as printed, by column.
+    """
+
+    number: int
+    category: str
+    scene: dict[str, float]
+    measured: dict[str, float]
+    table2: dict[str, float]
+
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """Table 2's E, EM and MUP (signed P_t/P_n)."""
+        return {"E": self.table2["e"], "EM": self.table2["em"], "MUP": self.table2["mu"]}
+
+
+def with_8a_reconstructed() -> Collision:
+    """Collision 8 with A's lost final velocity filled in by the pair that Table 2 calls for: a
+    reconstruction (-10.2/10.6, each +-0.2), labelled as such wherever it is used; never data."""
+    collision = next(c for c in collisions() if c.number == 8)
+    return replace(collision, measured=collision.measured | {"VAX": -10.2, "VAY": 10.6})
+
+
+@cache
+def collisions() -> tuple[Collision, ...]:
+    """The eleven staged collisions in Table 1's order."""
+    vehicles: dict[str, dict[str, str]] = {}
+    results: dict[str, dict[str, float]] = {}
+    for cell in cells():
+        if cell.table == 1:
+            vehicles.setdefault(cell.row, {})[cell.column] = cell.emended
+        else:
+            results.setdefault(cell.row, {})[cell.column] = float(cell.printed)
+    found = []
+    for number, table2 in results.items():
+        a, b = vehicles[f"{number}/A"], vehicles[f"{number}/B"]
+        scene = {"GA": float(a["Gamma"]), "WA": 0.0, "WB": 0.0}
+        measured: dict[str, float] = {}
+        for v, row in (("A", a), ("B", b)):
+            names = {"M": "m", "I": "I", "D": "d", "P": "phi", "T": "theta"}
+            scene |= {f"{name}{v}": float(row[column]) for name, column in names.items()}
+            x, y = ("UX", "UY") if v == "A" else ("VX", "VY")
+            scene |= {x: float(row["vx"]), y: float(row["vy"])}
+            measured |= {
+                f"V{v}X": float(row["Vx"] or "nan"),
+                f"V{v}Y": float(row["Vy"] or "nan"),
+                f"W{v}F": float(row["Omega"]),
+            }
+        found.append(Collision(int(number), a["category"], scene, measured, table2))
+    return tuple(found)
+
+
+# -- forward, experimental, predicted
+
+
+def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
+    """The MU to type so that line 400 leaves the signed P_t/P_n: it changes it where gt > 0."""
+    signed = np.asarray(signed, np.float64)
+    # line 400 looks at the velocities alone: the other coefficients may be any
+    left = solve({**scene, "E": 0.0, "EM": 0.0, "MU": signed}, ("MUP",))["MUP"]
+    return np.where(left == signed, signed, -signed)
+
+
+def forward(
+    collision: Collision, coefficients: Mapping[str, Any] | None = None
+) -> dict[str, Array]:
+    """The impact solved from the initial velocities, with Table 2's E, EM and MUP unless others
+    are given: all results of `impact88.solve`."""
+    given = dict(collision.coefficients if coefficients is None else coefficients)
+    mu = typed_friction(collision.scene, given.pop("MUP"))
+    return solve({**collision.scene, **given, "MU": mu})
+
+
+def experimental(collision: Collision) -> dict[str, float]:
+    """ΔV from Table 1's measured velocities."""
+    here = collision.scene | collision.measured
+    return {
+        "DVA": float(np.hypot(here["VAX"] - here["UX"], here["VAY"] - here["UY"])),
+        "DVB": float(np.hypot(here["VBX"] - here["VX"], here["VBY"] - here["VY"])),
+    }
+
+
+def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
+    """ΔV by Equation 19 from the energy loss (percent), by default Table 2's printed one."""
+    scene = collision.scene
+    speeds = (np.hypot(scene["UX"], scene["UY"]), np.hypot(scene["VX"], scene["VY"]))
+    loss = collision.table2["loss"] if loss is None else loss
+    return delta_v(scene["MA"], scene["MB"], *speeds, loss)
+
+
+# -- least squares
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted impact: the coefficients, the sum of squares (ft²/s²) and which sit at a bound."""
+
+    E: float
+    EM: float
+    MUP: float
+    sum_of_squares: float
+    at_bound: tuple[str, ...]
+
+
+def fit(collision: Collision, em: float | None = None) -> Fit:
+    """The least-squares fit: E, MUP and EM, or E and MUP with EM held at ``em``.
+
+    Velocities Table 1 lacks (8/A) are left out of the sum.
+    """
+    model = _Linear.of(collision)
+    if em is not None:
+        return model.at(em)
+    grid = np.linspace(*EM_BOUNDS, 201)
+    sums = [model.at(float(x)).sum_of_squares for x in grid]
+    best = int(np.argmin(sums))
+    low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    em = _golden(lambda x: model.at(x).sum_of_squares, float(low), float(high))
+    found = min((model.at(x) for x in (em, float(grid[best]))), key=lambda f: f.sum_of_squares)
+    at = tuple(n for n in found.at_bound if n != "EM")
+    near = [bound for bound in EM_BOUNDS if abs(found.EM - bound) < 1e-6]
+    if near:
+        found = model.at(near[0])
+    return Fit(found.E, found.EM, found.MUP, found.sum_of_squares, (*at, *(["EM"] * len(near))))
+
+
+def profile(collision: Collision, count: int = 11) -> list[Fit]:
+    """The best fits with EM held at ``count`` values from -1 to 0."""
+    model = _Linear.of(collision)
+    return [model.at(float(em)) for em in np.linspace(*EM_BOUNDS, count)]
+
+
+def undetermined_range(collision: Collision, tolerance: float = 0.1) -> tuple[float, float]:
+    """The values of EM whose best fit's root-mean-square misfit is within ``tolerance`` ft/s of
+    the least: how little the data fix it."""
+    model = _Linear.of(collision)
+    grid = np.linspace(*EM_BOUNDS, 401)
+    misfit = np.sqrt([model.at(float(em)).sum_of_squares / model.measured for em in grid])
+    close = grid[misfit <= misfit.min() + tolerance]
+    return float(close.min()), float(close.max())
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """The final velocities as a linear function of the impulse: misfit = w (J·p - change)."""
+
+    jacobian: Array  # 6 x 3, of the velocities over (Pn, Pt, M)
+    change: Array
+    root_weight: Array
+    normal: Array  # of Gn over (Pn, Pt, M)
+    spin: Array
+    approach: float
+    spin_before: float
+    measured: int
+
+    @classmethod
+    def of(cls, collision: Collision) -> _Linear:
+        here = Geometry.of(collision.scene)
+        jacobian = np.array([here.changes(*unit) for unit in np.eye(3)], float).T
+        directions = np.array([[float(x) for x in row] for row in here.directions()])
+        before = np.array([collision.scene[name] for name in _BEFORE])
+        after = np.array([collision.measured[name] for name in _AFTER])
+        known = np.isfinite(after)
+        weight = np.where(known, [1.0, 1.0, SPIN_WEIGHT] * 2, 0.0)
+        normal, _, spin = directions @ before
+        return cls(
+            jacobian=jacobian,
+            change=np.where(known, after - before, 0.0),
+            root_weight=np.sqrt(weight),
+            normal=directions[0] @ jacobian,
+            spin=directions[2] @ jacobian,
+            approach=float(normal),
+            spin_before=float(spin),
+            measured=int(known.sum()),
+        )
+
+    def at(self, em: float) -> Fit:
+        """The best impulse with the moment impulse that Equation 18 gives for ``em``."""
+        # (1 - em)(spin·p + spin before) = em·M/Ired, and spin[2] is 1/Ired
+        row = (1 - em) * self.spin - em * self.spin[2] * np.array([0.0, 0.0, 1.0])
+        constant = -(1 - em) * self.spin_before / row[2]
+        lift = np.array([[1.0, 0.0], [0.0, 1.0], [-row[0] / row[2], -row[1] / row[2]]])
+        offset = np.array([0.0, 0.0, constant])
+        left = self.root_weight[:, None] * (self.jacobian @ lift)
+        right = self.root_weight * (self.change - self.jacobian @ offset)
+        free = np.linalg.lstsq(left, right, rcond=None)[0]
+        slope = self.normal @ lift
+        e = -(self.approach + slope @ free + self.normal @ offset) / self.approach
+        bound = min(max(e, E_BOUNDS[0]), E_BOUNDS[1])
+        if bound != e:
+            # on the line of impulses with e at its bound: the sum of squares is convex
+            target = -bound * self.approach - self.approach - self.normal @ offset
+            start = slope * target / (slope @ slope)
+            along = np.array([-slope[1], slope[0]])
+            step = left @ along
+            free = start + along * (step @ (right - left @ start)) / (step @ step)
+        misfit = left @ free - right
+        at_bound = ("E",) if bound != e else ()
+        return Fit(float(bound), em, float(free[1] / free[0]), float(misfit @ misfit), at_bound)
+
+
+def _golden(function: Any, low: float, high: float) -> float:
+    """The minimum of a function with one minimum between ``low`` and ``high``."""
+    ratio = (np.sqrt(5) - 1) / 2
+    a, b = high - ratio * (high - low), low + ratio * (high - low)
+    fa, fb = function(a), function(b)
+    while high - low > 1e-10:
+        if fa < fb:
+            high, b, fb = b, a, fa
+            a = high - ratio * (high - low)
+            fa = function(a)
+        else:
+            low, a, fa = a, b, fb
+            b = low + ratio * (high - low)
+            fb = function(b)
+    return float((low + high) / 2)
+
+
+# -- against Table 2
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A cell of Table 2 beside its recomputation.
+
+    ``low`` ... ``high``: what the rounding of the printed inputs (coefficients, for the predicted
+    values the loss) leaves open. ``agrees``: whether the printed digits lie within that, rounded.
+    ``explanation``: for a cell that does not agree, why.
+    """
+
+    collision: int
+    column: str
+    printed: float
+    value: float
+    low: float
+    high: float
+    agrees: bool
+    explanation: str
+
+
+def comparison() -> list[Compared]:
+    """Loss and the three pairs of ΔV of Table 2 beside their recomputation."""
+    found = []
+    for collision in collisions():
+        centre, spread = _with_rounding(collision)
+        measured = experimental(collision)
+        rounded_loss = collision.table2["loss"] + np.array([0, -_HALF_DIGIT, _HALF_DIGIT])
+        equation_19 = predicted(collision, rounded_loss)
+        values: dict[str, tuple[float, Any]] = {"loss": (float(centre["LOSS"]), spread["LOSS"])}
+        for vehicle in "ab":
+            name = f"DV{vehicle.upper()}"
+            values[f"dV{vehicle}_exp"] = (measured[name], measured[name])
+            values[f"dV{vehicle}_comp"] = (float(centre[name]), spread[name])
+            values[f"dV{vehicle}_pred"] = (float(equation_19[name][0]), equation_19[name])
+        for column in COLUMNS_2:
+            if column in values:
+                found.append(_compared(collision, column, *values[column]))
+    return found
+
+
+def _with_rounding(collision: Collision) -> tuple[dict[str, Array], dict[str, Array]]:
+    """The forward results, and the same with each coefficient half a printed digit off."""
+    step = _HALF_DIGIT_COEFFICIENT
+    offsets = np.array(list(product((-step, 0, step), repeat=3))).T
+    coefficients = {
+        name: value + offset
+        for (name, value), offset in zip(collision.coefficients.items(), offsets, strict=True)
+    }
+    return forward(collision), forward(collision, coefficients)
+
+
+def _compared(collision: Collision, column: str, value: float, spread: Any) -> Compared:
+    printed = collision.table2[column]
+    low, high = float(np.min(spread)), float(np.max(spread))
+    # a printed last digit stands for half a unit either way; 1e-9 for the decimal's own rounding
+    agrees = low - _HALF_DIGIT - 1e-9 <= printed <= high + _HALF_DIGIT + 1e-9
+    remark = _remark(2, str(collision.number), column)
+    explanation = ""
+    if not agrees:
+        explanation = remark.evidence if remark else "not explained"
+    return Compared(collision.number, column, printed, value, low, high, bool(agrees), explanation)

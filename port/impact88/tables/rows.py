@@ -1,0 +1,141 @@
+"""Rows of a table of scenes, between a file's format and an arithmetic.
+
+Numbers stay the decimal text they are written as until an arithmetic reads them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import UserError
+from ..names import SCENE
+
+Column = Sequence[Any] | NDArray[Any]
+
+BLOCK_ROWS = 16384
+"""Rows read, solved and written together."""
+
+
+class BadCell(NamedTuple):
+    """Why a row cannot be used: ``row`` counts the rows of data from 1, ``line`` is the line of the
+    file (0: a file without lines), ``column`` the column at fault ("" for the row as a whole)."""
+
+    row: int
+    line: int
+    column: str
+    reason: str
+
+    def __str__(self) -> str:
+        place = f"row {self.row}" + (f" (line {self.line})" if self.line else "")
+        return f"{place}{', ' + self.column if self.column else ''}: {self.reason}"
+
+
+@dataclass
+class Rows:
+    """Some rows of a table.
+
+    ``first``: the number of the first, from 1; ``columns``: scene name -> texts (None where the row
+    has none) or an array; ``others``: the other columns, passed through; ``lines``: the file's line
+    of each row, if it has lines; ``bad``: rows that could not be read.
+    """
+
+    first: int
+    count: int
+    columns: dict[str, Column]
+    others: dict[str, Column]
+    lines: Sequence[int] | None = None
+    bad: list[BadCell] = field(default_factory=list)
+
+    def kept(self, name: str) -> Column:
+        """A column of either kind."""
+        return self.columns[name] if name in self.columns else self.others[name]
+
+    def cell(self, index: int, column: str, reason: str) -> BadCell:
+        """A complaint about the row at ``index``, counted from 0."""
+        line = self.lines[index] if self.lines is not None else 0
+        return BadCell(self.first + index, line, column, reason)
+
+
+class Reader(Protocol):
+    """An open table.
+
+    ``names``: its columns (of JSON Lines, those of the first row); ``delimiter``: between a CSV's
+    fields; ``total``: its size in the units of ``position`` (None: unknown).
+    """
+
+    names: list[str]
+    delimiter: str
+    total: int | None
+
+    def __iter__(self) -> Iterator[Rows]: ...
+
+    def position(self) -> int: ...
+
+
+class Writer(Protocol):
+    """A table being written."""
+
+    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None: ...
+
+
+def shortest(values: NDArray[Any]) -> list[str]:
+    """Floats in the fewest digits that read back exactly; anything else as str writes it."""
+    return list(map(repr if values.dtype.kind == "f" else str, values.tolist()))
+
+
+def numbers(rows: Rows) -> dict[str, NDArray[np.float64]]:
+    """The scene columns of ``rows`` as doubles. A cell that is no number is NaN, and a complaint is
+    added to ``rows.bad`` (unless its row has one already)."""
+    return {name: _numbers(rows, name, column) for name, column in rows.columns.items()}
+
+
+def _numbers(rows: Rows, name: str, column: Column) -> NDArray[np.float64]:
+    if isinstance(column, np.ndarray) and column.dtype.kind in "fiub":
+        return column.astype(np.float64, copy=False)
+    try:
+        values = np.array(list(map(float, column)))
+        if "_" not in "".join(column):
+            return values
+    except (TypeError, ValueError):
+        pass
+    values = np.full(rows.count, np.nan)
+    already = {bad.row for bad in rows.bad}
+    for index, text in enumerate(column):
+        reason = _why_no_number(text)
+        if reason is None:
+            values[index] = float(text)
+        elif rows.first + index not in already:
+            rows.bad.append(rows.cell(index, name, reason))
+    return values
+
+
+def _why_no_number(text: object) -> str | None:
+    if text is None or (isinstance(text, str) and not text.strip()):
+        return "is empty; expected a number"
+    try:
+        if isinstance(text, str) and "_" in text:
+            raise ValueError
+        float(text)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return f"{text!r} is no number"
+    return None
+
+
+def check_scene_columns(
+    names: Sequence[str], given: Sequence[str], optional: Sequence[str]
+) -> None:
+    """Raise UserError unless ``names`` (a file's scene columns) and ``given`` (those given beside
+    the file) together are a scene; those ``optional`` may be missing."""
+    missing = [
+        name for name in SCENE if name not in names and name not in given and name not in optional
+    ]
+    if missing:
+        raise UserError(
+            f"no column {' '.join(missing)}; expected columns named {' '.join(SCENE)} "
+            "(M may be missing; --set NAME=VALUE gives one value for all rows)"
+        )

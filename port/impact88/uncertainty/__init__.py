@@ -1,0 +1,1 @@
+"""Values known within limits: bounds, draws, and what drives which result."""

@@ -1,0 +1,531 @@
+"""Upper and lower bounds from ranges of the data (chapter, Section V: "reasonable ranges of these
+variables should be used ... to provide upper and lower bounds on vehicle speed").
+
+Three questions about one scene whose values are known within limits (`uncertainty.uncertain`):
+
+- How far can a result go? `Bound`: corners of the box the ranges span, its faces and its interior
+  are searched (`uncertainty.extremes`). Every bound is a value the equations do give for the inputs
+  kept beside it, so the true bound lies no closer; that none lies farther is what the search makes
+  likely, not what it proves. Correlations play no part here: a corner stays possible.
+- How likely is what? `Spread`: Monte Carlo, seeded; mean, deviation and quantiles.
+- Which input matters? `Drive`: Spearman's rank correlation over the draws, and how far each result
+  goes when one input runs through its range with the others at their nominal values.
+
+The forward problem goes from initial to final velocities (Equations 13-18); the reconstruction from
+the six final velocities back, with MUP, the signed ratio P_t/P_n, for MU, because line
+400's sign rule needs initial velocities.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import status
+from ..chapter.geometry import Geometry
+from ..chapter.reconstruction import initial_velocities
+from ..errors import UserError
+from ..names import FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES, Quantity
+from .extremes import CORNERS_IN_FULL, extremes
+from .uncertain import Uncertain, correlation_root, fixed
+
+Array = NDArray[np.float64]
+Model = Callable[[Mapping[str, Any], Sequence[str]], dict[str, Array]]
+"""Columns (arrays or numbers by name) and the outputs wanted -> arrays by name."""
+
+SPEEDS = {
+    "SA": Quantity("SA", "|v_a|", "speed of A before impact", "length/time", 0),
+    "SB": Quantity("SB", "|v_b|", "speed of B before impact", "length/time", 0),
+}
+"""What a reconstruction is asked for, beside the six initial velocities."""
+
+PROBLEMS = ("forward", "reconstruction")
+FORWARD_OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
+RECONSTRUCTION_OUTPUTS = (*VELOCITIES, "SA", "SB", "DVA", "DVB", "LOSS")
+RECONSTRUCTED = (*RECONSTRUCTION_OUTPUTS, "KI", "KF", "PN", "PT", "PM", "MUC")
+"""What a reconstruction can be asked for."""
+FRICTION_DRIVES = 128
+"""Beside STATUS's bits, for reconstructions alone: the signed MUP given pushes the sliding on
+instead of opposing it. The forward problem's sign rule (line 400) does not let that happen."""
+WARNINGS = {bit.name or "": int(bit) for bit in status.Status} | {
+    "FRICTION_DRIVES": FRICTION_DRIVES
+}
+"""Name of a warning -> its bit."""
+QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
+
+CHUNK = 1 << 15
+"""Draws evaluated at a time: what the processor's cache holds. Part of what a seed means."""
+RANKED = 20_000
+"""Draws the rank correlations are taken over at most (standard error 0.007)."""
+SWEEP_POINTS = 41
+"""Points of a one-at-a-time sweep."""
+
+
+@dataclass(frozen=True)
+class Bound:
+    """Lowest and highest value of one result over the box, and the inputs that give them.
+
+    ``nominal``: with every input at its nominal value; ``corner_lower`` and ``corner_upper``: the
+    extremes over the corners evaluated, which are the bounds themselves unless the result turns
+    around inside; ``lower_warnings`` and ``upper_warnings``: names of what is unphysical there.
+    """
+
+    nominal: float
+    lower: float
+    upper: float
+    at_lower: dict[str, float]
+    at_upper: dict[str, float]
+    corner_lower: float
+    corner_upper: float
+    lower_warnings: tuple[str, ...]
+    upper_warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Monte Carlo: mean, standard deviation and quantiles (share -> value) of one result."""
+
+    mean: float
+    deviation: float
+    quantiles: dict[float, float]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What one input does to one result.
+
+    ``rank_correlation``: Spearman's, over the draws; nan where either does not vary; ``at_low`` and
+    ``at_high``: the result with this input at its limits and the others nominal; ``lowest`` and
+    ``highest``: over the whole sweep, beyond the former where the result turns around.
+    """
+
+    rank_correlation: float
+    at_low: float
+    at_high: float
+    lowest: float
+    highest: float
+
+    @property
+    def swing(self) -> float:
+        """How far the result goes as this input alone runs through its range."""
+        return self.highest - self.lowest
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """The answer of `bounds`.
+
+    ``inputs``: what varies, and ``limits``: the box; ``bounds`` and ``spreads`` by output,
+    ``drives`` by output, then input; ``warnings``: STATUS name -> share of the draws that carry it;
+    ``unusable``: share of the draws without a finite result or excluded, left out of the spreads;
+    ``evaluations``: scenes solved in search of the bounds; ``draws``: each output's draws, arrays
+    of the ``samples`` values, kept on request.
+    """
+
+    problem: str
+    inputs: dict[str, Uncertain]
+    limits: dict[str, tuple[float, float]]
+    bounds: dict[str, Bound]
+    spreads: dict[str, Spread]
+    drives: dict[str, dict[str, Drive]]
+    warnings: dict[str, float]
+    unusable: float
+    samples: int
+    seed: int
+    sigmas: float
+    evaluations: int
+    corners_in_full: bool
+    correlations: dict[tuple[str, str], float]
+    draws: dict[str, Array] = field(default_factory=dict, repr=False)
+
+
+def quantity(name: str) -> Quantity:
+    """Symbol, meaning and unit of an input or output of `bounds`."""
+    return {**SCENE, **RESULTS, **SPEEDS}[name]
+
+
+def input_names(problem: str) -> tuple[str, ...]:
+    """The values a problem needs: the scene's, for a reconstruction with the six final velocities
+    in place of the initial ones and the signed friction MUP in place of MU."""
+    if problem == "forward":
+        return tuple(SCENE)
+    kept = (name for name in SCENE if name not in VELOCITIES)
+    return (*("MUP" if name == "MU" else name for name in kept), *FINAL_VELOCITIES)
+
+
+def bounds(
+    values: Mapping[str, Uncertain | float],
+    outputs: Sequence[str] | None = None,
+    *,
+    problem: str = "forward",
+    samples: int = 100_000,
+    seed: int = 0,
+    correlations: Mapping[tuple[str, str], float] | None = None,
+    sigmas: float = 3.0,
+    quantiles: Sequence[float] = QUANTILES,
+    exclude: Sequence[str] = (),
+    keep_draws: bool = False,
+    progress: Callable[[int], object] = lambda draws: None,
+) -> Bounds:
+    """Bounds, Monte Carlo and sensitivities of a scene known within limits.
+
+    ``values``: every input of the problem (`input_names`; M is 6 where left out) as a number or an
+    `Uncertain`; ``outputs``: result names, for a reconstruction also UX ... WB, SA and SB (speeds);
+    ``correlations``: (name, name) -> correlation; ``sigmas``: where a normal without limits ends
+    for the bounds; ``exclude``: warnings (names of `WARNINGS`) whose scenes are left out of bounds
+    and draws alike, sweeps excepted; ``progress`` is told the draws done after each chunk. Units
+    are the scene's.
+
+    Raises UserError for a missing, unknown or unusable value, an unknown output, correlations that
+    contradict one another, and when the nominal inputs have no finite result.
+    """
+    _check(samples, sigmas, quantiles)
+    box = _Box.of(values, outputs, problem, sigmas, exclude)
+    pairs = dict(correlations or {})
+    correlated = correlation_root(pairs, box.inputs)
+    nominal = box.nominal()
+    sweeps = box.sweeps()
+    found = extremes(box.at, len(box.inputs), np.random.default_rng([seed, 0]))
+    rng = np.random.default_rng([seed, 1])
+    draws, ranked, flags = _monte_carlo(box, rng, samples, correlated, progress)
+    usable = np.all([np.isfinite(column) for column in draws.values()], axis=0)
+    if not usable.any():
+        raise UserError("none of the draws has a finite result; expected narrower ranges")
+    some = usable[:RANKED]
+    input_ranks = {name: _ranks(column[some]) for name, column in ranked.items()}
+    output_ranks = {name: _ranks(column[:RANKED][some]) for name, column in draws.items()}
+    return Bounds(
+        problem=problem,
+        inputs=box.inputs,
+        limits=box.limits,
+        bounds={
+            name: Bound(
+                nominal=nominal[name],
+                lower=float(found.lower[place]),
+                upper=float(found.upper[place]),
+                at_lower=box.inputs_at(found.at_lower[place]),
+                at_upper=box.inputs_at(found.at_upper[place]),
+                corner_lower=float(found.corner_lower[place]),
+                corner_upper=float(found.corner_upper[place]),
+                lower_warnings=box.warnings_at(found.at_lower[place]),
+                upper_warnings=box.warnings_at(found.at_upper[place]),
+            )
+            for place, name in enumerate(box.outputs)
+        },
+        spreads={name: _spread(draws[name][usable], quantiles) for name in box.outputs},
+        drives={
+            output: {
+                name: _drive(sweeps[name][output], input_ranks[name], output_ranks[output])
+                for name in box.inputs
+            }
+            for output in box.outputs
+        },
+        warnings={
+            name: share
+            for name, bit in WARNINGS.items()
+            if (share := float(np.count_nonzero(flags & bit) / samples))
+        },
+        unusable=float(1 - np.count_nonzero(usable) / samples),
+        samples=samples,
+        seed=seed,
+        sigmas=sigmas,
+        evaluations=found.evaluations,
+        corners_in_full=len(box.inputs) <= CORNERS_IN_FULL,
+        correlations=pairs,
+        draws=draws if keep_draws else {},
+    )
+
+
+def _check(samples: int, sigmas: float, quantiles: Sequence[float]) -> None:
+    if samples < 2:
+        raise UserError(f"{samples} samples are too few; expected 2 or more")
+    if not 0 < sigmas < np.inf:
+        raise UserError(f"{sigmas:g} standard deviations span nothing; expected more than 0")
+    for share in quantiles:
+        if not 0 <= share <= 1:
+            raise UserError(f"{share:g} is no quantile; expected 0 ... 1")
+
+
+@dataclass(frozen=True)
+class _Box:
+    """The problem over the box of its inputs' limits, k inputs that vary and m outputs."""
+
+    model: Model
+    known: dict[str, float]
+    inputs: dict[str, Uncertain]
+    outputs: tuple[str, ...]
+    limits: dict[str, tuple[float, float]]
+    excluded: int
+
+    @classmethod
+    def of(
+        cls,
+        values: Mapping[str, Uncertain | float],
+        outputs: Sequence[str] | None,
+        problem: str,
+        sigmas: float,
+        exclude: Sequence[str],
+    ) -> _Box:
+        if problem not in PROBLEMS:
+            raise UserError(f"{problem!r} is no problem; expected {' or '.join(PROBLEMS)}")
+        given = {
+            name: item if isinstance(item, Uncertain) else fixed(float(item))
+            for name, item in values.items()
+        }
+        given.setdefault("M", fixed(6.0))
+        _check_values(given, problem)
+        inputs = {name: item for name, item in given.items() if item.varies}
+        known = {name: item.nominal for name, item in given.items() if not item.varies}
+        usual, allowed = _outputs(problem, given["M"].nominal == 4)
+        wanted = tuple(dict.fromkeys(usual if outputs is None else outputs))
+        for name in wanted:
+            if name not in allowed:
+                raise UserError(f"{name!r} is no result; expected some of {' '.join(allowed)}")
+        if not wanted:
+            raise UserError(f"no result is asked for; expected some of {' '.join(allowed)}")
+        limits = {name: item.limits(sigmas) for name, item in inputs.items()}
+        model = forward_model if problem == "forward" else reconstruction_model
+        for name in exclude:
+            if name not in WARNINGS:
+                raise UserError(f"{name!r} is no warning; expected some of {' '.join(WARNINGS)}")
+        excluded = sum({WARNINGS[name] for name in exclude})
+        return cls(model, known, inputs, wanted, limits, excluded)
+
+    def columns(self, point: Array) -> dict[str, Array]:
+        """Points of the unit cube, n x k -> the inputs that vary, n each; exact at the limits."""
+        return {
+            name: np.where(point[:, place] < 1, low + point[:, place] * (high - low), high)
+            for place, (name, (low, high)) in enumerate(self.limits.items())
+        }
+
+    def inputs_at(self, point: Array) -> dict[str, float]:
+        """One point of the unit cube -> the inputs there."""
+        return {name: float(column[0]) for name, column in self.columns(point[None]).items()}
+
+    def solved(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
+        """The outputs at n sets of inputs, n each (a lone number where nothing varies)."""
+        with np.errstate(all="ignore"):
+            return self.model({**self.known, **columns}, outputs)
+
+    def at(self, points: Array) -> Array:
+        """Points of the unit cube, n x k -> outputs, n x m."""
+        names = (*self.outputs, "STATUS") if self.excluded else self.outputs
+        solved = self.solved(self.columns(points), names)
+        values = np.stack(
+            [np.broadcast_to(solved[name], len(points)) for name in self.outputs], axis=1
+        )
+        if self.excluded:
+            values[np.broadcast_to(self.left_out(solved), len(points))] = np.nan
+        return values
+
+    def left_out(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
+        """Which of the scenes solved carry a warning that excludes them."""
+        return (np.asarray(solved["STATUS"], np.int64) & self.excluded) != 0
+
+    def warnings_at(self, point: Array) -> tuple[str, ...]:
+        """Names of the warnings at one point of the unit cube."""
+        bits = int(np.ravel(self.solved(self.columns(point[None]), ["STATUS"])["STATUS"])[0])
+        return tuple(name for name, bit in WARNINGS.items() if bits & bit)
+
+    def nominal(self) -> dict[str, float]:
+        """The outputs with every input at its nominal value."""
+        columns = {name: np.array([item.nominal]) for name, item in self.inputs.items()}
+        solved = self.solved(columns, self.outputs)
+        result = {name: float(np.ravel(solved[name])[0]) for name in self.outputs}
+        for name, value in result.items():
+            if not np.isfinite(value):
+                raise UserError(f"{name} has no finite value at the nominal inputs")
+        return result
+
+    def sweeps(self) -> dict[str, dict[str, Array]]:
+        """input -> output -> its values as that input alone runs from its lower limit to its
+        upper, `SWEEP_POINTS` of them."""
+        rest = {name: np.full(SWEEP_POINTS, item.nominal) for name, item in self.inputs.items()}
+        result = {}
+        for name, (low, high) in self.limits.items():
+            solved = self.solved({**rest, name: np.linspace(low, high, SWEEP_POINTS)}, self.outputs)
+            result[name] = {
+                output: np.broadcast_to(solved[output], SWEEP_POINTS) for output in self.outputs
+            }
+        return result
+
+
+def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
+    names = input_names(problem)
+    for name in names:
+        if name not in given:
+            raise UserError(f"{name} is missing; a {problem} needs {' '.join(names)}")
+    for name in given:
+        if name not in names:
+            raise UserError(f"is no input of a {problem}; expected one of {' '.join(names)}", name)
+    if given["M"].varies or given["M"].nominal not in (4, 6):
+        raise UserError("expected 6, or 4 for point masses", "M")
+    name = "MU" if problem == "forward" else "MUP"
+    friction = given[name]
+    if friction.varies and friction.low <= -10 <= friction.high and friction.kind != "normal":
+        raise UserError("a range must keep off -10, the pivot's sign", name)
+    if problem != "forward":
+        _check_invertible(given)
+
+
+def _check_invertible(given: Mapping[str, Uncertain]) -> None:
+    """Raises UserError where no reconstruction exists: pivot, e = 0, e_m = 0."""
+    if given["MUP"].nominal == -10:
+        raise UserError(
+            "the pivot has five equations for the six initial velocities; expected the signed "
+            "P_t/P_n",
+            "MUP",
+        )
+    for name in ("E", "EM"):
+        if name == "EM" and given["M"].nominal == 4:
+            continue
+        if given[name].low <= 0 <= given[name].high and given[name].kind != "normal":
+            raise UserError(
+                f"there is no reconstruction at {name} = 0, and near it the bounds are endless; "
+                "expected a range that keeps off 0",
+                name,
+            )
+
+
+def _outputs(problem: str, point_masses: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The outputs taken where none are asked for, and those that can be."""
+    usual: tuple[str, ...] = FORWARD_OUTPUTS if problem == "forward" else RECONSTRUCTION_OUTPUTS
+    results = tuple(name for name in RESULTS if name != "STATUS")
+    if problem != "forward":
+        results = RECONSTRUCTED
+    if point_masses:
+        usual = tuple(name for name in usual if name not in ("WA", "WB", "WAF", "WBF"))
+    return usual, results
+
+
+def forward_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Array]:
+    """Equations 13-18 solved for the final velocities, by `impact88.solve`."""
+    from ..closedform.solve import solve
+
+    return dict(solve(columns, outputs))
+
+
+def reconstruction_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Array]:
+    """Equations 13-18 solved for the initial velocities, by `chapter.reconstruction`; STATUS is
+    that of the impact found, with `FRICTION_DRIVES` for one whose friction pushes the sliding on.
+    """
+    found = {
+        **{name: np.asarray(value, np.float64) for name, value in columns.items()},
+        **initial_velocities(columns),
+    }
+    before = [found[name] for name in VELOCITIES]
+    after = [found[name] for name in ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")]
+    found["SA"], found["SB"] = np.hypot(*before[:2]), np.hypot(*before[3:5])
+    change = [late - early for late, early in zip(after, before, strict=True)]
+    found["DVA"], found["DVB"] = np.hypot(*change[:2]), np.hypot(*change[3:5])
+    if {"KI", "KF", "LOSS", "STATUS"}.intersection(outputs):
+        found["KI"], found["KF"] = _energy(found, before), _energy(found, after)
+        found["LOSS"] = 100 * (found["KI"] - found["KF"]) / found["KI"]
+    if {"MUC", "STATUS"}.intersection(outputs):
+        # the critical friction depends on MU's sign as little as on MU
+        names = (*(name for name in SCENE if name in found), *VELOCITIES)
+        scene = {name: found[name] for name in names} | {"MU": 0.0}
+        found["MUC"] = forward_model(scene, ["MUC"])["MUC"]
+    if "STATUS" in outputs:
+        found["STATUS"] = _reconstruction_status(found, before)
+    return {name: found[name] for name in outputs}
+
+
+def _energy(found: Mapping[str, Array], velocities: Sequence[Array]) -> Array:
+    """Kinetic energy; a point mass has none from its spin."""
+    turning = np.where(found["M"] == 4, 0.0, 1.0)
+    vax, vay, wa, vbx, vby, wb = velocities
+    return (
+        found["MA"] * (vax**2 + vay**2)
+        + found["MB"] * (vbx**2 + vby**2)
+        + turning * (found["IA"] * wa**2 + found["IB"] * wb**2)
+    ) / 2
+
+
+def _reconstruction_status(found: Mapping[str, Array], before: Sequence[Array]) -> Array:
+    """STATUS as `impact88.status` defines it, of an impact known from both sides."""
+    normal, tangential, _ = Geometry.of(found).relative(before)
+    e, em, mu, pn = (found[name] for name in ("E", "EM", "MUP", "PN"))
+    six = found["M"] != 4
+    bits = {
+        status.Status.SEPARATING: normal >= 0,
+        status.Status.PULLING: pn < 0,
+        status.Status.SLIDING_REVERSED: np.abs(mu) > np.abs(found["MUC"]),
+        status.Status.ENERGY_GAINED: found["KF"] - found["KI"] > 1e-12 * found["KI"],
+        status.Status.COEFFICIENT_OUT_OF_RANGE: (e < 0) | (e > 1) | six & ((em < -1) | (em > 0)),
+        status.Status.NOT_FINITE: ~np.isfinite(found["KI"]),
+        FRICTION_DRIVES: mu * tangential * np.sign(pn) > 0,
+    }
+    # the parts broadcast: what does not vary is a lone number
+    flags: Any = np.int64(0)
+    for bit, holds in bits.items():
+        flags = flags + np.int64(bit) * holds
+    return np.asarray(flags)
+
+
+def _monte_carlo(
+    box: _Box,
+    rng: np.random.Generator,
+    samples: int,
+    correlated: tuple[list[str], Array],
+    progress: Callable[[int], object],
+) -> tuple[dict[str, Array], dict[str, Array], NDArray[np.int64]]:
+    """The outputs of each draw, the inputs of the first `RANKED`, and the STATUS of each draw."""
+    names, root = correlated
+    draws = {name: np.empty(samples) for name in box.outputs}
+    ranked = {name: np.empty(min(samples, RANKED)) for name in box.inputs}
+    flags = np.zeros(samples, np.int64)
+    for first in range(0, samples, CHUNK):
+        here = slice(first, min(first + CHUNK, samples))
+        count = here.stop - first
+        columns = {
+            name: item.draws(rng, count) for name, item in box.inputs.items() if name not in names
+        }
+        if names:
+            variates = rng.standard_normal((count, len(names))) @ root
+            for place, name in enumerate(names):
+                columns[name] = box.inputs[name].from_normal(variates[:, place])
+        solved = box.solved(columns, (*box.outputs, "STATUS"))
+        left_out = box.left_out(solved) if box.excluded else False
+        for name in box.outputs:
+            draws[name][here] = np.where(left_out, np.nan, solved[name])
+        flags[here] = solved["STATUS"]
+        if first < RANKED:
+            for name, column in ranked.items():
+                part = column[here]
+                part[:] = columns[name][: len(part)]
+        progress(count)
+    return draws, ranked, flags
+
+
+def _spread(values: Array, quantiles: Sequence[float]) -> Spread:
+    found = np.quantile(values, list(quantiles)) if quantiles else np.empty(0)
+    return Spread(
+        mean=float(values.mean()),
+        deviation=float(values.std(ddof=1)) if len(values) > 1 else 0.0,
+        quantiles=dict(zip(quantiles, found.tolist(), strict=True)),
+    )
+
+
+def _ranks(values: Array) -> Array:
+    """Ranks from 0, equal values sharing the mean of theirs."""
+    ordered = np.sort(values)
+    below = np.searchsorted(ordered, values, side="left")
+    return (below + np.searchsorted(ordered, values, side="right") - 1) / 2
+
+
+def _drive(sweep: Array, input_ranks: Array, output_ranks: Array) -> Drive:
+    first, second = input_ranks - input_ranks.mean(), output_ranks - output_ranks.mean()
+    size = np.sqrt((first @ first) * (second @ second))
+    finite = sweep[np.isfinite(sweep)]
+    return Drive(
+        rank_correlation=float(first @ second / size) if size > 0 else float("nan"),
+        at_low=float(sweep[0]),
+        at_high=float(sweep[-1]),
+        lowest=float(finite.min()) if len(finite) else float("nan"),
+        highest=float(finite.max()) if len(finite) else float("nan"),
+    )

@@ -1,0 +1,127 @@
+"""Scene files with ranges: the inputs of a problem whose values are known within limits.
+
+The file is a scene's (`impact88.scene`: flat TOML by the listing's names) whose values may be texts
+such as "0.7 .. 0.9" (`uncertainty.uncertain`), with up to two further entries:
+
+- ``correlations = "UX,VX 0.5; MA,IA 0.9"``, pairs of names and their correlation;
+- for a reconstruction the six final velocities VAX VAY VBX VBY WAF WBF and MUP, the signed P_t/P_n.
+
+A reconstruction whose file has none of those takes them from the forward solution of the file's
+nominal values: how well would the initial velocities have been found again? MUP is then MU with the
+sign line 400 gives it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from ..errors import UserError
+from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, VELOCITIES
+from . import uncertain
+from .uncertain import Uncertain
+
+Pair = tuple[str, str]
+BEFORE = (*VELOCITIES, "MU")
+"""What only the forward problem starts from."""
+AFTER = (*FINAL_VELOCITIES, "MUP")
+"""What only a reconstruction starts from."""
+COMMON = tuple(name for name in SCENE if name not in BEFORE)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What `impact88.bounds` takes: ``values`` by name, ``correlations`` by pair of names;
+    ``derived``: names whose values are the forward solution's."""
+
+    values: dict[str, Uncertain]
+    correlations: dict[Pair, float]
+    derived: tuple[str, ...] = ()
+
+
+def read_inputs(
+    texts: Mapping[str, str],
+    changes: Mapping[str, str],
+    problem: str = "forward",
+    source: str = "scene",
+) -> Inputs:
+    """The inputs of ``problem`` (forward or reconstruction) from a file's texts by name and the
+    ``changes`` made to them; ``+- D`` in a change is around the file's value.
+
+    Raises UserError for unknown or missing names and for texts that are no value or range, naming
+    ``source`` and the entry.
+    """
+    entries = {"M": DEFAULT_M, **texts}
+    entries.pop("title", None)
+    correlations = read_correlations(entries.pop("correlations", ""), source)
+    for name in entries:
+        if name not in (*SCENE, *AFTER):
+            expected = " ".join((*SCENE, *AFTER, "title", "correlations"))
+            raise UserError(f"{name!r} is no value here; expected {expected}", source)
+    wanted = (*COMMON, *(BEFORE if problem == "forward" else AFTER))
+    for name in changes:
+        if name not in wanted:
+            raise UserError(
+                f"{name!r} is no input of the {problem} problem; expected one of "
+                f"{' '.join(wanted)}",
+                "--range",
+            )
+    values = {
+        name: uncertain.read(text, f"{source}, {name}")
+        for name, text in entries.items()
+        if name in SCENE or problem != "forward"
+    }
+    derived: tuple[str, ...] = ()
+    if problem != "forward" and not set(AFTER) & set(values) and not set(AFTER) <= set(changes):
+        values |= _forward_solution(values, source)
+        derived = tuple(name for name in AFTER if name not in changes)
+    for name, text in changes.items():
+        center = values[name].nominal if name in values else None
+        values[name] = uncertain.read(text, f"--range {name}", center)
+    missing = [name for name in wanted if name not in values]
+    if missing:
+        hint = " (MUP: the friction coefficient as signed P_t/P_n)" if "MUP" in missing else ""
+        raise UserError(
+            f"{' '.join(missing)} missing; the {problem} problem needs it{hint}", source
+        )
+    return Inputs({name: values[name] for name in wanted}, correlations, derived)
+
+
+def _forward_solution(values: Mapping[str, Uncertain], source: str) -> dict[str, Uncertain]:
+    """The final velocities and MUP of the forward solution of the nominal values."""
+    missing = [name for name in SCENE if name not in values]
+    if missing:
+        raise UserError(
+            f"neither final velocities ({' '.join(AFTER)}) nor the whole scene to have them from "
+            f"({' '.join(missing)} missing)",
+            source,
+        )
+    from ..closedform.solve import solve
+
+    solved = solve({name: item.nominal for name, item in values.items()}, AFTER)
+    friction = values["MU"]
+    if float(solved["MUP"]) == -friction.nominal:
+        friction = replace(
+            friction, nominal=-friction.nominal, low=-friction.high, high=-friction.low
+        )
+    result = {name: uncertain.fixed(float(solved[name])) for name in FINAL_VELOCITIES}
+    return {**result, "MUP": friction}
+
+
+def read_correlations(text: str, source: str) -> dict[Pair, float]:
+    """Pairs of names and their correlation from ``NAME,NAME R; NAME,NAME R``. Raises UserError."""
+    result: dict[Pair, float] = {}
+    for part in filter(None, map(str.strip, text.split(";"))):
+        names, _, number = part.rpartition(" ")
+        first, comma, second = (piece.strip().upper() for piece in names.partition(","))
+        try:
+            value = float(number)
+        except ValueError:
+            comma = ""
+        if not comma or not first or not second:
+            raise UserError(
+                f"{part!r} is no correlation; expected NAME,NAME R such as UX,VX 0.5", source
+            )
+        if result.setdefault((first, second), value) != value:
+            raise UserError(f"the correlation of {first},{second} is given twice", source)
+    return result
