@@ -1,54 +1,15 @@
-"""Helpers for tests of the emulator: programs as the captures typed them, and lockstep."""
+"""Helpers for tests of the emulator: lockstep with the port."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from impact88 import emulated
-from impact88.applesoft.emulator import Applesoft
+from impact88.captured import left_behind, stored
 from impact88.run import run as run_port
 from impact88.scene import Scene
 
 Report = tuple[int, dict[str, str], list[str] | None]
-PLENTY = 3_000_000
-"""Statements that no test program needs."""
-
-
-def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
-    """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up.
-
-    Returns the machine and all that was displayed after the echo of RUN up to the final prompt.
-    """
-    machine = Applesoft(blanks=blanks)
-    for line in program.split("\n"):
-        if line:
-            machine.type_line(line)
-    machine.take_output()
-    machine.feed_keys(keys)
-    machine.machine.statements_left = PLENTY
-    machine.run()
-    machine.prompt()
-    displayed = machine.take_output()
-    assert displayed.endswith("\n]")
-    return machine, displayed.removesuffix("\n]")
-
-
-def displayed(program: str, keys: str = "") -> str:
-    """What `session` displays, without the NULs of the prompts."""
-    return session(program, keys)[1].replace("\0", "")
-
-
-def stored(text: str) -> str:
-    """Stored bytes; all zeros alike, because the ROM leaves odd mantissas in them."""
-    return "00" * 5 if text.startswith("00") else text
-
-
-def left_behind(reals: dict[str, str], a: dict[str, Any] | None) -> tuple[Any, Any]:
-    """Variables and array in a form that compares."""
-    return (
-        {name: stored(value) for name, value in reals.items()},
-        a and (a["dims"], [stored(value) for value in a["data"]]),
-    )
 
 
 def changes(reports: list[Report]) -> list[Report]:

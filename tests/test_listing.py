@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 import captures
 from impact88 import arithmetics, stepping
+from impact88.captured import left_behind
 from impact88.files import packaged_text
 from impact88.names import SCENE
 from impact88.run import run
@@ -15,19 +16,6 @@ from impact88.scene import Scene, sample
 
 CASES = captures.scenes()
 OVERFLOWS = {"UX": 210, "VY": 230, "EM": 280, "TB": 290, "IA": 310, "M": 350}
-
-
-def stored(text: str) -> str:
-    """Stored bytes; all zeros alike, because the ROM leaves odd mantissas in them."""
-    return "00" * 5 if text.startswith("00") else text
-
-
-def left_behind(reals: dict[str, str], a: dict | None) -> tuple:
-    """Variables and array in a form that compares."""
-    return (
-        {name: stored(value) for name, value in reals.items()},
-        a and (a["dims"], [stored(value) for value in a["data"]]),
-    )
 
 
 def test_every_basic_line_stands_there_once_in_order():

@@ -10,20 +10,17 @@ from __future__ import annotations
 import gzip
 import json
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from importlib import resources
 from typing import Any, NamedTuple, Protocol
 
-from .applesoft import decimaltext, functions, real
-from .applesoft.errors import ApplesoftError
+from . import captured
 from .casework import provenance
 from .casework.printout import FIELDS, outcome_fields
 from .names import SCENE
 from .run import run
 from .scene import sample
 
-PLENTY = 3_000_000
-"""Statements that no captured program needs."""
 GOLDEN_RUNS = {1: "run1", 2: "run2", 3: "table3"}
 
 
@@ -105,90 +102,22 @@ def _lines(golden: Any, name: str) -> Iterator[dict[str, Any]]:
         yield json.loads(line)
 
 
-_BINARY: Mapping[str, Callable[[real.Number, real.Number], real.Number]] = {
-    "add": real.add,
-    "sub": real.subtract,
-    "mul": real.multiply,
-    "div": real.divide,
-    "pow": functions.power,
-}
-_UNARY: Mapping[str, Callable[[real.Number], real.Number]] = {
-    "neg": real.negate,
-    "abs": real.absolute,
-    "sgn": functions.sign,
-    "int": real.floor,
-    "sqr": functions.square_root,
-    "exp": functions.exponential,
-    "log": functions.logarithm,
-    "sin": functions.sine,
-    "cos": functions.cosine,
-    "tan": functions.tangent,
-    "atn": functions.arc_tangent,
-}
-
-
 def _arithmetic(golden: Any) -> Counted:
     for file in sorted(golden.joinpath("arithmetic").iterdir(), key=lambda one: one.name):
         if not file.name.endswith(".tsv.gz"):
             continue
         for row in gzip.decompress(file.read_bytes()).decode().splitlines():
             operation, first, second, extension, result = row.split("\t")
-            got = _computed(operation, first, second, int(extension or "0", 16))
-            yield row, got == _captured(result)
-
-
-def _computed(operation: str, first: str, second: str, extension: int) -> str:
-    """A captured call made again, its result as `_captured` puts it."""
-    try:
-        if operation == "fin":
-            return _shown(decimaltext.read(first)[0])
-        x = real.from_stored(first, 0 if second else extension)
-        if operation == "fout":
-            return decimaltext.write(x)
-        if operation == "cmp":
-            order = real.compare(x, real.from_stored(second, extension))
-            return {1: "01", 0: "00", -1: "ff"}[order]
-        if operation in _BINARY:
-            return _shown(_BINARY[operation](x, real.from_stored(second, extension)))
-        return _shown(_UNARY[operation](x))
-    except ApplesoftError as error:
-        return f"E{error.code}"
-
-
-def _shown(x: real.Number) -> str:
-    e, m, s = x
-    if not e:
-        return "zero"
-    return f"{real.to_stored(x).hex()}:{e:02x}{m >> 8:08x}{s}:{m & 0xFF:02x}"
-
-
-def _captured(result: str) -> str:
-    """A captured result: zeros are one, and of the sign byte only its top bit counts."""
-    if result.count(":") != 2:
-        return result
-    stored, raw, extension = result.split(":")
-    if raw.startswith("00"):
-        return "zero"
-    return f"{stored}:{raw[:10]}{int(raw[10:], 16) >> 7}:{extension}"
-
-
-def _values(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[Any, Any]:
-    """Variables and array, all zeros alike."""
-
-    def stored(text: str) -> str:
-        return "00" * 5 if text.startswith("00") else text
-
-    return (
-        {name: stored(text) for name, text in reals.items()},
-        a and (a["dims"], [stored(text) for text in a["data"]]),
-    )
+            got = captured.call(operation, first, second, extension)
+            yield row, got == captured.result(result)
 
 
 def _port(golden: Any) -> Counted:
     for row in _lines(golden, "scenes"):
         done = run(row["scene"], dos=False)
         same = done.printout == row["printout"]
-        yield row["id"], same and _values(done.reals, done.A) == _values(row["reals"], row["A"])
+        left = captured.left_behind(done.reals, done.A)
+        yield row["id"], same and left == captured.left_behind(row["reals"], row["A"])
 
 
 def _replay(golden: Any) -> Counted:
@@ -203,20 +132,6 @@ def _replay(golden: Any) -> Counted:
 
 
 def _programs(golden: Any) -> Counted:
-    from .applesoft.emulator import Applesoft
-
-    def displayed(program: str, keys: str, blanks: bool) -> str:
-        machine = Applesoft(blanks=blanks)
-        for line in program.split("\n"):
-            if line:
-                machine.type_line(line)
-        machine.take_output()
-        machine.feed_keys(keys)
-        machine.machine.statements_left = PLENTY
-        machine.run()
-        machine.prompt()
-        return machine.take_output().removesuffix("\n]").replace("\0", "")
-
     files = {file.name: file for file in golden.joinpath("programs").iterdir()}
     for name in sorted(files):
         if name.endswith(".bas"):
@@ -225,9 +140,12 @@ def _programs(golden: Any) -> Counted:
                 files[one].read_bytes().decode("latin-1") if one in files else ""
                 for one in (name, f"{stem}.in", f"{stem}.out")
             ]
-            yield stem, displayed(texts[0], texts[1], True) == texts[2]
+            yield stem, captured.displayed(texts[0], texts[1]) == texts[2]
     for row in _lines(golden, "fuzz"):
-        yield row["name"], displayed(row["program"], row["keyboard"], False) == row["output"]
+        yield (
+            row["name"],
+            captured.displayed(row["program"], row["keyboard"], blanks=False) == row["output"],
+        )
 
 
 def _published(golden: Any) -> Counted:
