@@ -33,6 +33,9 @@ _LAZY = {
 }
 """Public name -> the module that holds it."""
 
+_ROOMS = ("names", "status", "unknowns")
+"""Public modules, imported on first use too: ``impact88.unknowns.solve_for``."""
+
 
 class _Package(ModuleType):
     """This package: a public name stays the function when the module of that name is imported.
@@ -51,8 +54,10 @@ sys.modules[__name__].__class__ = _Package
 def __getattr__(name: str) -> Any:
     if name in _LAZY:
         return getattr(import_module(f".{_LAZY[name]}", __name__), name)
+    if name in _ROOMS:
+        return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_LAZY])
+    return sorted([*globals(), *_LAZY, *_ROOMS])
