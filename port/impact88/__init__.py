@@ -1,7 +1,7 @@
 """impact88: Brach's 1988 planar impact program, digit for digit, and the same mechanics made fast.
 
 The public functions are imported on first use, so that running the 1988 program does not pay for
-numpy.
+numpy. Nor does it for ``typing``: the modules it needs import that for the type checker alone.
 """
 
 from __future__ import annotations
@@ -9,7 +9,10 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 from types import ModuleType
-from typing import Any
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 __version__ = "0.1.0"
 

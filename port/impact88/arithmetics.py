@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 from .applesoft import decimaltext, functions
 from .applesoft.errors import ApplesoftError, division_by_zero, illegal_quantity, overflow
 from .applesoft.operators import Real
 from .applesoft.real import ZERO, Number, absolute, floor, integer
 from .errors import UserError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
 class Arithmetic:
@@ -109,12 +112,12 @@ def _float_error(error: Exception) -> ApplesoftError | None:
 
 def _read_float(text: str, start: int) -> tuple[float, int]:
     """The double nearest to the decimal text; the same texts are numbers as in Applesoft."""
-    numeral = decimaltext.scan(text, start)
-    exponent = numeral.exponent_sign + (numeral.exponent_digits or "0")
-    value = float(f"{numeral.whole or '0'}.{numeral.decimals or '0'}E{exponent}")
+    sign, whole, decimals, exponent_sign, exponent_digits, end = decimaltext.scan(text, start)
+    exponent = exponent_sign + (exponent_digits or "0")
+    value = float(f"{whole or '0'}.{decimals or '0'}E{exponent}")
     if math.isinf(value):
         raise overflow()
-    return (-value if numeral.sign == "-" else value), numeral.end
+    return (-value if sign == "-" else value), end
 
 
 def _write_float(x: float) -> str:

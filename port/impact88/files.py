@@ -6,9 +6,12 @@ import codecs
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import IO, Any
 
 from .errors import UserError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import IO, Any
 
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),

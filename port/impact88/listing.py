@@ -17,11 +17,14 @@ line being executed (`stepping.basic_line`), for the line of an error and for st
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from .applesoft.arrays import Array
 from .applesoft.console import Console
 from .arithmetics import Arithmetic
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 # A line of BASIC is a line of Python here, as long as it takes, and keeps BASIC's comparisons.
 # ruff: noqa: E501, E702, E741, F841, SIM201, SIM202, SIM300

@@ -10,10 +10,10 @@ So a unit here is a rule ("mass·length²"), not a unit.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections import namedtuple
 
 
-class Quantity(NamedTuple):
+class Quantity(namedtuple("Quantity", ("name", "symbol", "meaning", "unit", "line"))):
     """One row of the table.
 
     ``name``: the listing's variable, or this project's name for what the listing leaves unnamed;
@@ -22,11 +22,7 @@ class Quantity(NamedTuple):
     the listing has no such value).
     """
 
-    name: str
-    symbol: str
-    meaning: str
-    unit: str
-    line: int
+    __slots__ = ()
 
 
 _VELOCITY = "length/time"

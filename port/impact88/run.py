@@ -7,9 +7,9 @@ over the keyboard.
 from __future__ import annotations
 
 import math
+from collections import namedtuple
 from collections.abc import Mapping
 from contextlib import nullcontext
-from typing import Any, NamedTuple
 
 from . import arithmetics, listing, stepping
 from .applesoft.console import Console
@@ -17,10 +17,14 @@ from .applesoft.errors import ApplesoftError
 from .applesoft.operators import Real
 from .scene import Scene
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 BELL = "\a"
 
 
-class Run(NamedTuple):
+class Run(namedtuple("Run", ("printout", "error", "line", "reals", "A", "zero_determinant"))):
     """What a run left behind.
 
     ``printout``: every character sent, RETURN as newline, control characters kept. ``error``: the
@@ -30,12 +34,7 @@ class Run(NamedTuple):
     floats. ``zero_determinant``: whether the program ended at line 1160.
     """
 
-    printout: str
-    error: str | None
-    line: int | None
-    reals: dict[str, Any]
-    A: dict[str, Any] | None
-    zero_determinant: bool
+    __slots__ = ()
 
 
 def start(
@@ -72,7 +71,7 @@ def start(
     if error is not None and error.line is not None:
         begun = stepping.begun_assignment(error.line, left.reals)
         if begun:
-            left = left._replace(reals={**left.reals, begun: chosen.zero})
+            left = stepping.Variables({**left.reals, begun: chosen.zero}, left.A)
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
     return error, zero_determinant, left
 

@@ -13,10 +13,13 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
 from types import FrameType, TracebackType
-from typing import Any, NamedTuple
 
 from . import listing
 from .applesoft.arrays import Array
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _COMMENT = r" *# (\d+) (.*)"
 _FILE = listing.impact.__code__.co_filename
@@ -26,11 +29,14 @@ _NO_REALS = ("A", "NL")
 AfterLine = Callable[[int, "Variables"], object]
 
 
-class Variables(NamedTuple):
+class Variables:
     """The listing's variables at a moment: reals by name, if assigned so far, and the array A."""
 
-    reals: Mapping[str, Any]
-    A: Array | None
+    __slots__ = ("A", "reals")
+
+    def __init__(self, reals: Mapping[str, Any], A: Array | None) -> None:
+        self.reals = reals
+        self.A = A
 
 
 @cache

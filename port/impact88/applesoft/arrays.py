@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from .errors import ApplesoftError, illegal_quantity
 from .operators import Real
 from .real import integer
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 SUBSCRIPT_LIMIT = 32768
 _PLACES = {integer(n): n for n in range(16)}

@@ -13,7 +13,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from typing import Generic, TypeVar
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 CONTROL_C = "\x03"
 CONTROL_D = "\x04"
@@ -31,8 +34,7 @@ PRINTER_SLOT = 1
 
 Keyboard = Callable[[], "str | None"]
 Device = Callable[[str], object]
-Number = TypeVar("Number")
-Read = Callable[[str, int], "tuple[Number, int]"]
+Read = Callable[[str, int], "tuple[Any, int]"]
 
 _SLOT_COMMAND = r" *[Pp][Rr] *# *([0-7])"
 
@@ -176,7 +178,7 @@ class Console:
             self._line_begins = True
             self.typed()
 
-    def input(self, read: Read[Number], zero: Number) -> Iterator[Reply[Number]]:
+    def input(self, read: Read, zero: Any) -> Iterator[Reply]:
         """INPUT of numbers: one Reply per attempt, to be called once for each variable.
 
         Too few values are asked for with ``??``; a value that is no number gets ``?REENTER`` and a
@@ -194,10 +196,10 @@ class Console:
             self.put("?EXTRA IGNORED\n")
 
 
-class Reply(Generic[Number]):
+class Reply:
     """The values of one reply to INPUT; calling it yields the next one."""
 
-    def __init__(self, console: Console, read: Read[Number], zero: Number, line: str) -> None:
+    def __init__(self, console: Console, read: Read, zero: Any, line: str) -> None:
         self._console = console
         self._read = read
         self._zero = zero
@@ -206,7 +208,7 @@ class Reply(Generic[Number]):
         self._started = False
         self.refused = False
 
-    def __call__(self, old: Number | None) -> Number:
+    def __call__(self, old: Any) -> Any:
         """The next value; ``old``, the variable's value so far, once this reply has been refused.
 
         A text that only begins as a number is refused after its beginning has been stored, as in

@@ -8,7 +8,6 @@ a value in flight, so PRINT can show more than the variable would hold.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 from .errors import overflow
 from .real import (
@@ -54,15 +53,9 @@ def over_ten(x: Number) -> Number:
     return divide(absolute(x), TEN)
 
 
-class Numeral(NamedTuple):
-    """The parts of a number's text, blanks taken out, and where it ends."""
-
-    sign: str
-    whole: str
-    decimals: str
-    exponent_sign: str
-    exponent_digits: str
-    end: int
+Numeral = tuple[str, str, str, str, str, int]
+"""The parts of a number's text, blanks taken out: sign, digits before and after the point, sign and
+digits of the exponent; and where it ends."""
 
 
 def scan(text: str, start: int = 0) -> Numeral:
@@ -82,7 +75,7 @@ def scan(text: str, start: int = 0) -> Numeral:
         while text[end] == " ":
             end += 1
         end += 1
-    return Numeral(sign, whole, decimals, exponent_sign, exponent_digits, end)
+    return sign, whole, decimals, exponent_sign, exponent_digits, end
 
 
 def _sign(text: str) -> tuple[str, str]:
@@ -102,16 +95,16 @@ def read(text: str, start: int = 0) -> tuple[Number, int]:
 
     Blanks are passed over. Raises OVERFLOW.
     """
-    numeral = scan(text, start)
+    sign, whole, decimals, exponent_sign, exponent_digits, end = scan(text, start)
     value = ZERO
-    for digit in numeral.whole + numeral.decimals:
+    for digit in whole + decimals:
         value = add(times_ten(value), integer(int(digit)))
-    steps = _exponent(numeral.exponent_sign, numeral.exponent_digits) - len(numeral.decimals)
+    steps = _exponent(exponent_sign, exponent_digits) - len(decimals)
     for _ in range(steps):
         value = times_ten(value)
     for _ in range(-steps):
         value = over_ten(value)
-    return (negate(value) if numeral.sign == "-" else value), numeral.end
+    return (negate(value) if sign == "-" else value), end
 
 
 def _exponent(sign: str, digits: str) -> int:
@@ -130,7 +123,7 @@ def _exponent(sign: str, digits: str) -> int:
 def is_number(text: str) -> bool:
     """Whether INPUT takes the whole of ``text`` for one number."""
     text = text.rstrip(" ")
-    return bool(text) and scan(text).end == len(text)
+    return bool(text) and scan(text)[-1] == len(text)
 
 
 def number(text: str) -> Number:

@@ -7,8 +7,6 @@ explicit: `Real.rounded`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from .functions import power
 from .real import (
     BIAS,
@@ -26,6 +24,7 @@ from .real import (
     to_stored,
 )
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from fractions import Fraction
 
