@@ -46,6 +46,8 @@ class Array:
         self._rows, self._columns = (*self.sizes, 1)[:2]
         self.data = [zero] * (self._rows * self._columns)
 
+    # The place is worked out twice below: a call for it would cost the elimination a tenth.
+
     def __getitem__(self, place: tuple[Any, Any]) -> Any:
         i, j = place
         if i.__class__ is Real:
