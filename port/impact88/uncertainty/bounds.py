@@ -29,7 +29,7 @@ from .. import status
 from ..chapter.geometry import Geometry
 from ..chapter.reconstruction import initial_velocities
 from ..errors import UserError
-from ..names import FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES, Quantity
+from ..names import CHAPTER, FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES, Quantity
 from .extremes import CORNERS_IN_FULL, extremes
 from .uncertain import Uncertain, correlation_root, fixed
 
@@ -37,10 +37,7 @@ Array = NDArray[np.float64]
 Model = Callable[[Mapping[str, Any], Sequence[str]], dict[str, Array]]
 """Columns (arrays or numbers by name) and the outputs wanted -> arrays by name."""
 
-SPEEDS = {
-    "SA": Quantity("SA", "|v_a|", "speed of A before impact", "length/time", 0),
-    "SB": Quantity("SB", "|v_b|", "speed of B before impact", "length/time", 0),
-}
+SPEEDS = {name: CHAPTER[name] for name in ("SA", "SB")}
 """What a reconstruction is asked for, beside the six initial velocities."""
 
 PROBLEMS = ("forward", "reconstruction")
