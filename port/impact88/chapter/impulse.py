@@ -22,8 +22,6 @@ from ..errors import UserError
 
 Array = NDArray[np.float64]
 
-CONTACT_TIMES = (0.1, 0.2)
-"""The contact times (seconds) Section III calls usual."""
 PEAK_FACTORS = (2.0, 3.0)
 """Peak over average force, lower and upper, of Section III."""
 

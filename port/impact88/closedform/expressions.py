@@ -176,9 +176,6 @@ class Book:
     def absolute(self, a: Expression) -> Expression:
         return a if a.is_zero else self._keep("absolute", a)
 
-    def greatest(self, a: Expression, b: Expression) -> Expression:
-        return a if a is b else self._keep("maximum", a, b)
-
     def hypotenuse(self, a: Expression, b: Expression) -> Expression:
         if a.is_zero or b.is_zero:
             return self.absolute(a if b.is_zero else b)

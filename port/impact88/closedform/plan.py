@@ -43,7 +43,6 @@ OPERATIONS: dict[str, Callable[..., object]] = {
     "divide": np.divide,
     "negative": np.negative,
     "absolute": np.absolute,
-    "maximum": np.maximum,
     "hypot": np.hypot,
     "equal": np.equal,
     "isinf": np.isinf,

@@ -23,6 +23,7 @@ from ..compare import Comparison, compare_file
 from ..errors import UserError
 from ..scene import check_names, check_value
 from ..tables.table import format_of
+from .options import add_set_argument
 
 SHOWN = 20
 """Unreadable rows told on stderr."""
@@ -34,12 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--format", choices=("csv", "jsonl", "npz"), help="if its name does not tell"
     )
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="a value of the scene for all rows, where the table has no such column; repeatable",
+    add_set_argument(
+        parser, "a value of the scene for all rows, where the table has no such column"
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 

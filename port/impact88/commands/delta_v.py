@@ -24,6 +24,7 @@ from typing import Any
 from ..chapter.givens import givens
 from ..errors import UserError
 from ..names import SCENE
+from .options import add_set_argument
 
 CATEGORIES = {
     "60-side": "60° FRONT TO SIDE",
@@ -36,13 +37,7 @@ CATEGORIES = {
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 delta-v`."""
     parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="give or change a value; repeatable",
-    )
+    add_set_argument(parser, "give or change a value")
     parser.add_argument(
         "--like",
         choices=tuple(CATEGORIES),

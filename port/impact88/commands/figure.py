@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UserError
 from ..scene import Scene, sample
 from .bounds import add_scene_arguments, explored
+from .options import add_set_argument
 from .run import settings
 
 if TYPE_CHECKING:
@@ -49,13 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", required=True, metavar="FILE", help="where to write: .svg, .png or .pdf"
     )
     add_scene_arguments(parser)
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="change a value of the scene; repeatable",
-    )
+    add_set_argument(parser, "change a value of the scene")
     parser.add_argument("--outputs", nargs="+", metavar="NAME", help="the results wanted")
 
 

@@ -36,6 +36,7 @@ from collections.abc import Mapping
 from ..chapter.givens import givens, template
 from ..errors import UserError
 from ..names import SCENE
+from .options import add_set_argument
 
 KNOWABLE = (*SCENE, "MUP", "VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 
@@ -54,13 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the commands that print a solution."""
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="give or change a value; an empty one makes it unknown; repeatable",
-    )
+    add_set_argument(parser, "give or change a value; an empty one makes it unknown")
     parser.add_argument(
         "--contact-time",
         type=float,

@@ -25,19 +25,14 @@ from ..files import replacing
 from ..names import VELOCITIES
 from ..run import finished, start
 from ..scene import SAMPLES, Scene, check_names, check_value, published_data, sample
+from .options import add_set_argument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 run`."""
     parser.add_argument("scene", nargs="?", metavar="FILE.toml", help="a scene file (- is stdin)")
     parser.add_argument("--sample", type=int, choices=SAMPLES, help="a published run's scene")
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="change a value of the scene; repeatable",
-    )
+    add_set_argument(parser, "change a value of the scene")
     parser.add_argument(
         "--arithmetic",
         choices=tuple(ARITHMETICS),
@@ -83,11 +78,10 @@ def settings(pairs: list[str]) -> dict[str, str]:
     return changes
 
 
-def chosen_scene(args: argparse.Namespace) -> Scene | None:
-    """The scene the options name; None for the listing's own data with prompts."""
+def chosen_scene(args: argparse.Namespace, changes: dict[str, str]) -> Scene | None:
+    """The scene the options name, changed; None for the listing's own data with prompts."""
     if args.scene and args.sample:
         raise UserError(f"a scene file and --sample {args.sample} are both given; expected one")
-    changes = settings(args.set)
     if args.scene or args.sample:
         scene = Scene.from_toml(args.scene) if args.scene else sample(args.sample)
         return scene.replaced(changes) if changes else scene
@@ -110,8 +104,9 @@ def main(args: argparse.Namespace) -> int:
             f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
             "or --no-dos"
         )
-    scene = chosen_scene(args)
-    data = scene if scene is not None else published_data() | settings(args.set)
+    changes = settings(args.set)
+    scene = chosen_scene(args, changes)
+    data = scene if scene is not None else published_data() | changes
     shown: list[str] = []
     show = shown.append if args.json else sys.stdout.write
     if args.json and scene is None and sys.stdin.isatty():

@@ -46,6 +46,7 @@ from ..scene import VALUE_LIMIT
 from ..status import Status
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import format_of, open_reader, open_writer
+from .options import add_set_argument
 
 Results = dict[str, NDArray[Any]]
 
@@ -81,13 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="float64",
         help="the numbers to compute with (default: %(default)s)",
     )
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="a value for all rows, in place of a column; repeatable",
-    )
+    add_set_argument(parser, "a value for all rows, in place of a column")
     parser.add_argument(
         "--results-only",
         action="store_true",
