@@ -1,7 +1,7 @@
 """Where the captures of the real ROM are, and how to read them.
 
-IMPACT88_CAPTURES names a folder laid out as golden/ is (arithmetic/, programs/, scenes.jsonl.gz,
-fuzz.jsonl.gz); without it golden/ itself is read.
+IMPACT88_CAPTURES names a folder laid out as golden/ is (arithmetic/, programs/, corners/,
+scenes.jsonl.gz, fuzz.jsonl.gz); without it golden/ itself is read.
 """
 
 from __future__ import annotations
@@ -41,8 +41,17 @@ def vectors(path: Path) -> Iterator[list[str]]:
 
 
 def arithmetic_files() -> list[Path]:
-    """The arithmetic vector files, by name."""
-    return sorted((folder() / "arithmetic").glob("*.tsv.gz"))
+    """The arithmetic vector files, by name: random calls, then the corners found since."""
+    return [
+        path
+        for part in ("arithmetic", "corners")
+        for path in sorted((folder() / part).glob("*.tsv.gz"))
+    ]
+
+
+def vector_file_id(path: Path) -> str:
+    """What a test calls such a file."""
+    return f"{path.parent.name}-{path.name.split('.')[0]}"
 
 
 def printed(data: bytes) -> str:

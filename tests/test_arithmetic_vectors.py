@@ -9,7 +9,7 @@ from impact88 import captured
 
 
 @pytest.mark.captures
-@pytest.mark.parametrize("path", captures.arithmetic_files(), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", captures.arithmetic_files(), ids=captures.vector_file_id)
 def test_every_vector(path):
     checked = 0
     wrong = []

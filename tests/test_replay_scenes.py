@@ -252,6 +252,12 @@ def all_zero(choose: random.Random) -> dict[str, str]:
     return scene
 
 
+def run_by_the_port(scene: dict[str, str]) -> dict[str, Any]:
+    """A run of the port in the captures' form."""
+    run = impact88.run(scene, dos=False)
+    return {"scene": scene, "printout": run.printout, "reals": run.reals, "A": run.A}
+
+
 STALE_RX = dict(
     zip(
         "MA IA DA PA MB IB DB PB GA TA TB E MU EM UX UY WA VX VY WB M".split(),
@@ -270,11 +276,7 @@ def awkward() -> list[dict[str, Any]]:
     scenes = [
         choose.choice((casework, odd, tiny, all_zero))(choose) for _ in range(AGAINST_THE_PORT)
     ]
-    runs = []
-    for scene in [STALE_RX, LAST_PIVOT_ZERO, *scenes]:
-        run = impact88.run(scene, dos=False)
-        runs.append({"scene": scene, "printout": run.printout, "reals": run.reals, "A": run.A})
-    return runs
+    return [run_by_the_port(scene) for scene in [STALE_RX, LAST_PIVOT_ZERO, *scenes]]
 
 
 @pytest.mark.parametrize("check", CHECKS)
@@ -291,6 +293,71 @@ def test_as_the_port_one_at_a_time(awkward: list[dict[str, Any]]) -> None:
         for check in CHECKS:
             check([run], replayed)
     check_matrix(some)
+
+
+# --- what scenes share ----------------------------------------------------------------------------
+
+ZEROS = ("0", "-0", "0.0")
+
+
+def shared_columns(choose: random.Random, length: int) -> dict[str, Any]:
+    """Columns of which some are one value for all scenes, some zero throughout, some zero here and
+    there: what the engine knows of a block is other each time."""
+    make = choose.choice((casework, odd, all_zero))
+    scenes = [make(choose) for _ in range(length)]
+    some_zero = choose.random()
+    columns: dict[str, Any] = {}
+    together = choose.choice(
+        ((), ("GA", "PA", "PB", "TA", "TB"), ("UX", "UY", "WA", "VX", "VY", "WB"), ("DA", "DB"))
+    )
+    for name in SCENE:
+        column = [scene[name] for scene in scenes]
+        kind = choose.random()
+        if name in together or (name != "M" and kind < some_zero / 2):
+            zeros = [choose.choice(ZEROS) for _ in column]
+            columns[name] = choose.choice((zeros, zeros[0]))
+        elif name != "M" and kind < some_zero:
+            columns[name] = [choose.choice(("0", text)) for text in column]
+        else:
+            columns[name] = choose.choice((column, column[0]))
+    return columns
+
+
+def rows_of(columns: dict[str, Any], length: int) -> list[dict[str, str]]:
+    return [
+        {name: v if isinstance(v, str) else v[i] for name, v in columns.items()}
+        for i in range(length)
+    ]
+
+
+def test_shared_zero_and_mixed_columns_as_the_port() -> None:
+    choose = random.Random(2024)
+    for _ in range(AGAINST_THE_PORT // 4):
+        length = choose.choice((1, 2, 3))
+        columns = shared_columns(choose, length)
+        replayed = impact88.replay(columns)
+        runs = [run_by_the_port(scene) for scene in rows_of(columns, replayed.count)]
+        for check in CHECKS:
+            check(runs, replayed)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        dict.fromkeys(("PA", "PB", "TA", "TB", "GA"), "0"),
+        {"PB": ["-40", "-30"]},
+        dict.fromkeys(("UX", "UY", "WA", "VX", "VY", "WB"), "0"),
+        {**dict.fromkeys(("UX", "UY", "WA", "VX", "VY", "WB"), "0"), "MU": [".5", "-10"]},
+    ],
+    ids=["head-on", "one angle varies", "at rest", "at rest, pivot or not"],
+)
+def test_known_zeros_as_the_port(changes: dict[str, Any]) -> None:
+    """A plain head-on collision crashed here once, and a division by zero in 690 was missed."""
+    columns = {**impact88.sample(3), "M": "6", **changes}
+    replayed = impact88.replay(columns)
+    runs = [run_by_the_port(scene) for scene in rows_of(columns, replayed.count)]
+    for check in CHECKS:
+        check(runs, replayed)
 
 
 # --- the interface --------------------------------------------------------------------------------

@@ -93,18 +93,24 @@ def _digits(text: str) -> tuple[str, str]:
 def read(text: str, start: int = 0) -> tuple[Number, int]:
     """The number that begins at ``start``, and where it ends; no number at all reads as zero.
 
-    Blanks are passed over. Raises OVERFLOW.
+    Blanks are passed over. The power of ten that is left, exponent less decimals, is kept in one
+    byte, and wraps. Raises OVERFLOW.
     """
     sign, whole, decimals, exponent_sign, exponent_digits, end = scan(text, start)
     value = ZERO
     for digit in whole + decimals:
         value = add(times_ten(value), integer(int(digit)))
-    steps = _exponent(exponent_sign, exponent_digits) - len(decimals)
+    steps = signed_byte(_exponent(exponent_sign, exponent_digits) - len(decimals))
     for _ in range(steps):
         value = times_ten(value)
     for _ in range(-steps):
         value = over_ten(value)
     return (negate(value) if sign == "-" else value), end
+
+
+def signed_byte(n: int) -> int:
+    """What one byte keeps of a number, its top bit as the sign: -129 becomes 127."""
+    return (n + 128 & 0xFF) - 128
 
 
 def _exponent(sign: str, digits: str) -> int:

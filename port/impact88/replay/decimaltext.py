@@ -76,7 +76,7 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
         rows = np.flatnonzero(more)
         _treat(x, rows, partial(_next_digit, digit=digit[rows]))
     exponent = np.where(numerals.exponent_negative, -numerals.exponent, numerals.exponent)
-    steps = exponent - numerals.decimals
+    steps = _signed_bytes(exponent - numerals.decimals)
     for step, count in ((times_ten, steps), (over_ten, -steps)):
         rows = np.flatnonzero(count > 0)
         done = 0
@@ -86,6 +86,11 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
             rows = rows[count[rows] > done]
     np.negative(x.v, out=x.v, where=numerals.negative)
     return x
+
+
+def _signed_bytes(n: Ints) -> Ints:
+    """`scalar.signed_byte` of each."""
+    return (n + 128 & 0xFF) - 128
 
 
 def _no_number(texts: Sequence[str], row: int, where: Callable[[int], str]) -> UserError:
@@ -124,8 +129,8 @@ class _Numerals:
 
     def __init__(self, length: int) -> None:
         self.value = np.zeros(length, np.int64)
-        self.digits = np.zeros(length, np.int16)
-        self.decimals = np.zeros(length, np.int16)
+        self.digits = np.zeros(length, np.int64)
+        self.decimals = np.zeros(length, np.int64)
         self.further: list[tuple[Bools, Characters]] = []
         self.exponent = np.zeros(length, np.int16)
         self.started = np.zeros(length, bool)
@@ -216,18 +221,30 @@ def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
 
 
 def write(x: Reals) -> Strings:
-    """The characters PRINT makes of each: at most nine digits, the extension counted."""
-    number, d = _nine_digits(x)
-    return _lay_out(number, d, x.v < 0)
+    """The characters PRINT makes of each: at most nine digits, the extension counted.
+
+    Records OVERFLOW, and writes nothing: where rounding the very largest numbers fails.
+    """
+    number, d, failed = _nine_digits(x)
+    texts = _lay_out(number, d, x.v < 0)
+    if failed.any():
+        x._unit().record(failed, OVERFLOW)
+        texts[failed] = ""
+    return texts
 
 
+_ROUNDS_TO_OVERFLOW = 2.0**127 - 2.0**94
+"""From exponent byte 255, mantissa FFFFFFFF and extension 80 on."""
 _SURELY_BELOW = 9e7
 """Below this the comparison with 99,999,999.9 needs not be made."""
 
 
-def _nine_digits(x: Reals) -> tuple[Ints, Ints]:
-    """The nine digits N written for |x|, and d with |x| = N * 10^d; N = 0 for zero."""
+def _nine_digits(x: Reals) -> tuple[Ints, Ints, Bools]:
+    """The nine digits N written for |x|, and d with |x| = N * 10^d; N = 0 for zero. And where |x|
+    overflows when DIV10 rounds it, which it does first of all."""
     v = np.abs(x.v)
+    failed = v >= _ROUNDS_TO_OVERFLOW
+    v[failed] = 0.0
     d = np.zeros(v.shape, np.int64)
     nonzero = v != 0
 
@@ -258,7 +275,7 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints]:
             d[rows] -= 1
     if done.size:
         v[done] = (_HALF + part(done).within(2e9)).v
-    return floor(Reals(v, None, 1.0, 2e9)).v.astype(np.int64), d
+    return floor(Reals(v, None, 1.0, 2e9)).v.astype(np.int64), d, failed
 
 
 _WIDTH = 15

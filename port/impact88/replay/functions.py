@@ -115,9 +115,11 @@ def power(left: Reals, right: Reals) -> Reals:
     Records ILLEGAL QUANTITY for a negative left with a right that is not whole, OVERFLOW.
     """
     left = left.rounded()
-    p = right.rounded()
     one = right.v == 0
     nothing = (left.v == 0) & ~one
+    if nothing.any():  # the power is not looked at
+        right = select(nothing, ONE, right)
+    p = right.rounded()
     negative = (left.v < 0) & ~one
     base = abs(left)
     whole = floor(p)

@@ -23,7 +23,7 @@ import numpy as np
 from ..applesoft import decimaltext as scalar
 from . import elimination, functions
 from .columns import PLACES
-from .reals import LARGEST, ZERO, Reals, constant, floor, from_number, select, stack
+from .reals import LARGEST, ZERO, Reals, constant, floor, from_number, select, stack, zero
 from .unit import Unit, stamp
 
 C_1E3 = from_number(scalar.read("1E3")[0])
@@ -104,7 +104,8 @@ def each(
             unit.at_each([places[i] for i in rows])
             done = operation(*(stack([column[i] for i in rows], unit) for column in operands))
             for row, i in enumerate(rows):
-                results[i] = done[row]
+                # a lone number, where a known zero decides: every row's
+                results[i] = done[row] if done.v.ndim > 1 else done
     return results
 
 
@@ -121,32 +122,45 @@ def times(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Products, leaving out the rows in which a factor is known to be zero."""
     rows = [i for i in range(len(left)) if left[i].high and right[i].high]
     done = _some(unit, where, Reals.__mul__, rows, left, right)
-    return [done.get(i, ZERO) for i in range(len(left))]
+    return [done.get(i) or zero(unit) for i in range(len(left))]
 
 
 def plus(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Sums, leaving out the rows in which a term is known to be zero."""
     rows = [i for i in range(len(left)) if left[i].high and right[i].high]
     done = _some(unit, where, Reals.__add__, rows, left, right)
-    return [done[i] if i in done else left[i] + right[i] for i in range(len(left))]
+    return _rest_one_by_one(unit, where, Reals.__add__, done, left, right)
 
 
 def over(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Quotients. Known zeros are divided one by one, to find the divisors that are zero."""
     rows = [i for i in range(len(left)) if left[i].high]
     done = _some(unit, where, Reals.__truediv__, rows, left, right)
+    return _rest_one_by_one(unit, where, Reals.__truediv__, done, left, right)
+
+
+def _rest_one_by_one(
+    unit: Unit,
+    where: Places,
+    operation: Callable[..., Reals],
+    done: Mapping[int, Reals],
+    left: Rows,
+    right: Rows,
+) -> list[Reals]:
+    """What has been done, in order, with the rows that have not, which may fail all the same."""
+    results = []
     for i in range(len(left)):
         if i not in done:
             unit.at(*((where, 0) if isinstance(where, int) else where[i]))
-            done[i] = left[i] / right[i]
-    return [done[i] for i in range(len(left))]
+        results.append(done[i] if i in done else operation(left[i], right[i]))
+    return results
 
 
 def squares(unit: Unit, where: Places, values: Rows) -> list[Reals]:
     """x ^ 2 of each, which is EXP (2 * LOG (x)); 0 ^ 2 is 0."""
     rows = [i for i in range(len(values)) if values[i].high]
     done = _some(unit, where, _square, rows, values)
-    return [done.get(i, ZERO) for i in range(len(values))]
+    return [done.get(i) or zero(unit) for i in range(len(values))]
 
 
 def _square(x: Reals) -> Reals:

@@ -104,7 +104,9 @@ class Reals:
     ``stored``: the extension is zero; ``low`` <= |x| <= ``high`` for every x that is not zero;
     ``full``: none is zero; ``unit``: the block they belong to (None: constants). The last axis runs
     over the scenes, or has length 1 for what all scenes share. Operators do what the ROM does: the
-    left operand is rounded, the right one keeps its extension; Python integers are constants.
+    left operand is rounded, the right one keeps its extension; Python integers are constants. What
+    is combined with a value of a block belongs to the block, also where it is a known zero; such a
+    result may be a lone number that stands for all rows and scenes.
     """
 
     __slots__ = ("_defects", "bits", "full", "high", "low", "stored", "unit", "v")
@@ -221,6 +223,13 @@ class Reals:
     def _unit(self) -> Unit:
         return self.unit or _nowhere()
 
+    def _of(self, unit: Unit | None) -> Reals:
+        """The same; a constant becomes a value of the block it was combined with, so that an error
+        it leads to later on is recorded there."""
+        if self.unit or not unit:
+            return self
+        return Reals(self.v, unit, self.low, self.high, self.stored, self.full)
+
 
 def from_floats(v: Floats, unit: Unit | None, stored: bool = False) -> Reals:
     """Reals from float64 values that are reals already."""
@@ -254,6 +263,11 @@ def constant(n: int) -> Reals:
 
 
 ZERO = constant(0)
+
+
+def zero(unit: Unit | None) -> Reals:
+    """Zero in every scene of a block, which records what fails because of it."""
+    return Reals(ZERO.v, unit, 1.0, 0.0, True)
 
 
 def select(condition: Bools, yes: Reals, no: Reals) -> Reals:
@@ -294,9 +308,9 @@ def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
     """
     left = left.rounded()
     if not right.high:
-        return left
+        return left._of(right.unit)
     if not left.high:
-        return -right if subtract else right
+        return (-right if subtract else right)._of(left.unit)
     unit = left.unit or right.unit
     low_left, high_left, low_right, high_right = left.low, left.high, right.low, right.high
     # apart by a factor of more than two: exponents never equal, no leading bits cancelled but one
@@ -362,9 +376,9 @@ def _multiply(left: Reals, right: Reals) -> Reals:
     to the 40th bit, or to the 39th where the product falls short by one, is then safe.
     """
     left = left.rounded()
-    if not left.high or not right.high:
-        return ZERO
     unit = left.unit or right.unit
+    if not left.high or not right.high:
+        return zero(unit)
     shape = _shape(left.v, right.v)
     (_, i0), (f1, _), (f2, _), (f3, i3), (_f4, i4) = (unit or _nowhere()).buffers(shape)
     v = np.empty(shape)
@@ -491,17 +505,17 @@ def _divide(left: Reals, right: Reals) -> Reals:
     The processor's quotient is cut there, and where it had been rounded up to that bit the
     remainder, computed exactly, is negative and one unit is taken back.
     """
+    unit = left.unit or right.unit
     right = right.rounded()
     if not right.full:
-        zero = right.v == 0
-        if zero.any():
-            right._unit().record(zero, DIVISION_BY_ZERO)
-            right = select(zero, constant(1), right)
+        by_zero = right.v == 0
+        if by_zero.any():
+            (unit or _nowhere()).record(by_zero, DIVISION_BY_ZERO)
+            right = select(by_zero, constant(1), right)
         right.full = True
     left = left.rounded()
     if not left.high:
-        return ZERO
-    unit = left.unit or right.unit
+        return zero(unit)
     shape = _shape(left.v, right.v)
     (_, i0), (f1, _), (f2, _), (f3, i3), (_f4, i4) = (unit or _nowhere()).buffers(shape)
     v = np.empty(shape)
