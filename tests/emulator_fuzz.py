@@ -17,9 +17,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import captures
 from impact88.applesoft.console import EndOfInput
-from impact88.applesoft.emulator import Applesoft
-from impact88.applesoft.machine import TooManyStatements
-from impact88.applesoft.tokens import FIRST, KEYWORDS
+from impact88.emulator.emulator import Applesoft
+from impact88.emulator.machine import TooManyStatements
+from impact88.emulator.tokens import FIRST, KEYWORDS
 
 STATEMENTS = 400
 NAMES = ("A", "B", "I", "N%", "A$", "B$", "A(1)", "A$(2)", "N%(I)", "FN A(I)", "X1")

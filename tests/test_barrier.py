@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from impact88 import barrier, sample, solve, solve_for
 from impact88.chapter.barrier import BARRIER, BARRIER_AFTER, VEHICLE
-from impact88.chapter.impulse import clock, facing, forces, principal_direction
 from impact88.errors import UserError
+from impact88.reconstruction.impulse import clock, facing, forces, principal_direction
 from reference_cases import cases_of
 
 (CASE,) = cases_of("barrier")

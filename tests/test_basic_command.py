@@ -13,7 +13,7 @@ from contextlib import suppress
 import pytest
 
 from impact88.files import packaged_text
-from impact88.run import run
+from impact88.program.run import run
 from impact88.scene import sample
 from installed import COMMAND, impact88
 

@@ -10,12 +10,12 @@ import math
 import numpy as np
 import pytest
 
+from impact88.checking.compare import CAUSES, Comparison, compare_file
+from impact88.checking.vectors import CASEWORK, scenes
 from impact88.closedform.solve import solve
-from impact88.compare import CAUSES, Comparison, compare_file
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, SCENE
 from impact88.replay import replay
-from impact88.vectors import CASEWORK, scenes
 from installed import impact88
 
 ROWS = [scene for kind, _, scene in scenes(90, seed=11) if kind == CASEWORK]

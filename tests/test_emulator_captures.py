@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import captures
-from impact88 import emulated
-from impact88.captured import left_behind, session
+from impact88.checking.captured import left_behind, session
+from impact88.program import emulated
 
 PROGRAMS = sorted((captures.folder() / "programs").glob("*.bas"))
 FUZZ = list(captures.jsonl("fuzz"))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from impact88.applesoft.console import EndOfInput
-from impact88.applesoft.emulator import Applesoft
 from impact88.applesoft.errors import ApplesoftError
-from impact88.applesoft.lister import untokenised
-from impact88.applesoft.machine import TooManyStatements
-from impact88.applesoft.tokens import TOKENS, split_number, tokenise
-from impact88.captured import displayed, session
+from impact88.checking.captured import displayed, session
+from impact88.emulator.emulator import Applesoft
+from impact88.emulator.lister import untokenised
+from impact88.emulator.machine import TooManyStatements
+from impact88.emulator.tokens import TOKENS, split_number, tokenise
 
 BEL = "\a"
 

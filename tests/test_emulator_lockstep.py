@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 import captures
 from emulation import first_difference
-from impact88 import arithmetics
 from impact88.applesoft.operators import Real
 from impact88.files import packaged_text
+from impact88.program import arithmetics
 from impact88.scene import Scene, sample
 
 STEP = max(1, len(captures.scenes()) // 8)

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from impact88.run import Run, run
+from impact88.program.run import Run, run
 from impact88.scene import sample
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from impact88.chapter import example
 from impact88.chapter.example import steps
-from impact88.unknowns import solve_for
+from impact88.reconstruction.unknowns import solve_for
 from reference_cases import cases_of
 
 PRINTED = {

@@ -11,7 +11,7 @@ from impact88.casework.explain import Explanation, rounded_text
 from impact88.casework.misreading import misreadings, slip
 from impact88.casework.printout import FIELDS, read_printouts
 from impact88.casework.verify import verify
-from impact88.run import run
+from impact88.program.run import run
 from impact88.scene import Scene, sample
 from test_printout import SAMPLE
 

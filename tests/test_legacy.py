@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import pytest
 
-from impact88.run import run
+from impact88.program.run import run
 from impact88.scene import sample
 from installed import impact88
 

@@ -7,11 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import captures
-from impact88 import arithmetics, stepping
-from impact88.captured import left_behind
+from impact88.checking.captured import left_behind
 from impact88.files import packaged_text
 from impact88.names import SCENE
-from impact88.run import run
+from impact88.program import arithmetics, stepping
+from impact88.program.run import run
 from impact88.scene import Scene, sample
 
 CASES = captures.scenes()

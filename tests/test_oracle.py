@@ -11,11 +11,11 @@ from fractions import Fraction
 import pytest
 
 import captures
+from impact88.checking.oracle import answers, decimal_of, look_up
+from impact88.checking.vectors import EDGES, FAILURES, casework, scenes, vectors
 from impact88.names import RESULTS, SCENE
-from impact88.oracle import answers, decimal_of, look_up
-from impact88.run import run
+from impact88.program.run import run
 from impact88.scene import sample
-from impact88.vectors import EDGES, FAILURES, casework, scenes, vectors
 from installed import COMMAND, impact88
 
 SCENE1 = dict(sample(1))

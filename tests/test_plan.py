@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88.closedform.expressions import Book
-from impact88.closedform.plan import Plan
+from impact88.closedform.formulas import Book
+from impact88.closedform.passes import Plan
 
 LENGTH = 7
 PLAIN = {"+": operator.add, "-": operator.sub, "*": operator.mul}

@@ -8,7 +8,7 @@ from importlib.resources import files
 
 import pytest
 
-from impact88.run import run
+from impact88.program.run import run
 from impact88.scene import sample
 
 PUBLISHED = [(1, "run1"), (2, "run2"), (3, "table3")]

@@ -19,7 +19,8 @@ import captures
 import impact88
 from impact88.errors import UserError
 from impact88.names import SCENE
-from impact88.replay import Replay, field_names, impact
+from impact88.replay import Replay, field_names
+from impact88.replay import listing as impact
 from impact88.replay.blocks import replay_scenes
 from impact88.replay.columns import read_columns
 from impact88.replay.elimination import DONE

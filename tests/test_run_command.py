@@ -7,8 +7,8 @@ import json
 import pytest
 
 from impact88.applesoft.console import Console
-from impact88.arithmetics import APPLESOFT
-from impact88.run import run
+from impact88.program.arithmetics import APPLESOFT
+from impact88.program.run import run
 from impact88.scene import sample
 from installed import impact88
 

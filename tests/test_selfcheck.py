@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import captures
-from impact88 import selfcheck
 from impact88.casework.provenance import capture_hashes, listing_hash, sha256
+from impact88.checking import selfcheck
 from impact88.commands.selfcheck import _line
 
 GOLDEN = captures.ROOT / "golden"

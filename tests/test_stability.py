@@ -29,7 +29,7 @@ from impact88.bench.populations import POPULATIONS, scenes
 from impact88.bench.sensitivity import sensitivity
 from impact88.closedform.degrees import sin_cos
 from impact88.names import FINAL_VELOCITIES
-from impact88.run import run
+from impact88.program.run import run
 from impact88.scene import Scene, sample
 from impact88.status import Status
 from worked_cases import RUN_1

@@ -1,4 +1,4 @@
-"""`impact88.unknowns`: the equations as the chapter prints them, solved for any unknowns."""
+"""`reconstruction.unknowns`: the equations as the chapter prints them, solved for any unknowns."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from impact88 import sample, solve, solve_for
-from impact88.chapter.outcome import outcome
-from impact88.chapter.reconstruction import initial_velocities
 from impact88.errors import UserError
-from impact88.unknowns import (
+from impact88.reconstruction.model import initial_velocities
+from impact88.reconstruction.outcome import outcome
+from impact88.reconstruction.unknowns import (
     COEFFICIENTS,
     FINAL,
     INITIAL,

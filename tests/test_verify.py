@@ -13,7 +13,7 @@ from impact88.casework.printout import ANGLES, INPUTS, read_printouts
 from impact88.casework.typedtext import stored_and_printed, texts_that_print
 from impact88.casework.verify import Verdict, Verification, verify
 from impact88.names import SCENE
-from impact88.run import run
+from impact88.program.run import run
 from impact88.scene import sample
 from installed import impact88
 from test_printout import SAMPLE

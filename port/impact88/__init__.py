@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _LAZY = {
-    "Applesoft": "applesoft.emulator",
+    "Applesoft": "emulator.emulator",
     "Scene": "scene",
     "sample": "scene",
-    "run": "run",
+    "run": "program.run",
     "verify": "casework.verify",
     "verify_file": "casework.verify",
     "read_printouts": "casework.printout",
-    "solve_for": "unknowns",
+    "solve_for": "reconstruction.unknowns",
     "colinear": "chapter.colinear",
     "colinear_inverse": "chapter.colinear",
     "barrier": "chapter.barrier",
@@ -36,8 +36,8 @@ _LAZY = {
 }
 """Public name -> the module that holds it."""
 
-_ROOMS = ("names", "status", "unknowns")
-"""Public modules, imported on first use too: ``impact88.unknowns.solve_for``."""
+_ROOMS = ("names", "status")
+"""Public modules, imported on first use too: ``impact88.names.SCENE``."""
 
 
 class _Package(ModuleType):

@@ -20,10 +20,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import captures
-from impact88 import emulated
-from impact88.applesoft.emulator import Applesoft
+from impact88.emulator.emulator import Applesoft
 from impact88.files import packaged_text
-from impact88.run import run
+from impact88.program import emulated
+from impact88.program.run import run
 from impact88.scene import Scene, sample
 
 SCENES = 100

@@ -17,7 +17,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import captures
-from impact88.run import run
+from impact88.program.run import run
 from impact88.scene import Scene
 from installed import COMMAND
 

@@ -19,12 +19,12 @@ from collections.abc import Callable
 import numpy as np
 
 from impact88.names import SCENE
+from impact88.program.run import run
 from impact88.replay import decimaltext, functions
 from impact88.replay.blocks import replay_scenes
 from impact88.replay.columns import read_columns
 from impact88.replay.reals import Reals, compare, floor, from_floats
 from impact88.replay.unit import Unit
-from impact88.run import run
 
 PORT_SCENES = 40
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .. import __version__
 from ..accuracy.elimination import equilibrated_condition, fill
 from ..progress import Meter
-from .methods import (  # fmt: skip
+from .methods import (
     METHODS,
     Method,
     Prepared,

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ..accuracy.elimination import ORDER, eliminate, fill, lapack
 from ..applesoft.operators import Real
 from ..closedform.solve import solve
+from ..program.run import run
 from ..replay import replay
-from ..run import run
 from ..scene import Scene
 from .populations import Columns, texts
 

@@ -12,7 +12,7 @@ from ..names import SCENE
 from . import printout
 
 if TYPE_CHECKING:
-    from ..run import Run
+    from ..program.run import Run
 
 _FEW = 6
 """Up to this many scenes the port is as quick as the replay, and needs no numpy."""
@@ -36,7 +36,7 @@ def run_whole(
 ) -> tuple[Outcome, dict[str, float]]:
     """The outcome of one scene in the port, and the values that lines 660 to 760 floor before they
     print them, unfloored (none when the run does not reach its end)."""
-    from ..run import run
+    from ..program.run import run
 
     done = run(scene, arithmetic)
     return outcome_of(done.printout), _unfloored(done)

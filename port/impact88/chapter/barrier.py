@@ -22,7 +22,7 @@ BARRIER = {
 }
 """The values of the scene that make B a barrier; where on it the vehicle hits is of no matter."""
 BARRIER_AFTER = {"VBX": 0.0, "VBY": 0.0, "WBF": 0.0}
-"""Its velocities after the impact, for `impact88.unknowns.solve_for`: rebound -> approach."""
+"""Its velocities after the impact, for `impact88.solve_for`: rebound -> approach."""
 VEHICLE = ("E", "MU", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "UX", "UY", "WA")
 """The values of the scene that are the vehicle's and the contact's."""
 RESULTS = (

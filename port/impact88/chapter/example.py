@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from functools import cache
 from math import hypot, sqrt
 
-from ..arithmetics import FLOAT64
 from ..closedform.solve import solve
 from ..names import FINAL_VELOCITIES
+from ..program.arithmetics import FLOAT64
+from ..reconstruction.unknowns import solve_for
 from ..scene import sample
-from ..unknowns import solve_for
 from .deltav import AS_PRINTED, AS_USED, delta_v
 
 ESTIMATES = {"VAX": -10.0, "VAY": 20.0, "VBX": -20.0, "VBY": 45.0}

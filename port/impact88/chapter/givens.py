@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from ..applesoft.errors import ApplesoftError
-from ..arithmetics import FLOAT64
 from ..errors import UserError
 from ..files import read_text
 from ..names import CHAPTER, RESULTS, SCENE
+from ..program.arithmetics import FLOAT64
 from ..scene import toml_texts
 
 _LIMIT = 1_000_000

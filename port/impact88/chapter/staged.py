@@ -31,8 +31,8 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..files import packaged_text
+from ..reconstruction.geometry import Geometry
 from .deltav import delta_v
-from .geometry import Geometry
 
 Array = NDArray[np.float64]
 

@@ -30,7 +30,7 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 
 from . import statusbits  # noqa: F401 - makes "status" an operation of plans
-from .expressions import Book, Expression
+from .formulas import Book, Expression
 
 Pair = tuple[Expression, Expression]
 

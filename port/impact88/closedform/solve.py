@@ -20,9 +20,9 @@ from ..errors import UserError
 from ..names import RESULTS, SCENE
 from ..status import Status
 from .columns import Block, Buffers, Source, examine, sources
-from .expressions import Book, Expression
+from .formulas import Book, Expression
 from .impact import Impact
-from .plan import Plan
+from .passes import Plan
 
 Array = NDArray[Any]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..status import Status
-from .plan import register
+from .passes import register
 
 Array = NDArray[Any]
 

@@ -23,9 +23,9 @@ from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
 
 from ..applesoft.console import PRINTER_SLOT, EndOfInput
-from ..applesoft.emulator import Applesoft
 from ..applesoft.errors import ApplesoftError
-from ..applesoft.machine import TooManyStatements
+from ..emulator.emulator import Applesoft
+from ..emulator.machine import TooManyStatements
 from ..errors import UserError
 from ..files import packaged_text, read_text, replacing
 from .run import add_machine_arguments

@@ -60,7 +60,7 @@ def main(args: argparse.Namespace) -> int:
     values = {name: float(value) for name, value in solve(**known).items()}
     values = {"MA": known["MA"], "MB": known["MB"], "E": known["E"], **values}
     if args.contact_time is not None:
-        from ..chapter.impulse import forces
+        from ..reconstruction.impulse import forces
 
         values["P"] = math.hypot(values["PN"], values["PT"])
         values["TF"] = args.contact_time
@@ -71,8 +71,8 @@ def main(args: argparse.Namespace) -> int:
 
 def show(values: dict[str, float], found: tuple[str, ...], as_json: bool) -> None:
     """Print the table or the JSON object."""
-    from ..chapter.solutiontable import quantity
     from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
+    from ..reconstruction.solutiontable import quantity
 
     warnings = _warnings(values)
     if as_json:

@@ -19,7 +19,7 @@ import json
 import sys
 from collections.abc import Iterator
 
-from ..compare import Comparison, compare_file
+from ..checking.compare import Comparison, compare_file
 from ..errors import UserError
 from ..scene import check_names, check_value
 from ..tables.table import format_of

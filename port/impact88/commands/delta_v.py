@@ -113,8 +113,8 @@ def _losses(known: dict[str, float], args: argparse.Namespace) -> tuple[list[flo
 def _show(
     given: dict[str, float], estimates: list[dict[str, Any]], source: str, equation: str
 ) -> None:
-    from ..chapter.solutiontable import quantity
     from ..plaintable import number, table
+    from ..reconstruction.solutiontable import quantity
 
     rows = [[n, number(v), quantity(n).unit, quantity(n).meaning] for n, v in given.items()]
     print("\n".join(table(rows, left=(0, 2, 3))))

@@ -21,9 +21,9 @@ from collections.abc import Iterator
 from contextlib import nullcontext
 from typing import IO, Any
 
+from ..checking.oracle import Request, answer
 from ..errors import UserError
 from ..files import replacing
-from ..oracle import Request, answer
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +44,7 @@ def main(args: argparse.Namespace) -> int:
     counts = {"answered": 0, "refused": 0}
     with nullcontext(sys.stdout) if args.output == "-" else replacing(args.output) as out:
         if args.vectors is not None:
-            from ..vectors import vectors
+            from ..checking.vectors import vectors
 
             _write(vectors(args.vectors, args.seed, not args.no_reference), out, counts)
         else:
@@ -69,7 +69,7 @@ def _write(answers: Iterator[dict[str, Any]], out: IO[str], counts: dict[str, in
 def _batches(path: str) -> Iterator[list[Request]]:
     """The requests that have arrived, some at a time: a program that asks line by line over a pipe
     is answered line by line, a file in larger batches."""
-    from ..oracle import BATCH, LONGEST_LINE
+    from ..checking.oracle import BATCH, LONGEST_LINE
 
     try:
         source = sys.stdin.buffer if path == "-" else open(path, "rb")  # noqa: SIM115

@@ -81,8 +81,8 @@ def main(args: argparse.Namespace) -> int:
 
 def show(known: Mapping[str, float], wanted: list[str] | None, args: argparse.Namespace) -> None:
     """Print the solutions of one problem."""
-    from ..chapter.solutiontable import as_json, as_text, complete
-    from ..unknowns import solve_for
+    from ..reconstruction.solutiontable import as_json, as_text, complete
+    from ..reconstruction.unknowns import solve_for
 
     try:
         solutions = solve_for(known, wanted)

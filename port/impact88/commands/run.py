@@ -19,11 +19,11 @@ from collections.abc import Callable
 from contextlib import ExitStack
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
-from ..arithmetics import ARITHMETICS
 from ..errors import UserError
 from ..files import replacing
 from ..names import VELOCITIES
-from ..run import finished, start
+from ..program.arithmetics import ARITHMETICS
+from ..program.run import finished, start
 from ..scene import SAMPLES, Scene, check_names, check_value, published_data, sample
 from .options import add_set_argument
 

@@ -14,7 +14,7 @@ import argparse
 import json
 import sys
 
-from ..selfcheck import CHECKS, Check, checks, record
+from ..checking.selfcheck import CHECKS, Check, checks, record
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

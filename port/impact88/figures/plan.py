@@ -1,6 +1,6 @@
 """The scene from above: what is where, worked out once for every way of drawing it.
 
-Axes and signs are the listing's (line 330 and `impact88.listing`): with D1 = DB sin(TB + PB),
+Axes and signs are the listing's (line 330 and `program.listing`): with D1 = DB sin(TB + PB),
 D2 = DB cos(TB + PB), D3 = DA sin(TA + PA), D4 = DA cos(TA + PA) the contact point lies at
 (-D4, -D3) from A's center of gravity and at (D2, D1) from B's; the normal n = (cos GA, sin GA)
 points to A's side, the tangent is t = (-sin GA, cos GA), and the impulse drawn acts on A, its

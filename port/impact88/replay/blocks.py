@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from . import impact
+from . import listing as impact
 from .columns import Scenes
 from .reals import Floats, Reals, compare, from_floats
 from .result import OTHER_M, Replay

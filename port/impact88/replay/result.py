@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..applesoft.errors import CODES, ApplesoftError
-from . import impact
+from . import listing as impact
 from .columns import Scenes
 from .decimaltext import Strings, write
 from .elimination import ZERO_DETERMINANT

@@ -26,10 +26,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import status
-from ..chapter.geometry import Geometry
-from ..chapter.reconstruction import initial_velocities
 from ..errors import UserError
 from ..names import CHAPTER, FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES, Quantity
+from ..reconstruction.geometry import Geometry
+from ..reconstruction.model import initial_velocities
 from .extremes import CORNERS_IN_FULL, extremes
 from .uncertain import Uncertain, correlation_root, fixed
 

@@ -1,0 +1,1 @@
+"""Checks: this installation against the ROM's captures, other programs against this one."""

@@ -1,0 +1,118 @@
+"""The captures' own form: a captured call, run or program done again here, to be held against it.
+
+The captures of the real machine write results in a certain way and leave some things open (what
+bytes stand in a zero). This room knows that way, for `selfcheck` and for the tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..applesoft import decimaltext, functions, real
+from ..applesoft.errors import ApplesoftError
+
+if TYPE_CHECKING:
+    from ..emulator.emulator import Applesoft
+
+PLENTY = 3_000_000
+"""Statements that no captured program needs."""
+
+_BINARY: Mapping[str, Callable[[real.Number, real.Number], real.Number]] = {
+    "add": real.add,
+    "sub": real.subtract,
+    "mul": real.multiply,
+    "div": real.divide,
+    "pow": functions.power,
+}
+_UNARY: Mapping[str, Callable[[real.Number], real.Number]] = {
+    "neg": real.negate,
+    "abs": real.absolute,
+    "sgn": functions.sign,
+    "int": real.floor,
+    "sqr": functions.square_root,
+    "exp": functions.exponential,
+    "log": functions.logarithm,
+    "sin": functions.sine,
+    "cos": functions.cosine,
+    "tan": functions.tangent,
+    "atn": functions.arc_tangent,
+}
+
+
+def call(operation: str, first: str, second: str, extension: str) -> str:
+    """The result of a captured call of the ROM's arithmetic, made again here, in `result`'s form.
+
+    The arguments are the row's columns: operands as stored bytes in hexadecimal (decimal text for
+    ``fin``), and the accumulator's extension.
+    """
+    low = int(extension or "0", 16)
+    try:
+        if operation == "fin":
+            return _shown(decimaltext.read(first)[0])
+        x = real.from_stored(first, 0 if second else low)
+        if operation == "fout":
+            return decimaltext.write(x)
+        if operation == "cmp":
+            order = real.compare(x, real.from_stored(second, low))
+            return {1: "01", 0: "00", -1: "ff"}[order]
+        if operation in _BINARY:
+            return _shown(_BINARY[operation](x, real.from_stored(second, low)))
+        return _shown(_UNARY[operation](x))
+    except ApplesoftError as error:
+        return f"E{error.code}"
+
+
+def _shown(x: real.Number) -> str:
+    e, m, s = x
+    if not e:
+        return "zero"
+    return f"{real.to_stored(x).hex()}:{e:02x}{m >> 8:08x}{s}:{m & 0xFF:02x}"
+
+
+def result(text: str) -> str:
+    """A captured call's result: zeros are one, and of the sign byte only its top bit counts."""
+    if text.count(":") != 2:
+        return text
+    stored, raw, extension = text.split(":")
+    if raw.startswith("00"):
+        return "zero"
+    return f"{stored}:{raw[:10]}{int(raw[10:], 16) >> 7}:{extension}"
+
+
+def stored(text: str) -> str:
+    """Stored bytes in hexadecimal, all zeros alike: the ROM leaves odd mantissas in them."""
+    return "00" * 5 if text.startswith("00") else text
+
+
+def left_behind(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[Any, Any]:
+    """A run's variables and array in a form that compares."""
+    return (
+        {name: stored(text) for name, text in reals.items()},
+        a and (a["dims"], [stored(text) for text in a["data"]]),
+    )
+
+
+def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
+    """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up.
+
+    Returns the machine and all that was displayed after the echo of RUN up to the final prompt.
+    ``blanks``: whether skipped columns are written as blanks.
+    """
+    from ..emulator.emulator import Applesoft
+
+    machine = Applesoft(blanks=blanks)
+    for line in program.split("\n"):
+        if line:
+            machine.type_line(line)
+    machine.take_output()
+    machine.feed_keys(keys)
+    machine.machine.statements_left = PLENTY
+    machine.run()
+    machine.prompt()
+    return machine, machine.take_output().removesuffix("\n]")
+
+
+def displayed(program: str, keys: str = "", *, blanks: bool = True) -> str:
+    """What `session` displays as a ``.out`` has it: without the NULs of the prompts."""
+    return session(program, keys, blanks=blanks)[1].replace("\0", "")

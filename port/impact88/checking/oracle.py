@@ -1,0 +1,193 @@
+"""The oracle: everything this project knows about a scene, for checking other programs.
+
+For each scene: what the 1988 program prints; each result as Applesoft has it (printed text, the
+five bytes stored, their exact decimal value), in double precision by the closed form, and to 30
+digits where mpmath (extra ``bench``) is installed; how well the scene is conditioned; what is
+unphysical about it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from .. import status
+from ..accuracy import errorbound
+from ..errors import UserError
+from ..names import DEFAULT_M, RESULTS, SCENE
+from ..scene import Scene
+
+BATCH = 256
+"""Scenes computed together."""
+LONGEST_LINE = 1_000_000
+"""Characters of the longest line that is read."""
+
+_NO_NUMBERS = ("COND", "STATUS")
+_decode = json.JSONDecoder(parse_float=str, parse_int=str).decode
+
+
+class Request:
+    """One line of input: its number, its ``id`` as given, and the scene or what is wrong."""
+
+    def __init__(self, line: int, text: str) -> None:
+        self.line = line
+        self.id: Any = None
+        self.extra: dict[str, Any] = {}
+        self.scene: Scene | None = None
+        self.problem = ""
+        try:
+            self._read(text)
+        except (UserError, ValueError, RecursionError) as error:
+            self.problem = str(error) or type(error).__name__
+
+    def _read(self, text: str) -> None:
+        if len(text) > LONGEST_LINE:
+            raise ValueError(f"has more than {LONGEST_LINE:,} characters")
+        try:
+            # ids keep their type; the scene's numbers keep their digits
+            whole = json.loads(text)
+            digits = _decode(text)
+        except ValueError as error:
+            raise ValueError(f"is no JSON: {error}") from None
+        if not isinstance(whole, dict):
+            raise ValueError('is no JSON object; expected {"id": ..., "scene": {...}}')
+        self.id = whole.get("id")
+        self.extra = {name: whole[name] for name in ("class", "label") if name in whole}
+        values = digits.get("scene")
+        if not isinstance(values, dict):
+            raise ValueError('has no "scene" object')
+        wrong = [name for name, value in values.items() if not isinstance(value, str)]
+        if wrong:
+            raise ValueError(f"{wrong[0]} is no number; expected a number or its decimal text")
+        scene = Scene({"M": DEFAULT_M, **values}, source="scene")
+        if _float(scene["M"]) not in (4, 6):
+            raise ValueError(f"M is {scene['M']}; expected 6 or 4")
+        self.scene = scene
+
+
+def answers(lines: Iterable[str], reference: bool = True) -> Iterator[dict[str, Any]]:
+    """An answer for every line that is not blank, in order.
+
+    ``reference``: give 30 digits too, where mpmath is installed. A line that cannot be used gives
+    ``{"id", "error": {"line", "message"}}``.
+    """
+    batch: list[Request] = []
+    for number, text in enumerate(lines, 1):
+        if not text.strip():
+            continue
+        batch.append(Request(number, text))
+        if len(batch) == BATCH:
+            yield from answer(batch, reference)
+            batch = []
+    yield from answer(batch, reference)
+
+
+def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[str, Any]]:
+    """The answers to some requests."""
+    scenes = [request.scene for request in batch if request.scene is not None]
+    found = iter(look_up(scenes, reference))
+    for request in batch:
+        if request.scene is None:
+            yield {"id": request.id, "error": {"line": request.line, "message": request.problem}}
+        else:
+            scene = {name: request.scene[name] for name in SCENE}
+            yield {"id": request.id, **request.extra, "scene": scene, **next(found)}
+
+
+def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list[dict[str, Any]]:
+    """What is known about each scene, see the module; M must be 4 or 6."""
+    if not scenes:
+        return []
+    import numpy as np
+
+    from ..closedform.solve import solve
+    from ..program.run import run
+    from ..replay import replay
+
+    texts = {name: [scene[name] for scene in scenes] for name in SCENE}
+    numbers = {name: np.array(list(map(_float, column))) for name, column in texts.items()}
+    solved = {name: column.tolist() for name, column in solve(numbers).items()}
+    replayed = replay(texts)
+    applesoft = {}
+    for name in RESULTS:
+        if name in replayed.names:
+            present, stored = replayed.present(name).tolist(), replayed.reals(name).tolist()
+            printed = replayed.printed(name).tolist() if name != "KF" else [""] * len(scenes)
+            applesoft[name] = (present, printed, stored)
+    exact = _references(reference)
+    out = []
+    for index, scene in enumerate(scenes):
+        done = run(scene)
+        digits = exact(scene)
+        results: dict[str, dict[str, Any]] = {}
+        for name in RESULTS:
+            if name in _NO_NUMBERS:
+                continue
+            row: dict[str, Any] = {"printed": None, "stored": None, "decimal": None}
+            if name in applesoft and applesoft[name][0][index]:
+                _, printed, stored = (column[index] for column in applesoft[name])
+                row["printed"] = printed or None
+                if name != "LOSS":  # line 690 prints it without storing it
+                    row["stored"] = f"{stored:010x}"
+                    row["decimal"] = exact_decimal(row["stored"])
+            row["double"] = _json_number(solved[name][index])
+            row["reference"] = digits.get(name)
+            results[name] = row
+        condition = solved["COND"][index]
+        out.append(
+            {
+                "printout": done.printout,
+                "ending": "ZERO DETERMINANT" if done.zero_determinant else done.error,
+                "results": results,
+                "condition": _json_number(condition),
+                "error_bound": {
+                    "double": _json_number(errorbound.relative_bound(condition)),
+                    "applesoft": _json_number(
+                        errorbound.relative_bound(condition, errorbound.APPLESOFT)
+                    ),
+                },
+                "status": status.names(int(solved["STATUS"][index])),
+            }
+        )
+    return out
+
+
+def exact_decimal(stored: str) -> str:
+    """The value of five stored bytes as an exact decimal, all its digits."""
+    from ..applesoft.operators import Real
+
+    return decimal_of(Real.from_stored(stored).fraction())
+
+
+def decimal_of(value: Fraction) -> str:
+    """A fraction whose denominator is a power of two, as an exact decimal."""
+    places = value.denominator.bit_length() - 1
+    digits = abs(value.numerator) * 5**places
+    sign = "-" if value < 0 else ""
+    if not places:
+        return f"{sign}{digits}"
+    text = str(digits).rjust(places + 1, "0")
+    return f"{sign}{text[:-places]}.{text[-places:]}".rstrip("0").rstrip(".")
+
+
+def _float(text: str) -> float:
+    return float(text.upper().replace(" ", "") or 0)
+
+
+def _json_number(value: float) -> float | None:
+    """JSON has no NaN and no infinity."""
+    return value if value == value and abs(value) != float("inf") else None
+
+
+def _references(wanted: bool) -> Callable[[Mapping[str, str]], dict[str, str]]:
+    """A function that gives a scene's results to 30 digits; an empty dict without mpmath."""
+    if wanted:
+        try:
+            from ..accuracy.digits import thirty_digits
+        except UserError:
+            pass
+        else:
+            return thirty_digits
+    return lambda scene: {}

@@ -1,0 +1,188 @@
+"""Checking an installation: what the captures of the real machine say, replayed here and now.
+
+Each check replays packaged captures (or another folder laid out like them) and counts what came
+out as captured, bit for bit. Together with the hashes and versions this is the record a laboratory
+files when it qualifies an installation.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import time
+from collections.abc import Callable, Iterator
+from importlib import resources
+from typing import Any, NamedTuple, Protocol
+
+from ..casework import provenance
+from ..casework.printout import FIELDS, outcome_fields
+from ..names import SCENE
+from ..program.run import run
+from ..scene import sample
+from . import captured
+
+GOLDEN_RUNS = {1: "run1", 2: "run2", 3: "table3"}
+
+
+class Folder(Protocol):
+    """A folder of captures: a `pathlib.Path`, or a packaged one."""
+
+    @property
+    def name(self) -> str: ...
+
+    def joinpath(self, *names: str) -> Any: ...
+
+    def iterdir(self) -> Iterator[Any]: ...
+
+
+class Check(NamedTuple):
+    """One check: its name, what it compared, how many of how many came out right, how long it took,
+    and the first that did not."""
+
+    name: str
+    compared: str
+    total: int
+    right: int
+    seconds: float
+    first_wrong: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether there was something to compare and all of it came out right."""
+        return self.right == self.total > 0
+
+
+Counted = Iterator[tuple[str, bool]]
+"""What was compared, and whether it was right."""
+
+
+def checks(folder: Folder | None = None) -> Iterator[Check]:
+    """All checks, one after the other. ``folder``: other captures than the packaged ones."""
+    golden = folder or resources.files("impact88.golden")
+    for name, (compared, cases) in CHECKS.items():
+        start = time.perf_counter()
+        total = right = 0
+        first_wrong = ""
+        for case, ok in _guarded(cases, golden):
+            total += 1
+            right += ok
+            if not ok and not first_wrong:
+                first_wrong = case
+        yield Check(name, compared, total, right, time.perf_counter() - start, first_wrong)
+
+
+def _guarded(cases: Callable[[Any], Counted], golden: Any) -> Counted:
+    """The cases; a check that breaks down is a check that fails, with the reason."""
+    try:
+        yield from cases(golden)
+    except Exception as error:
+        yield f"broke down: {type(error).__name__}: {error}", False
+
+
+def record(found: list[Check]) -> dict[str, Any]:
+    """The record as one object: versions, hashes, checks, verdict."""
+    return {
+        "passed": all(check.passed for check in found),
+        "versions": provenance.versions(),
+        "hashes": {
+            "listing": provenance.listing_hash(),
+            "captures": provenance.captures_hash(),
+        },
+        "checks": [{**check._asdict(), "passed": check.passed} for check in found],
+        "seconds": round(sum(check.seconds for check in found), 2),
+    }
+
+
+# --- what is compared ----------------------------------------------------------------------------
+
+
+def _lines(golden: Any, name: str) -> Iterator[dict[str, Any]]:
+    data = gzip.decompress(golden.joinpath(f"{name}.jsonl.gz").read_bytes()).decode()
+    for line in data.splitlines():
+        yield json.loads(line)
+
+
+def _arithmetic(golden: Any) -> Counted:
+    for file in sorted(golden.joinpath("arithmetic").iterdir(), key=lambda one: one.name):
+        if not file.name.endswith(".tsv.gz"):
+            continue
+        for row in gzip.decompress(file.read_bytes()).decode().splitlines():
+            operation, first, second, extension, result = row.split("\t")
+            got = captured.call(operation, first, second, extension)
+            yield row, got == captured.result(result)
+
+
+def _port(golden: Any) -> Counted:
+    for row in _lines(golden, "scenes"):
+        done = run(row["scene"], dos=False)
+        same = done.printout == row["printout"]
+        left = captured.left_behind(done.reals, done.A)
+        yield row["id"], same and left == captured.left_behind(row["reals"], row["A"])
+
+
+def _replay(golden: Any) -> Counted:
+    from ..replay import replay
+
+    rows = list(_lines(golden, "scenes"))
+    done = replay({name: [row["scene"][name] for row in rows] for name in SCENE})
+    printed = {name: done.printed(name).tolist() for name in FIELDS}
+    for index, row in enumerate(rows):
+        fields = {name: column[index] for name, column in printed.items() if column[index]}
+        yield row["id"], fields == outcome_fields(row["printout"])
+
+
+def _programs(golden: Any) -> Counted:
+    files = {file.name: file for file in golden.joinpath("programs").iterdir()}
+    for name in sorted(files):
+        if name.endswith(".bas"):
+            stem = name.removesuffix(".bas")
+            texts = [
+                files[one].read_bytes().decode("latin-1") if one in files else ""
+                for one in (name, f"{stem}.in", f"{stem}.out")
+            ]
+            yield stem, captured.displayed(texts[0], texts[1]) == texts[2]
+    for row in _lines(golden, "fuzz"):
+        yield (
+            row["name"],
+            captured.displayed(row["program"], row["keyboard"], blanks=False) == row["output"],
+        )
+
+
+def _published(golden: Any) -> Counted:
+    for number, name in GOLDEN_RUNS.items():
+        expected = golden.joinpath("printouts", f"{name}.txt").read_bytes().decode()
+        yield name, run(sample(number)).printout == expected
+
+
+def _closed_form(golden: Any) -> Counted:
+    """Momentum, linear and angular, before and after, by the closed form in double precision."""
+    import numpy as np
+
+    from ..accuracy import errorbound
+    from ..closedform.solve import solve
+
+    rows = [row for row in _lines(golden, "scenes") if row["scene"]["M"] == "6"]
+    g = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
+    with np.errstate(all="ignore"):
+        found = {name: column.astype(float) for name, column in solve(g).items()}
+        bound = errorbound.relative_bounds(found["COND"])
+        usable = np.isfinite(found["VAX"]) & np.isfinite(found["WAF"])
+        ok = np.ones(len(rows), bool)
+        for a, b, before in (("VAX", "VBX", ("UX", "VX")), ("VAY", "VBY", ("UY", "VY"))):
+            parts = [g["MA"] * found[a], g["MB"] * found[b]]
+            parts += [-g["MA"] * g[before[0]], -g["MB"] * g[before[1]]]
+            ok &= np.abs(sum(parts)) <= bound * 2 * np.max(np.abs(parts), axis=0)
+    for row, good, used in zip(rows, ok.tolist(), usable.tolist(), strict=True):
+        if used:
+            yield row["id"], good
+
+
+CHECKS: dict[str, tuple[str, Callable[[Any], Counted]]] = {
+    "arithmetic": ("calls of the ROM's arithmetic, every bit", _arithmetic),
+    "port": ("runs of the listing: printout, variables, array", _port),
+    "replay": ("the same runs over arrays: every printed field", _replay),
+    "emulator": ("Applesoft programs: every character displayed", _programs),
+    "published": ("runs published in 1988: every character", _published),
+    "closed form": ("scenes in double precision: momentum conserved", _closed_form),
+}
+"""Name of a check -> what it compares, and the check."""

@@ -1,0 +1,214 @@
+"""Test vectors for other implementations: labelled scenes with everything the oracle knows.
+
+Three classes, mixed evenly: ``casework`` (scenes as reports hold them), ``edge`` (one limit or
+special case each), ``failure`` (the 1988 program stops, or goes wrong without a word). The label
+says which case. The same count and seed give the same scenes on any machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from random import Random
+from typing import Any
+
+from ..names import SCENE
+from .oracle import BATCH, look_up
+
+Texts = dict[str, str]
+
+CASEWORK, EDGE, FAILURE = "casework", "edge", "failure"
+
+
+def vectors(count: int, seed: int = 0, reference: bool = True) -> Iterator[dict[str, Any]]:
+    """``count`` vectors: id, class, label, scene and the oracle's answer."""
+    labelled = list(scenes(count, seed))
+    for at in range(0, count, BATCH):
+        batch = labelled[at : at + BATCH]
+        answers = look_up([scene for _, _, scene in batch], reference)
+        for place, ((kind, label, scene), answer) in enumerate(zip(batch, answers, strict=True)):
+            head = {"id": f"{seed}-{at + place:06d}", "class": kind, "label": label}
+            yield {**head, "scene": scene, **answer}
+
+
+def scenes(count: int, seed: int = 0) -> Iterator[tuple[str, str, Texts]]:
+    """Class, label and scene of each vector."""
+    rng = Random(seed)
+    for index in range(count):
+        kind = (CASEWORK, EDGE, FAILURE)[index % 3]
+        scene = casework(rng)
+        label = "random"
+        if kind != CASEWORK:
+            cases = EDGES if kind == EDGE else FAILURES
+            names = list(cases)
+            label = names[index // 3 % len(names)]
+            scene |= cases[label](rng, scene)
+        yield kind, label, {name: scene[name] for name in SCENE}
+
+
+def _between(rng: Random, low: float, high: float, places: int) -> str:
+    """A decimal as people type it, with up to so many places."""
+    places = rng.randint(0, places)
+    return f"{rng.uniform(low, high):.{places}f}"
+
+
+def casework(rng: Random) -> Texts:
+    """A scene as casework has them: slugs and feet, or the like; the vehicles approach."""
+    while True:
+        scene = {
+            "E": _between(rng, 0, 0.5, 3),
+            "MU": _between(rng, 0, 0.9, 3),
+            "EM": _between(rng, -1, 0, 3),
+            "DA": _between(rng, 0.5, 9, 2),
+            "DB": _between(rng, 0.5, 9, 2),
+            "GA": _between(rng, -180, 180, 1),
+            "PA": _between(rng, -180, 180, 1),
+            "PB": _between(rng, -180, 180, 1),
+            "TA": _between(rng, -180, 180, 1),
+            "TB": _between(rng, -180, 180, 1),
+            "MA": _between(rng, 60, 400, 2),
+            "MB": _between(rng, 60, 400, 2),
+            "IA": _between(rng, 900, 9000, 1),
+            "IB": _between(rng, 900, 9000, 1),
+            "UX": _between(rng, -90, 90, 3),
+            "UY": _between(rng, -90, 90, 3),
+            "WA": rng.choice(("0", _between(rng, -5, 5, 3))),
+            "VX": _between(rng, -90, 90, 3),
+            "VY": _between(rng, -90, 90, 3),
+            "WB": rng.choice(("0", _between(rng, -5, 5, 3))),
+            "M": "6",
+        }
+        if _approaches(scene):
+            return scene
+
+
+def _approaches(scene: Texts) -> bool:
+    """Whether the contact points close in, gn < 0."""
+    from math import cos, radians, sin
+
+    g = {name: float(text) for name, text in scene.items()}
+    a, b = radians(g["TA"] + g["PA"]), radians(g["TB"] + g["PB"])
+    dx = g["UX"] + g["DA"] * sin(a) * g["WA"] - g["VX"] + g["DB"] * sin(b) * g["WB"]
+    dy = g["UY"] - g["DA"] * cos(a) * g["WA"] - g["VY"] - g["DB"] * cos(b) * g["WB"]
+    return dx * cos(radians(g["GA"])) + dy * sin(radians(g["GA"])) < 0
+
+
+Case = Callable[[Random, Texts], Texts]
+"""What a case changes in a casework scene."""
+
+
+def _fixed(**values: str) -> Case:
+    return lambda rng, scene: values
+
+
+def _same_velocity(rng: Random, scene: Texts) -> Texts:
+    return {"VX": scene["UX"], "VY": scene["UY"], "WA": "0", "WB": "0"}
+
+
+EDGES: dict[str, Case] = {
+    "pivot": _fixed(MU="-10"),
+    "point mass": _fixed(M="4", DA="0", DB="0", WA="0", WB="0"),
+    "point mass, pivot": _fixed(M="4", DA="0", DB="0", WA="0", WB="0", MU="-10"),
+    "no spin": _fixed(WA="0", WB="0"),
+    "frictionless": _fixed(MU="0"),
+    "plastic": _fixed(E="0"),
+    "elastic": _fixed(E="1"),
+    "no moment": _fixed(EM="1"),
+    "equal final spins": _fixed(EM="0"),
+    "contact at both centers": _fixed(DA="0", DB="0"),
+    "right angles": lambda rng, scene: {
+        name: str(90 * rng.randint(-4, 4)) for name in ("GA", "PA", "PB", "TA", "TB")
+    },
+    "angles past a full turn": lambda rng, scene: {
+        name: str(round(float(scene[name]) + 360 * rng.choice((-2, 2)), 1)) for name in ("GA", "TB")
+    },
+    "no relative sliding": lambda rng, scene: {
+        "GA": "0",
+        "DA": "0",
+        "DB": "0",
+        "VY": scene["UY"],
+        "WA": "0",
+        "WB": "0",
+    },
+    "heavy against light": lambda rng, scene: {
+        "MB": f"1E{rng.randint(4, 9)}",
+        "IB": f"1E{rng.randint(5, 11)}",
+    },
+    "SI units": lambda rng, scene: {
+        "MA": _between(rng, 800, 3000, 1),
+        "MB": _between(rng, 800, 3000, 1),
+    },
+    "separating": lambda rng, scene: {
+        name: scene[other]
+        for name, other in (("UX", "VX"), ("UY", "VY"), ("VX", "UX"), ("VY", "UY"))
+    },
+    "friction beyond critical": lambda rng, scene: {"MU": _between(rng, 1.5, 3, 2)},
+    "ten digits typed": lambda rng, scene: {
+        name: f"{rng.uniform(1000, 99999):.5f}" for name in ("IA", "IB")
+    },
+}
+"""Label -> what makes a casework scene that edge."""
+
+FAILURES: dict[str, Case] = {
+    "all at rest": _fixed(UX="0", UY="0", WA="0", VX="0", VY="0", WB="0"),
+    "IA is zero": _fixed(IA="0"),
+    "IB is zero": _fixed(IB="0"),
+    "MA is zero": _fixed(MA="0"),
+    "overflow": lambda rng, scene: {"UX": f"1E{rng.randint(20, 38)}"},
+    "tiny units": lambda rng, scene: {
+        "MA": _between(rng, 1, 9, 1) + "E-12",
+        "MB": _between(rng, 1, 9, 1) + "E-12",
+        "IA": _between(rng, 1, 9, 1) + "E-11",
+        "IB": _between(rng, 1, 9, 1) + "E-11",
+    },
+    "MU flipped to the pivot's": _fixed(MU="10"),
+    "MU below the pivot's": lambda rng, scene: {"MU": str(-rng.randint(11, 20))},
+    "point mass with arms left": _fixed(M="4"),
+    "stale pivot row": _fixed(
+        MA=".004",
+        IA="4E-8",
+        DA=".005",
+        PA="90",
+        MB="2E-11",
+        IB="1E-20",
+        DB="0",
+        PB="0",
+        GA="-30",
+        TA="0",
+        TB="0",
+        E=".5",
+        MU=".5",
+        EM="-1",
+        UX="-2",
+        UY="0",
+        WA="0",
+        VX="0",
+        VY="1",
+        WB="0",
+        M="6",
+    ),
+    "singular friction": _fixed(
+        E="0.005",
+        MU="3.19214397",
+        EM="-0.715",
+        DA="7.59",
+        DB="3.44",
+        GA="-30.0",
+        PA="-19.8",
+        PB="-38.7",
+        TA="0.0",
+        TB="60.0",
+        MA="143.5",
+        MB="95.8",
+        IA="3728",
+        IB="1961",
+        UX="-29.04",
+        UY="0",
+        WA="0",
+        VX="14.52",
+        VY="25.15",
+        WB="0",
+        M="6",
+    ),
+    "same velocity": _same_velocity,
+}
+"""Label -> what makes a casework scene that failure, or invites it."""

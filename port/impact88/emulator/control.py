@@ -1,0 +1,224 @@
+"""The control stack: FOR loops and GOSUBs, as the ROM keeps them on the 6502's stack.
+
+A FOR takes 18 bytes, a GOSUB 7; the stack pointer starts at 248 and a formula needs it at 59 or
+more. An error that ONERR catches leaves what was on the stack lying there, and everything below it
+out of reach, until RESUME or the manual's CALL -3288 clears it away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from ..applesoft.errors import ApplesoftError
+from ..applesoft.real import ZERO, Number, add, compare, rounded
+from .pieces import ROOM, STACK, TEMPORARIES
+from .variables import Variables
+
+FOR_SIZE = 18
+FOR_ROOM = 74
+GOSUB_SIZE = 7
+GOSUB_ROOM = 64
+GOSUB = -2
+LEFTOVER = -3
+_LEFT_BY = {
+    "DIVISION BY ZERO": 9,
+    "OVERFLOW": 11,
+    "ILLEGAL QUANTITY": 13,
+    "BAD SUBSCRIPT": 11,
+    "UNDEF'D FUNCTION": 9,
+    "REDIM'D ARRAY": 6,
+    "TYPE MISMATCH": 5,
+    "SYNTAX": 4,
+    "RETURN WITHOUT GOSUB": 0,
+}
+"""Bytes an error leaves on the stack (else 2), as in the plainest statement that runs into it; in
+a longer formula it may leave more."""
+
+
+class Frame(NamedTuple):
+    """``slot``: the variable of a FOR, or GOSUB, or LEFTOVER. ``back``: the step to go back to.
+    ``sign`` is that of the step; for LEFTOVER, how many bytes were left."""
+
+    slot: int
+    back: int
+    limit: Number = ZERO
+    step: Number = ZERO
+    sign: int = 0
+
+
+class Elsewhere(Exception):
+    """Go on at ``pc``, in another manner: the stack may have too little room for a formula now."""
+
+    def __init__(self, pc: int) -> None:
+        self.pc = pc
+
+
+class Control:
+    """The stack. ``pointer`` is the 6502's; ``safe`` is the lowest at which no formula of the
+    program can run out of stack; below it steps are compiled to look."""
+
+    def __init__(self, variables: Variables) -> None:
+        self.frames: list[Frame] = []
+        self.pointer = STACK
+        self.safe = 0
+        self.careful = False
+        self.depth = 0
+        self.lost = 0
+        self._values = variables.values
+        self._variables = variables
+
+    def clear(self) -> None:
+        """STKINI."""
+        self.frames.clear()
+        self.pointer = STACK
+        self.careful = False
+        self.depth = 0
+        self.lost = 0
+
+    def _look(self, pc: int) -> None:
+        careful = self.pointer < self.safe or self.lost > 0
+        if careful != self.careful:
+            self.careful = careful
+            raise Elsewhere(pc)
+
+    def send_back(self, moved: Callable[[int], int]) -> None:
+        """The steps that loops and subroutines go back to have moved."""
+        self.frames[:] = [frame._replace(back=moved(frame.back)) for frame in self.frames]
+
+    # --- what careful steps ask ---------------------------------------------------------------
+
+    def room(self, at: int) -> None:
+        """Raises OUT OF MEMORY if a formula cannot begin ``at`` bytes down."""
+        if self.pointer - self.depth - at < ROOM:
+            raise ApplesoftError("OUT OF MEMORY")
+
+    def places(self, n: int) -> None:
+        """Raises FORMULA TOO COMPLEX if there is no place for an n-th pending string."""
+        if n + self.lost > TEMPORARIES:
+            raise ApplesoftError("FORMULA TOO COMPLEX")
+
+    def watch(self, pc: int) -> None:
+        """Before a step that may lose a place: go on carefully."""
+        if not self.careful:
+            self.careful = True
+            raise Elsewhere(pc)
+
+    def lose(self, condition: bool) -> bool:
+        """IF with a string: one of the places stays taken."""
+        self.lost += 1
+        return condition
+
+    # --- FOR and NEXT -------------------------------------------------------------------------
+
+    def begin_for(self, slot: int) -> None:
+        """A loop with the same variable ends, and those inside it. Raises OUT OF MEMORY."""
+        for n in range(len(self.frames) - 1, -1, -1):
+            found = self.frames[n].slot
+            if found < 0:
+                break
+            if found == slot:
+                self._drop(n)
+                break
+        if self.pointer < FOR_ROOM:
+            raise ApplesoftError("OUT OF MEMORY")
+
+    def push_for(self, slot: int, back: int, limit: Number, step: Number) -> int:
+        """A loop begins; returns where its body does."""
+        sign = (-1 if step[2] else 1) if step[0] else 0
+        self.frames.append(Frame(slot, back, limit, step, sign))
+        self.pointer -= FOR_SIZE
+        if self.pointer < self.safe:
+            self._look(back)
+        return back
+
+    def next_(self, pc: int, slot: int) -> int:
+        """NEXT of a variable, or of the innermost loop (-1): where to go on."""
+        frames = self.frames
+        if not frames or frames[-1].slot != slot:
+            self._find(slot)
+        slot, back, limit, step, sign = frames[-1]
+        values = self._values
+        values[slot] = value = rounded(add(values[slot], step))
+        if compare(limit, value) != sign:
+            return back
+        self._drop(len(frames) - 1)
+        if self.careful:
+            self._look(pc + 1)
+        return pc + 1
+
+    def _find(self, slot: int) -> None:
+        """Bring the variable's loop to the top. Raises NEXT WITHOUT FOR."""
+        if slot >= 0:
+            self._variables.place(slot)
+        for n in range(len(self.frames) - 1, -1, -1):
+            found = self.frames[n].slot
+            if found < 0:
+                break
+            if slot in (-1, found):
+                self._drop(n + 1)
+                return
+        raise ApplesoftError("NEXT WITHOUT FOR")
+
+    def _drop(self, n: int) -> None:
+        """Forget the frames from the n-th on."""
+        for frame in self.frames[n:]:
+            if frame.slot >= 0:
+                self.pointer += FOR_SIZE
+            else:
+                self.pointer += GOSUB_SIZE if frame.slot == GOSUB else frame.sign
+        del self.frames[n:]
+
+    # --- GOSUB and RETURN ---------------------------------------------------------------------
+
+    def push_gosub(self, back: int) -> None:
+        """Raises OUT OF MEMORY."""
+        if self.pointer < GOSUB_ROOM:
+            raise ApplesoftError("OUT OF MEMORY")
+        self.frames.append(Frame(GOSUB, back))
+        self.pointer -= GOSUB_SIZE
+
+    def settle(self, pc: int) -> int:
+        """After GOSUB: go on at pc, carefully if need be."""
+        if self.pointer < self.safe:
+            self._look(pc)
+        return pc
+
+    def return_(self) -> int:
+        """RETURN: where to go on. Raises RETURN WITHOUT GOSUB."""
+        back = self._return_place()
+        if self.careful:
+            self._look(back)
+        return back
+
+    def pop(self) -> None:
+        """POP. Raises RETURN WITHOUT GOSUB."""
+        self._return_place()
+
+    def _return_place(self) -> int:
+        frames = self.frames
+        n = len(frames) - 1
+        while n >= 0 and frames[n].slot >= 0:
+            n -= 1
+        # the ROM has moved its stack pointer before it finds that there is no GOSUB
+        self._drop(n + 1)
+        if n < 0 or frames[n].slot != GOSUB:
+            raise ApplesoftError("RETURN WITHOUT GOSUB")
+        back = frames[n].back
+        self._drop(n)
+        return back
+
+    # --- errors that ONERR catches ------------------------------------------------------------
+
+    def leave(self, kind: str) -> None:
+        """What an error leaves on the stack."""
+        size = _LEFT_BY.get(kind, 2)
+        if size:
+            self.frames.append(Frame(LEFTOVER, 0, sign=size))
+            self.pointer -= size
+        self.careful = self.pointer < self.safe or self.lost > 0
+
+    def cut(self, frames: int) -> None:
+        """Back to as many frames as there were."""
+        self._drop(frames)
+        self.careful = self.pointer < self.safe or self.lost > 0

@@ -1,0 +1,174 @@
+"""READ, INPUT and GET: values from DATA, from a reply and from a key, by the same rules.
+
+Each variable is found, its value read and stored, then what follows the value is judged; so values
+before a bad one stay stored. A string ends at a comma or colon unless it began with a quote; a
+number is whatever reads as one, and after it only a comma, a colon or the end will do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ..applesoft import decimaltext
+from ..applesoft.console import Console
+from ..applesoft.errors import ApplesoftError
+from ..applesoft.real import rounded
+from .program import START, Program
+from .strings import Literal, StringArea
+from .symbols import INTEGER, STRING
+from .tokens import DATA
+from .variables import whole
+
+Place = tuple[list[Any], int]
+Items = tuple[tuple[str, Callable[[], Place]], ...]
+"""Kind and place of each variable; a place is looked up when its turn comes."""
+
+_ENDS = ("", ":", "\0")
+_DATA = chr(DATA)
+BAD_REPLY = 254
+DIRECT_AFTER_GET = 0xFF40
+"""What a bad GET puts in place of the line number: the machine believes it is at the prompt."""
+
+
+class BadReply(ApplesoftError):
+    """A reply that is no number, while ONERR is on: no message, only a code."""
+
+    def __init__(self) -> None:
+        super().__init__("SYNTAX")
+
+    @property
+    def code(self) -> int:
+        """What ``PEEK (222)`` shows."""
+        return BAD_REPLY
+
+
+def _blanks(text: str, at: int) -> int:
+    while text[at : at + 1] == " ":
+        at += 1
+    return at
+
+
+def _string(text: str, at: int) -> tuple[str, int]:
+    """The string at ``at`` and where it ends."""
+    if text[at : at + 1] == '"':
+        start = at = at + 1
+        while text[at : at + 1] not in ('"', "", "\0"):
+            at += 1
+        return text[start:at], at + 1 if text[at : at + 1] == '"' else at
+    start = at
+    while text[at : at + 1] not in (*_ENDS, ","):
+        at += 1
+    return text[start:at], at
+
+
+class Inputs:
+    """DATA's pointer and the three statements. ``onerr`` tells whether ONERR is on."""
+
+    def __init__(
+        self, program: Program, console: Console, strings: StringArea, onerr: Callable[[], bool]
+    ) -> None:
+        self._program = program
+        self._console = console
+        self._strings = strings
+        self._onerr = onerr
+        self._image: bytes | None = None
+        self._text = ""
+        self.pointer = START - 1
+        self.data_line = 0
+
+    def restore(self) -> None:
+        """RESTORE: READ begins with the first DATA again."""
+        self.pointer = START - 1
+
+    def _take(self, kind: str, place: Place, text: str, at: int, *, literal: bool = False) -> int:
+        """Read a value of a kind at ``at``, store it, and return where it ends, blanks passed."""
+        values, index = place
+        if kind == STRING:
+            string, at = _string(text, at)
+            values[index] = Literal(string) if literal else self._strings.made(string)
+        else:
+            number, at = decimaltext.read(text, at)
+            values[index] = whole(number) if kind == INTEGER else rounded(number)
+        return _blanks(text, at)
+
+    # --- READ ---------------------------------------------------------------------------------
+
+    def read(self, items: Items) -> None:
+        """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is no number."""
+        if self._image is not self._program.image:
+            self._image = self._program.image
+            self._text = "\0" + self._image.decode("latin-1")
+        text = self._text
+        at = self.pointer - (START - 1)
+        for kind, where in items:
+            place = where()
+            at = _blanks(text, at)
+            if text[at] in _ENDS:
+                at = self._next_data(at)
+            at = self._take(kind, place, text, _blanks(text, at + 1), literal=True)
+            if text[at] not in (*_ENDS, ","):
+                raise ApplesoftError("SYNTAX", self.data_line)
+        self.pointer = at + START - 1
+
+    def _next_data(self, at: int) -> int:
+        """Where the next DATA stands."""
+        text = self._text
+        while True:
+            quoted = False
+            while text[at] != "\0" and (quoted or text[at] != ":"):
+                quoted ^= text[at] == '"'
+                at += 1
+            if text[at] == "\0":
+                if text[at + 2 : at + 3] in ("", "\0"):
+                    raise ApplesoftError("OUT OF DATA")
+                self.data_line = ord(text[at + 3]) + 256 * ord(text[at + 4])
+                at += 4
+            at += 1
+            if text[at] == _DATA:
+                return at
+
+    # --- INPUT --------------------------------------------------------------------------------
+
+    def input_(self, pc: int, items: Items) -> bool:
+        """INPUT after its prompt; True if the statement has to be done again."""
+        console = self._console
+        text = console.read_line()
+        at = -1
+        for kind, where in items:
+            place = where()
+            if at >= 0 and text[at : at + 1] in _ENDS:
+                console.put("??")
+                text = console.read_line()
+                at = -1
+            refused = kind != STRING and not text
+            if not refused:
+                at = self._take(kind, place, text, _blanks(text, at + 1))
+                refused = text[at : at + 1] not in (*_ENDS, ",")
+            if refused:
+                if self._onerr():
+                    raise BadReply
+                console.put("?REENTER\n")
+                return True
+        if at < len(text):
+            console.put("?EXTRA IGNORED\n")
+        return False
+
+    # --- GET ----------------------------------------------------------------------------------
+
+    def get(self, items: Items) -> None:
+        """GET. Raises SYNTAX, as if at the prompt, for a key that begins no number."""
+        at = 0
+        key = ""
+        for kind, where in items:
+            values, index = where()
+            key = chr(ord(self._console.read_key()) & 0x7F).rstrip("\0")
+            if kind == STRING:
+                values[index] = self._strings.made(key)
+                at = len(key)
+                continue
+            at = self._take(kind, (values, index), key, _blanks(key, 0))
+            if key[at : at + 1] not in (*_ENDS, ","):
+                raise ApplesoftError("SYNTAX", DIRECT_AFTER_GET)
+        if at < len(key):
+            self._console.put("?EXTRA IGNORED\n")

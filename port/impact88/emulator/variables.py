@@ -1,0 +1,252 @@
+"""Variables and arrays: values by slot, the order they came into being, and the room they take.
+
+A simple variable takes seven bytes, an array five, two for each dimension and its elements. Both
+are made when something is assigned to them; merely reading a simple variable makes none. Arrays
+follow the variables in memory, strings grow down from HIMEM towards them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from ..applesoft.errors import ApplesoftError, illegal_quantity
+from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
+from .strings import Literal, StringArea
+from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
+
+TOP_OF_MEMORY = 0xC000
+"""48K: HIMEM without a disk system."""
+VARIABLE_SIZE = 7
+ARRAY_HEADER = 5
+ELEMENT_SIZES = {REAL: 5, INTEGER: 2, STRING: 3}
+AUTOMATIC = 11
+"""Elements per dimension of an array that no DIM made."""
+EMPTY = Literal("")
+MINUS_32768 = from_stored("9080000000")
+
+
+class Array(NamedTuple):
+    """``sizes`` counts the elements per dimension; ``data`` has the first subscript fastest."""
+
+    sizes: tuple[int, ...]
+    data: list[Any]
+    kind: str
+
+
+class Function(NamedTuple):
+    """What DEF FN made: the argument's slot, and the body as it was compiled there."""
+
+    argument: int
+    body: Any
+    need: int
+
+
+def blank(kind: str) -> Any:
+    """What a variable never assigned reads as."""
+    return EMPTY if kind == STRING else None if kind == FUNCTION else ZERO
+
+
+class Variables:
+    """All variables of a machine.
+
+    ``values`` and ``arrays`` are lists by slot, the same objects for the machine's life; ``made``
+    says which simple variables exist, ``order`` and ``array_order`` since when.
+    """
+
+    def __init__(self) -> None:
+        self.values: list[Any] = []
+        self.made = bytearray()
+        self.arrays: list[Array | None] = []
+        self.order: list[int] = []
+        self.array_order: list[int] = []
+        self.start = 0
+        self._end = 0
+        self._arrays_size = 0
+        self.strings = StringArea(TOP_OF_MEMORY, self.end_of_arrays, self._live_characters)
+        self.grow()
+
+    def grow(self) -> None:
+        """Make room for names that came up since."""
+        for name in SIMPLE.names[len(self.values) :]:
+            self.values.append(blank(name.kind))
+            self.made.append(0)
+        self.arrays += [None] * (len(ARRAYS) - len(self.arrays))
+
+    def clear(self) -> None:
+        """CLEAR: none left."""
+        for slot in self.order:
+            self.values[slot] = blank(SIMPLE.names[slot].kind)
+            self.made[slot] = 0
+        for slot in self.array_order:
+            self.arrays[slot] = None
+        self.order.clear()
+        self.array_order.clear()
+        self._end = self.start
+        self._arrays_size = 0
+        self.strings.clear()
+
+    def put_start(self, address: int) -> None:
+        """LOMEM: where the variables begin. Clears them."""
+        self.start = address
+        self.clear()
+
+    def end_of_variables(self) -> int:
+        """ARYTAB."""
+        return self._end
+
+    def end_of_arrays(self) -> int:
+        """STREND."""
+        return self._end + self._arrays_size
+
+    def free(self, _: object) -> Number:
+        """FRE, whatever its argument: the room left, past 32767 as a negative number."""
+        self.strings.collect()
+        room = self.strings.bottom - self.end_of_arrays()
+        return integer((room + 0x8000 & 0xFFFF) - 0x8000)
+
+    def _live_characters(self) -> int:
+        total = 0
+        for slot in self.order:
+            value = self.values[slot]
+            if value.__class__ is str:
+                total += len(value)
+        for slot in self.array_order:
+            array = self.arrays[slot]
+            if array is not None and array.kind == STRING:
+                total += sum(len(text) for text in array.data if text.__class__ is str)
+        return total
+
+    def _room(self, size: int) -> None:
+        """Raises OUT OF MEMORY unless so much more fits between arrays and strings."""
+        end = self.end_of_arrays() + size
+        if end >= self.strings.bottom:
+            self.strings.collect()
+            if end >= self.strings.bottom:
+                raise ApplesoftError("OUT OF MEMORY")
+
+    # --- simple variables ---------------------------------------------------------------------
+
+    def make(self, slot: int) -> None:
+        """A simple variable comes into being, zero or empty. Raises OUT OF MEMORY."""
+        self._room(VARIABLE_SIZE)
+        self._end += VARIABLE_SIZE
+        self.made[slot] = 1
+        self.order.append(slot)
+
+    def place(self, slot: int) -> tuple[list[Any], int]:
+        """Where a simple variable's value is kept; makes it."""
+        if not self.made[slot]:
+            self.make(slot)
+        return self.values, slot
+
+    # --- arrays -------------------------------------------------------------------------------
+
+    def dimension(self, slot: int, last: Sequence[int]) -> None:
+        """DIM. Raises REDIM'D ARRAY and OUT OF MEMORY."""
+        if self.arrays[slot] is not None:
+            raise ApplesoftError("REDIM'D ARRAY")
+        self._make_array(slot, [n + 1 for n in last])
+
+    def _make_array(self, slot: int, sizes: Sequence[int]) -> Array:
+        kind = ARRAYS.names[slot].kind
+        header = ARRAY_HEADER + 2 * len(sizes)
+        self._room(header)
+        elements = 1
+        for size in sizes:
+            elements *= size
+        size = header + elements * ELEMENT_SIZES[kind]
+        self._room(size)
+        self._arrays_size += size
+        self.array_order.append(slot)
+        array = Array(tuple(sizes), [blank(kind)] * elements, kind)
+        self.arrays[slot] = array
+        return array
+
+    def element1(self, slot: int, i: int) -> tuple[list[Any], int]:
+        """Where an element with one subscript is kept; makes the array. Raises BAD SUBSCRIPT."""
+        array = self.arrays[slot]
+        if array is None:
+            array = self._make_array(slot, (AUTOMATIC,))
+        sizes = array[0]
+        if len(sizes) != 1 or i >= sizes[0]:
+            raise ApplesoftError("BAD SUBSCRIPT")
+        return array[1], i
+
+    def element2(self, slot: int, i: int, j: int) -> tuple[list[Any], int]:
+        """The same with two subscripts."""
+        array = self.arrays[slot]
+        if array is None:
+            array = self._make_array(slot, (AUTOMATIC, AUTOMATIC))
+        sizes = array[0]
+        if len(sizes) != 2 or i >= sizes[0] or j >= sizes[1]:
+            raise ApplesoftError("BAD SUBSCRIPT")
+        return array[1], i + sizes[0] * j
+
+    def element(self, slot: int, *subscripts: int) -> tuple[list[Any], int]:
+        """The same with any number of subscripts."""
+        array = self.arrays[slot]
+        if array is None:
+            array = self._make_array(slot, (AUTOMATIC,) * len(subscripts))
+        sizes = array[0]
+        if len(sizes) != len(subscripts):
+            raise ApplesoftError("BAD SUBSCRIPT")
+        at = 0
+        for i, size in zip(reversed(subscripts), reversed(sizes), strict=True):
+            if i >= size:
+                raise ApplesoftError("BAD SUBSCRIPT")
+            at = at * size + i
+        return array[1], at
+
+    def value1(self, slot: int, i: int) -> Any:
+        """The value of an element with one subscript."""
+        data, at = self.element1(slot, i)
+        return data[at]
+
+    def value2(self, slot: int, i: int, j: int) -> Any:
+        """The value of an element with two subscripts."""
+        array = self.arrays[slot]
+        if array is None:
+            array = self._make_array(slot, (AUTOMATIC, AUTOMATIC))
+        sizes = array[0]
+        if len(sizes) != 2 or i >= sizes[0] or j >= sizes[1]:
+            raise ApplesoftError("BAD SUBSCRIPT")
+        return array[1][i + sizes[0] * j]
+
+    def value(self, slot: int, *subscripts: int) -> Any:
+        """The value of any element."""
+        data, at = self.element(slot, *subscripts)
+        return data[at]
+
+
+def whole(x: Number) -> Number:
+    """What an integer variable stores: rounded to 32 bits, then down. Raises ILLEGAL QUANTITY
+    outside -32768 ... 32767."""
+    x = rounded(x)
+    if x[0] >= 0x90 and compare(MINUS_32768, x):
+        raise illegal_quantity()
+    return integer(to_integer(x))
+
+
+def subscript(x: Number) -> int:
+    """A subscript: rounded down, 0 ... 32767. Raises ILLEGAL QUANTITY for a negative or larger one,
+    however small its fraction."""
+    e, m, s = x
+    if s or e > 143:
+        raise illegal_quantity()
+    return m >> 168 - e
+
+
+def byte(x: Number) -> int:
+    """A value from 0 to 255, rounded down. Raises ILLEGAL QUANTITY."""
+    n = subscript(x)
+    if n > 255:
+        raise illegal_quantity()
+    return n
+
+
+def address(x: Number) -> int:
+    """A 16-bit address; a negative one counts from the top. Raises ILLEGAL QUANTITY past 65535."""
+    if x[0] > 0x90:
+        raise illegal_quantity()
+    return to_integer(x) & 0xFFFF

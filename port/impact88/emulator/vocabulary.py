@@ -1,0 +1,140 @@
+"""The names that compiled steps use, and what each means on a given parts.
+
+`expressions` and the statement compilers write these names; nothing else may depend on them.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..applesoft import decimaltext, functions
+from ..applesoft.errors import ApplesoftError
+from ..applesoft.real import (
+    ZERO,
+    absolute,
+    add,
+    compare,
+    divide,
+    floor,
+    integer,
+    multiply,
+    negate,
+    rounded,
+    subtract,
+)
+from . import memory
+from .parts import Parts
+from .strings import code, value
+from .variables import Function, address, byte, subscript, whole
+
+
+def bad(kind: str) -> None:
+    """The error that a piece of the program runs into."""
+    raise ApplesoftError(kind)
+
+
+_NUMBERS: dict[str, Any] = {
+    "add": add,
+    "subtract": subtract,
+    "multiply": multiply,
+    "divide": divide,
+    "power": functions.power,
+    "negate": negate,
+    "rounded": rounded,
+    "compare": compare,
+    "ONE": integer(1),
+    "TRUTH": (ZERO, integer(1)),
+    "SGN": functions.sign,
+    "INT": floor,
+    "ABS": absolute,
+    "SQR": functions.square_root,
+    "LOG": functions.logarithm,
+    "EXP": functions.exponential,
+    "SIN": functions.sine,
+    "COS": functions.cosine,
+    "TAN": functions.tangent,
+    "ATN": functions.arc_tangent,
+    "byte": byte,
+    "address": address,
+    "subscript": subscript,
+    "whole": whole,
+    "LEN": lambda text: integer(len(text)),
+    "ASC": lambda text: integer(code(text)),
+    "VAL": lambda text: value(text, decimaltext.read),
+    "write": decimaltext.write,
+    "Function": Function,
+    "bad": bad,
+}
+
+
+def names(parts: Parts) -> dict[str, Any]:
+    """The names for a machine of these parts, but for those of its own methods."""
+    return {**_NUMBERS, **_values(parts), **_flow(parts), **_outside(parts)}
+
+
+def _values(parts: Parts) -> dict[str, Any]:
+    variables, strings = parts.variables, parts.variables.strings
+    return {
+        "V": variables.values,
+        "made_": variables.made,
+        "make": variables.make,
+        "place": variables.place,
+        "element1": variables.element1,
+        "element2": variables.element2,
+        "element": variables.element,
+        "value1": variables.value1,
+        "value2": variables.value2,
+        "value": variables.value,
+        "dimension": variables.dimension,
+        "joined": strings.joined,
+        "left": strings.left,
+        "right": strings.right,
+        "mid": strings.mid,
+        "made": strings.made,
+        "copy": strings.copy,
+        "CHR": lambda x: strings.character(byte(x)),
+        "STR": lambda x: strings.made(decimaltext.write(x)),
+        "FRE": variables.free,
+    }
+
+
+def _flow(parts: Parts) -> dict[str, Any]:
+    control = parts.control
+    return {
+        "begin_for": control.begin_for,
+        "push_for": control.push_for,
+        "next_": control.next_,
+        "return_": control.return_,
+        "pop": control.pop,
+        "room": control.room,
+        "places": control.places,
+        "watch": control.watch,
+        "lose": control.lose,
+    }
+
+
+def _outside(parts: Parts) -> dict[str, Any]:
+    output, inputs = parts.output, parts.inputs
+    return {
+        "out": output.out,
+        "newline": output.newline,
+        "zone": output.zone,
+        "tab": output.tab,
+        "spc": output.spc,
+        "POS": output.position,
+        "htab": output.htab,
+        "vtab": output.vtab,
+        "home": parts.screen.home,
+        "text": parts.screen.full_window,
+        "normal": output.normal,
+        "inverse": output.inverse,
+        "flash": output.flash,
+        "pr": parts.console.select,
+        "in_": lambda slot: None,  # nothing but the keyboard is plugged in
+        "read": inputs.read,
+        "restore": inputs.restore,
+        "input_": inputs.input_,
+        "get": inputs.get,
+        "PEEK": lambda x: integer(memory.peek(parts, address(x))),
+        "WAIT": lambda place, mask, flip=0: bool((memory.peek(parts, place) ^ flip) & mask),
+    }

@@ -1,0 +1,183 @@
+"""The arithmetics the port can take: Applesoft's own, and IEEE double.
+
+Both offer the same operations to the same statements, so that a difference between two printouts
+is the arithmetic's alone. `APPLESOFT` stores with rounding to 32 bits; `FLOAT64` is Python's float
+and math, printed by Applesoft's layout of nine digits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from ..applesoft import decimaltext, functions
+from ..applesoft.errors import ApplesoftError, division_by_zero, illegal_quantity, overflow
+from ..applesoft.operators import Real
+from ..applesoft.real import ZERO, Number, absolute, floor, integer
+from ..errors import UserError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Arithmetic:
+    """What the listing needs of a machine's numbers.
+
+    ``read(text, start)`` gives the number that begins there and where it ends; ``LET`` is what
+    storing does to a value and ``NEXT`` what NEXT makes of a loop's variable; ``error`` turns an
+    exception of this arithmetic into Applesoft's, or None if it is not the arithmetic's. ``unset``
+    is a zero that ``is`` tells from every other: the value of a variable never assigned; ``zero``
+    is any other zero.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        read: Callable[[str, int], tuple[Any, int]],
+        LET: Callable[[Any], Any],
+        NEXT: Callable[[Any], Any],
+        INT: Callable[[Any], Any],
+        ABS: Callable[[Any], Any],
+        SIN: Callable[[Any], Any],
+        COS: Callable[[Any], Any],
+        write: Callable[[Any], str],
+        error: Callable[[Exception], ApplesoftError | None],
+        unset: Any,
+        zero: Any,
+    ) -> None:
+        self.name = name
+        self.read = read
+        self.LET = LET
+        self.NEXT = NEXT
+        self.INT = INT
+        self.ABS = ABS
+        self.SIN = SIN
+        self.COS = COS
+        self.write = write
+        self.error = error
+        self.unset = unset
+        self.zero = zero
+        self._constants: dict[str, Any] = {}
+
+    def number(self, text: str) -> Any:
+        """The number ``text`` is, not yet rounded. Raises ApplesoftError OVERFLOW."""
+        return self.read(text.upper(), 0)[0]
+
+    def constant(self, text: str) -> Any:
+        """The same for a constant of the program, read once."""
+        if text not in self._constants:
+            self._constants[text] = self.number(text)
+        return self._constants[text]
+
+
+def _applesoft_error(error: Exception) -> ApplesoftError | None:
+    return error if isinstance(error, ApplesoftError) else None
+
+
+def _read_real(text: str, start: int) -> tuple[Real, int]:
+    number, end = decimaltext.read(text, start)
+    return Real(number), end
+
+
+def _write_real(x: Real) -> str:
+    return decimaltext.write(x.number)
+
+
+def _next_real(x: Real) -> Real:
+    """x + 1, stored; what follows the usual small numbers is worked out once."""
+    return _FOLLOWING.get(x.number) or (x + 1).rounded()
+
+
+_FOLLOWING = {integer(n): (Real(integer(n)) + 1).rounded() for n in range(16)}
+
+
+def _of_reals(function: Callable[[Number], Number]) -> Callable[[Real], Real]:
+    def of_real(x: Real) -> Real:
+        return Real(function(x.number))
+
+    return of_real
+
+
+def _float_error(error: Exception) -> ApplesoftError | None:
+    if isinstance(error, ZeroDivisionError):
+        return division_by_zero()
+    if isinstance(error, OverflowError):
+        return overflow()
+    if isinstance(error, ValueError):
+        return illegal_quantity()
+    return _applesoft_error(error)
+
+
+def _read_float(text: str, start: int) -> tuple[float, int]:
+    """The double nearest to the decimal text; the same texts are numbers as in Applesoft."""
+    sign, whole, decimals, exponent_sign, exponent_digits, end = decimaltext.scan(text, start)
+    exponent = exponent_sign + (exponent_digits or "0")
+    value = float(f"{whole or '0'}.{decimals or '0'}E{exponent}")
+    if math.isinf(value):
+        raise overflow()
+    return (-value if sign == "-" else value), end
+
+
+def _write_float(x: float) -> str:
+    """The double to nine digits, laid out as Applesoft lays out its own."""
+    if not math.isfinite(x):
+        raise overflow()
+    if x == 0:
+        return "0"
+    mantissa, exponent = f"{abs(x):.8E}".split("E")
+    return decimaltext.lay_out("-" if x < 0 else "", mantissa.replace(".", ""), int(exponent) - 8)
+
+
+def _keep(x: float) -> float:
+    return x
+
+
+def _next_float(x: float) -> float:
+    return x + 1
+
+
+def _floor(x: float) -> float:
+    """INT of a double. Raises OverflowError for one that is not finite."""
+    if not math.isfinite(x):
+        raise overflow()
+    return float(math.floor(x))
+
+
+APPLESOFT = Arithmetic(
+    "applesoft",
+    read=_read_real,
+    LET=Real.rounded,
+    NEXT=_next_real,
+    INT=_of_reals(floor),
+    ABS=_of_reals(absolute),
+    SIN=_of_reals(functions.sine),
+    COS=_of_reals(functions.cosine),
+    write=_write_real,
+    error=_applesoft_error,
+    unset=Real(ZERO),
+    zero=Real(ZERO),
+)
+FLOAT64 = Arithmetic(
+    "float64",
+    read=_read_float,
+    LET=_keep,
+    NEXT=_next_float,
+    INT=_floor,
+    ABS=abs,
+    SIN=math.sin,
+    COS=math.cos,
+    write=_write_float,
+    error=_float_error,
+    unset=float("0"),
+    zero=float("0"),
+)
+ARITHMETICS = {arithmetic.name: arithmetic for arithmetic in (APPLESOFT, FLOAT64)}
+
+
+def named(name: str) -> Arithmetic:
+    """The arithmetic of that name. Raises UserError for an unknown one."""
+    if name not in ARITHMETICS:
+        raise UserError(f"{name!r} is no arithmetic; expected {' or '.join(ARITHMETICS)}")
+    return ARITHMETICS[name]

@@ -1,0 +1,122 @@
+"""Run the 1988 program on a scene, as if typed in and started with RUN.
+
+The faithful path from texts to printout: the port gets the scene's data lines, and its velocities
+over the keyboard.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import namedtuple
+from collections.abc import Mapping
+from contextlib import nullcontext
+
+from ..applesoft.console import Console
+from ..applesoft.errors import ApplesoftError
+from ..applesoft.operators import Real
+from ..scene import Scene
+from . import arithmetics, listing, stepping
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+BELL = "\a"
+
+
+class Run(namedtuple("Run", ("printout", "error", "line", "reals", "A", "zero_determinant"))):
+    """What a run left behind.
+
+    ``printout``: every character sent, RETURN as newline, control characters kept. ``error``: the
+    Applesoft error that ended it, or None; ``line``: its line. ``reals``: every real variable that
+    was assigned, as five stored bytes in hexadecimal. ``A``: the array's ``dims`` (sizes) and
+    ``data``, first subscript fastest; None before line 360. In double precision the values are
+    floats. ``zero_determinant``: whether the program ended at line 1160.
+    """
+
+    __slots__ = ()
+
+
+def start(
+    data: Mapping[str, str],
+    console: Console,
+    arithmetic: str = "applesoft",
+    slot: str = "0",
+    after_line: stepping.AfterLine | None = None,
+) -> tuple[ApplesoftError | None, bool, stepping.Variables]:
+    """Run the port on a console until the program ends.
+
+    Returns the error that ended it (with its line), whether it found a zero determinant, and the
+    variables. An error's message goes to the console, as the ROM prints it. Raises UserError for an
+    unknown arithmetic and `console.EndOfInput`.
+    """
+    chosen = arithmetics.named(arithmetic)
+    error = None
+    zero_determinant = False
+    watching = stepping.after_every_line(after_line, chosen.unset) if after_line else nullcontext()
+    try:
+        names: Mapping[str, Any]
+        with watching:
+            names = listing.impact(data, chosen, console, slot)
+    except listing.End as end:
+        zero_determinant = True
+        names = stepping.names_in(end.__traceback__)
+    except Exception as exception:
+        error = chosen.error(exception)
+        if error is None:
+            raise
+        error.line = stepping.line_of(exception.__traceback__)
+        names = stepping.names_in(exception.__traceback__)
+    left = stepping.variables(names, chosen.unset)
+    if error is not None and error.line is not None:
+        begun = stepping.begun_assignment(error.line, left.reals)
+        if begun:
+            left = stepping.Variables({**left.reals, begun: chosen.zero}, left.A)
+        console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
+    return error, zero_determinant, left
+
+
+def run(
+    scene: Mapping[str, str],
+    arithmetic: str = "applesoft",
+    *,
+    dos: bool = True,
+    slot: int = 0,
+    after_line: stepping.AfterLine | None = None,
+) -> Run:
+    """Run the program on a scene and keep everything; with ``after_line``, stop after every line.
+
+    Printer output (``slot`` 1) is part of the printout. Raises UserError for an unknown arithmetic.
+    """
+    scene = scene if isinstance(scene, Scene) else Scene.from_mapping(scene)
+    characters: list[str] = []
+    replies = iter(scene.keyboard())
+    console = Console(lambda: next(replies, None), characters.append, dos=dos)
+    error, zero_determinant, left = start(scene, console, arithmetic, str(slot), after_line)
+    return finished("".join(characters), error, zero_determinant, left)
+
+
+def finished(
+    printout: str,
+    error: ApplesoftError | None,
+    zero_determinant: bool,
+    left: stepping.Variables,
+) -> Run:
+    """The Run that `start`'s results amount to, its numbers in the captures' form."""
+    return Run(
+        printout,
+        error.message if error else None,
+        error.line if error else None,
+        {name: _shown(value) for name, value in left.reals.items()},
+        None
+        if left.A is None
+        else {"dims": left.A.sizes, "data": [_shown(value) for value in left.A.data]},
+        zero_determinant,
+    )
+
+
+def _shown(value: Any) -> Any:
+    """A real's stored bytes in hexadecimal; a double as it is, or in words where JSON has none."""
+    if isinstance(value, Real):
+        return value.stored().hex()
+    return value if math.isfinite(value) else str(value)

@@ -1,0 +1,58 @@
+"""The six initial velocities from the six final ones, in closed form, over arrays.
+
+The inverse of Equations 13-18 (chapter, Section IV-C: "if the final velocities are known, these
+equations are linear and can be solved for the initial velocities, as done in an accident
+reconstruction"). With the relative contact velocities after impact Gn and the relative spin GW:
+
+    M  = (1 - e_m)/e_m · GW / (1/I_a + 1/I_b)                             Equation 18
+    Pn = [(1 + 1/e) Gn - (a_n/I_a - b_n/I_b) M] / (R + S_nn + μ S_nt)      Equations 15 and 16
+    Pt = μ Pn                                                              Equation 16
+    v  = V - impulse / mass                                                Equations 13, 14 and 17
+
+with S_nn = a_n²/I_a + b_n²/I_b and S_nt = a_n a_t/I_a + b_n b_t/I_b. There is no such solution at
+e = 0, at e_m = 0 (which the chapter omits) and for the pivot, which has only five equations for
+the six; errors of the final velocities grow as 1/e. `unknowns` solves any other set of
+unknowns, more slowly, and says why a set cannot be solved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..names import FINAL_VELOCITIES
+from .geometry import Geometry
+
+Array = NDArray[np.float64]
+
+
+def initial_velocities(columns: Mapping[str, Any]) -> dict[str, Array]:
+    """UX UY WA VX VY WB, and the impulses PN PT PM, from the six final velocities.
+
+    ``columns``: numbers or arrays that broadcast: DA DB GA PA PB TA TB MA MB IA IB, M (6 where left
+    out), the coefficients E, EM and MUP (the *signed* P_t/P_n, as printed; line 400's rule needs
+    initial velocities) and VAX VAY VBX VBY WAF WBF. Units are the scene's, angles in degrees.
+    Where there is no solution (e = 0, e_m = 0, the pivot's -10, singular friction) the values are
+    NaN or infinite. Point masses (M = 4) keep their spins and need no e_m.
+    """
+    here = Geometry.of(columns)
+    e, em, mu = (np.asarray(columns[name], np.float64) for name in ("E", "EM", "MUP"))
+    final = [np.asarray(columns[name], np.float64) for name in FINAL_VELOCITIES]
+    final = [final[i] for i in (0, 1, 4, 2, 3, 5)]
+    with np.errstate(all="ignore"):
+        mu = np.where(mu == -10, np.nan, mu)
+        normal, _, spin = here.relative(final)
+        a, b = here.inverse_ia, here.inverse_ib
+        snn = here.an * here.an * a + here.bn * here.bn * b
+        snt = here.an * here.at * a + here.bn * here.bt * b
+        moment = np.where(here.point, 0.0, (1 - em) / em * spin / here.inverse_spin_inertia)
+        turned = (here.an * a - here.bn * b) * moment
+        pn = ((1 + 1 / e) * normal - turned) / (here.inverse_mass + snn + mu * snt)
+        pt = mu * pn
+        changes = here.changes(pn, pt, moment)
+        initial = [after - change for after, change in zip(final, changes, strict=True)]
+    names = ("UX", "UY", "WA", "VX", "VY", "WB", "PN", "PT", "PM")
+    return dict(zip(names, (*initial, pn, pt, moment), strict=True))

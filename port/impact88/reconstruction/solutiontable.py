@@ -1,0 +1,169 @@
+"""A solution of the impact equations as a table to read and as JSON to process."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ..names import CHAPTER, RESULTS, SCENE, Quantity
+from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
+from ..status import WORDS, Status
+from .impulse import clock, forces
+from .outcome import outcome
+from .unknowns import BADLY_CONDITIONED, PIVOT, Solution
+
+_ORDER = (*SCENE, *RESULTS, *CHAPTER)
+_BARRIERS = (
+    *("MB", "IB", "DB", "PB", "TB", "VX", "VY", "WB", "VBX", "VBY", "WBF"),
+    *("XB", "YB", "XBF", "YBF", "DVB", "CBX", "CBY", "PDOFB"),
+)
+"""What is not worth telling of B when it is a rigid barrier."""
+
+
+def quantity(name: str) -> Quantity:
+    """Symbol, meaning and unit of any name a solution has."""
+    return SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
+
+
+def complete(
+    known: Mapping[str, float], solution: Solution, contact_time: float | None
+) -> dict[str, float]:
+    """Everything about one solution of a single scene, by name, in the tables' order: what was
+    given, what was found, and what follows (`chapter.outcome`; forces for a contact time)."""
+    values = {**known, **{name: float(value) for name, value in solution.values.items()}}
+    following = {name: float(value) for name, value in outcome(values).items()}
+    if contact_time is not None and "P" in following:
+        following["TF"] = contact_time
+        following |= {n: float(v) for n, v in forces(following["P"], contact_time).items()}
+    values |= following
+    untold = _BARRIERS if math.isinf(known.get("MB", 0.0)) else ()
+    return {name: values[name] for name in _ORDER if name in values and name not in untold}
+
+
+def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
+    """What a reader must know about a solution of a single scene, in sentences."""
+    found = []
+    if solution.contradictory:
+        found.append(
+            "the known values contradict one another: the solution fits them by least squares, "
+            f"root-mean-square mismatch {number(solution.mismatch, 3)} [length/time]"
+        )
+    worst = {name: float(value) for name, value in solution.amplification.items()}
+    bad = {name: value for name, value in worst.items() if not value < BADLY_CONDITIONED}
+    if bad:
+        names = ", ".join(f"{name} {number(value, 3)} times" for name, value in bad.items())
+        found.append(f"badly conditioned: errors of the known velocities are amplified ({names})")
+    status = Status(int(values.get("STATUS", 0)))
+    found += [words for bit, words in WORDS.items() if status & bit]
+    return found
+
+
+def as_text(known: Mapping[str, float], solution: Solution, values: Mapping[str, float]) -> str:
+    """The solution as tables: velocities, coefficients, impulse, consequences, warnings."""
+    blocks: list[list[str]] = [
+        _velocities(known, values),
+        _named(("E", "MUP", "EM"), known, values),
+        _named(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values),
+        _named(("TF", "FA", "FM2", "FM3"), known, values),
+        _named(("DVA", "DVB", "KI", "KF", "LOSS"), known, values),
+        _named(("CAX", "CAY", "CBX", "CBY"), known, values),
+        _conditions(solution),
+    ]
+    lines = [line for block in blocks if block for line in (*block, "")]
+    for warning in warnings(solution, values):
+        lines += paragraph(f"! {warning}")
+    return "\n".join(lines).rstrip("\n")
+
+
+_ROWS = (
+    ("x", "length/time", ("UX", "VAX", "VX", "VBX")),
+    ("y", "length/time", ("UY", "VAY", "VY", "VBY")),
+    ("spin", "rad/time", ("WA", "WAF", "WB", "WBF")),
+    ("x at contact point", "length/time", ("XA", "XAF", "XB", "XBF")),
+    ("y at contact point", "length/time", ("YA", "YAF", "YB", "YBF")),
+)
+
+
+def _velocities(known: Mapping[str, float], values: Mapping[str, float]) -> list[str]:
+    decimals = {}
+    for unit in ("length/time", "rad/time"):
+        alike = [name for _, row_unit, row in _ROWS if row_unit == unit for name in row]
+        decimals[unit] = decimals_for([values[name] for name in alike if name in values])
+    rows = []
+    vehicles = 2 if "VX" in values or "VBX" in values else 1
+    for label, unit, all_names in _ROWS:
+        names = all_names[: 2 * vehicles]
+        if not any(name in values for name in names):
+            continue
+        cells = []
+        for name in names:
+            text = fixed(values[name], decimals[unit]) if name in values else "unknown"
+            given = name in known or "contact" in label or name not in values
+            cells.append(f"{text}{' ' if given else '*'}")
+        rows.append([label, *cells, unit])
+    heading = ["A before ", "A after ", "B before ", "B after "][: 2 * vehicles]
+    lines = table(rows, ["velocity", *heading, "unit"], left=(0, 1 + 2 * vehicles))
+    return [*lines, "* solved for"]
+
+
+def _named(
+    names: tuple[str, ...], known: Mapping[str, float], values: Mapping[str, float]
+) -> list[str]:
+    rows = []
+    for name in names:
+        if name not in values or values[name] != values[name]:
+            continue
+        what = quantity(name)
+        given = name in known or (name == "MUP" and "MU" in known)
+        mark = "*" if name in ("E", "MUP", "EM") and not given else " "
+        note = what.meaning
+        if name.startswith("PDOF"):
+            note = f"{note} ({clock(values[name])})"
+        if name == "MUP":
+            note = _friction(values)
+        rows.append([name, f"{number(values[name])}{mark}", what.unit, note])
+    return table(rows, left=(0, 2, 3))
+
+
+def _friction(values: Mapping[str, float]) -> str:
+    if values["MUP"] == PIVOT:
+        return "pivot: no tangential relative velocity at separation"
+    text = "signed P_t/P_n"
+    if "UX" in values and "MU" in values:
+        text += f"; MU to type in line 280: {number(values['MU'])}"
+    if "MUC" in values:
+        text += f"; critical {number(values['MUC'])}"
+    return text
+
+
+def _conditions(solution: Solution) -> list[str]:
+    """How errors of the known velocities come through."""
+    cells = [f"{name} {number(value, 3)}" for name, value in solution.amplification.items()]
+    return paragraph(
+        "Error amplification (error of the unknown when each known velocity errs independently by "
+        "1; spins times the radius of gyration "
+        f"{number(solution.gyration, 4)}, coefficients times the closing speed): {', '.join(cells)}"
+    )
+
+
+def as_json(
+    known: Mapping[str, float], solution: Solution, values: Mapping[str, float]
+) -> dict[str, Any]:
+    """The solution for a program; numbers that do not exist are null."""
+    status = int(values.get("STATUS", 0))
+    whole: dict[str, Any] = plain(
+        {
+            "known": [name for name in values if name in known],
+            "solved_for": list(solution.unknown),
+            "values": {n: v for n, v in values.items() if n != "STATUS"},
+            "units": {n: quantity(n).unit for n in values if n != "STATUS"},
+            "amplification": solution.amplification,
+            "badly_conditioned": solution.badly_conditioned,
+            "mismatch": solution.mismatch,
+            "contradictory": solution.contradictory,
+            "status": status if "STATUS" in values else None,
+            "warnings": warnings(solution, values),
+        }
+    )
+    return whole

@@ -1,0 +1,420 @@
+"""Equations 13-18 solved for any unknowns: reconstruction and its relatives (chapter, IV-C).
+
+Twelve velocities (six before, six after the impact) and three coefficients stand in six
+equations. Whatever is not given is unknown; `solve_for` finds what the equations determine:
+
+- six final velocities (what the 1988 program solves);
+- six initial velocities (reconstruction);
+- three initial velocities of one vehicle and three final ones of the other;
+- three velocities and e, e_m, μ;
+- any other solvable set, of six unknowns or fewer. Fewer than six leave equations over: they are
+  then fitted by least squares (each equation written as a velocity, spins times the radius
+  `gyration`, all with equal weight) and the mismatch is told.
+
+Rank and condition of the equations (`chapter.equations`) decide; a set that is not determined is
+refused with the reason.
+
+Friction: ``MUP`` is the signed P_t/P_n as printed; ``MU`` is what line 280 would hold, whose sign
+line 400 chooses so that friction opposes the sliding. The rule needs the initial velocities; where
+they are unknown both signs are tried, and each solution that agrees with its own sign is returned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..closedform.solve import solve
+from ..errors import UserError
+from ..names import RESULTS, SCENE
+from .equations import COEFFICIENTS, FINAL, IMPULSES, INITIAL, SPINS, Equations, Found
+from .geometry import NAMES as GEOMETRY
+
+Array = NDArray[np.float64]
+
+UNKNOWNS = (*INITIAL, *FINAL, *COEFFICIENTS)
+
+PIVOT = -10.0
+BADLY_CONDITIONED = 10.0
+"""From this amplification on a solution is flagged: an error of the known velocities is found
+tenfold, or worse, in some unknown."""
+ORDINARY = {"E": 0.37, "EM": -0.61, "MUP": 0.43}
+"""Coefficients at which nothing special happens."""
+IMPULSES_AND_SPINS = (*IMPULSES, *SPINS)
+CHUNK = 1 << 14
+"""Scenes whose equations are made and solved at a time."""
+TIE = 1e-14
+"""Sliding below this share of the largest speed is rounding, and counts as line 400's tie."""
+
+
+class UnsolvableError(UserError):
+    """The unknowns asked for are not determined; the message is the reason."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """One solution: every quantity it has, by name, in the shape of the given values.
+
+    ``values``: the velocities, E, EM, MUP, MU (to be typed into the listing) and the impulses PN
+    PT PM, as far as they are given or determined. ``unknown``: what was solved for.
+    ``amplification``: for each of them, the error it takes when every known velocity is in error,
+    independently, by one unit (root of the sum of squares; a spin's unit is one unit of velocity
+    over ``gyration``; a coefficient's error is multiplied by the closing speed, so that it is
+    a pure number like the others). ``agrees``: whether the sign of MUP is the one line 400 gives.
+    ``mismatch``: for unknowns fewer than the equations, the equations' root-mean-square mismatch,
+    a velocity; 0 otherwise.
+    """
+
+    values: dict[str, Array]
+    unknown: tuple[str, ...]
+    amplification: dict[str, Array]
+    agrees: NDArray[np.bool_]
+    mismatch: Array
+    gyration: Array
+
+    def __getitem__(self, name: str) -> Array:
+        return self.values[name]
+
+    @property
+    def found(self) -> NDArray[np.bool_]:
+        """Where all unknowns have a value."""
+        return np.all([np.isfinite(self.values[n]) for n in self.unknown], axis=0)
+
+    @property
+    def worst(self) -> Array:
+        """The largest amplification of any unknown."""
+        zero = np.zeros(np.shape(self.agrees))
+        return np.max([zero, *self.amplification.values()], axis=0)
+
+    @property
+    def badly_conditioned(self) -> NDArray[np.bool_]:
+        """Whether some unknown's amplification reaches `BADLY_CONDITIONED`."""
+        return ~(self.worst < BADLY_CONDITIONED)
+
+    @property
+    def contradictory(self) -> NDArray[np.bool_]:
+        """Whether the known values contradict one another beyond rounding."""
+        speeds = [np.abs(self.values[n]) for n in (*INITIAL, *FINAL) if n in self.values]
+        return self.mismatch > 1e-9 * np.max(speeds, axis=0)
+
+
+def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) -> list[Solution]:
+    """Solve Equations 13-18 for what ``known`` leaves out.
+
+    ``known``: numbers or arrays that broadcast, by name: the vehicles and their geometry (DA DB GA
+    PA PB TA TB MA MB IA IB; M, 6 where left out, 4 for point masses; MB and IB may be infinite),
+    and whichever are known of the velocities before (UX UY WA VX VY WB) and after (VAX VAY WAF VBX
+    VBY WBF) and the coefficients E, EM, and MUP or MU (-10: pivot). ``unknown``: the quantities
+    wanted; by default all that is left out. Ask for fewer to get those that are determined though
+    the rest is not (Section VII finds UX and VY from Equations 13 and 14, no coefficient known).
+
+    Returns one `Solution`, or two where MU is known in size only and both signs agree with the
+    sliding they lead to. For single scenes only agreeing solutions are returned; for arrays,
+    solutions that agree anywhere, with their mask. An element of an array that is not determined
+    is NaN; a single scene, or an array without any determined element, raises `UnsolvableError`
+    with the reason. Raises UserError for names or numbers that cannot be used.
+    """
+    problem = _Problem.of(known, unknown)
+    solutions = problem.solutions()
+    if problem.shape == ():
+        kept = [s for s in solutions if s.agrees]
+    else:
+        kept = [s for s in solutions if s.agrees.any()]
+    if kept or 0 in problem.shape:
+        return kept
+    if any(s.found.any() for s in solutions):
+        raise UnsolvableError(
+            "neither sign of MU agrees with the sliding it leads to (line 400): no friction "
+            "that opposes the sliding joins these velocities"
+        )
+    raise UnsolvableError(problem.reason())
+
+
+def generically_solvable(unknown: Sequence[str], *, seed: int = 1988) -> bool:
+    """Whether Equations 13-18 determine ``unknown`` for almost every scene: the rank of a random
+    scene's equations. All of the names must be among `UNKNOWNS`, the rest counts as known.
+
+    A set that passes can still be undetermined for special values (e = 0, e_m = 0, the pivot).
+    """
+    return _Problem.of(_random_scene(unknown, seed), unknown).determined()
+
+
+def solvable_sets() -> list[tuple[str, ...]]:
+    """The sets of six of the twelve velocities that are generically solvable."""
+    return [s for s in combinations((*INITIAL, *FINAL), 6) if generically_solvable(s)]
+
+
+def _random_scene(unknown: Sequence[str], seed: int) -> dict[str, float]:
+    rng = np.random.default_rng(seed)
+    scene = {n: rng.uniform(0.5, 2.0) for n in ("DA", "DB", "MA", "MB", "IA", "IB")}
+    scene |= {n: rng.uniform(-90.0, 90.0) for n in ("GA", "PA", "PB", "TA", "TB")}
+    scene |= ORDINARY
+    scene |= {n: rng.uniform(-2.0, 2.0) for n in (*INITIAL, *FINAL)}
+    return {name: value for name, value in scene.items() if name not in unknown}
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What is known and wanted, checked; every number an array of one ``shape``.
+
+    ``names``: what can be unknown; ``absent``: what is.
+    """
+
+    known: dict[str, Array]
+    wanted: tuple[str, ...]
+    names: tuple[str, ...]
+    absent: tuple[str, ...]
+    shape: tuple[int, ...]
+    point: bool
+
+    @classmethod
+    def of(cls, known: Mapping[str, Any], unknown: Iterable[str] | None) -> _Problem:
+        given = _numbers(known)
+        point = _is_point_mass(given)
+        names = tuple(n for n in UNKNOWNS if not (point and n in (*SPINS, "EM")))
+        absent = tuple(n for n in names if n not in given and not (n == "MUP" and "MU" in given))
+        wanted = absent if unknown is None else tuple(dict.fromkeys(unknown))
+        for name in wanted:
+            if name not in names:
+                raise UserError(f"{name!r} is no unknown; expected some of {' '.join(names)}")
+            if name not in absent:
+                raise UserError(f"{name} is both known and wanted; leave it out of one")
+        if not wanted:
+            raise UserError("nothing is unknown; leave out the values to solve for")
+        try:
+            shape = np.broadcast_shapes(*(value.shape for value in given.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {v.shape}" for name, v in given.items() if v.ndim)
+            raise UserError(f"the arrays do not broadcast together: {shapes}") from None
+        given = {name: np.broadcast_to(value, shape) for name, value in given.items()}
+        _check_physical(given)
+        return cls(given, wanted, names, absent, shape, point)
+
+    @property
+    def friction(self) -> Array | None:
+        """MUP, or MU with its sign still open."""
+        return self.known.get("MUP", self.known.get("MU"))
+
+    @property
+    def pivot(self) -> bool:
+        return self.friction is not None and bool((self.friction == PIVOT).any())
+
+    def solutions(self) -> list[Solution]:
+        """One solution, or one for each sign of MU where line 400 cannot be applied beforehand;
+        NaN where not determined."""
+        if "MU" not in self.known:
+            return [self._solved(self.friction)]
+        mu = self.known["MU"]
+        if self.pivot or not mu.any():
+            return [self._solved(mu)]
+        if all(name in self.known for name in INITIAL if not (self.point and name in SPINS)):
+            # solve's own line 400; what else a scene has does not matter to it
+            scene = {"WA": 0.0, "WB": 0.0, "E": 0.0, "EM": 0.0, **self.known}
+            signed = solve({name: scene[name] for name in SCENE if name in scene}, ("MUP",))
+            return [self._solved(np.where(signed["MUP"] == mu, mu, -mu))]
+        return [self._solved(mu, must_agree=True), self._solved(-mu, must_agree=True)]
+
+    def _solved(self, mu: Array | None, must_agree: bool = False) -> Solution:
+        """The solution for a signed friction coefficient."""
+        count = int(np.prod(self.shape))
+        flat = {name: value.reshape(count) for name, value in self.known.items()}
+        if mu is not None:
+            flat["MUP"] = np.broadcast_to(mu, self.shape).reshape(count)
+        parts = [
+            self._equations({n: v[first : first + CHUNK] for n, v in flat.items()})
+            for first in range(0, max(count, 1), CHUNK)
+        ]
+
+        def whole(pieces: Iterable[Array]) -> Array:
+            return np.concatenate(list(pieces)).reshape(self.shape)
+
+        names = [n for n in (*self.names, *IMPULSES_AND_SPINS) if any(n in p.values for p in parts)]
+        missing = np.full(1, np.nan)
+        values = {
+            n: whole(np.broadcast_to(p.values.get(n, missing), len(p.sliding)) for p in parts)
+            for n in dict.fromkeys(names)
+        }
+        sliding = whole(p.sliding for p in parts)
+        agrees = np.ones(self.shape, bool)
+        if "MUP" in values:
+            values["MU"] = _typed(values, sliding)
+            if must_agree:
+                agrees = (values["MU"] == self.known["MU"]) | np.isnan(sliding)
+        solution = Solution(
+            values=values,
+            unknown=self.wanted,
+            amplification={n: whole(p.amplification[n] for p in parts) for n in self.wanted},
+            agrees=agrees,
+            mismatch=whole(p.mismatch for p in parts),
+            gyration=whole(p.gyration for p in parts),
+        )
+        return replace(solution, agrees=agrees & solution.found)
+
+    def _equations(self, block: Mapping[str, Array]) -> Found:
+        with np.errstate(all="ignore"):
+            return Equations(block, point=self.point, pivot=self.pivot).solve(self.wanted)
+
+    # -- why a set is refused
+
+    def _first(self, wanted: Sequence[str], **changes: float) -> _Problem:
+        """The first scene's problem with other unknowns wanted and some values changed."""
+        given = {name: value.reshape(-1)[:1] for name, value in self.known.items()}
+        if "MU" in given:
+            given["MUP"] = given.pop("MU")
+        return _Problem.of(given | changes, wanted)
+
+    def determined(self) -> bool:
+        """Whether all that is wanted is determined in every scene, for some sign of MU."""
+        return any(bool(solution.found.all()) for solution in self.solutions())
+
+    def _alone(self, name: str) -> bool:
+        return self._first([name]).determined()
+
+    def reason(self) -> str:
+        """One line saying why the wanted unknowns are not determined in the first scene."""
+        if blame := self._coefficient_to_blame() or self._nothing_over_nothing():
+            return blame
+        alone = [name for name in self.absent if self._alone(name)]
+        hint = f"; {' '.join(alone)} could be found alone" if alone else ""
+        count, few = (4, "four") if self.point else (6, "six")
+        if len(self.absent) > count:
+            return (
+                f"{len(self.absent)} quantities are unknown ({' '.join(self.absent)}) and the "
+                f"{few} equations do not determine {' '.join(self.wanted)}{hint}; give at least "
+                f"{len(self.absent) - count} more"
+            )
+        for vehicle, at in (("A", 0), ("B", 3)):
+            its = {*INITIAL[at : at + 3], *FINAL[at : at + 3]} & {*self.names}
+            if its <= {*self.absent}:
+                return (
+                    f"all velocities of {vehicle} are unknown: the other vehicle's tell the whole "
+                    "impulse, which leaves Equation 16 nothing to determine and the common part of "
+                    f"{vehicle}'s velocities before and after open{hint}"
+                )
+        return (
+            f"the equations do not determine {' '.join(self.wanted)} together: some of them are "
+            f"left open while other equations hold nothing unknown{hint}"
+        )
+
+    def _coefficient_to_blame(self) -> str | None:
+        """The coefficient whose value makes the set undetermined, found by changing it."""
+        given: dict[str, float] = {n: self.known[n].flat[0] for n in ("E", "EM") if n in self.known}
+        if self.friction is not None:
+            given["MUP"] = self.friction.flat[0]
+        for size in range(1, len(given) + 1):
+            for names in combinations(given, size):
+                if self._first(self.wanted, **{n: ORDINARY[n] for n in names}).determined():
+                    return "; and ".join(_blame(n, float(given[n])) for n in names)
+        return None
+
+    def _nothing_over_nothing(self) -> str | None:
+        """A wanted coefficient whose parts are determined but give no quotient."""
+        bad = [
+            name
+            for name in self.wanted
+            if name in COEFFICIENTS and not self._alone(name) and self._made_of_something(name)
+        ]
+        return "; and ".join(_NO_VALUE[name] for name in bad) or None
+
+    def _made_of_something(self, name: str) -> bool:
+        problem = self._first([name])
+        return bool(problem._equations(problem.known).made_of_something.all())
+
+
+def _typed(values: Mapping[str, Array], sliding: Array) -> Array:
+    """The MU that line 400 turns into MUP: changed where the sliding is positive. Where the sliding
+    is not known the sign stays as it is."""
+    speed = np.max([np.abs(v) for n, v in values.items() if n in (*INITIAL, *FINAL)], axis=0)
+    mu = values["MUP"]
+    with np.errstate(invalid="ignore"):
+        changed = (sliding > TIE * speed) & (mu != PIVOT) & (mu != 0)
+    return np.where(changed, -mu, mu)
+
+
+_NO_VALUE = {
+    "E": "the contact points do not approach (gn = 0), so E (Equation 15) has no value",
+    "MUP": "there is no normal impulse (Pn = 0), so MU (Equation 16) has no value",
+    "EM": "the spins neither differ after the impact nor is there a moment impulse, so EM "
+    "(Equation 18) has no value",
+}
+
+
+def _blame(name: str, value: float) -> str:
+    if name == "E" and value == 0:
+        return (
+            "E = 0: Equation 15 then only says that the contact points stay together, so final "
+            "velocities do not tell how fast they approached"
+        )
+    if name == "EM" and value == 0:
+        return (
+            "EM = 0: Equation 18 then only says that the final spins are equal, so nothing tells "
+            "the moment impulse"
+        )
+    if name == "MUP" and value == PIVOT:
+        return (
+            "MU = -10 (pivot): its condition holds for final velocities only, so nothing tells "
+            "the tangential impulse"
+        )
+    label = "MU (signed)" if name == "MUP" else name
+    return f"{label} = {value:.6g}: at this very value the unknowns cannot be told apart"
+
+
+def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:
+    allowed = {*GEOMETRY, "M", *INITIAL, *FINAL, "E", "EM", "MU", "MUP"}
+    given = {}
+    for name, value in known.items():
+        if name not in allowed:
+            hint = f"; did you mean {name.upper()}?" if name.upper() in allowed else ""
+            raise UserError(
+                f"{name!r} is no value of an impact{hint} "
+                f"(expected {' '.join(n for n in (*SCENE, *RESULTS) if n in allowed)})"
+            )
+        try:
+            given[name] = np.asarray(value, np.float64)
+        except (TypeError, ValueError):
+            raise UserError(f"{name} = {value!r} is no number") from None
+    missing = [name for name in GEOMETRY if name not in given]
+    if _is_point_mass(given):
+        missing = [name for name in missing if name in ("GA", "MA", "MB")]
+        given = {n: np.zeros(()) for n in GEOMETRY} | {"IA": np.ones(()), "IB": np.ones(())} | given
+    if missing:
+        wanted = "; ".join(f"{name} ({SCENE[name].meaning})" for name in missing[:3])
+        more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
+        raise UserError(f"missing {wanted}{more}: the vehicles and their geometry must be known")
+    if "MU" in given and "MUP" in given:
+        raise UserError("MU and MUP are both given; give MUP (signed Pt/Pn) or MU, not both")
+    return given
+
+
+def _is_point_mass(given: Mapping[str, Array]) -> bool:
+    m = given.get("M", np.asarray(6.0))
+    if not ((m == 6).all() or (m == 4).all()):
+        raise UserError("M must be 6, or 4 for point masses, the same in all scenes")
+    return bool(m.size) and bool((m == 4).all())
+
+
+def _check_physical(given: Mapping[str, Array]) -> None:
+    mu = given.get("MUP", given.get("MU"))
+    if mu is not None and (mu == PIVOT).any() and not (mu == PIVOT).all():
+        raise UserError("MU is the pivot's -10 in some scenes only; solve pivots apart")
+    for kind, names in (("mass", ("MA", "MB")), ("moment of inertia", ("IA", "IB"))):
+        if np.isinf(given[names[0]] * given[names[1]]).any() and all(
+            np.isinf(given[name]).any() for name in names
+        ):
+            raise UserError(f"{' and '.join(names)} are both infinite; expected one {kind} at most")
+    for name, value in given.items():
+        infinite_allowed = name in ("MA", "MB", "IA", "IB")
+        if np.isnan(value).any() or (np.isinf(value).any() and not infinite_allowed):
+            raise UserError(f"{name} is not finite; expected {_meaning(name)}")
+        if infinite_allowed and not (value > 0).all():
+            raise UserError(f"{name} is not positive; expected {_meaning(name)}")
+
+
+def _meaning(name: str) -> str:
+    quantity = SCENE.get(name) or RESULTS[name]
+    return f"{quantity.meaning} [{quantity.unit}]"
