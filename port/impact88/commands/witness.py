@@ -1,0 +1,147 @@
+"""Runs an Apple II Plus ROM, your own, on a 6502 that others wrote (py65; extra: witness): the
+restored listing is typed in at the ROM's prompt, a scene's lines are retyped, RUN. What the ROM
+displays, every variable and the array are held against port, emulator and replay; a capture is
+held against the ROM too. The ROM is a file of 12,288 bytes, $D000 to $FFFF; this project has none
+to give.
+
+examples:
+  impact88 witness --rom apple2plus.rom
+  impact88 witness --rom apple2plus.rom --captures 50 --random 50 --seed 7
+  impact88 witness --rom apple2plus.rom crash.toml --json > witness.json
+  impact88 witness --rom apple2plus.rom --captures all --save again
+
+exit status: 0 no difference; 1 a difference; 2 bad input, or a ROM that does not come to a prompt
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from ..errors import UserError
+from ..progress import progress
+from ..scene import SAMPLES, Scene
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..witness.hearing import Heard
+    from ..witness.image import Image
+    from ..witness.session import Session
+
+    Job = Callable[[Session], Heard]
+
+SHOWN = 10
+"""Cases with differences that are shown."""
+SHOWN_LINES = 24
+"""Lines of one case's differences that are shown."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 witness`."""
+    parser.add_argument("scenes", nargs="*", metavar="SCENE.toml", help="scenes to run")
+    parser.add_argument("--rom", required=True, metavar="FILE", help="the ROM image")
+    parser.add_argument(
+        "--sample", type=int, action="append", default=[], metavar="N",
+        help="a published run, 1 to 3; all three when nothing is asked for",
+    )  # fmt: skip
+    parser.add_argument(
+        "--captures", metavar="N", help="N random packaged captures of each kind's mix, or all"
+    )
+    parser.add_argument("--random", type=int, default=0, metavar="N", help="N fresh scenes")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of what is random")
+    parser.add_argument("--any-rom", action="store_true", help="take a ROM that is not known, too")
+    parser.add_argument("--save", metavar="DIR", help="write what the ROM did as captures")
+    parser.add_argument("--json", action="store_true", help="print the record as one JSON object")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Hear the witness, and print what it says."""
+    jobs = _jobs(args)
+    from ..witness.image import read_image
+    from ..witness.record import record
+    from ..witness.session import Session
+
+    image = read_image(args.rom, args.any_rom)
+    start = time.perf_counter()
+    session = Session(image.data)
+    heard = list(_hear(session, jobs))
+    whole = record(image, heard, time.perf_counter() - start)
+    if args.save:
+        from ..witness.saving import save
+
+        save(args.save, heard)
+    if args.json:
+        print(json.dumps(whole, indent=2))
+    else:
+        print("\n".join(_report(image, heard, whole)))
+    return 0 if whole["passed"] else 1
+
+
+def _jobs(args: argparse.Namespace) -> list[Job]:
+    """What is to be done; all input is read before the machine is started."""
+    from ..witness import hearing
+    from ..witness.packaged import ALL, cases
+
+    jobs: list[Job] = []
+    asked = args.scenes or args.captures is not None or args.random
+    for number in args.sample or (() if asked else SAMPLES):
+        if number not in SAMPLES:
+            raise UserError(f"--sample {number}; expected {', '.join(map(str, SAMPLES))}")
+        jobs.append(partial(hearing.hear_sample, number=number))
+    for path in args.scenes:
+        jobs.append(partial(hearing.hear_scene, name=path, scene=Scene.from_toml(path)))
+    if args.captures is not None:
+        count = None if args.captures == ALL else _count("--captures", args.captures)
+        for case in cases(count, args.seed):
+            jobs.append(partial(hearing.hear, case=case))
+    if _count("--random", str(args.random)):
+        from ..vectors import scenes
+
+        for index, (_, label, texts) in enumerate(scenes(args.random, args.seed)):
+            name = f"{args.seed}-{index:06d} ({label})"
+            jobs.append(partial(hearing.hear_scene, name=name, scene=Scene(texts)))
+    if not jobs:
+        raise UserError("nothing to do; expected --captures or --random above 0")
+    return jobs
+
+
+def _count(option: str, text: str) -> int:
+    if not text.isdecimal():
+        expected = "a number, or all" if option == "--captures" else "a number"
+        raise UserError(f"{option} {text}; expected {expected}")
+    return int(text)
+
+
+def _hear(session: Session, jobs: list[Job]) -> Iterator[Heard]:
+    with progress(len(jobs), "on the ROM") as meter:
+        for job in jobs:
+            yield job(session)
+            meter.update(1)
+
+
+def _report(image: Image, heard: list[Heard], whole: dict[str, Any]) -> Iterator[str]:
+    wrong = [one for one in heard if one.differences]
+    for one in wrong[:SHOWN]:
+        yield f"{one.kind}: {one.name}"
+        lines = [line for difference in one.differences for line in difference.lines()]
+        yield from (f"  {line}" for line in lines[:SHOWN_LINES])
+        if len(lines) > SHOWN_LINES:
+            yield f"  and {len(lines) - SHOWN_LINES} lines more"
+        yield ""
+    if len(wrong) > SHOWN:
+        yield f"and {len(wrong) - SHOWN} cases more with differences"
+        yield ""
+    width = max(map(len, whole["comparisons"]))
+    for name, tally in whole["comparisons"].items():
+        yield f"{name:<{width}}  {tally['right']:>6} of {tally['total']:>6} without a difference"
+    yield ""
+    yield f"ROM SHA-1         {image.sha1} ({whole['rom']})"
+    for name, text in whole["versions"].items():
+        yield f"{name:<17} {text}"
+    yield f"time              {whole['seconds']} s"
+    yield f"result            {'NO DIFFERENCE' if whole['passed'] else 'DIFFERENT'}"

@@ -1,0 +1,218 @@
+"""The smallest Apple II Plus that a ROM will run on: RAM, the ROM, a keyboard, and an ear at COUT.
+
+The processor is py65's. Memory is 48K of RAM, nothing in the slots, and the ROM, which cannot be
+written. The keyboard is the two addresses a real one has. What is displayed is taken where the
+monitor's character output is called; the ROM draws its text screen besides, in RAM.
+
+A key is pressed when the ROM waits for one: when it reads the keyboard several times in a few
+cycles each. Nothing of Applesoft is known here, and nothing of it is changed.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any, NamedTuple
+
+from ..errors import UserError
+from .image import START
+
+IO_START = 0xC000
+KEYBOARD, STROBE = range(0xC000, 0xC010), range(0xC010, 0xC020)
+COUT = 0xFDED
+"""The monitor's character output: every character displayed goes through it, in the accumulator."""
+CURSOR_COLUMN = 0x24
+SCREEN = 0x400
+ROWS, COLUMNS = 24, 40
+RETURN = "\r"
+
+_WAITING_POLLS = 4
+_POLL_CYCLES = 60
+"""The monitor asks every 16 cycles or so; a running program at most once a statement."""
+PLENTY = 80_000_000
+"""Instructions that nothing captured needs."""
+BOOT_PLENTY = 4_000_000
+"""Instructions that switching on does not need."""
+
+
+class Lost(UserError):
+    """The machine does not come to wait for a key: it loops, or has run off into the wild."""
+
+
+class State(NamedTuple):
+    """All of a machine at rest: its memory and the processor's registers."""
+
+    memory: bytes
+    registers: tuple[int, ...]
+
+
+class Memory(bytearray):
+    """64K: RAM, the keyboard's two addresses, and the ROM."""
+
+    def __init__(self, rom: bytes) -> None:
+        super().__init__(bytes(START) + rom)
+        self.keys: deque[int] = deque()
+        self.key = 0
+        self.waiting = False
+        self.cycles = lambda: 0
+        self._last_poll = self._polls = 0
+
+    def __getitem__(self, address: Any) -> Any:
+        if address.__class__ is int and IO_START <= address < START:
+            return self._read_io(address)
+        return super().__getitem__(address)
+
+    def __setitem__(self, address: Any, value: Any) -> None:
+        if address < IO_START:
+            super().__setitem__(address, value)
+        elif address in STROBE:
+            self.key &= 0x7F
+
+    def _read_io(self, address: int) -> int:
+        if address in STROBE:
+            self.key &= 0x7F
+        elif address in KEYBOARD:
+            now = self.cycles()
+            self._polls = self._polls + 1 if now - self._last_poll < _POLL_CYCLES else 0
+            self._last_poll = now
+            if self._polls >= _WAITING_POLLS and self.key < 0x80:
+                self._polls = 0
+                if self.keys:
+                    self.key = self.keys.popleft() | 0x80
+                else:
+                    self.waiting = True
+            return self.key
+        return 0
+
+
+class Apple:
+    """An Apple II Plus with a ROM in it, switched off. `boot` switches it on.
+
+    ``instructions`` counts what the processor has done since. ``blanks``: whether columns skipped
+    on a line come out as blanks when a character follows. Raises UserError when py65 is missing.
+    """
+
+    def __init__(self, rom: bytes) -> None:
+        try:
+            from py65.devices.mpu6502 import MPU  # type: ignore[import-untyped]
+        except ImportError:
+            raise UserError(
+                "the witness needs py65, which is not installed; pip install 'impact88[witness]'"
+            ) from None
+        self.memory = Memory(rom)
+        self.cpu = MPU(self.memory, pc=None)
+        self.memory.cycles = lambda: self.cpu.processorCycles
+        self.instructions = 0
+        self.blanks = True
+        self._output: list[str] = []
+        self._column = 0
+
+    # --- running ------------------------------------------------------------------------------
+
+    def boot(self, limit: int = BOOT_PLENTY) -> str:
+        """Switch on, and wait until the ROM waits for a key. Returns what was displayed."""
+        self.cpu.reset()
+        self._column = 0
+        self._go(limit)
+        return self.take_output()
+
+    def type_keys(self, keys: str, limit: int = PLENTY) -> None:
+        """Type, newlines as RETURN, and wait until the machine waits for more."""
+        self.memory.keys.extend(ord(key) & 0x7F for key in keys.replace("\n", RETURN))
+        self._go(limit)
+
+    def _go(self, limit: int) -> None:
+        """Run until the ROM waits for a key that nobody has typed. Raises Lost."""
+        try:
+            self._run(limit)
+        except IndexError:  # an address past $FFFF
+            raise Lost(f"the machine ran off the end of memory (${self.cpu.pc:04X})") from None
+
+    def _run(self, limit: int) -> None:
+        cpu, memory, step = self.cpu, self.memory, self.cpu.step
+        memory.waiting = False
+        left = limit
+        while not memory.waiting:
+            if cpu.pc == COUT:
+                left -= self._display()
+            else:
+                step()
+                left -= 1
+            if left < 0:
+                raise Lost(
+                    f"the machine does not wait for a key after {limit:,} instructions "
+                    f"(program counter ${cpu.pc:04X})"
+                )
+        self.instructions += limit - left
+
+    def _display(self) -> int:
+        """Let the monitor display a character and take it; returns the instructions it took."""
+        cpu, memory = self.cpu, self.memory
+        character = chr(cpu.a & 0x7F)
+        gap = max(memory[CURSOR_COLUMN] - self._column, 0)
+        if character >= " ":
+            self._output.append(" " * gap * self.blanks)
+            gap = 0
+        self._output.append("\n" if character == RETURN else character)
+        top, count = cpu.sp, 0
+        # RTS leaves the stack two bytes shorter than at the call
+        while cpu.sp != (top + 2) & 0xFF:
+            cpu.step()
+            count += 1
+            if count > PLENTY:
+                raise Lost(f"the monitor never finished displaying {character!r}")
+        self._column = 0 if character == RETURN else memory[CURSOR_COLUMN] - gap
+        return count
+
+    def call(self, address: int, stops: tuple[int, ...], limit: int = PLENTY) -> int:
+        """Run from an address until the processor comes to one of ``stops``; returns which one."""
+        cpu = self.cpu
+        cpu.pc = address
+        for done in range(limit):
+            if cpu.pc in stops:
+                self.instructions += done
+                return int(cpu.pc)
+            cpu.step()
+        raise Lost(f"the routine at ${address:04X} does not return")
+
+    # --- looking ------------------------------------------------------------------------------
+
+    def take_output(self) -> str:
+        """What was displayed since the last call: high bit dropped, RETURN as newline."""
+        text = "".join(self._output)
+        self._output.clear()
+        return text
+
+    def word(self, address: int) -> int:
+        """Two bytes, the low one first."""
+        return int(self.memory[address] + 256 * self.memory[address + 1])
+
+    def screen_text(self) -> str:
+        """The 24 rows of the text screen, blanks at the ends of rows left out."""
+        rows = []
+        for row in range(ROWS):
+            base = SCREEN + row % 8 * 0x80 + row // 8 * COLUMNS
+            codes = bytes(self.memory[base : base + COLUMNS])
+            rows.append("".join(map(_shown, codes)).rstrip(" "))
+        return "\n".join(rows) + "\n"
+
+    # --- states -------------------------------------------------------------------------------
+
+    def state(self) -> State:
+        """The machine as it stands; it must be waiting for a key."""
+        cpu = self.cpu
+        return State(bytes(self.memory), (cpu.pc, cpu.a, cpu.x, cpu.y, cpu.sp, cpu.p, self._column))
+
+    def restore(self, state: State) -> None:
+        """Make the machine what it was, with no keys typed and nothing displayed."""
+        bytearray.__setitem__(self.memory, slice(0, 0x10000), state.memory)
+        cpu = self.cpu
+        cpu.pc, cpu.a, cpu.x, cpu.y, cpu.sp, cpu.p, self._column = state.registers
+        self.memory.keys.clear()
+        self.memory.key = 0
+        self._output.clear()
+
+
+def _shown(code: int) -> str:
+    """A byte of the text screen as a character, whether normal, inverse or flashing."""
+    code &= 0x7F if code >= 0x80 else 0x3F
+    return chr(code if code & 0x60 else code | 0x40)

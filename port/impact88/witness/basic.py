@@ -1,0 +1,95 @@
+"""What Applesoft keeps in memory: the program's lines, the variables, the arrays.
+
+The pointers and layouts are those of the Applesoft reference manual, appendix "Applesoft in
+memory". They are only read.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from .apple import Apple
+
+PROGRAM, VARIABLES, ARRAYS, ARRAYS_END = 0x67, 0x69, 0x6B, 0x6D
+"""Zero-page pointers to where each begins; what is in between belongs to the one before."""
+_ENTRY = 7
+"""Bytes of a simple variable: two of name, five of value."""
+_NUMBER = 5
+_NOT_ASCII = 0x80
+_SPOKEN = re.compile(r'"[^"]*"?|\bREM\b(.*)')
+"""The parts of a line that Applesoft keeps as they are typed."""
+
+
+def reals(apple: Apple) -> dict[str, str]:
+    """Every real variable by name, oldest first: five stored bytes in hexadecimal."""
+    memory = apple.memory
+    values = {}
+    for place in range(apple.word(VARIABLES), apple.word(ARRAYS), _ENTRY):
+        first, second = memory[place], memory[place + 1]
+        if not (first | second) & _NOT_ASCII:  # strings, integers and functions are marked there
+            values[_name(first, second)] = bytes(memory[place + 2 : place + _ENTRY]).hex()
+    return values
+
+
+def array(apple: Apple, name: str) -> dict[str, Any] | None:
+    """An array of reals: ``dims`` (sizes) and ``data``, first subscript fastest; or None."""
+    memory = apple.memory
+    place, end = apple.word(ARRAYS), apple.word(ARRAYS_END)
+    while place < end:
+        size, count = apple.word(place + 2), memory[place + 4]
+        start = place + 5 + 2 * count
+        if _name(memory[place], memory[place + 1]) == name:
+            sizes = [
+                256 * memory[at] + memory[at + 1] for at in range(start - 2, place + 4, -2)
+            ]  # the last subscript's stands first, the high byte before the low
+            data = bytes(memory[start : place + size])
+            return {
+                "dims": sizes,
+                "data": [data[at : at + _NUMBER].hex() for at in range(0, len(data), _NUMBER)],
+            }
+        if size == 0:
+            break
+        place += size
+    return None
+
+
+def _name(first: int, second: int) -> str:
+    return (chr(first) + chr(second)).rstrip("\0")
+
+
+def small_letters(apple: Apple, program: str) -> list[str]:
+    """The POKEs, as commands for the prompt, that put a program's small letters into its text.
+
+    An Apple II Plus has no keys for them: what is typed arrives in capitals. Only texts in quotes
+    and remarks are changed. Raises ValueError when the program in memory is another.
+    """
+    texts = dict(_lines(apple))
+    commands = []
+    for line in program.splitlines():
+        number, _, rest = line.partition(" ")
+        for spoken in (match.group(1) or match.group() for match in _SPOKEN.finditer(rest)):
+            if spoken == spoken.upper():
+                continue
+            place, text = texts[int(number)]
+            offset = text.find(spoken.upper().encode("ascii"))
+            if offset < 0:
+                raise ValueError(f"line {number} in memory does not hold {spoken!r}")
+            commands += [
+                f"POKE {place + offset + at},{ord(letter)}"
+                for at, letter in enumerate(spoken)
+                if letter.islower()
+            ]
+    return commands
+
+
+def _lines(apple: Apple) -> Iterator[tuple[int, tuple[int, bytes]]]:
+    """The program in memory: line number, and where its text begins, and the text."""
+    place = apple.word(PROGRAM)
+    while following := apple.word(place):
+        yield (
+            apple.word(place + 2),
+            (place + 4, bytes(apple.memory[place + 4 : following - 1])),
+        )
+        place = following

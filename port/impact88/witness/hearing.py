@@ -1,0 +1,186 @@
+"""Hearing the witness: what the ROM does, held against the captures and against this project.
+
+A scene is run on the ROM, by the port, by the emulator and by the replay over arrays; a captured
+one is also held against its capture. Compared are every character displayed, every variable's five
+bytes, and the array. A program is held against its capture and the emulator, a calculation against
+its capture and the arithmetic here.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from .. import captured, emulated
+from ..applesoft.console import Console
+from ..casework.printout import FIELDS, outcome_fields
+from ..files import packaged_bytes
+from ..names import SCENE
+from ..run import run
+from ..scene import Scene, sample
+from ..selfcheck import GOLDEN_RUNS
+from .packaged import ARITHMETIC, FUZZ, PROGRAMS, SCENES, Case
+from .session import Finished, Session
+
+CAPTURE, PORT, EMULATOR, REPLAY, PUBLISHED = "capture", "port", "emulator", "replay", "published"
+HERE = "this arithmetic"
+
+
+class Difference(NamedTuple):
+    """A point on which the ROM and another differ: who, on what (``printout``, a variable's name,
+    ``result``), and both values."""
+
+    who: str
+    what: str
+    rom: str
+    other: str
+
+    def lines(self) -> list[str]:
+        """The difference as text, a printout's as a unified diff."""
+        if "\n" not in self.rom + self.other:
+            return [f"{self.what}: ROM {self.rom}, {self.who} {self.other}"]
+        rom, other = _visible(self.rom), _visible(self.other)
+        return list(difflib.unified_diff(rom, other, "ROM", self.who, lineterm="", n=2))
+
+
+class Heard(NamedTuple):
+    """A case heard: its kind and name, what it was compared with, where they differ, and what the
+    ROM did, in the captures' form, for `saving`."""
+
+    kind: str
+    name: str
+    compared: tuple[str, ...]
+    differences: list[Difference]
+    capture: Any
+
+
+def _visible(text: str) -> list[str]:
+    """Lines with control characters written out: ^D, ^G."""
+    marks = {chr(code): f"^{chr(code + 64)}" for code in range(32) if code != 10}
+    return ["".join(marks.get(one, one) for one in line) for line in text.split("\n")]
+
+
+def hear(session: Session, case: Case) -> Heard:
+    """A packaged capture done again on the ROM."""
+    if case.kind == SCENES:
+        return hear_scene(session, case.name, Scene(case.data["scene"]), case.data)
+    if case.kind == ARITHMETIC:
+        return _hear_call(session, case)
+    return _hear_program(session, case)
+
+
+# --- scenes --------------------------------------------------------------------------------------
+
+
+def hear_scene(
+    session: Session, name: str, scene: Scene, capture: dict[str, Any] | None = None
+) -> Heard:
+    """A scene run on the ROM, by port, emulator and replay, and held against its capture."""
+    rom = session.run_scene(scene)
+    others: dict[str, Finished] = {}
+    if capture:
+        others[CAPTURE] = Finished(capture["printout"], capture["reals"], capture["A"])
+    for who, its_run in ((PORT, run), (EMULATOR, emulated.run)):
+        done = its_run(scene, dos=False)
+        others[who] = Finished(done.printout, done.reals, done.A)
+    differences = [
+        difference for who, other in others.items() for difference in _apart(rom, who, other)
+    ]
+    differences += _replayed_apart(rom, scene)
+    row = {
+        "id": name,
+        "scene": dict(scene),
+        "typed_lines": scene.typed_lines(),
+        "keyboard": scene.keyboard(),
+        **rom._asdict(),
+    }
+    return Heard(SCENES, name, (*others, REPLAY), differences, row)
+
+
+def hear_sample(session: Session, number: int) -> Heard:
+    """A published run, held against what was published too: without the lines that a disk system
+    takes, which the Apple of 1988 had and this one has not."""
+    heard = hear_scene(session, f"sample {number}", sample(number))
+    shown: list[str] = []
+    Console(lambda: None, shown.append, dos=True).put(heard.capture["printout"])
+    name = f"printouts/{GOLDEN_RUNS[number]}.txt"
+    published = packaged_bytes("impact88.golden", name).decode()
+    differences = list(heard.differences)
+    if "".join(shown) != published:
+        differences.append(Difference(PUBLISHED, "printout", "".join(shown), published))
+    return heard._replace(compared=(*heard.compared, PUBLISHED), differences=differences)
+
+
+def _apart(rom: Finished, who: str, other: Finished) -> Iterator[Difference]:
+    if rom.printout != other.printout:
+        yield Difference(who, "printout", rom.printout, other.printout)
+    mine, my_array = captured.left_behind(rom.reals, rom.A)
+    theirs, their_array = captured.left_behind(other.reals, other.A)
+    for name in sorted({*mine, *theirs}):
+        if mine.get(name) != theirs.get(name):
+            yield Difference(who, name, mine.get(name, "absent"), theirs.get(name, "absent"))
+    if my_array != their_array:
+        yield from _arrays_apart(who, my_array, their_array)
+
+
+def _arrays_apart(who: str, mine: Any, theirs: Any) -> Iterator[Difference]:
+    if not mine or not theirs or mine[0] != theirs[0]:
+        yield Difference(who, "DIM A", str(mine and mine[0]), str(theirs and theirs[0]))
+        return
+    rows = mine[0][0]
+    for place, (one, other) in enumerate(zip(mine[1], theirs[1], strict=True)):
+        if one != other:
+            yield Difference(who, f"A({place % rows},{place // rows})", one, other)
+
+
+def _replayed_apart(rom: Finished, scene: Scene) -> Iterator[Difference]:
+    from ..replay import replay
+
+    done = replay({name: [scene[name]] for name in SCENE})
+    printed = outcome_fields(rom.printout)
+    for name in FIELDS:
+        replayed = done.printed(name).tolist()[0]
+        if replayed != printed.get(name, ""):
+            yield Difference(REPLAY, name, printed.get(name, "nothing"), replayed or "nothing")
+
+
+# --- programs and calculations -------------------------------------------------------------------
+
+
+def _hear_program(session: Session, case: Case) -> Heard:
+    blanks = case.kind == PROGRAMS
+    if blanks:
+        program, keys, expected = (case.data.get(ending, "") for ending in ("bas", "in", "out"))
+    else:
+        program, keys, expected = (case.data[part] for part in ("program", "keyboard", "output"))
+    before = session.apple.instructions
+    rom = session.run_program(program, keys, blanks=blanks)
+    others = {CAPTURE: expected, EMULATOR: captured.displayed(program, keys, blanks=blanks)}
+    differences = [
+        Difference(who, "displayed", rom, other) for who, other in others.items() if other != rom
+    ]
+    if case.kind == FUZZ:
+        return Heard(FUZZ, case.name, tuple(others), differences, {**case.data, "output": rom})
+    done = {**case.data, "out": rom, "instructions": session.apple.instructions - before}
+    if "scr" in case.data:
+        done["scr"] = session.apple.screen_text()
+        if done["scr"] != case.data["scr"]:
+            differences.append(Difference(CAPTURE, "screen", done["scr"], case.data["scr"]))
+    return Heard(PROGRAMS, case.name, tuple(others), differences, done)
+
+
+def _hear_call(session: Session, case: Case) -> Heard:
+    operation, first, second, extension, expected = case.data
+    rom = session.calculate(operation, first, second, extension)
+    mine = captured.result(rom)
+    others = {
+        CAPTURE: captured.result(expected),
+        HERE: captured.call(operation, first, second, extension),
+    }
+    asked = " ".join(filter(None, case.data[:4]))
+    differences = [
+        Difference(who, asked, mine, other) for who, other in others.items() if other != mine
+    ]
+    capture = [operation, first, second, extension, rom]
+    return Heard(ARITHMETIC, case.name, tuple(others), differences, capture)

@@ -1,0 +1,103 @@
+"""Single calls of the ROM's arithmetic, by the entry points published for machine-code programs.
+
+They are those of John Crossley's "Applesoft Internal Entry Points" (Apple Orchard, March 1980).
+Operands are put where a program would put them, the routine is called, and the accumulator is read.
+"""
+
+from __future__ import annotations
+
+from .apple import Apple
+
+FAC, FAC_SIGN, FAC_EXTENSION = 0x9D, 0xA2, 0xAC
+"""The accumulator: exponent, four mantissa bytes; its sign byte; the eight bits below."""
+TEXT_POINTER = 0xB8
+CHRGOT = 0x00B7
+LOAD_ARGUMENT = 0xE9E3
+STORE_ROUNDED = 0xEB2B
+ERROR = 0xD412
+"""Where every error goes, with its code in X."""
+
+WITH_MEMORY = {"add": 0xE7BE, "sub": 0xE7A7, "mul": 0xE97F, "div": 0xEA66, "cmp": 0xEBB2}
+"""Memory and accumulator: the first operand is the one in memory."""
+POWER = 0xEE97
+"""Argument to the power of the accumulator."""
+OF_ACCUMULATOR = {
+    "neg": 0xEED0,
+    "abs": 0xEBAF,
+    "sgn": 0xEB90,
+    "int": 0xEC23,
+    "sqr": 0xEE8D,
+    "exp": 0xEF09,
+    "log": 0xE941,
+    "sin": 0xEFF1,
+    "cos": 0xEFEA,
+    "tan": 0xF03A,
+    "atn": 0xF09E,
+}
+READ_NUMBER, WRITE_NUMBER = 0xEC4A, 0xED34
+OPERATIONS = (*WITH_MEMORY, "pow", *OF_ACCUMULATOR, "fin", "fout")
+
+_OPERAND, _STUB, _BACK, _BUFFER = 0x0300, 0x0310, 0x0340, 0x0200
+"""Page 3 is the user's; a number to be read stands in the input buffer."""
+_LDA_IMMEDIATE, _LDY_IMMEDIATE, _LDX_IMMEDIATE, _LDA_ZERO, _JSR = 0xA9, 0xA0, 0xA2, 0xA5, 0x20
+
+
+def call(apple: Apple, operation: str, first: str, second: str, extension: str) -> str:
+    """The result of a call in the captures' form: ``stored:raw:extension``, ``E`` and an error's
+    code, the answer of a comparison, or the text written. The arguments are a captured row's."""
+    if operation == "fin":
+        text = first.encode("ascii") + b"\0"
+        _put(apple, _BUFFER, text)
+        _put(apple, TEXT_POINTER, _BUFFER.to_bytes(2, "little"))
+        code = [*_jsr(CHRGOT), *_jsr(READ_NUMBER)]
+    else:
+        accumulator = bytes.fromhex(second or first)
+        _put(apple, FAC, bytes([accumulator[0], accumulator[1] | 0x80, *accumulator[2:]]))
+        _put(apple, FAC_SIGN, accumulator[1:2])
+        _put(apple, FAC_EXTENSION, bytes.fromhex(extension))
+        _put(apple, _OPERAND, bytes.fromhex(first))
+        code = _code(operation)
+    error = _execute(apple, code)
+    if error is not None:
+        return f"E{error}"
+    if operation == "cmp":
+        return f"{apple.cpu.a:02x}"
+    if operation == "fout":
+        start = apple.cpu.a + 256 * apple.cpu.y
+        return bytes(apple.memory[start : start + 20]).partition(b"\0")[0].decode("ascii")
+    raw = bytes(apple.memory[FAC : FAC_SIGN + 1]).hex()
+    low = f"{apple.memory[FAC_EXTENSION]:02x}"
+    error = _execute(apple, [_LDX_IMMEDIATE, _OPERAND & 0xFF, _LDY_IMMEDIATE, _OPERAND >> 8,
+                             *_jsr(STORE_ROUNDED)])  # fmt: skip
+    if error is not None:
+        return f"E{error}"
+    return f"{bytes(apple.memory[_OPERAND : _OPERAND + 5]).hex()}:{raw}:{low}"
+
+
+def _code(operation: str) -> list[int]:
+    """Machine code that calls a routine on the operand in memory and the accumulator."""
+    operand = [_LDA_IMMEDIATE, _OPERAND & 0xFF, _LDY_IMMEDIATE, _OPERAND >> 8]
+    if operation in WITH_MEMORY:
+        return [*operand, *_jsr(WITH_MEMORY[operation])]
+    if operation == "pow":  # A and the flags must show the accumulator's exponent
+        return [*operand, *_jsr(LOAD_ARGUMENT), _LDA_ZERO, FAC, *_jsr(POWER)]
+    return _jsr(WRITE_NUMBER if operation == "fout" else OF_ACCUMULATOR[operation])
+
+
+def _jsr(address: int) -> list[int]:
+    return [_JSR, address & 0xFF, address >> 8]
+
+
+def _put(apple: Apple, address: int, data: bytes) -> None:
+    for place, byte in enumerate(data, address):
+        apple.memory[place] = byte
+
+
+def _execute(apple: Apple, code: list[int]) -> int | None:
+    """Run machine code; None, or the code of the error it ended in."""
+    jump_back = [0x4C, _BACK & 0xFF, _BACK >> 8]
+    _put(apple, _STUB, bytes([*code, *jump_back]))
+    apple.cpu.sp = 0xF8
+    if apple.call(_STUB, (_BACK, ERROR)) == ERROR:
+        return int(apple.cpu.x)
+    return None
