@@ -13,10 +13,10 @@ import os
 import pytest
 
 import captures
-from impact88.captured import result
-from impact88.emulated import LISTING
+from impact88.checking.captured import result
 from impact88.errors import UserError
-from impact88.run import run
+from impact88.program.emulated import LISTING
+from impact88.program.run import run
 from impact88.scene import sample
 from impact88.witness import basic
 from impact88.witness.apple import Apple, Lost

@@ -100,7 +100,7 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         for case in cases(count, args.seed):
             jobs.append(partial(hearing.hear, case=case))
     if _count("--random", str(args.random)):
-        from ..vectors import scenes
+        from ..checking.vectors import scenes
 
         for index, (_, label, texts) in enumerate(scenes(args.random, args.seed)):
             name = f"{args.seed}-{index:06d} ({label})"

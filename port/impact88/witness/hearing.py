@@ -12,14 +12,15 @@ import difflib
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from .. import captured, emulated
 from ..applesoft.console import Console
 from ..casework.printout import FIELDS, outcome_fields
+from ..checking import captured
+from ..checking.selfcheck import GOLDEN_RUNS
 from ..files import packaged_bytes
 from ..names import SCENE
-from ..run import run
+from ..program import emulated
+from ..program.run import run
 from ..scene import Scene, sample
-from ..selfcheck import GOLDEN_RUNS
 from .packaged import ARITHMETIC, FUZZ, PROGRAMS, SCENES, Case
 from .session import Finished, Session
 

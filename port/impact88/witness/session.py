@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..emulated import LISTING
 from ..errors import UserError
 from ..files import packaged_text
+from ..program.emulated import LISTING
 from ..progress import progress
 from ..scene import Scene
 from . import basic, routines
