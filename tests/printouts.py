@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import captures
-from impact88.casework.printout import ANGLES, FIELDS
+from impact88.fields import ANGLES, FIELDS
 
 SWEEP = int(os.environ.get("IMPACT88_SWEEP") or 0)
 """Set to n: every captured scene, and n changes of each; else a sample that takes seconds. A sweep

@@ -9,9 +9,10 @@ import pytest
 
 import captures
 import printouts
-from impact88.casework.printout import ANGLES, INPUTS, read_printouts
+from impact88.casework.printout import read_printouts
 from impact88.casework.typedtext import stored_and_printed, texts_that_print
 from impact88.casework.verify import Verdict, Verification, verify
+from impact88.fields import ANGLES, INPUTS
 from impact88.names import SCENE
 from impact88.program.run import run
 from impact88.scene import sample

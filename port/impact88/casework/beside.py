@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal, InvalidOperation
 
 from .. import status
+from ..fields import INPUTS
 from ..names import RESULTS
-from .printout import INPUTS
 from .recovery import FieldCheck
 
 _DIGITS = 12

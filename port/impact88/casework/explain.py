@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
 from typing import Any, NamedTuple
 
+from ..fields import ANGLES, FIELDS, INPUTS
 from . import misreading, trial
-from .printout import ANGLES, FIELDS, INPUTS, Printout
+from .printout import Printout
 from .recovery import FieldCheck, Recovered, disagreeing, fits, opposite, printable, same_value
 from .typedtext import stored_and_printed, texts_that_print
 

@@ -19,49 +19,12 @@ from typing import NamedTuple
 from .. import files
 from ..applesoft.errors import CODES
 from ..errors import UserError
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
 from . import glyphs
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
 
-
-class Field(NamedTuple):
-    """One printed number: its name in the project's table, the listing line that prints it, and
-    the decimal places it is floored to (None: printed in full)."""
-
-    name: str
-    line: int
-    places: int | None = None
-
-
-FIELDS: dict[str, Field] = {
-    field.name: field
-    for field in (
-        *(Field(name, 620) for name in ("MA", "MB", "IA", "IB")),
-        *(Field(name, 630) for name in ("DA", "DB")),
-        *(Field(name, 650) for name in ("PA", "PB", "TA", "TB", "GA")),
-        *(Field(name, 660) for name in ("UX", "UY", "WA")),
-        *(Field(name, 660, 2) for name in ("XA", "YA")),
-        *(Field(name, 670) for name in ("VX", "VY", "WB")),
-        *(Field(name, 670, 2) for name in ("XB", "YB")),
-        *(Field(name, 680) for name in ("E", "MUP", "EM")),
-        Field("KI", 690),
-        Field("LOSS", 690, 2),
-        *(Field(name, 730, 3) for name in ("VAX", "VAY")),
-        *(Field(name, 730, 2) for name in ("XAF", "YAF")),
-        *(Field(name, 740, 3) for name in ("VBX", "VBY")),
-        *(Field(name, 740, 2) for name in ("XBF", "YBF")),
-        *(Field(name, 760, 4) for name in ("WAF", "WBF")),
-    )
-}
-"""The printed numbers in the order they are printed."""
-
-ANGLES = ("PA", "PB", "TA", "TB", "GA")
-INPUTS = tuple(name for name, row in FIELDS.items() if row.places is None and name != "KI")
-"""Fields that print what was put in; MUP is MU after line 400."""
-REPLIES = {"A": ("UX", "UY", "WA"), "B": ("VX", "VY", "WB")}
-FINAL_SPINS = ("WAF", "WBF")
-ZERO_DETERMINANT = "ZERO DETERMINANT"
 
 _ORDER = [name for name in FIELDS if name not in ANGLES[1:]]
 """Labels in order; PA stands for the heading of the five angles."""

@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .. import names
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS
 from . import trial
 from .glyphs import ILLEGIBLE
-from .printout import ANGLES, FIELDS, FINAL_SPINS, INPUTS, Printout, Reading
+from .printout import Printout, Reading
 from .typedtext import stored_and_printed, texts_that_print
 
 MOST_CANDIDATES = 20_000

@@ -132,7 +132,7 @@ def _counts(result: Verification) -> str:
 
 
 def _numbers(checks: Sequence[FieldCheck]) -> str:
-    from .printout import FIELDS
+    from ..fields import FIELDS
 
     rows = [
         "<table><thead><tr><th>field</th><th>printed</th><th>recomputed</th><th>exact</th>"

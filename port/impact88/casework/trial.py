@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..fields import FIELDS, ZERO_DETERMINANT
 from ..names import SCENE
 from . import printout
 
@@ -52,7 +53,7 @@ def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
     """The outcome of each scene, in order."""
     if len(scenes) <= _FEW:
         return [run_once(scene) for scene in scenes]
-    endings, columns = run_columns(scenes, tuple(printout.FIELDS))
+    endings, columns = run_columns(scenes, tuple(FIELDS))
     outcomes = [Outcome({}, ending or None) for ending in endings]
     for name, column in columns.items():
         for outcome, text in zip(outcomes, column.tolist(), strict=True):
@@ -77,7 +78,7 @@ def run_columns(
     done = replay(scene_columns)
     endings = done.error.tolist()
     for index in done.zero_determinant.nonzero()[0].tolist():
-        endings[index] = printout.ZERO_DETERMINANT
+        endings[index] = ZERO_DETERMINANT
     return endings, {name: done.printed(name) for name in names}
 
 

@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
-from ..casework.printout import FIELDS
 from ..closedform.solve import solve
 from ..errors import UserError
+from ..fields import ANGLES, FIELDS
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..replay import replay
 from ..status import Status
@@ -37,7 +37,6 @@ DOUBLE, DIGITS, NOT = "double", "digits", "no"
 WORST = 20
 """Rows that disagree most, kept for the report."""
 _NOT_COMPARED = ("STATUS", "COND")
-_ANGLES = ("GA", "PA", "PB", "TA", "TB")
 _SPINS = ("WAF", "WBF")
 
 
@@ -115,7 +114,7 @@ def _nothing(scene: Columns, ours: Columns) -> Columns:
     return {}
 
 
-def _angles(change: Callable[[Floats], Floats], names: Sequence[str] = _ANGLES) -> Any:
+def _angles(change: Callable[[Floats], Floats], names: Sequence[str] = ANGLES) -> Any:
     return lambda scene, ours: {name: change(scene[name]) for name in names}
 
 

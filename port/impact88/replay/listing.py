@@ -16,11 +16,13 @@ every bit agrees. What is saved is repetition only, and only where it cannot cha
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
 
 from ..applesoft import decimaltext as scalar
+from ..fields import ANGLES, FIELDS
 from . import elimination, functions
 from .columns import PLACES
 from .reals import LARGEST, ZERO, Reals, constant, floor, from_number, select, stack, zero
@@ -56,24 +58,17 @@ ASSIGNED: dict[str, int] = {
 """Result -> the place in the program that sets it: a scene that got past it has the value."""
 
 PRINTED: dict[str, int] = {
-    **{name: stamp(620, i) for i, name in enumerate(("MA", "MB", "IA", "IB"))},
-    **{name: stamp(630, i) for i, name in enumerate(("DA", "DB"))},
-    **{name: stamp(650, i) for i, name in enumerate(("PA", "PB", "TA", "TB", "GA"))},
-    **{name: stamp(660, i) for i, name in enumerate(("UX", "UY", "WA", "XA", "YA"))},
-    **{name: stamp(670, i) for i, name in enumerate(("VX", "VY", "WB", "XB", "YB"))},
-    **{name: stamp(680, i) for i, name in enumerate(("E", "MUP", "EM"))},
-    **{name: stamp(690, i) for i, name in enumerate(("KI", "LOSS"))},
-    **{name: stamp(730, i) for i, name in enumerate(("VAX", "VAY", "XAF", "YAF"))},
-    **{name: stamp(740, i) for i, name in enumerate(("VBX", "VBY", "XBF", "YBF"))},
-    **{name: stamp(760, i) for i, name in enumerate(("WAF", "WBF"))},
+    field.name: stamp(line, position)
+    for line, row in groupby(FIELDS.values(), key=lambda field: field.line)
+    for position, field in enumerate(row)
 }
 """Field of the printout -> its place: line, and position among the line's fields."""
 
-ANGLES = ("GA", "PA", "PB", "TA", "TB")
+_FACTORS = {2: C_100, 3: C_1E3, 4: C_10000}
 FLOORED: dict[str, Reals] = {
-    **dict.fromkeys(("XA", "YA", "XB", "YB", "XAF", "YAF", "XBF", "YBF"), C_100),
-    **dict.fromkeys(("VAX", "VAY", "VBX", "VBY"), C_1E3),
-    **dict.fromkeys(("WAF", "WBF"), C_10000),
+    field.name: _FACTORS[field.places]
+    for field in FIELDS.values()
+    if field.places and field.name != "LOSS"  # line 690's percentage is an expression of its own
 }
 """Field -> the factor of its INT (factor * x) / factor."""
 
@@ -194,7 +189,7 @@ def run(
     last = M + 1
 
     # 300 GA = GA * AG: ...
-    GA, PA, PB, TA, TB = radians(unit, [scene[name] for name in ANGLES])
+    PA, PB, TA, TB, GA = radians(unit, [scene[name] for name in ANGLES])
 
     # 320 KI = (MA * (UX ^ 2 + UY ^ 2) + MB * (VX ^ 2 + VY ^ 2) + IA * (WA ^ 2) + IB * (WB ^ 2)) / 2
     UX2, UY2, VX2, VY2, WA2, WB2 = squares(unit, 320, [UX, UY, VX, VY, WA, WB])

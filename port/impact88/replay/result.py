@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..applesoft.errors import CODES, ApplesoftError
-from . import listing as impact
+from ..fields import ANGLES, FIELDS, FINAL_SPINS
+from . import listing
 from .columns import Scenes
 from .decimaltext import Strings, write
 from .elimination import ZERO_DETERMINANT
@@ -68,7 +69,7 @@ class Replay:
 
     def present(self, name: str) -> Bools:
         """The scenes that have the result."""
-        present = self._unit.reached(impact.ASSIGNED[name]) & (self.code != OTHER_M)
+        present = self._unit.reached(listing.ASSIGNED[name]) & (self.code != OTHER_M)
         return present & self._six if name in ("WAF", "WBF") else present
 
     def floats(self, name: str) -> Floats:
@@ -118,8 +119,8 @@ class Replay:
 
     def _printed(self, name: str) -> Bools:
         """The scenes in which the program came to print a field."""
-        printed = self._unit.reached(impact.PRINTED[name]) & (self.code != OTHER_M)
-        return printed & self._six if name in ("WAF", "WBF") else printed
+        printed = self._unit.reached(listing.PRINTED[name]) & (self.code != OTHER_M)
+        return printed & self._six if name in FINAL_SPINS else printed
 
     def _to_print(self, name: str) -> Floats:
         """What PRINT gets for a field, extension included; length 1 where all scenes share it."""
@@ -133,15 +134,15 @@ class Replay:
         with np.errstate(all="ignore"):
             x, *more = (from_floats(column.copy(), unit, True) for column in columns)
             if more:
-                x = impact.loss(x, *more)
-            elif name in impact.FLOORED:
-                x = impact.floored(name, x)
-            elif name in impact.ANGLES:
-                (angle,) = impact.radians(unit, [x])
-                x = (angle / impact.AG).rounded()
+                x = listing.loss(x, *more)
+            elif name in listing.FLOORED:
+                x = listing.floored(name, x)
+            elif name in ANGLES:
+                (angle,) = listing.radians(unit, [x])
+                x = (angle / listing.AG).rounded()
         return x.v
 
 
 def field_names() -> tuple[str, ...]:
     """The fields of the printout, in its order."""
-    return tuple(sorted(impact.PRINTED, key=impact.PRINTED.__getitem__))
+    return tuple(FIELDS)
