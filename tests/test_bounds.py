@@ -11,15 +11,14 @@ import pytest
 
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES
+from impact88.reconstruction.model import forward_model, reconstruction_model
 from impact88.scene import sample
 from impact88.uncertainty import uncertain
 from impact88.uncertainty.bounds import (
     RECONSTRUCTED,
     bounds,
-    forward_model,
     input_names,
     quantity,
-    reconstruction_model,
 )
 from impact88.uncertainty.extremes import extremes
 from impact88.uncertainty.ranges import read_correlations, read_inputs

@@ -32,8 +32,8 @@ from impact88.figures.drawing import (
     text_width,
 )
 from impact88.figures.labels import Label, place
-from impact88.figures.plan import plan, scene_drawing
-from impact88.figures.plan_svg import scene_svg
+from impact88.figures.plan import plan
+from impact88.figures.sceneview import scene_drawing, scene_svg
 from impact88.figures.svg import svg
 from impact88.scene import Scene, sample
 from impact88.uncertainty.bounds import bounds
@@ -321,7 +321,7 @@ class TestSvg:
     def test_needs_neither_matplotlib_nor_numpy(self):
         code = (
             "import sys\nsys.modules['matplotlib'] = sys.modules['numpy'] = None\n"
-            "from impact88.figures.plan_svg import scene_svg\n"
+            "from impact88.figures.sceneview import scene_drawing, scene_svg\n"
             "from impact88.scene import sample\n"
             "assert '<svg' in scene_svg(sample(1), {'VAX': -13, 'VAY': 3, 'VBX': -9, 'VBY': 20})\n"
         )

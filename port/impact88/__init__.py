@@ -31,7 +31,7 @@ _LAZY = {
     "delta_v": "chapter.deltav",
     "solve": "closedform.solve",
     "bounds": "uncertainty.bounds",
-    "scene_svg": "figures.plan_svg",
+    "scene_svg": "figures.sceneview",
     "replay": "replay",
 }
 """Public name -> the module that holds it."""

@@ -128,6 +128,8 @@ for: contact point, direction and size of the force, velocities along n and t.""
 FINAL_VELOCITIES = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 VELOCITIES = ("UX", "UY", "WA", "VX", "VY", "WB")
 """The six values lines 210 and 230 ask for, in that order."""
+FINAL_STATE = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
+"""The final velocities in the order of `VELOCITIES`; `FINAL_VELOCITIES` is the listing's own."""
 
 DEFAULT_M = "6"
 """M where a scene does not give it: the published listing's line 350."""

@@ -7,6 +7,7 @@ listing's names; only the raw text of a value is used, never TOML's own idea of 
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping
 
@@ -99,6 +100,27 @@ class Scene(Mapping[str, str]):
     def to_toml(self) -> str:
         """The scene as a commented TOML file."""
         return template(self, self.title)
+
+
+def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
+    """The scene's texts as numbers, by name; blanks inside a number are skipped as BASIC does.
+
+    Raises UserError for a missing value or one that is not a finite number.
+    """
+    result = {}
+    for name in SCENE:
+        try:
+            text = scene[name]
+        except KeyError:
+            text = DEFAULT_M if name == "M" else None
+        try:
+            value = float(str(text).replace(" ", ""))
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise UserError(f"{text!r} is not a number that can be drawn", name)
+        result[name] = value
+    return result
 
 
 def check_names(values: Mapping[str, str], source: str) -> None:

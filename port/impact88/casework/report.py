@@ -159,7 +159,7 @@ def _numbers(checks: Sequence[FieldCheck]) -> str:
 def _drawing(result: Verification) -> str:
     if not result.runnable:
         return ""
-    from ..figures.plan_svg import scene_svg
+    from ..figures.sceneview import scene_svg
 
     scene = {name: text for name, text in result.scene.items() if text is not None}
     try:

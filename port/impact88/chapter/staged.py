@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..files import packaged_text
+from ..names import FINAL_STATE, VELOCITIES
 from ..reconstruction.geometry import Geometry
 from .deltav import delta_v
 
@@ -41,8 +42,6 @@ SPIN_WEIGHT = 25.0
 E_BOUNDS = (0.0, 1.0)
 EM_BOUNDS = (-1.0, 0.0)
 _HALF_DIGIT_COEFFICIENT, _HALF_DIGIT = 0.0005, 0.05
-_BEFORE = ("UX", "UY", "WA", "VX", "VY", "WB")
-_AFTER = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
 
 # -- the tables
 
@@ -299,8 +298,8 @@ class _Linear:
         here = Geometry.of(collision.scene)
         jacobian = np.array([here.changes(*unit) for unit in np.eye(3)], float).T
         directions = np.array([[float(x) for x in row] for row in here.directions()])
-        before = np.array([collision.scene[name] for name in _BEFORE])
-        after = np.array([collision.measured[name] for name in _AFTER])
+        before = np.array([collision.scene[name] for name in VELOCITIES])
+        after = np.array([collision.measured[name] for name in FINAL_STATE])
         known = np.isfinite(after)
         weight = np.where(known, [1.0, 1.0, SPIN_WEIGHT] * 2, 0.0)
         normal, _, spin = directions @ before

@@ -24,7 +24,7 @@ import argparse
 
 from ..chapter.givens import givens, template
 from ..errors import UserError
-from .reconstruct import add_solution_arguments, show
+from .reconstruct import add_solution_arguments, source_of
 
 KNOWABLE = (
     *("E", "MU", "MUP", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "M"),
@@ -41,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
     from ..chapter.barrier import BARRIER, BARRIER_AFTER
+    from ..reconstruction.solutiontable import show
 
     if args.template:
         print(template(KNOWABLE))
@@ -48,5 +49,6 @@ def main(args: argparse.Namespace) -> int:
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     known = givens(args.file, args.set, KNOWABLE)
-    show({**known, **BARRIER, **BARRIER_AFTER}, None, args)
+    everything = {**known, **BARRIER, **BARRIER_AFTER}
+    show(everything, None, source_of(args.file), args.contact_time, args.json)
     return 0

@@ -27,7 +27,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
-from ..scene import Scene, sample
+from ..scene import Scene, numbers_of, sample
 from .bounds import add_scene_arguments, explored
 from .options import add_set_argument
 from .run import settings
@@ -87,7 +87,7 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
 
         return charts.friction_sweep(_scene(args))
     if kind == "scene":
-        from ..figures.plan import scene_drawing
+        from ..figures.sceneview import scene_drawing
 
         scene = _scene(args)
         return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
@@ -120,7 +120,6 @@ def _scene(args: argparse.Namespace) -> Scene:
 def solved(scene: Scene) -> dict[str, Any]:
     """The results of one scene as numbers, for a drawing."""
     from ..closedform.solve import solve
-    from ..figures.plan import numbers_of
     from ..names import FINAL_VELOCITIES
 
     found = solve(numbers_of(scene), (*FINAL_VELOCITIES, "STATUS"))

@@ -30,8 +30,6 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 from __future__ import annotations
 
 import argparse
-import json
-from collections.abc import Mapping
 
 from ..chapter.givens import givens, template
 from ..errors import UserError
@@ -75,26 +73,12 @@ def main(args: argparse.Namespace) -> int:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     known = givens(args.file, args.set, KNOWABLE)
     wanted = args.wanted.upper().replace(",", " ").split() if args.wanted else None
-    show(known, wanted, args)
+    from ..reconstruction.solutiontable import show
+
+    show(known, wanted, source_of(args.file), args.contact_time, args.json)
     return 0
 
 
-def show(known: Mapping[str, float], wanted: list[str] | None, args: argparse.Namespace) -> None:
-    """Print the solutions of one problem."""
-    from ..reconstruction.solutiontable import as_json, as_text, complete
-    from ..reconstruction.unknowns import solve_for
-
-    try:
-        solutions = solve_for(known, wanted)
-    except UserError as error:
-        source = "standard input" if args.file == "-" else args.file
-        raise UserError(str(error), source) from None
-    tables = [(s, complete(known, s, args.contact_time)) for s in solutions]
-    if args.json:
-        print(json.dumps({"solutions": [as_json(known, s, v) for s, v in tables]}, allow_nan=False))
-        return
-    for at, (solution, values) in enumerate(tables):
-        if len(tables) > 1:
-            head = f"SOLUTION {at + 1} OF {len(tables)}"
-            print(f"{chr(10) if at else ''}{head}: MU is known in size, and both signs agree\n")
-        print(as_text(known, solution, values))
+def source_of(path: str | None) -> str | None:
+    """What errors call the file given."""
+    return "standard input" if path == "-" else path

@@ -11,10 +11,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
+from ..scene import numbers_of
 from ..status import Status
 from .canvas import new_figure, style
 from .drawing import BLACK, BLUE, COLUMN, GREY, ORANGE, VERMILION
-from .plan import numbers_of, short
+from .sceneview import short
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,7 +8,8 @@ from typing import Any
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
-from .plan import COLOURS, Plan, draw_body, plan
+from .plan import Plan, plan
+from .sceneview import COLOURS, draw_body
 
 _GAP = 4.0
 _TITLE = 5.0

@@ -13,7 +13,8 @@ from typing import Any
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
-from .plan import COLOURS, IMPULSE, TINTS, Plan, Vehicle, plan
+from .plan import Plan, Vehicle, plan
+from .sceneview import COLOURS, IMPULSE, TINTS
 
 _ANGLE = "#444444"
 _MARGIN = 7.5

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import VELOCITIES
+from ..names import FINAL_STATE, VELOCITIES
 from .geometry import Geometry
 
 Array = NDArray[np.float64]
@@ -26,9 +26,7 @@ Flags = NDArray[np.bool_]
 Rows = tuple[Array, Array]
 """A velocity, or an impulse as one: its rows over z and over the known velocities k."""
 
-INITIAL = VELOCITIES
-FINAL = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
-"""The final velocities in the order of the initial ones."""
+INITIAL, FINAL = VELOCITIES, FINAL_STATE
 COEFFICIENTS = ("E", "MUP", "EM")
 """The coefficients as they may be asked for: friction as the signed P_t/P_n."""
 SPINS = ("WA", "WB", "WAF", "WBF")

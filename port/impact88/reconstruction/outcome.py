@@ -13,14 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..closedform.solve import solve
-from ..names import SCENE
+from ..names import FINAL_STATE, SCENE, VELOCITIES
 from .geometry import Geometry
 from .impulse import principal_direction
 
 Array = NDArray[np.float64]
 
-_BEFORE = ("UX", "UY", "WA", "VX", "VY", "WB")
-_AFTER = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
 _FORWARD = ("MUC", "STATUS")
 """What only the forward solution can tell: it needs all initial velocities and coefficients."""
 
@@ -55,7 +53,7 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
 def _contact_velocities(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
     """Lines 340, 700 and 710."""
     found = {}
-    for suffix, names in (("", _BEFORE), ("F", _AFTER)):
+    for suffix, names in (("", VELOCITIES), ("F", FINAL_STATE)):
         arms = ((here.d3, -here.d4, names[:3], "A"), (-here.d1, here.d2, names[3:], "B"))
         for arm_x, arm_y, (x, y, spin), vehicle in arms:
             if all(name in given for name in (x, y, spin)):
@@ -68,11 +66,11 @@ def _contact_velocities(here: Geometry, given: Mapping[str, Array]) -> dict[str,
 def _changes(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
     found: dict[str, Array] = {}
     for vehicle, at in (("A", 0), ("B", 3)):
-        names = (*_BEFORE[at : at + 2], *_AFTER[at : at + 2])
+        names = (*VELOCITIES[at : at + 2], *FINAL_STATE[at : at + 2])
         if all(name in given for name in names):
             x, y, after_x, after_y = (given[name] for name in names)
             found[f"DV{vehicle}"] = np.hypot(after_x - x, after_y - y)
-    for name, names in (("KI", _BEFORE), ("KF", _AFTER)):
+    for name, names in (("KI", VELOCITIES), ("KF", FINAL_STATE)):
         if all(velocity in given for velocity in names):
             found[name] = _energy(here, given, [given[velocity] for velocity in names])
     if "KI" in found and "KF" in found:

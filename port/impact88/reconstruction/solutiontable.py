@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from typing import Any
 
+from ..errors import UserError
 from ..names import CHAPTER, RESULTS, SCENE, Quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..status import WORDS, Status
 from .impulse import clock, forces
 from .outcome import outcome
-from .unknowns import BADLY_CONDITIONED, PIVOT, Solution
+from .unknowns import BADLY_CONDITIONED, PIVOT, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
 _BARRIERS = (
@@ -30,7 +32,7 @@ def complete(
     known: Mapping[str, float], solution: Solution, contact_time: float | None
 ) -> dict[str, float]:
     """Everything about one solution of a single scene, by name, in the tables' order: what was
-    given, what was found, and what follows (`chapter.outcome`; forces for a contact time)."""
+    given, what was found, and what follows (`outcome`; forces for a contact time)."""
     values = {**known, **{name: float(value) for name, value in solution.values.items()}}
     following = {name: float(value) for name, value in outcome(values).items()}
     if contact_time is not None and "P" in following:
@@ -167,3 +169,27 @@ def as_json(
         }
     )
     return whole
+
+
+def show(
+    known: Mapping[str, float],
+    wanted: list[str] | None,
+    source: str | None,
+    contact_time: float | None,
+    as_object: bool,
+) -> None:
+    """Print the solutions of one problem, as tables or as one JSON object; ``source`` names where
+    the known values come from in errors."""
+    try:
+        solutions = solve_for(known, wanted)
+    except UserError as error:
+        raise UserError(str(error), source) from None
+    tables = [(s, complete(known, s, contact_time)) for s in solutions]
+    if as_object:
+        print(json.dumps({"solutions": [as_json(known, s, v) for s, v in tables]}, allow_nan=False))
+        return
+    for at, (solution, values) in enumerate(tables):
+        if len(tables) > 1:
+            head = f"SOLUTION {at + 1} OF {len(tables)}"
+            print(f"{chr(10) if at else ''}{head}: MU is known in size, and both signs agree\n")
+        print(as_text(known, solution, values))

@@ -11,8 +11,8 @@ equations. Whatever is not given is unknown; `solve_for` finds what the equation
   then fitted by least squares (each equation written as a velocity, spins times the radius
   `gyration`, all with equal weight) and the mismatch is told.
 
-Rank and condition of the equations (`chapter.equations`) decide; a set that is not determined is
-refused with the reason.
+Rank and condition of the equations (`Equations`) decide; a set that is not determined is refused
+with the reason.
 
 Friction: ``MUP`` is the signed P_t/P_n as printed; ``MU`` is what line 280 would hold, whose sign
 line 400 chooses so that friction opposes the sliding. The rule needs the initial velocities; where

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,15 +27,17 @@ from numpy.typing import NDArray
 from .. import status
 from ..errors import UserError
 from ..names import CHAPTER, FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES, Quantity
-from ..reconstruction.geometry import Geometry
-from ..reconstruction.model import initial_velocities
+from ..reconstruction.model import (
+    FRICTION_DRIVES,
+    Model,
+    forward_model,
+    reconstruction_model,
+)
+from .draws import Drive, Spread, drive_of, ranks, spread_of
 from .extremes import CORNERS_IN_FULL, extremes
 from .uncertain import Uncertain, correlation_root, fixed
 
 Array = NDArray[np.float64]
-Model = Callable[[Mapping[str, Any], Sequence[str]], dict[str, Array]]
-"""Columns (arrays or numbers by name) and the outputs wanted -> arrays by name."""
-
 SPEEDS = {name: CHAPTER[name] for name in ("SA", "SB")}
 """What a reconstruction is asked for, beside the six initial velocities."""
 
@@ -45,9 +46,6 @@ FORWARD_OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 RECONSTRUCTION_OUTPUTS = (*VELOCITIES, "SA", "SB", "DVA", "DVB", "LOSS")
 RECONSTRUCTED = (*RECONSTRUCTION_OUTPUTS, "KI", "KF", "PN", "PT", "PM", "MUC")
 """What a reconstruction can be asked for."""
-FRICTION_DRIVES = 128
-"""Beside STATUS's bits, for reconstructions alone: the signed MUP given pushes the sliding on
-instead of opposing it. The forward problem's sign rule (line 400) does not let that happen."""
 WARNINGS = {bit.name or "": int(bit) for bit in status.Status} | {
     "FRICTION_DRIVES": FRICTION_DRIVES
 }
@@ -80,36 +78,6 @@ class Bound:
     corner_upper: float
     lower_warnings: tuple[str, ...]
     upper_warnings: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Spread:
-    """Monte Carlo: mean, standard deviation and quantiles (share -> value) of one result."""
-
-    mean: float
-    deviation: float
-    quantiles: dict[float, float]
-
-
-@dataclass(frozen=True)
-class Drive:
-    """What one input does to one result.
-
-    ``rank_correlation``: Spearman's, over the draws; nan where either does not vary; ``at_low`` and
-    ``at_high``: the result with this input at its limits and the others nominal; ``lowest`` and
-    ``highest``: over the whole sweep, beyond the former where the result turns around.
-    """
-
-    rank_correlation: float
-    at_low: float
-    at_high: float
-    lowest: float
-    highest: float
-
-    @property
-    def swing(self) -> float:
-        """How far the result goes as this input alone runs through its range."""
-        return self.highest - self.lowest
 
 
 @dataclass(frozen=True)
@@ -193,8 +161,8 @@ def bounds(
     if not usable.any():
         raise UserError("none of the draws has a finite result; expected narrower ranges")
     some = usable[:RANKED]
-    input_ranks = {name: _ranks(column[some]) for name, column in ranked.items()}
-    output_ranks = {name: _ranks(column[:RANKED][some]) for name, column in draws.items()}
+    input_ranks = {name: ranks(column[some]) for name, column in ranked.items()}
+    output_ranks = {name: ranks(column[:RANKED][some]) for name, column in draws.items()}
     return Bounds(
         problem=problem,
         inputs=box.inputs,
@@ -213,10 +181,10 @@ def bounds(
             )
             for place, name in enumerate(box.outputs)
         },
-        spreads={name: _spread(draws[name][usable], quantiles) for name in box.outputs},
+        spreads={name: spread_of(draws[name][usable], quantiles) for name in box.outputs},
         drives={
             output: {
-                name: _drive(sweeps[name][output], input_ranks[name], output_ranks[output])
+                name: drive_of(sweeps[name][output], input_ranks[name], output_ranks[output])
                 for name in box.inputs
             }
             for output in box.outputs
@@ -399,71 +367,6 @@ def _outputs(problem: str, point_masses: bool) -> tuple[tuple[str, ...], tuple[s
     return usual, results
 
 
-def forward_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Array]:
-    """Equations 13-18 solved for the final velocities, by `impact88.solve`."""
-    from ..closedform.solve import solve
-
-    return dict(solve(columns, outputs))
-
-
-def reconstruction_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Array]:
-    """Equations 13-18 solved for the initial velocities, by `chapter.reconstruction`; STATUS is
-    that of the impact found, with `FRICTION_DRIVES` for one whose friction pushes the sliding on.
-    """
-    found = {
-        **{name: np.asarray(value, np.float64) for name, value in columns.items()},
-        **initial_velocities(columns),
-    }
-    before = [found[name] for name in VELOCITIES]
-    after = [found[name] for name in ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")]
-    found["SA"], found["SB"] = np.hypot(*before[:2]), np.hypot(*before[3:5])
-    change = [late - early for late, early in zip(after, before, strict=True)]
-    found["DVA"], found["DVB"] = np.hypot(*change[:2]), np.hypot(*change[3:5])
-    if {"KI", "KF", "LOSS", "STATUS"}.intersection(outputs):
-        found["KI"], found["KF"] = _energy(found, before), _energy(found, after)
-        found["LOSS"] = 100 * (found["KI"] - found["KF"]) / found["KI"]
-    if {"MUC", "STATUS"}.intersection(outputs):
-        # the critical friction depends on MU's sign as little as on MU
-        names = (*(name for name in SCENE if name in found), *VELOCITIES)
-        scene = {name: found[name] for name in names} | {"MU": 0.0}
-        found["MUC"] = forward_model(scene, ["MUC"])["MUC"]
-    if "STATUS" in outputs:
-        found["STATUS"] = _reconstruction_status(found, before)
-    return {name: found[name] for name in outputs}
-
-
-def _energy(found: Mapping[str, Array], velocities: Sequence[Array]) -> Array:
-    """Kinetic energy; a point mass has none from its spin."""
-    turning = np.where(found["M"] == 4, 0.0, 1.0)
-    vax, vay, wa, vbx, vby, wb = velocities
-    return (
-        found["MA"] * (vax**2 + vay**2)
-        + found["MB"] * (vbx**2 + vby**2)
-        + turning * (found["IA"] * wa**2 + found["IB"] * wb**2)
-    ) / 2
-
-
-def _reconstruction_status(found: Mapping[str, Array], before: Sequence[Array]) -> Array:
-    """STATUS as `impact88.status` defines it, of an impact known from both sides."""
-    normal, tangential, _ = Geometry.of(found).relative(before)
-    e, em, mu, pn = (found[name] for name in ("E", "EM", "MUP", "PN"))
-    six = found["M"] != 4
-    bits = {
-        status.Status.SEPARATING: normal >= 0,
-        status.Status.PULLING: pn < 0,
-        status.Status.SLIDING_REVERSED: np.abs(mu) > np.abs(found["MUC"]),
-        status.Status.ENERGY_GAINED: found["KF"] - found["KI"] > 1e-12 * found["KI"],
-        status.Status.COEFFICIENT_OUT_OF_RANGE: (e < 0) | (e > 1) | six & ((em < -1) | (em > 0)),
-        status.Status.NOT_FINITE: ~np.isfinite(found["KI"]),
-        FRICTION_DRIVES: mu * tangential * np.sign(pn) > 0,
-    }
-    # the parts broadcast: what does not vary is a lone number
-    flags: Any = np.int64(0)
-    for bit, holds in bits.items():
-        flags = flags + np.int64(bit) * holds
-    return np.asarray(flags)
-
-
 def _monte_carlo(
     box: _Box,
     rng: np.random.Generator,
@@ -497,32 +400,3 @@ def _monte_carlo(
                 part[:] = columns[name][: len(part)]
         progress(count)
     return draws, ranked, flags
-
-
-def _spread(values: Array, quantiles: Sequence[float]) -> Spread:
-    found = np.quantile(values, list(quantiles)) if quantiles else np.empty(0)
-    return Spread(
-        mean=float(values.mean()),
-        deviation=float(values.std(ddof=1)) if len(values) > 1 else 0.0,
-        quantiles=dict(zip(quantiles, found.tolist(), strict=True)),
-    )
-
-
-def _ranks(values: Array) -> Array:
-    """Ranks from 0, equal values sharing the mean of theirs."""
-    ordered = np.sort(values)
-    below = np.searchsorted(ordered, values, side="left")
-    return (below + np.searchsorted(ordered, values, side="right") - 1) / 2
-
-
-def _drive(sweep: Array, input_ranks: Array, output_ranks: Array) -> Drive:
-    first, second = input_ranks - input_ranks.mean(), output_ranks - output_ranks.mean()
-    size = np.sqrt((first @ first) * (second @ second))
-    finite = sweep[np.isfinite(sweep)]
-    return Drive(
-        rank_correlation=float(first @ second / size) if size > 0 else float("nan"),
-        at_low=float(sweep[0]),
-        at_high=float(sweep[-1]),
-        lowest=float(finite.min()) if len(finite) else float("nan"),
-        highest=float(finite.max()) if len(finite) else float("nan"),
-    )

@@ -1,0 +1,477 @@
+"""The scene from above, drawn: vehicles, contact plane, velocities, spins, impulse, key and table.
+
+Where everything is comes from `figures.plan`; here it is put on paper.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from . import drawing as d
+from .drawing import Box, Drawing, Path, Point, Text
+from .labels import Label, place
+from .plan import Plan, Vehicle, dot, minus, plan, plus, scaled
+from .svg import svg
+
+COLOURS = {"A": d.BLUE, "B": d.VERMILION}
+TINTS = {"A": "#d6e8f3", "B": "#fbe6d8"}
+IMPULSE = "#a03c78"
+"""A darker reddish purple than Okabe and Ito's: thin lines need it on white."""
+
+_MARGIN = 6.0
+_TEXT = 6.5
+_ROW = 3.4
+_FIELD = 78.0
+"""Largest height in mm of the drawing proper."""
+
+
+def scene_drawing(
+    scene: Any,
+    result: Mapping[str, Any] | None = None,
+    width: float = d.COLUMN,
+    title: str = "Scene from above",
+) -> Drawing:
+    """The scene from above, with key and table, ``width`` mm wide. Arguments as `plan`.
+
+    Velocities before the impact end at the center of gravity, those after it start there, in one
+    scale; both vehicles' spins turn around their centers.
+    """
+    shapes = plan(scene, result)
+    field = _Field(shapes, width)
+    notes = _notes(shapes)
+    footer = _ROW * (3 + 3 + len(notes)) + 5.5
+    drawing = Drawing(width, field.height + footer, title, _description(shapes))
+    field.draw(drawing, footer)
+    _legend(drawing, shapes, field, footer, notes)
+    return drawing
+
+
+def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> str:
+    """The scene as a self-contained SVG element, 85 mm wide, to stand in an HTML page or a file.
+
+    ``scene``: an `impact88.Scene` or any mapping of the listing's names to texts or numbers;
+    ``result``: VAX, VAY, VBX, VBY, WAF, WBF and, where known, STATUS (see `impact88.solve`);
+    without it only what is before the impact is drawn. Units as the scene's. Raises UserError when
+    a value of the scene is missing or not a finite number.
+    """
+    return svg(scene_drawing(scene, result))
+
+
+class _Field:
+    """The drawing proper: where a point of the plan is on paper."""
+
+    def __init__(self, shapes: Plan, width: float, margin: float = _MARGIN) -> None:
+        self.shapes = shapes
+        self.speed = max(
+            [v.before.speed for v in shapes.vehicles]
+            + [v.after.speed for v in shapes.vehicles if v.after]
+        )
+        vehicles = [vehicle for vehicle in shapes.vehicles if not vehicle.wall]
+        self.size = max(vehicle.length for vehicle in vehicles or shapes.vehicles)
+        self.per_speed = 0.95 * self.size / self.speed if self.speed else 0.0
+        box = d.extent(self._points())
+        room = width - 2 * margin
+        self.scale = min(
+            room / (box.right - box.left), (_FIELD - 2 * margin) / (box.top - box.bottom)
+        )
+        self.height = self.scale * (box.top - box.bottom) + 2 * margin
+        self.origin = (
+            (width - self.scale * (box.left + box.right)) / 2,
+            margin - self.scale * box.bottom,
+        )
+
+    def _points(self) -> list[Point]:
+        points: list[Point] = [(0.0, 0.0)]
+        for vehicle in self.shapes.vehicles:
+            if vehicle.wall:
+                points += self.wall_face(vehicle)
+            else:
+                points += vehicle.outline
+                for start, end in self.arrows(vehicle).values():
+                    points += [start, end]
+        half = self.plane_half()
+        points += [scaled(self.shapes.tangent, half), scaled(self.shapes.tangent, -half)]
+        # the n axis stands at the plane's end
+        points.append(
+            plus(scaled(self.shapes.tangent, half), scaled(self.shapes.normal, 0.3 * self.size))
+        )
+        if tip := self.impulse_end():
+            points.append(tip)
+        return points
+
+    def plane_half(self) -> float:
+        """How far the contact plane is drawn to either side."""
+        return 0.62 * self.size
+
+    def wall_face(self, vehicle: Vehicle) -> list[Point]:
+        """Four corners of the strip a wall is drawn as."""
+        inward = scaled(self.shapes.normal, 1.0 if vehicle.name == "A" else -1.0)
+        half = scaled(self.shapes.tangent, self.plane_half())
+        depth = scaled(inward, 0.12 * self.size)
+        return [
+            scaled(half, -1.0),
+            half,
+            plus(half, depth),
+            minus(depth, half),
+        ]
+
+    def arrows(self, vehicle: Vehicle) -> dict[str, tuple[Point, Point]]:
+        """Start and end of the velocities of a vehicle that moves, in the plan's units."""
+        result = {}
+        least = 1e-3 * self.speed
+        if vehicle.before.speed > least:
+            run = scaled(vehicle.before.velocity, self.per_speed)
+            result["before"] = (minus(vehicle.center, run), vehicle.center)
+        if vehicle.after and vehicle.after.speed > least:
+            run = scaled(vehicle.after.velocity, self.per_speed)
+            start = vehicle.center
+            if "before" in result:
+                # coming and going on one line: the way back is drawn beside the way in
+                back = vehicle.before.velocity
+                cosine = dot(back, run) / (math.hypot(*back) * math.hypot(*run))
+                if cosine < -0.97:
+                    unit = scaled(back, 1 / math.hypot(*back))
+                    start = plus(start, scaled((-unit[1], unit[0]), 0.06 * self.size))
+            result["after"] = (start, plus(start, run))
+        return result
+
+    def impulse_end(self) -> Point | None:
+        """Where the impulse's arrow from the contact point ends; None when there is none."""
+        impulse = self.shapes.impulse
+        if impulse is None or math.hypot(*impulse) == 0:
+            return None
+        return scaled(impulse, 0.5 * self.size / math.hypot(*impulse))
+
+    def paper(self, point: Point, footer: float = 0.0) -> Point:
+        """A point of the plan on paper."""
+        return (
+            self.origin[0] + self.scale * point[0],
+            footer + self.origin[1] + self.scale * point[1],
+        )
+
+    def draw(self, drawing: Drawing, footer: float) -> None:
+        """Everything above the legend, then the labels."""
+
+        def at(point: Point) -> Point:
+            return self.paper(point, footer)
+
+        def ats(points: Sequence[Point]) -> tuple[Point, ...]:
+            return tuple(at(point) for point in points)
+
+        items = drawing.items
+        labels: list[Label] = []
+        for vehicle in self.shapes.vehicles:
+            if vehicle.wall:
+                self._draw_wall(items, vehicle, ats)
+            else:
+                draw_body(items, vehicle, ats)
+        self._draw_plane(items, labels, at)
+        for vehicle in self.shapes.vehicles:
+            if not vehicle.wall:
+                self._draw_motion(items, labels, vehicle, at)
+        if end := self.impulse_end():
+            items += d.arrow(at((0.0, 0.0)), at(end), IMPULSE, 0.9, head=2.8, role="impulse")
+            labels.append(Label(at(end), end, "P", 8.5, IMPULSE, True, "impulse label"))
+        contact = at((0.0, 0.0))
+        items.append(Path(d.circle(contact, 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
+        items.append(Path(d.circle(contact, 0.2), None, fill=d.BLACK))
+        away = scaled(self.shapes.tangent, -1.0)
+        labels.append(Label(contact, away, "C", 8.0, d.BLACK, False, "contact label"))
+        for vehicle in self.shapes.vehicles:
+            colour = COLOURS[vehicle.name]
+            where, towards = at(vehicle.center), scaled(vehicle.front, -1.0)
+            if vehicle.wall:
+                face = self.wall_face(vehicle)
+                where = at(scaled(plus(face[2], face[3]), 0.5))
+                towards = minus(face[3], face[0])
+            labels.insert(
+                0, Label(where, towards, vehicle.name, 10, colour, True, f"{vehicle.name} label")
+            )
+        self._draw_axes(drawing, footer)
+        frame = Box(0.8, footer, drawing.width - 0.8, drawing.height - 0.4)
+        place(drawing, labels, frame)
+
+    def _draw_wall(self, items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
+        face = self.wall_face(vehicle)
+        role = f"{vehicle.name} wall"
+        items.append(Path(ats(face), None, fill=TINTS[vehicle.name], role=role))
+        items.append(Path(ats(face[:2]), COLOURS[vehicle.name], 0.7, role=role))
+        for step in range(12):
+            low = plus(face[0], scaled(minus(face[1], face[0]), (step + 0.5) / 12))
+            high = plus(face[3], scaled(minus(face[2], face[3]), (step + 1) / 12))
+            items.append(Path(ats([low, high]), COLOURS[vehicle.name], 0.2, role=role))
+
+    def _draw_plane(self, items: list[Path | Text], labels: list[Label], at: Any) -> None:
+        half = scaled(self.shapes.tangent, self.plane_half())
+        plane = (at(scaled(half, -1.0)), at(half))
+        items.append(Path(plane, d.BLACK, 0.3, (2.4, 0.8, 0.4, 0.8), role="contact plane"))
+        corner = scaled(half, 0.72)
+        for unit, name in ((self.shapes.normal, "n"), (self.shapes.tangent, "t")):
+            end = plus(corner, scaled(unit, 0.28 * self.size))
+            if name == "t":
+                end = scaled(half, 1.0)
+            items += d.arrow(at(corner), at(end), d.BLACK, 0.35, head=1.8, role=f"{name} axis")
+            labels.append(Label(at(end), unit, name, 8, d.BLACK, False, f"{name} label"))
+
+    def _draw_motion(
+        self, items: list[Path | Text], labels: list[Label], vehicle: Vehicle, at: Any
+    ) -> None:
+        colour, name = COLOURS[vehicle.name], vehicle.name.lower()
+        center = at(vehicle.center)
+        arrows = self.arrows(vehicle)
+        if "before" in arrows:
+            start, end = arrows["before"]
+            items += d.arrow(
+                at(start), at(end), colour, 0.45, (1.3, 0.7), 2.2, f"{vehicle.name} before"
+            )
+            labels.append(
+                Label(
+                    at(start), minus(start, end), f"v_{name}", 8, colour, False, f"v_{name} label"
+                )
+            )
+        if "after" in arrows:
+            start, end = arrows["after"]
+            items += d.arrow(at(start), at(end), colour, 0.65, (), 2.5, f"{vehicle.name} after")
+            labels.append(
+                Label(at(end), minus(end, start), f"V_{name}", 8, colour, False, f"V_{name} label")
+            )
+        least = 1e-4 * self.speed / self.size
+        spins: list[tuple[str, float, float, tuple[float, ...]]] = [
+            ("ω", vehicle.before.spin, 2.9, (0.9, 0.6))
+        ]
+        if vehicle.after:
+            spins.append(("Ω", vehicle.after.spin, 3.9, ()))
+        opening = math.degrees(math.atan2(vehicle.front[1], vehicle.front[0])) + 180
+        for symbol, spin, radius, dash in spins:
+            if not abs(spin) > least:
+                continue
+            items += d.turning_arrow(
+                center,
+                radius,
+                spin > 0,
+                colour,
+                0.4,
+                dash,
+                opening,
+                role=f"{vehicle.name} spin",
+            )
+            angle = math.radians(opening + 180)
+            edge = (
+                center[0] + radius * math.cos(angle),
+                center[1] + radius * math.sin(angle),
+            )
+            labels.append(
+                Label(
+                    edge,
+                    minus(edge, center),
+                    f"{symbol}_{name}",
+                    8,
+                    colour,
+                    False,
+                    f"{symbol}_{name} label",
+                )
+            )
+        items.append(
+            Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=f"{vehicle.name} center")
+        )
+
+    def _draw_axes(self, drawing: Drawing, footer: float) -> None:
+        """The x and y axes, in the corner of the field with the fewest lines."""
+        segments = list(drawing.segments())
+        best: tuple[int, Box] | None = None
+        side = 9.0
+        for left in (1.0, drawing.width - side - 1.0):
+            for bottom in (footer + 0.5, drawing.height - side - 0.5):
+                box = Box(left, bottom, left + side, bottom + side)
+                crossed = sum(box.crosses(*segment) for segment in segments)
+                if best is None or crossed < best[0]:
+                    best = (crossed, box)
+        assert best is not None
+        box = best[1]
+        origin = (box.left + 1.0, box.bottom + 1.0)
+        for unit, name in (((1.0, 0.0), "x"), ((0.0, 1.0), "y")):
+            end = plus(origin, scaled(unit, 5.5))
+            drawing.items += d.arrow(origin, end, d.GREY, 0.25, head=1.5, role=f"{name} axis")
+            shift = (0.7, -0.7) if name == "x" else (0.6, -0.2)
+            drawing.items.append(
+                Text(
+                    end[0] + shift[0],
+                    end[1] + shift[1],
+                    name,
+                    7,
+                    colour=d.GREY,
+                    role=f"{name} label",
+                )
+            )
+
+
+def draw_body(items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
+    """A vehicle's outline, what of it is crushed, and marks that show its front. ``ats`` maps
+    points of the plan to paper."""
+    colour = COLOURS[vehicle.name]
+    items.append(Path(ats(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
+    outline = (*vehicle.outline, vehicle.outline[0])
+    if vehicle.kept != vehicle.outline:
+        items.append(Path(ats(outline), colour, 0.2, (0.7, 0.7), role=f"{vehicle.name} whole"))
+    items.append(
+        Path(
+            ats((*vehicle.kept, vehicle.kept[0])),
+            colour,
+            0.45,
+            role=f"{vehicle.name} outline",
+        )
+    )
+    # the front: a windscreen's line and an arrowhead, as on a police sketch
+    left = (-vehicle.front[1], vehicle.front[0])
+    for along, across in ((0.22, 0.38), (-0.3, 0.36)):
+        middle = plus(vehicle.center, scaled(vehicle.front, along * vehicle.length))
+        half = scaled(left, across * vehicle.width)
+        items.append(
+            Path(ats([minus(middle, half), plus(middle, half)]), colour, 0.2, role="glass")
+        )
+    nose = plus(vehicle.center, scaled(vehicle.front, 0.36 * vehicle.length))
+    back = plus(vehicle.center, scaled(vehicle.front, 0.25 * vehicle.length))
+    half = scaled(left, 0.16 * vehicle.width)
+    tip = [plus(back, half), nose, minus(back, half)]
+    items.append(Path(ats(tip), colour, 0.3, role="heading"))
+
+
+def short(value: float) -> str:
+    """A number to four digits (three and an exponent where very large or small), with a true minus
+    sign."""
+    text = f"{value:.4g}"
+    return (f"{value:.3g}" if "e" in text else text).replace("-", "−")
+
+
+def _notes(shapes: Plan) -> list[str]:
+    notes = ["Outlines from I/m, L/W = 2.6: not measured."]
+    if any(v.kept != v.outline and not v.wall for v in shapes.vehicles):
+        notes[0] = notes[0][:-1] + "; dashed: crushed."
+    if shapes.apart:
+        notes.append("Point masses: drawn moved apart along n.")
+    if any(vehicle.wall for vehicle in shapes.vehicles):
+        notes.append("The hatched vehicle's mass makes it a rigid barrier.")
+    for remark in shapes.remarks:
+        notes += _wrapped("Remark: " + remark + ".", d.COLUMN - 4)
+    return [line for note in notes for line in _wrapped(note, d.COLUMN - 4)]
+
+
+def _wrapped(text: str, room: float) -> list[str]:
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if d.text_width(longer, _TEXT) > room and lines[-1]:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines
+
+
+def _round_below(value: float) -> float:
+    """The largest 1, 2 or 5 times a power of ten that is not above ``value``."""
+    if not value > 0:
+        return 0.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(step * power for step in (1, 2, 5) if step * power <= value * (1 + 1e-12))
+
+
+def _legend(
+    drawing: Drawing, shapes: Plan, field: _Field, footer: float, notes: Sequence[str]
+) -> None:
+    """Key, scale, table and notes below the drawing."""
+    items = drawing.items
+    left, middle = 2.0, 35.0
+    y = footer - _ROW
+    sample = 8.0
+
+    def entry(x: float, y: float, paths: list[Path], text: str) -> None:
+        items.extend(paths)
+        items.append(Text(x + sample + 1.5, y - 0.8, text, _TEXT, role="legend"))
+
+    entry(
+        left,
+        y,
+        d.arrow((left, y), (left + sample, y), d.BLACK, 0.45, (1.3, 0.7), 2.2),
+        "velocity before",
+    )
+    plane = [Path(((middle + 5, y), (middle + 5 + sample, y)), d.BLACK, 0.3, (2.4, 0.8, 0.4, 0.8))]
+    entry(middle + 5, y, plane, "contact plane, Γ = " + short(shapes.numbers["GA"]) + "°")
+    y -= _ROW
+    entry(
+        left,
+        y,
+        d.arrow((left, y), (left + sample, y), d.BLACK, 0.65, (), 2.5),
+        "velocity after",
+    )
+    if field.speed:
+        amount = _round_below(field.speed * 0.5)
+        run = field.scale * field.per_speed * amount
+        x = middle + 5
+        bar = [
+            Path(((x, y), (x + run, y)), d.BLACK, 0.4, role="scale"),
+            Path(((x, y - 0.7), (x, y + 0.7)), d.BLACK, 0.4),
+            Path(((x + run, y - 0.7), (x + run, y + 0.7)), d.BLACK, 0.4),
+        ]
+        items.extend(bar)
+        items.append(
+            Text(x + run + 1.5, y - 0.8, f"{short(amount)} length/time", _TEXT, role="legend")
+        )
+    y -= _ROW
+    if shapes.impulse is not None:
+        size = short(math.hypot(*shapes.impulse))
+        entry(
+            left,
+            y,
+            d.arrow((left, y), (left + sample, y), IMPULSE, 0.9, (), 2.8),
+            f"impulse on A, |P| = {size}; on B its opposite",
+        )
+    y -= 2.4
+    items.append(Path(((left, y), (drawing.width - left, y)), d.GREY, 0.2))
+    y = _table(drawing, shapes, y)
+    items.append(Path(((left, y + 2.0), (drawing.width - left, y + 2.0)), d.GREY, 0.2))
+    for note in notes:
+        items.append(Text(left, y - 0.9, note, _TEXT, colour=d.GREY, role="note"))
+        y -= _ROW
+
+
+def _table(drawing: Drawing, shapes: Plan, y: float) -> float:
+    columns = (21.0, 37.0, 50.0, 67.0, 83.0)
+    heads = ("|v| before", "|V| after", "ΔV", "ω before", "Ω after")
+    y -= _ROW - 0.3
+    drawing.items += [
+        Text(x, y, head, _TEXT, "end", role="table") for x, head in zip(columns, heads, strict=True)
+    ]
+    for vehicle in shapes.vehicles:
+        y -= _ROW
+        before, after = vehicle.before, vehicle.after
+        cells = [
+            short(before.speed),
+            short(after.speed) if after else "–",
+            short(math.dist(after.velocity, before.velocity)) if after else "–",
+            short(before.spin),
+            short(after.spin) if after else "–",
+        ]
+        if shapes.numbers["M"] == 4:
+            cells[3:] = "–", "–"
+        if vehicle.wall:
+            cells[1:3], cells[4] = ("–", "–"), "–"
+        colour = COLOURS[vehicle.name]
+        drawing.items.append(Text(2.0, y, vehicle.name, _TEXT, "start", colour, True, "table"))
+        drawing.items += [
+            Text(x, y, cell, _TEXT, "end", role="table")
+            for x, cell in zip(columns, cells, strict=True)
+        ]
+    return y - _ROW
+
+
+def _description(shapes: Plan) -> str:
+    parts = []
+    for vehicle in shapes.vehicles:
+        text = f"Vehicle {vehicle.name}: speed {short(vehicle.before.speed)} before"
+        if vehicle.after:
+            change = math.dist(vehicle.after.velocity, vehicle.before.velocity)
+            text += f", {short(vehicle.after.speed)} after, change of velocity {short(change)}"
+        parts.append(text + ".")
+    return " ".join(parts)

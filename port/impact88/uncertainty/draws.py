@@ -1,0 +1,70 @@
+"""What random draws tell: the `Spread` of a result, and which input makes it, `Drive`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Monte Carlo: mean, standard deviation and quantiles (share -> value) of one result."""
+
+    mean: float
+    deviation: float
+    quantiles: dict[float, float]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What one input does to one result.
+
+    ``rank_correlation``: Spearman's, over the draws; nan where either does not vary; ``at_low`` and
+    ``at_high``: the result with this input at its limits and the others nominal; ``lowest`` and
+    ``highest``: over the whole sweep, beyond the former where the result turns around.
+    """
+
+    rank_correlation: float
+    at_low: float
+    at_high: float
+    lowest: float
+    highest: float
+
+    @property
+    def swing(self) -> float:
+        """How far the result goes as this input alone runs through its range."""
+        return self.highest - self.lowest
+
+
+def spread_of(values: Array, quantiles: Sequence[float]) -> Spread:
+    found = np.quantile(values, list(quantiles)) if quantiles else np.empty(0)
+    return Spread(
+        mean=float(values.mean()),
+        deviation=float(values.std(ddof=1)) if len(values) > 1 else 0.0,
+        quantiles=dict(zip(quantiles, found.tolist(), strict=True)),
+    )
+
+
+def ranks(values: Array) -> Array:
+    """Ranks from 0, equal values sharing the mean of theirs."""
+    ordered = np.sort(values)
+    below = np.searchsorted(ordered, values, side="left")
+    return (below + np.searchsorted(ordered, values, side="right") - 1) / 2
+
+
+def drive_of(sweep: Array, input_ranks: Array, output_ranks: Array) -> Drive:
+    first, second = input_ranks - input_ranks.mean(), output_ranks - output_ranks.mean()
+    size = np.sqrt((first @ first) * (second @ second))
+    finite = sweep[np.isfinite(sweep)]
+    return Drive(
+        rank_correlation=float(first @ second / size) if size > 0 else float("nan"),
+        at_low=float(sweep[0]),
+        at_high=float(sweep[-1]),
+        lowest=float(finite.min()) if len(finite) else float("nan"),
+        highest=float(finite.max()) if len(finite) else float("nan"),
+    )
