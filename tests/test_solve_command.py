@@ -107,7 +107,7 @@ class TestBadRows:
         assert "row 6 (line 7), M: 5.0 is neither 4 nor 6" in told
         assert "row 8 (line 9), VX:" in told
         assert "a barrier is at rest" in told
-        assert "row 10 (line 11), GA: nan is not finite" in told
+        assert "row 10 (line 11), GA: 'nan' is no number" in told
         assert told.count("\n") == 5
         rows = table(out)
         assert len(rows) == 12

@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 
-from .applesoft import decimaltext
+from .doubles import is_number
 from .errors import UserError
 from .files import packaged_text, read_text
 from .names import DEFAULT_M, SCENE, VELOCITIES
@@ -138,7 +138,7 @@ def check_value(name: str, text: str, source: str) -> str:
     """``text`` if INPUT would take it for a number. Raises UserError if not."""
     if not isinstance(text, str):
         raise UserError(f"{name} is {text!r}; expected the number's text", source)
-    if not decimaltext.is_number(text.upper()):
+    if not is_number(text):
         raise UserError(
             f"{name} = {text!r} is no number; expected one such as 1.5 ({SCENE[name].meaning})",
             source,
@@ -173,7 +173,7 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
             )
             raise UserError(f"{key} is {kind}; expected a number", where)
         else:
-            if not decimaltext.is_number(raw_text.upper()):
+            if not is_number(raw_text):
                 raise UserError(f"{key} = {raw_text} is no number that INPUT takes", where)
             texts[key] = raw_text
     return texts
@@ -207,7 +207,7 @@ def _syntax_error(
     number = int(place.group(1)) if place else text.count("\n") + 1
     where = f"{source}, line {number}"
     for key, (line, value) in raw.items():
-        if line == number and decimaltext.is_number(value.upper()):
+        if line == number and is_number(value):
             whole = re.sub(r"^([+-]?)\.", r"\g<1>0.", value)
             whole = re.sub(r"\.(?![0-9])", ".0", whole)
             bare = f"{whole} or " if _plain_toml(whole) else ""

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal, InvalidOperation
 
 from .. import status
+from ..doubles import doubles_of
 from ..fields import INPUTS
 from ..names import RESULTS
 from .recovery import FieldCheck
@@ -47,13 +48,12 @@ def solved(scene: Mapping[str, str], outputs: Sequence[str]) -> dict[str, float]
     """Results of one scene by the closed form, as Python floats."""
     from ..closedform.solve import solve
 
-    columns = {name: float(text.upper().replace(" ", "") or 0) for name, text in scene.items()}
-    found = solve(columns, list(outputs))
+    found = solve(doubles_of(scene), list(outputs))
     return {name: float(found[name]) for name in outputs}
 
 
 def _traps(scene: Mapping[str, str]) -> list[str]:
-    value = {name: float(text) for name, text in scene.items()}
+    value = doubles_of(scene)
     found = []
     if value["M"] == 4 and (value["DA"] or value["DB"]):
         found.append(

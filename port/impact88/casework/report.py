@@ -164,7 +164,7 @@ def _drawing(result: Verification) -> str:
     scene = {name: text for name, text in result.scene.items() if text is not None}
     try:
         outcome = beside.solved(scene, [*names.FINAL_VELOCITIES, "STATUS"])
-        return scene_svg({name: float(text) for name, text in scene.items()}, outcome)
+        return scene_svg(scene, outcome)
     except (UserError, ValueError):
         return "<p>(The scene cannot be drawn.)</p>"
 

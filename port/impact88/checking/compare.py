@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import doubles
 from ..accuracy import errorbound
 from ..closedform.solve import solve
 from ..errors import UserError
@@ -289,7 +290,7 @@ def _theirs(rows: Rows, name: str) -> Theirs:
     for index, cell in enumerate(column):
         text = str(cell).strip() if cell is not None else ""
         try:
-            values[index] = float(text)
+            values[index] = doubles.double(text)
         except ValueError:
             if text:
                 rows.bad.append(rows.cell(index, name, f"{text!r} is no number"))

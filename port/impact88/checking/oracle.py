@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from .. import status
+from .. import doubles, status
 from ..accuracy import errorbound
 from ..errors import UserError
 from ..names import DEFAULT_M, RESULTS, SCENE
@@ -62,7 +62,7 @@ class Request:
         if wrong:
             raise ValueError(f"{wrong[0]} is no number; expected a number or its decimal text")
         scene = Scene({"M": DEFAULT_M, **values}, source="scene")
-        if _float(scene["M"]) not in (4, 6):
+        if doubles.double(scene["M"]) not in (4, 6):
             raise ValueError(f"M is {scene['M']}; expected 6 or 4")
         self.scene = scene
 
@@ -100,14 +100,13 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
     """What is known about each scene, see the module; M must be 4 or 6."""
     if not scenes:
         return []
-    import numpy as np
 
     from ..closedform.solve import solve
     from ..program.run import run
     from ..replay import replay
 
     texts = {name: [scene[name] for scene in scenes] for name in SCENE}
-    numbers = {name: np.array(list(map(_float, column))) for name, column in texts.items()}
+    numbers = {name: doubles.doubles(column) for name, column in texts.items()}
     solved = {name: column.tolist() for name, column in solve(numbers).items()}
     replayed = replay(texts)
     applesoft = {}
@@ -170,10 +169,6 @@ def decimal_of(value: Fraction) -> str:
         return f"{sign}{digits}"
     text = str(digits).rjust(places + 1, "0")
     return f"{sign}{text[:-places]}.{text[-places:]}".rstrip("0").rstrip(".")
-
-
-def _float(text: str) -> float:
-    return float(text.upper().replace(" ", "") or 0)
 
 
 def _json_number(value: float) -> float | None:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from random import Random
 from typing import Any
 
+from ..doubles import doubles_of
 from ..names import SCENE
 from .oracle import BATCH, look_up
 
@@ -85,7 +86,7 @@ def _approaches(scene: Texts) -> bool:
     """Whether the contact points close in, gn < 0."""
     from math import cos, radians, sin
 
-    g = {name: float(text) for name, text in scene.items()}
+    g = doubles_of(scene)
     a, b = radians(g["TA"] + g["PA"]), radians(g["TB"] + g["PB"])
     dx = g["UX"] + g["DA"] * sin(a) * g["WA"] - g["VX"] + g["DB"] * sin(b) * g["WB"]
     dy = g["UY"] - g["DA"] * cos(a) * g["WA"] - g["VY"] - g["DB"] * cos(b) * g["WB"]

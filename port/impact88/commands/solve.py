@@ -35,9 +35,9 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..applesoft.decimaltext import is_number
 from ..closedform.columns import UNUSED_BY_POINTS, refusals
 from ..closedform.solve import solve
+from ..doubles import is_number
 from ..errors import UserError
 from ..files import replacing
 from ..names import DEFAULT_M, RESULTS, SCENE

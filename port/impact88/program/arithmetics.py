@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from .. import doubles
 from ..applesoft import decimaltext, functions
 from ..applesoft.errors import ApplesoftError, division_by_zero, illegal_quantity, overflow
 from ..applesoft.operators import Real
@@ -111,13 +112,11 @@ def _float_error(error: Exception) -> ApplesoftError | None:
 
 
 def _read_float(text: str, start: int) -> tuple[float, int]:
-    """The double nearest to the decimal text; the same texts are numbers as in Applesoft."""
-    sign, whole, decimals, exponent_sign, exponent_digits, end = decimaltext.scan(text, start)
-    exponent = exponent_sign + (exponent_digits or "0")
-    value = float(f"{whole or '0'}.{decimals or '0'}E{exponent}")
+    """The double nearest to the decimal text. Raises OVERFLOW past the range of doubles."""
+    value, end = doubles.read(text, start)
     if math.isinf(value):
         raise overflow()
-    return (-value if sign == "-" else value), end
+    return value, end
 
 
 def _write_float(x: float) -> str:

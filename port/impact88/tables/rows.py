@@ -5,6 +5,7 @@ Numbers stay the decimal text they are written as until an arithmetic reads them
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
@@ -12,6 +13,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import doubles
 from ..errors import UserError
 from ..names import SCENE
 
@@ -98,17 +100,15 @@ def _numbers(rows: Rows, name: str, column: Column) -> NDArray[np.float64]:
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiub":
         return column.astype(np.float64, copy=False)
     try:
-        values = np.array(list(map(float, column)))
-        if "_" not in "".join(column):
-            return values
-    except (TypeError, ValueError):
+        return np.array(doubles.doubles(list(column)))
+    except (TypeError, ValueError):  # some cell is no number: look at each
         pass
     values = np.full(rows.count, np.nan)
     already = {bad.row for bad in rows.bad}
     for index, text in enumerate(column):
         reason = _why_no_number(text)
         if reason is None:
-            values[index] = float(text)
+            values[index] = math.inf if _is_infinite(text) else doubles.double(text)
         elif rows.first + index not in already:
             rows.bad.append(rows.cell(index, name, reason))
     return values
@@ -117,13 +117,14 @@ def _numbers(rows: Rows, name: str, column: Column) -> NDArray[np.float64]:
 def _why_no_number(text: object) -> str | None:
     if text is None or (isinstance(text, str) and not text.strip()):
         return "is empty; expected a number"
-    try:
-        if isinstance(text, str) and "_" in text:
-            raise ValueError
-        float(text)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        return f"{text!r} is no number"
-    return None
+    if isinstance(text, str) and (_is_infinite(text) or doubles.is_number(text)):
+        return None
+    return f"{text!r} is no number"
+
+
+def _is_infinite(text: str) -> bool:
+    """Whether a cell says inf, the mass and the inertia of a barrier; INPUT has no such number."""
+    return text.strip().lower() == "inf"
 
 
 def check_scene_columns(

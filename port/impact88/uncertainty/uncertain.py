@@ -27,16 +27,16 @@ from functools import lru_cache
 from statistics import NormalDist
 from typing import TYPE_CHECKING
 
+from ..doubles import double, is_number
 from ..errors import UserError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _N = rf"({_NUMBER})"
 _FORMS = {
-    "fixed": re.compile(_N),
     "range": re.compile(rf"{_N} ?\.\. ?{_N}"),
     "around": re.compile(rf"(?:{_N} ?)?(?:\+-|±) ?{_N} ?(%?)"),
     "uniform": re.compile(rf"uniform {_N} {_N}"),
@@ -162,16 +162,24 @@ def read(text: str, name: str, center: float | None = None) -> Uncertain:
     inside. Raises UserError naming ``name`` when the text is none of the forms, its limits are in
     the wrong order, or a number overflows.
     """
+    if is_number(text):
+        return fixed(_finite([text], text, name)[0])
     words = " ".join(text.split())
     matches = ((form, pattern.fullmatch(words)) for form, pattern in _FORMS.items())
     form, match = next((pair for pair in matches if pair[1]), ("", None))
     if match is None:
         raise UserError(f"{text!r} is no value or range; {EXPECTED}", name)
-    numbers = [float(group) for group in match.groups() if group and group != "%"]
-    if not all(map(math.isfinite, numbers)):
-        raise UserError(f"{text!r} has a number too large", name)
+    groups = [group for group in match.groups() if group and group != "%"]
+    numbers = _finite(groups, text, name)
     value = _of_form(form, match, numbers, center, text, name)
     return value if center is None else value.around(center)
+
+
+def _finite(groups: Sequence[str], text: str, name: str) -> list[float]:
+    numbers = [double(group) for group in groups]
+    if not all(map(math.isfinite, numbers)):
+        raise UserError(f"{text!r} has a number too large", name)
+    return numbers
 
 
 def _of_form(
@@ -182,8 +190,6 @@ def _of_form(
     text: str,
     name: str,
 ) -> Uncertain:
-    if form == "fixed":
-        return fixed(numbers[0])
     if form == "around":
         middle = numbers[0] if match[1] else center
         if middle is None:
