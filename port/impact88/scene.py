@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 
-from .doubles import is_number
+from .doubles import double, is_number
 from .errors import UserError
 from .files import packaged_text, read_text
 from .names import DEFAULT_M, SCENE, VELOCITIES
@@ -103,7 +103,7 @@ class Scene(Mapping[str, str]):
 
 
 def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
-    """The scene's texts as numbers, by name; blanks inside a number are skipped as BASIC does.
+    """The scene's values as doubles, by name: texts as `doubles.double` reads them, or numbers.
 
     Raises UserError for a missing value or one that is not a finite number.
     """
@@ -114,8 +114,8 @@ def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
         except KeyError:
             text = DEFAULT_M if name == "M" else None
         try:
-            value = float(str(text).replace(" ", ""))
-        except ValueError:
+            value = double(text) if isinstance(text, str) else float(text)  # type: ignore[arg-type]
+        except (TypeError, ValueError):
             value = math.nan
         if not math.isfinite(value):
             raise UserError(f"{text!r} is not a number that can be drawn", name)
