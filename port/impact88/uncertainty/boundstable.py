@@ -1,0 +1,150 @@
+"""What `bounds` found as a table to read and as JSON to process."""
+
+from __future__ import annotations
+
+import math
+from textwrap import wrap
+from typing import Any
+
+from .bounds import Bounds, quantity
+
+DRIVERS_SHOWN = 4
+
+
+def _plain(value: float) -> float | None:
+    """A number JSON has; None for the others."""
+    return value if math.isfinite(value) else None
+
+
+def as_json(found: Bounds) -> dict[str, Any]:
+    """Everything found, as JSON takes it; a value that does not exist is null."""
+    return {
+        "problem": found.problem,
+        "samples": found.samples,
+        "seed": found.seed,
+        "sigmas": found.sigmas,
+        "evaluations": found.evaluations,
+        "all_corners": found.corners_in_full,
+        "unusable": found.unusable,
+        "warnings": found.warnings,
+        "correlations": [
+            {"names": list(pair), "correlation": value}
+            for pair, value in found.correlations.items()
+        ],
+        "inputs": {
+            name: {
+                "kind": item.kind,
+                "nominal": item.nominal,
+                "limits": list(found.limits[name]),
+                "unit": quantity(name).unit,
+            }
+            for name, item in found.inputs.items()
+        },
+        "outputs": {
+            name: {
+                "meaning": quantity(name).meaning,
+                "unit": quantity(name).unit,
+                "nominal": bound.nominal,
+                "lower": _plain(bound.lower),
+                "upper": _plain(bound.upper),
+                "corner_lower": _plain(bound.corner_lower),
+                "corner_upper": _plain(bound.corner_upper),
+                "lower_warnings": list(bound.lower_warnings),
+                "upper_warnings": list(bound.upper_warnings),
+                "at_lower": bound.at_lower,
+                "at_upper": bound.at_upper,
+                "mean": _plain(found.spreads[name].mean),
+                "deviation": _plain(found.spreads[name].deviation),
+                "quantiles": {
+                    f"{share:g}": _plain(value)
+                    for share, value in found.spreads[name].quantiles.items()
+                },
+                "drives": {
+                    source: {
+                        "rank_correlation": _plain(drive.rank_correlation),
+                        "at_low": _plain(drive.at_low),
+                        "at_high": _plain(drive.at_high),
+                        "lowest": _plain(drive.lowest),
+                        "highest": _plain(drive.highest),
+                    }
+                    for source, drive in found.drives[name].items()
+                },
+            }
+            for name, bound in found.bounds.items()
+        },
+    }
+
+
+def table(found: Bounds) -> str:
+    """What a reader wants to see, at most 100 characters wide."""
+    lines = [f"Inputs that vary ({found.problem} problem)", ""]
+    lines.append(f"{'':6}{'from':>12}{'to':>12}{'nominal':>12}  {'kind':<12}{'unit':<16}symbol")
+    for name, item in found.inputs.items():
+        low, high = found.limits[name]
+        what = quantity(name)
+        numbers = "".join(f"{value:>12.6g}" for value in (low, high, item.nominal))
+        lines.append(f"{name:6}{numbers}  {item.kind:<12}{what.unit:<16}{what.symbol}")
+    spreads = next(iter(found.spreads.values())).quantiles
+    lines += ["", "Bounds, and quantiles of the draws", ""]
+    heads = "".join(f"{f'{100 * share:g} %':>9}" for share in spreads)
+    lines.append(f"{'':6}{'nominal':>9}{'lower':>10}{'upper':>10}{heads}  unit")
+    inside = False
+    for name, bound in found.bounds.items():
+        width = bound.upper - bound.lower
+        marks = [
+            "*" if abs(value - corner) > 1e-6 * width else " "
+            for value, corner in (
+                (bound.lower, bound.corner_lower),
+                (bound.upper, bound.corner_upper),
+            )
+        ]
+        inside = inside or "*" in marks
+        cells = "".join(f"{value:>9.4g}" for value in found.spreads[name].quantiles.values())
+        nominal = bound.nominal if abs(bound.nominal) > 1e-12 * width else 0.0
+        lines.append(
+            f"{name:6}{nominal:>9.4g}{bound.lower:>10.5g}{marks[0]}{bound.upper:>9.5g}"
+            f"{marks[1]}{cells}  {quantity(name).unit}"
+        )
+    lines += [
+        "",
+        "What drives them: rank correlation, and how far the result goes with that alone",
+        "",
+    ]
+    for name in found.bounds:
+        ranked = sorted(found.drives[name].items(), key=lambda entry: -abs(entry[1].swing or 0.0))
+        cells = "".join(
+            f"  {source:<4}{drive.rank_correlation:>+6.2f} ({drive.swing:.3g})".ljust(23)
+            for source, drive in ranked[:DRIVERS_SHOWN]
+            if drive.swing > 1e-9 * abs(found.bounds[name].upper - found.bounds[name].lower)
+        )
+        lines.append(f"{name:6}{cells}".rstrip())
+    lines.append("")
+    if inside:
+        lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
+    lines += _warnings_at_bounds(found)
+    corners = "all corners" if found.corners_in_full else "corners at random"
+    lines += [
+        f"Bounds: attained; sought in {found.evaluations:,} scenes ({corners}, faces, interior,",
+        "climbing), not proven to be the farthest. Correlations do not narrow them.",
+        f"Draws: {found.samples:,}, seed {found.seed}.",
+    ]
+    for name, share in found.warnings.items():
+        lines.append(f"{100 * share:.3g} % of the draws: {name}")
+    if found.unusable:
+        share = 100 * found.unusable
+        lines.append(f"{share:.3g} % of the draws have no finite result or are excluded: left out")
+    return "\n".join(lines)
+
+
+def _warnings_at_bounds(found: Bounds) -> list[str]:
+    """For each warning the bounds at which it stands, one line (or more) each."""
+    places: dict[str, list[str]] = {}
+    for name, bound in found.bounds.items():
+        for side, warnings in (("lower", bound.lower_warnings), ("upper", bound.upper_warnings)):
+            for warning in warnings:
+                places.setdefault(warning, []).append(f"{side} {name}")
+    lines = []
+    for warning, bounds in places.items():
+        text = f"! {warning} at the bounds: {', '.join(bounds)} (--exclude {warning})"
+        lines += wrap(text, 96, subsequent_indent="  ")
+    return lines
