@@ -26,10 +26,11 @@ result needs is never computed.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 from . import statusbits  # noqa: F401 - makes "status" an operation of plans
+from .energy import kinetic_energy
 from .formulas import Book, Expression
 
 Pair = tuple[Expression, Expression]
@@ -419,24 +420,20 @@ class Impact:
             self.book.combine("isinf", inertia, dtype="bool"), self.book.constant(0.0), inertia
         )
 
-    def _energy(
-        self, ax: Expression, ay: Expression, bx: Expression, by: Expression, wa: Expression,
-        wb: Expression,
-    ) -> Expression:  # fmt: skip
-        """Lines 320, 580 and 590; a point mass's spins are 0 here."""
-        moving = self._finite(self.MA) * (ax * ax + ay * ay)
-        moving = moving + self._finite(self.MB) * (bx * bx + by * by)
-        moving = moving + self._finite(self.IA) * (wa * wa) + self._finite(self.IB) * (wb * wb)
-        return 0.5 * moving
+    def _energy(self, velocities: Sequence[Expression]) -> Expression:
+        """Of the velocities in the listing's order; a point mass's spins are 0 here."""
+        inertias = [self._finite(x) for x in (self.MA, self.MB, self.IA, self.IB)]
+        energy: Expression = kinetic_energy(inertias, velocities)
+        return energy
 
     @cached_property
     def KI(self) -> Expression:
-        return self._energy(self.UX, self.UY, self.VX, self.VY, self.WA, self.WB)
+        return self._energy((self.UX, self.UY, self.WA, self.VX, self.VY, self.WB))
 
     @cached_property
     def KF(self) -> Expression:
         wa, wb = (self._unless_point(spin) for spin in (self._spin_a, self._spin_b))
-        return self._energy(self.VAX, self.VAY, self.VBX, self.VBY, wa, wb)
+        return self._energy((self.VAX, self.VAY, wa, self.VBX, self.VBY, wb))
 
     @cached_property
     def Gt(self) -> Expression:
@@ -527,9 +524,14 @@ class Impact:
         return self.book.combine(
             "status",
             self.gn,
+            self.gt,
+            self.Gt,
             self.PN,
-            self._by_kind(lambda: self.book.absolute(self.mu), lambda: zero),
-            self.MUC,
+            self.PT,
+            self._a[1],
+            self._b[1],
+            self.DA,
+            self.DB,
             self._lost,
             self.KI,
             self.E,

@@ -20,7 +20,7 @@ from .formulas import Expression
 Array = NDArray[Any]
 
 _SIGN = np.uint64(1 << 63)
-_DTYPES = {"float": np.float64, "bool": np.bool_, "bits": np.uint8}
+_DTYPES = {"float": np.float64, "bool": np.bool_, "bits": np.uint16}
 
 
 def _against(value: Array, slip: Array, out: Array) -> None:

@@ -58,7 +58,7 @@ def solve(
         threads: how many to use; by default as many as there are processors and work.
 
     Returns:
-        name -> array of the broadcast shape, float64 (STATUS: uint8), in the order asked.
+        name -> array of the broadcast shape, float64 (STATUS: uint16), in the order asked.
 
     M = 4 is the point-mass impact: DA and DB count as 0; EM, angles other than GA and inertias are
     not looked at, spins pass through and stay out of the energies. An infinite body must be at
@@ -71,10 +71,11 @@ def solve(
 
     Where the listing does not solve its own equations, the equations are solved: an MU below -10,
     or MU = 10 that the sign rule makes -10 (there line 510 zeroes a right-hand side that is not a
-    pivot's), is taken as the friction coefficient it is, with COEFFICIENT_OUT_OF_RANGE in STATUS.
+    pivot's), is taken as the friction coefficient it is, with MU_OUT_OF_RANGE in STATUS.
 
     SINGULAR in STATUS means COND >= 2**26 (half of a double's digits may be lost), ENERGY_GAINED
-    more than 1e-12 of KI, SLIDING_REVERSED |MU| > |MUC|; `impact88.status` says all in words.
+    more than 1e-12 of KI, SLIDING_REVERSED that the tangential relative velocity at the contact
+    point changes its sign; `impact88.status` says all in words.
 
     Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast.
     """
@@ -82,7 +83,7 @@ def solve(
     given, shape = sources(columns)
     count = int(np.prod(shape, dtype=np.int64))
     results: dict[str, Array] = {
-        name: np.empty(count, np.uint8 if name == "STATUS" else np.float64) for name in wanted
+        name: np.empty(count, np.uint16 if name == "STATUS" else np.float64) for name in wanted
     }
     workers = _workers(count, threads)
     if workers == 1:

@@ -1,4 +1,4 @@
-"""STATUS over arrays: the operation that plans use to set `impact88.status.Status` bits."""
+"""STATUS over arrays: one rule a bit of `impact88.status.Status`, for every solver."""
 
 from __future__ import annotations
 
@@ -16,16 +16,26 @@ SINGULAR_FROM = 2.0**26
 """COND from which SINGULAR is set: 1/sqrt(unit roundoff). Half of a double's digits may be lost
 there, and of the 32 bits of the 1988 program's numbers a handful at most are left."""
 ENERGY_TOLERANCE = 1e-12
-"""What may be gained, of the initial kinetic energy, before ENERGY_GAINED is set."""
+"""What may be gained, or friction may drive, of the initial kinetic energy before it counts."""
+SLIP_TOLERANCE = 1e-12
+"""Product of the slips before and after, of the square of the closing speed: a slip of a millionth
+of it is none, so that rounding cannot make a scene at the critical friction slide back."""
+SIDE_TOLERANCE = 1e-9
+"""How far a center may lie beyond the contact plane, of its distance to the contact point."""
 LISTING_MISREADS = -10.0
 """Line 510 takes any MU not above this for a pivot."""
 
 
-def _status(
+def set_bits(
     gn: Array,
+    gt: Array,
+    after_gt: Array,
     pn: Array,
-    size_of_mu: Array,
-    critical: Array,
+    pt: Array,
+    arm_a: Array,
+    arm_b: Array,
+    da: Array,
+    db: Array,
     twice_lost: Array,
     initial: Array,
     e: Array,
@@ -35,22 +45,33 @@ def _status(
     sum_of_velocities: Array,
     out: Array,
 ) -> None:
-    """Sets every bit by its own rule; one that cannot be decided (NaN) stays clear."""
+    """Set in ``out`` (integers) every bit by its own rule; one that cannot be decided (NaN) stays
+    clear, but for NOT_FINITE and SINGULAR, which NaN is reason enough for.
 
-    def set_where(bit: Status, *conditions: Array) -> None:
-        for condition in conditions:
-            np.bitwise_or(out, condition.view(np.uint8) * np.uint8(bit), out=out)
+    ``gn``, ``gt``, ``after_gt``: relative velocities at the contact point, A minus B; ``pn``,
+    ``pt``: the impulse on A; ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances
+    of A's and B's center from the contact plane, each towards its own side; ``da``, ``db``: the
+    distances to the contact point; ``twice_lost`` and ``initial``: energies; ``friction_mu``: MU
+    with its sign, 0 for a pivot; ``condition``: COND. They broadcast.
+    """
+
+    def set_where(bit: Status, condition: Array) -> None:
+        np.bitwise_or(out, condition * out.dtype.type(bit), out=out)
 
     out.fill(0)
     set_where(Status.SEPARATING, gn >= 0)
     set_where(Status.PULLING, pn < 0)
-    set_where(Status.SLIDING_REVERSED, size_of_mu > np.abs(critical))
+    set_where(Status.SLIDING_REVERSED, -gt * after_gt > SLIP_TOLERANCE * gn * gn)
     set_where(Status.ENERGY_GAINED, -twice_lost > (2 * ENERGY_TOLERANCE) * initial)
-    set_where(Status.COEFFICIENT_OUT_OF_RANGE, e < 0, e > 1, em < -1, em > 0)
-    set_where(Status.COEFFICIENT_OUT_OF_RANGE, friction_mu <= LISTING_MISREADS)
+    set_where(Status.E_OUT_OF_RANGE, (e < 0) | (e > 1))
     # NaN: 0/0 in the condition itself, as singular as can be
     set_where(Status.SINGULAR, ~(condition < SINGULAR_FROM))
     set_where(Status.NOT_FINITE, ~np.isfinite(sum_of_velocities))
+    set_where(Status.FRICTION_DRIVES, pt * gt > ENERGY_TOLERANCE * initial)
+    set_where(Status.A_ON_WRONG_SIDE, arm_a > SIDE_TOLERANCE * np.abs(da))
+    set_where(Status.B_ON_WRONG_SIDE, arm_b > SIDE_TOLERANCE * np.abs(db))
+    set_where(Status.EM_OUT_OF_RANGE, (em < -1) | (em > 0) & (em != 1))
+    set_where(Status.MU_OUT_OF_RANGE, friction_mu <= LISTING_MISREADS)
 
 
-register("status", _status)
+register("status", set_bits)

@@ -24,7 +24,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..scene import numbers_of
-from ..status import WORDS, Status
+from ..status import sentences
 from .drawing import Point
 
 PROPORTION = 2.6
@@ -154,8 +154,7 @@ def _finals(result: Mapping[str, Any] | None) -> dict[str, Motion]:
 
 
 def _remarks(result: Mapping[str, Any] | None) -> tuple[str, ...]:
-    bits = int((result or {}).get("STATUS") or 0)
-    return tuple(WORDS[bit] for bit in Status if bits & bit)
+    return tuple(sentences(int((result or {}).get("STATUS") or 0)))
 
 
 def direction(degrees: float) -> Point:

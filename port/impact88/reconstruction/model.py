@@ -25,16 +25,12 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..names import FINAL_STATE, SCENE, VELOCITIES
-from ..status import Status
 from .geometry import Geometry
+from .outcome import energies, status, velocity_changes
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 Model = Callable[[Mapping[str, Any], Sequence[str]], dict[str, Array]]
 """Columns (arrays or numbers by name) and the outputs wanted -> arrays by name."""
-
-FRICTION_DRIVES = 128
-"""Beside STATUS's bits, for reconstructions alone: the signed MUP given pushes the sliding on
-instead of opposing it. The forward problem's sign rule (line 400) does not let that happen."""
 
 
 def initial_velocities(columns: Mapping[str, Any]) -> dict[str, Array]:
@@ -71,58 +67,22 @@ def forward_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[st
 
 
 def reconstruction_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Array]:
-    """Equations 13-18 solved for the initial velocities, by `initial_velocities`; STATUS is
-    that of the impact found, with `FRICTION_DRIVES` for one whose friction pushes the sliding on.
-    """
-    found = {
+    """Equations 13-18 solved for the initial velocities, by `initial_velocities`, and what follows;
+    STATUS is that of the impact found."""
+    values = {
         **{name: np.asarray(value, np.float64) for name, value in columns.items()},
         **initial_velocities(columns),
     }
-    before = [found[name] for name in VELOCITIES]
-    after = [found[name] for name in FINAL_STATE]
-    found["SA"], found["SB"] = np.hypot(*before[:2]), np.hypot(*before[3:5])
-    change = [late - early for late, early in zip(after, before, strict=True)]
-    found["DVA"], found["DVB"] = np.hypot(*change[:2]), np.hypot(*change[3:5])
+    values["SA"] = np.hypot(values["UX"], values["UY"])
+    values["SB"] = np.hypot(values["VX"], values["VY"])
+    here = Geometry.of(values)
+    values |= velocity_changes(values)
     if {"KI", "KF", "LOSS", "STATUS"}.intersection(outputs):
-        found["KI"], found["KF"] = _energy(found, before), _energy(found, after)
-        found["LOSS"] = 100 * (found["KI"] - found["KF"]) / found["KI"]
-    if {"MUC", "STATUS"}.intersection(outputs):
+        values |= energies(here, values)
+    if "MUC" in outputs:
         # the critical friction depends on MU's sign as little as on MU
-        names = (*(name for name in SCENE if name in found), *VELOCITIES)
-        scene = {name: found[name] for name in names} | {"MU": 0.0}
-        found["MUC"] = forward_model(scene, ["MUC"])["MUC"]
+        scene = {name: values[name] for name in SCENE if name in values} | {"MU": 0.0}
+        values["MUC"] = forward_model(scene, ["MUC"])["MUC"]
     if "STATUS" in outputs:
-        found["STATUS"] = _reconstruction_status(found, before)
-    return {name: found[name] for name in outputs}
-
-
-def _energy(found: Mapping[str, Array], velocities: Sequence[Array]) -> Array:
-    """Kinetic energy; a point mass has none from its spin."""
-    turning = np.where(found["M"] == 4, 0.0, 1.0)
-    vax, vay, wa, vbx, vby, wb = velocities
-    return (
-        found["MA"] * (vax**2 + vay**2)
-        + found["MB"] * (vbx**2 + vby**2)
-        + turning * (found["IA"] * wa**2 + found["IB"] * wb**2)
-    ) / 2
-
-
-def _reconstruction_status(found: Mapping[str, Array], before: Sequence[Array]) -> Array:
-    """STATUS as `impact88.status` defines it, of an impact known from both sides."""
-    normal, tangential, _ = Geometry.of(found).relative(before)
-    e, em, mu, pn = (found[name] for name in ("E", "EM", "MUP", "PN"))
-    six = found["M"] != 4
-    bits = {
-        Status.SEPARATING: normal >= 0,
-        Status.PULLING: pn < 0,
-        Status.SLIDING_REVERSED: np.abs(mu) > np.abs(found["MUC"]),
-        Status.ENERGY_GAINED: found["KF"] - found["KI"] > 1e-12 * found["KI"],
-        Status.COEFFICIENT_OUT_OF_RANGE: (e < 0) | (e > 1) | six & ((em < -1) | (em > 0)),
-        Status.NOT_FINITE: ~np.isfinite(found["KI"]),
-        FRICTION_DRIVES: mu * tangential * np.sign(pn) > 0,
-    }
-    # the parts broadcast: what does not vary is a lone number
-    flags: Any = np.int64(0)
-    for bit, holds in bits.items():
-        flags = flags + np.int64(bit) * holds
-    return np.asarray(flags)
+        values["STATUS"] = status(here, values)
+    return {name: values[name] for name in outputs}

@@ -12,23 +12,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..closedform.columns import PIVOT
+from ..closedform.energy import kinetic_energy
 from ..closedform.solve import solve
+from ..closedform.statusbits import set_bits
 from ..names import FINAL_STATE, SCENE, VELOCITIES
 from .geometry import Geometry
 from .impulse import principal_direction
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
-_FORWARD = ("MUC", "STATUS")
+_FORWARD = ("MUC", "COND")
 """What only the forward solution can tell: it needs all initial velocities and coefficients."""
+_INERTIAS = ("MA", "MB", "IA", "IB")
 
 
 def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     """The consequences of ``values``: geometry, velocities, coefficients, PN and PT, by name.
 
-    CAX CAY CBX CBY always; PDOFA PDOFB and P where PN and PT are given; contact velocities XA ...
-    YBF, KI, KF, LOSS, DVA, DVB where the velocities they need are; MUC and STATUS where all initial
-    velocities and coefficients are (MU as the listing's line 280 would hold it).
+    CAX CAY CBX CBY and STATUS always; PDOFA PDOFB and P where PN and PT are given; contact
+    velocities XA ... YBF, KI, KF, LOSS, DVA, DVB where the velocities they need are; MUC where all
+    initial velocities and coefficients are (MU as the listing's line 280 would hold it).
     """
     given = {name: np.asarray(value, np.float64) for name, value in values.items()}
     here = Geometry.of(given)
@@ -42,48 +46,92 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
             result[f"PDOF{vehicle}"] = principal_direction(vehicle, theta, given["GA"], pn, pt)
         result["P"] = np.hypot(pn, pt)
     result |= _contact_velocities(here, given)
-    result |= _changes(here, given)
+    result |= velocity_changes(given)
+    result |= energies(here, given)
+    condition: Any = 1.0
     if all(name in given for name in SCENE if name != "M"):
         scene = {name: given[name] for name in SCENE if name in given}
-        result |= solve(scene, _FORWARD)
+        forward = solve(scene, _FORWARD)
+        result["MUC"], condition = forward["MUC"], forward["COND"]
+    result["STATUS"] = status(here, given | result, condition)
     shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
     return {name: np.broadcast_to(value, shape) for name, value in result.items()}
 
 
 def _contact_velocities(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
     """Lines 340, 700 and 710."""
-    found = {}
+    velocities = {}
     for suffix, names in (("", VELOCITIES), ("F", FINAL_STATE)):
         arms = ((here.d3, -here.d4, names[:3], "A"), (-here.d1, here.d2, names[3:], "B"))
         for arm_x, arm_y, (x, y, spin), vehicle in arms:
             if all(name in given for name in (x, y, spin)):
                 turning = np.where(here.point, 0.0, given[spin])
-                found[f"X{vehicle}{suffix}"] = given[x] + arm_x * turning
-                found[f"Y{vehicle}{suffix}"] = given[y] + arm_y * turning
-    return found
+                velocities[f"X{vehicle}{suffix}"] = given[x] + arm_x * turning
+                velocities[f"Y{vehicle}{suffix}"] = given[y] + arm_y * turning
+    return velocities
 
 
-def _changes(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
-    found: dict[str, Array] = {}
-    for vehicle, at in (("A", 0), ("B", 3)):
-        names = (*VELOCITIES[at : at + 2], *FINAL_STATE[at : at + 2])
+def velocity_changes(given: Mapping[str, Array]) -> dict[str, Array]:
+    """DVA and DVB, each where the velocities it needs are given."""
+    changes: dict[str, Array] = {}
+    for vehicle, first in (("A", 0), ("B", 3)):
+        names = (*VELOCITIES[first : first + 2], *FINAL_STATE[first : first + 2])
         if all(name in given for name in names):
             x, y, after_x, after_y = (given[name] for name in names)
-            found[f"DV{vehicle}"] = np.hypot(after_x - x, after_y - y)
-    for name, names in (("KI", VELOCITIES), ("KF", FINAL_STATE)):
-        if all(velocity in given for velocity in names):
-            found[name] = _energy(here, given, [given[velocity] for velocity in names])
-    if "KI" in found and "KF" in found:
+            changes[f"DV{vehicle}"] = np.hypot(after_x - x, after_y - y)
+    return changes
+
+
+def energies(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
+    """KI and KF where the velocities they need are given, and LOSS where both are. Point masses'
+    spins and barriers (infinite, at rest) add nothing."""
+    inertias = [np.where(np.isinf(given[name]), 0.0, given[name]) for name in _INERTIAS]
+    result: dict[str, Array] = {}
+    for name, velocities in (("KI", VELOCITIES), ("KF", FINAL_STATE)):
+        if all(velocity in given for velocity in velocities):
+            six = [given[velocity] for velocity in velocities]
+            six[2], six[5] = (np.where(here.point, 0.0, six[i]) for i in (2, 5))
+            result[name] = kinetic_energy(inertias, six)
+    if len(result) == 2:
         with np.errstate(divide="ignore", invalid="ignore"):
-            found["LOSS"] = 100 * (found["KI"] - found["KF"]) / found["KI"]
-    return found
+            result["LOSS"] = 100 * (result["KI"] - result["KF"]) / result["KI"]
+    return result
 
 
-def _energy(here: Geometry, given: Mapping[str, Array], velocities: list[Array]) -> Array:
-    """Lines 320, 580 and 590; point masses' spins and barriers (infinite, at rest) add nothing."""
-    spins = np.where(here.point, 0.0, 1.0)
-    total: Any = 0.0
-    for name, at in (("MA", 0), ("MA", 1), ("IA", 2), ("MB", 3), ("MB", 4), ("IB", 5)):
-        inertia = np.where(np.isinf(given[name]), 0.0, given[name])
-        total = total + (spins if at in (2, 5) else 1.0) * inertia * velocities[at] ** 2
-    return np.asarray(0.5 * total)
+def status(here: Geometry, given: Mapping[str, Array], condition: Any = 1.0) -> Array:
+    """STATUS of an impact known from both sides; what cannot be decided for lack of a value is not
+    remarked. ``given``: velocities, coefficients, PN PT, KI KF as far as they are known;
+    ``condition``: COND, where the forward equations are at hand."""
+    missing = np.array(np.nan)
+
+    def value(name: str) -> Array:
+        return given.get(name, missing)
+
+    known = [name for name in (*VELOCITIES, *FINAL_STATE) if name in given]
+    before = [value(name) for name in VELOCITIES]
+    after = [value(name) for name in FINAL_STATE]
+    with np.errstate(invalid="ignore"):
+        gn, gt, _ = here.relative(before)
+        _, after_gt, _ = here.relative(after)
+        pivot = value("MUP") == PIVOT
+        operands = (
+            gn,
+            gt,
+            np.where(pivot, 0.0, after_gt),
+            value("PN"),
+            value("PT"),
+            here.at,
+            here.bt,
+            np.where(here.point, 0.0, given["DA"]),
+            np.where(here.point, 0.0, given["DB"]),
+            2 * (value("KI") - value("KF")),
+            value("KI"),
+            value("E"),
+            np.where(here.point, 0.0, value("EM")),
+            np.where(pivot, 0.0, value("MUP")),
+            np.asarray(condition),
+            sum((given[name] for name in known), np.zeros(())),
+        )
+        bits = np.empty(np.broadcast_shapes(*map(np.shape, operands)), np.uint16)
+        set_bits(*operands, out=bits)
+    return bits

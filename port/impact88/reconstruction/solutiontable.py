@@ -10,7 +10,7 @@ from typing import Any
 from ..errors import UserError
 from ..names import CHAPTER, RESULTS, SCENE, Quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
-from ..status import WORDS, Status
+from ..status import sentences
 from .impulse import clock, forces
 from .outcome import outcome
 from .unknowns import BADLY_CONDITIONED, PIVOT, Solution, solve_for
@@ -56,9 +56,7 @@ def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
     if bad:
         names = ", ".join(f"{name} {number(value, 3)} times" for name, value in bad.items())
         found.append(f"badly conditioned: errors of the known velocities are amplified ({names})")
-    status = Status(int(values.get("STATUS", 0)))
-    found += [words for bit, words in WORDS.items() if status & bit]
-    return found
+    return found + sentences(int(values.get("STATUS", 0)))
 
 
 def as_text(known: Mapping[str, float], solution: Solution, values: Mapping[str, float]) -> str:

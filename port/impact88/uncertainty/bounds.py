@@ -28,7 +28,6 @@ from .. import status
 from ..errors import UserError
 from ..names import CHAPTER, FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES, Quantity
 from ..reconstruction.model import (
-    FRICTION_DRIVES,
     Model,
     forward_model,
     reconstruction_model,
@@ -46,9 +45,7 @@ FORWARD_OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 RECONSTRUCTION_OUTPUTS = (*VELOCITIES, "SA", "SB", "DVA", "DVB", "LOSS")
 RECONSTRUCTED = (*RECONSTRUCTION_OUTPUTS, "KI", "KF", "PN", "PT", "PM", "MUC")
 """What a reconstruction can be asked for."""
-WARNINGS = {bit.name or "": int(bit) for bit in status.Status} | {
-    "FRICTION_DRIVES": FRICTION_DRIVES
-}
+WARNINGS = {bit.name or "": int(bit) for bit in status.Status}
 """Name of a warning -> its bit."""
 QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
 
