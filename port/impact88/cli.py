@@ -1,8 +1,9 @@
 """The command line: which command, and what happens to errors.
 
 Exit status: 0 done (``ZERO DETERMINANT`` is a normal END), 1 done with an adverse result (an
-Applesoft error, a bad row, a printout that differs), 2 unusable input. Control-C and a broken pipe
-leave with the shell's usual 130 and 141 and no traceback.
+Applesoft error, a bad row, a printout that differs), 2 unusable input, 3 a bug of this project.
+Control-C, a broken pipe and a signal to leave end with the shell's usual 130, 141 and 128 + signal.
+There is never a traceback, unless IMPACT88_DEBUG=1 asks for a bug's.
 
 Each command lives in ``impact88.commands.NAME`` and is imported only when it is asked for.
 """
@@ -12,11 +13,15 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 
 from . import __version__
-from .errors import UserError
+from .endings import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
+from .errors import UserError, shown
+from .files import ESCAPED
 
 COMMANDS = {
     "run": "run the 1988 program on its own data, a sample or a scene file",
@@ -40,8 +45,8 @@ COMMANDS = {
 }
 """Command -> one line of help, in the order ``--help`` lists them."""
 
-INTERRUPTED = 130
-BROKEN_PIPE = 141
+UNUSABLE = 2
+BUG = 3
 
 
 class _Parser(argparse.ArgumentParser):
@@ -70,7 +75,7 @@ def _overview() -> str:
             *lines,
             "",
             "impact88 COMMAND --help tells a command's options; impact88 --version the version.",
-            "exit status: 0 done, 1 done with an adverse result, 2 unusable input",
+            "exit status: 0 done, 1 done with an adverse result, 2 unusable input, 3 a bug of impact88",
         ]
     )
 
@@ -95,7 +100,11 @@ def _dispatch(arguments: Sequence[str]) -> int:
         formatter_class=_help_formatter,
     )
     module.add_arguments(parser)
-    return int(module.main(parser.parse_args(rest)))
+    try:
+        parsed = parser.parse_args(rest)
+    except SystemExit:  # --help has been printed
+        return 0
+    return int(module.main(parsed))
 
 
 def _open_closed_streams() -> None:
@@ -114,31 +123,89 @@ def _open_closed_streams() -> None:
 
 def _drop_output() -> None:
     """Let stdout lead nowhere: on its way out the interpreter would flush, and complain, again."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _tell(text: str) -> None:
+    """A line on stderr, where there is one that takes it."""
+    with suppress(OSError, ValueError):
+        print(text, file=sys.stderr, flush=True)
+
+
+def _speak_any_character() -> None:
+    """No character of a file's name, an id or a unit is an error on a terminal that lacks it."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors=ESCAPED)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    status = 2
+    called = "impact88"
+    if arguments and arguments[0] in COMMANDS:
+        called += f" {arguments[0]}"
+    debug = os.environ.get("IMPACT88_DEBUG") == "1"
+    with orderly(), warnings.catch_warnings():
+        if not sys.warnoptions and not debug:
+            # what a library remarks about its own work is no message to somebody's terminal
+            warnings.simplefilter("ignore")
+        status = _status(arguments, called, debug)
+    return status
+
+
+def _status(arguments: Sequence[str], called: str, debug: bool) -> int:
+    """Run one command, and make one line and a status of whatever ends it."""
     try:
         try:
             _open_closed_streams()
+            _speak_any_character()
             status = _dispatch(arguments)
         except UserError as error:
-            command = arguments[0] if arguments and arguments[0] in COMMANDS else None
-            print(f"impact88{' ' + command if command else ''}: {error}", file=sys.stderr)
-        except SystemExit as leave:  # argparse's --help
-            status = leave.code if isinstance(leave.code, int) else 0
+            _tell(f"{called}: {error}")
+            status = UNUSABLE
+        except MemoryError:
+            _tell(f"{called}: not enough memory; expected a smaller input, or more memory")
+            status = UNUSABLE
+        except RecursionError:
+            _tell(f"{called}: the input is nested too deeply; expected a plainer one")
+            status = UNUSABLE
         sys.stdout.flush()
     except KeyboardInterrupt:
-        print(file=sys.stderr)
+        _tell("")
         return INTERRUPTED
+    except Terminated as signal:
+        _drop_output()
+        return signal.status
     except BrokenPipeError:
         _drop_output()
         return BROKEN_PIPE
     except OSError as error:  # a full disk, most likely
-        print(f"impact88: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
+        place = shown(str(error.filename)) if error.filename else "standard output"
+        _tell(f"{called}: {place}: {error.strerror or error}")
         _drop_output()
-        return 2
+        return UNUSABLE
+    except Exception as error:
+        _tell_bug(called, error, debug)
+        return BUG
     return status
+
+
+def _tell_bug(called: str, error: Exception, debug: bool) -> None:
+    """Say that it is ours, and where, in one line; the whole traceback on request."""
+    if debug:
+        import traceback
+
+        traceback.print_exception(error)
+    step = error.__traceback__
+    while step is not None and step.tb_next is not None:
+        step = step.tb_next
+    place = ""
+    if step is not None:
+        place = f" at {os.path.basename(step.tb_frame.f_code.co_filename)}:{step.tb_lineno}"
+    what = shown(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
+    _tell(
+        f"{called}: a bug of impact88, not of your input: {what}{place}"
+        f"{'' if debug else ' (IMPACT88_DEBUG=1 shows the way there)'}"
+    )

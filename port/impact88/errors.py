@@ -1,6 +1,34 @@
-"""The one error a user of this package is shown: input that cannot be used."""
+"""The one error a user of this package is shown, and how foreign text stands in a message."""
 
 from __future__ import annotations
+
+LONGEST_MESSAGE = 500
+LONGEST_PLACE = 200
+LONGEST_QUOTE = 60
+
+
+def shown(text: str, longest: int = LONGEST_MESSAGE) -> str:
+    """``text`` on one line of at most ``longest`` characters, fit for a terminal.
+
+    Whatever does not print (control characters, terminal escapes, line ends, marks that turn the
+    writing direction, lone surrogates) is shown as Python would write it in a literal; of a longer
+    text the middle is left out.
+    """
+    if len(text) > longest:
+        kept = longest - 5
+        text = f"{text[: kept - kept // 3]} ... {text[-(kept // 3) :]}"
+    if text.isprintable():
+        return text
+    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    # escapes are longer than what they show
+    return text if len(text) <= longest else shown(text, longest)
+
+
+def quoted(value: object) -> str:
+    """A value as it was given, in quotes if it is text, short enough to stand in a message."""
+    if isinstance(value, str):
+        value = value[: 2 * LONGEST_QUOTE]
+    return shown(repr(value), LONGEST_QUOTE)
 
 
 class UserError(ValueError):
@@ -11,5 +39,6 @@ class UserError(ValueError):
     """
 
     def __init__(self, message: str, where: str | None = None) -> None:
-        super().__init__(f"{where}: {message}" if where else message)
+        message = shown(message)
+        super().__init__(f"{shown(where, LONGEST_PLACE)}: {message}" if where else message)
         self.where = where

@@ -1,11 +1,17 @@
-"""Files: reading text whatever its encoding, and writing so that nothing is half-written."""
+"""Files: reading what may be anything, and writing so that nothing is half-written or lost.
+
+Every reader is bounded, and every error of the system names the file it met.
+"""
 
 from __future__ import annotations
 
 import codecs
+import errno
+import io
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 
 from .errors import UserError
 
@@ -13,11 +19,39 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import IO, Any
 
+LARGEST = 100_000_000
+"""Bytes of the largest file that is read as a whole, unless a reader says otherwise."""
+LONGEST_LINE = 1_000_000
+"""Characters of the longest line that is read."""
+ESCAPED = "impact88.escaped"
+"""The error handler of text streams that writes what they cannot encode as \\uXXXX, as JSON does."""
+
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
+_WRITE_BUFFER = 1 << 17
+
+
+def _escape(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    units = error.object[error.start : error.end].encode("utf-16-be", "surrogatepass").hex()
+    return "".join(f"\\u{units[at : at + 4]}" for at in range(0, len(units), 4)), error.end
+
+
+codecs.register_error(ESCAPED, _escape)
+
+
+def called(path: str) -> str:
+    """What messages call a file to read: its name, and ``-`` by what it stands for."""
+    return "standard input" if path == "-" else path
+
+
+def encoding_of(start: bytes) -> str:
+    """The encoding that a text's first bytes announce: UTF-8, or UTF-16 with its mark."""
+    return next((name for mark, name in _BYTE_ORDER_MARKS if start.startswith(mark)), "utf-8")
 
 
 def decode(data: bytes, where: str) -> str:
@@ -25,72 +59,205 @@ def decode(data: bytes, where: str) -> str:
 
     Raises UserError (naming ``where`` and the byte) if it is neither.
     """
-    encoding = next((name for mark, name in _BYTE_ORDER_MARKS if data.startswith(mark)), "utf-8")
+    encoding = encoding_of(data)
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:
         raise UserError(
-            f"byte {error.start} is not {encoding[:6].upper()} text; expected a text file", where
+            f"byte {error.start} is not {encoding[:6].rstrip('-').upper()} text; "
+            "expected a text file",
+            where,
         ) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def read_bytes(path: str, limit: int | None = None) -> bytes:
+# --- reading -------------------------------------------------------------------------------------
+
+
+class Source(io.RawIOBase):
+    """The bytes of a file or of standard input; an error in reading them is a UserError that names
+    it. ``count``: the bytes read so far."""
+
+    def __init__(self, path: str) -> None:
+        """Raises UserError if there is no such file or it cannot be opened."""
+        self.name = called(path)
+        self.count = 0
+        self._keep = path == "-"
+        try:
+            self._inner: Any = sys.stdin.buffer if self._keep else open(path, "rb", buffering=0)
+        except (OSError, ValueError) as error:
+            raise UserError(f"cannot be read: {_why(error)}", self.name) from None
+        self._fill = getattr(self._inner, "readinto1", self._inner.readinto)
+
+    @property
+    def size(self) -> int | None:
+        """Its size in bytes; None where that is not known."""
+        if self._keep:
+            return None
+        with suppress(OSError):
+            if os.path.isfile(self._inner.name):
+                return os.fstat(self._inner.fileno()).st_size
+        return None
+
+    def readable(self) -> bool:
+        """True."""
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """Read into ``buffer``; how many bytes, 0 at the end. Raises UserError."""
+        try:
+            count = self._fill(buffer) or 0
+        except OSError as error:
+            raise UserError(f"cannot be read: {_why(error)}", self.name) from None
+        self.count += count
+        return int(count)
+
+    def close(self) -> None:
+        """Close the file; standard input stays open."""
+        if not self._keep and not self.closed:
+            self._inner.close()
+        super().close()
+
+
+def _why(error: Exception) -> str:
+    return getattr(error, "strerror", None) or str(error)
+
+
+def open_bytes(path: str) -> io.BufferedReader:
+    """A file opened for reading, ``-`` is standard input. Raises UserError, later reads too."""
+    return io.BufferedReader(Source(path))
+
+
+def read_bytes(path: str, limit: int = LARGEST) -> bytes:
     """The bytes of a file (``-`` is standard input). Raises UserError if it cannot be read or has
     more than ``limit`` bytes."""
-    import sys
-
-    try:
-        if path == "-":
-            data = sys.stdin.buffer.read(-1 if limit is None else limit + 1)
-        else:
-            with open(path, "rb") as file:
-                data = file.read(-1 if limit is None else limit + 1)
-    except OSError as error:
-        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
-    if limit is not None and len(data) > limit:
-        raise UserError(f"is larger than {limit:,} bytes, the most that is read here", path)
+    with open_bytes(path) as file:
+        data = file.read(limit + 1)
+    if len(data) > limit:
+        raise UserError(f"is larger than {limit:,} bytes, the most that is read here", called(path))
     return data
 
 
-def read_text(path: str, limit: int | None = None) -> str:
+def read_text(path: str, limit: int = LARGEST) -> str:
     """The text of a file, see `read_bytes` and `decode`."""
-    return decode(read_bytes(path, limit), "standard input" if path == "-" else path)
+    return decode(read_bytes(path, limit), called(path))
+
+
+def typed_line() -> str | None:
+    """The next line of standard input without its end, None when there is none.
+
+    Raises UserError if it is no text or too long.
+    """
+    sys.stdout.flush()
+    try:
+        line = sys.stdin.readline(LONGEST_LINE)
+    except UnicodeDecodeError as error:
+        raise UserError(f"holds bytes that are no {error.encoding} text", called("-")) from None
+    except OSError as error:
+        raise UserError(f"cannot be read: {_why(error)}", called("-")) from None
+    if len(line) == LONGEST_LINE and not line.endswith("\n"):
+        raise UserError(f"has a line longer than {LONGEST_LINE:,} characters", called("-"))
+    return line.rstrip("\r\n") if line else None
+
+
+# --- writing -------------------------------------------------------------------------------------
+
+
+class _Sink(io.FileIO):
+    """A file being written; an error in writing it is a UserError that names it."""
+
+    target = ""
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise UserError(f"cannot be written: {_why(error)}", self.target) from None
+
+
+def _sink(file: int | str, target: str, mode: str, newline: str) -> IO[Any]:
+    raw = _Sink(file, "w")
+    raw.target = target
+    buffered = io.BufferedWriter(raw, _WRITE_BUFFER)
+    if "b" in mode:
+        return buffered
+    return io.TextIOWrapper(buffered, encoding="utf-8", errors=ESCAPED, newline=newline)
 
 
 @contextmanager
-def replacing(path: str, mode: str = "w", **options: Any) -> Iterator[IO[Any]]:
+def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[Any]]:
     """Open a temporary file beside ``path``; rename it to ``path`` when the block ends well.
 
-    When the block raises, the temporary file is removed and ``path`` stays as it was. A path that
-    is not a regular file (a terminal, a pipe, /dev/null) is written directly: there is nothing to
-    rename. Raises UserError when the place cannot be written to.
+    ``mode`` is ``"w"`` (text, UTF-8) or ``"wb"``. The bytes are on the disk before the rename. When
+    the block raises, or the process is asked to leave, the temporary file is removed and ``path``
+    stays as it was. A path that is not a regular file (a terminal, a pipe, /dev/null) is written
+    directly: there is nothing to rename. Raises UserError when the place cannot be written to, the
+    disk is full, or what stands there is read-only.
     """
     import tempfile
 
-    if "b" not in mode:
-        options.setdefault("encoding", "utf-8")
-        options.setdefault("newline", "\n")
-    path = os.path.realpath(path)
-    if os.path.exists(path) and not os.path.isfile(path):
-        if os.path.isdir(path):
-            raise UserError("is a folder; expected a file to write", path)
-        with open(path, mode, **options) as file:
+    target = _target(path)
+    if os.path.exists(target) and not os.path.isfile(target):
+        try:
+            file = _sink(target, path, mode, newline)
+        except OSError as error:
+            raise UserError(f"cannot be written: {_why(error)}", path) from None
+        with file:
             yield file
         return
-    folder, name = os.path.split(path)
+    folder, name = os.path.split(target)
     try:
-        handle, beside = tempfile.mkstemp(prefix=f".{name}.", suffix=".part", dir=folder or ".")
+        handle, beside = tempfile.mkstemp(prefix=f".{name[:80]}.", suffix=".part", dir=folder)
     except OSError as error:
-        raise UserError(f"cannot be written: {error.strerror or error}", path) from None
+        raise UserError(f"cannot be written: {_why(error)}", path) from None
     try:
-        with os.fdopen(handle, mode, **options) as file:
+        file = _sink(handle, path, mode, newline)
+        try:
             yield file
-        _take_usual_mode(beside, path)
-        os.replace(beside, path)
+            file.flush()
+            _settle(handle, path)
+            file.close()
+        except BaseException:
+            with suppress(UserError, OSError, ValueError):
+                file.close()
+            raise
+        try:
+            _take_usual_mode(beside, target)
+            os.replace(beside, target)
+        except OSError as error:
+            raise UserError(f"cannot be written: {_why(error)}", path) from None
     except BaseException:
-        os.unlink(beside)
+        with suppress(OSError):
+            os.unlink(beside)
         raise
+
+
+def _target(path: str) -> str:
+    """What ``path`` leads to. Raises UserError for a folder and for what may not be replaced."""
+    try:
+        target = os.path.realpath(path)
+        mode = os.stat(target).st_mode
+    except FileNotFoundError:
+        return target
+    except (OSError, ValueError) as error:
+        raise UserError(f"cannot be written: {_why(error)}", path) from None
+    if os.path.isdir(target):
+        raise UserError("is a folder; expected a file to write", path)
+    # a superuser may write anything, but a file without a bit for it is meant to stay
+    if not mode & 0o222 or not os.access(target, os.W_OK):
+        raise UserError("is read-only; expected a name that may be written", path)
+    return target
+
+
+def _settle(handle: int, path: str) -> None:
+    """Have the file's bytes on the disk, where the file system knows how."""
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP, errno.ENOSYS):
+            raise UserError(f"cannot be written: {_why(error)}", path) from None
 
 
 def _take_usual_mode(beside: str, path: str) -> None:
@@ -102,6 +269,45 @@ def _take_usual_mode(beside: str, path: str) -> None:
         os.umask(mask)
         mode = 0o666 & ~mask
     os.chmod(beside, mode)
+
+
+def check_apart(inputs: Mapping[str, str | None], outputs: Mapping[str, str | None]) -> None:
+    """Raise UserError when something to write is a file that is read, or another one to write,
+    links of either kind included.
+
+    Both: what a message calls the place (an option) -> its path; None where there is none, ``-``
+    for a standard stream.
+    """
+    places = {
+        name: place
+        for name, path in inputs.items()
+        if path is not None and (place := _place(path, sys.stdin)) is not None
+    }
+    for name, path in outputs.items():
+        place = None if path in (None, "-") else _place(str(path), None)
+        if place is None:
+            continue
+        other = next((one for one, known in places.items() if known == place), None)
+        if other is not None:
+            told = other if other.startswith("-") else "what is read"
+            raise UserError(f"{name} is the same file as {told}; expected another name", path)
+        places[name] = place
+
+
+def _place(path: str, stream: Any) -> tuple[Any, ...] | None:
+    """What identifies a regular file, or one that is not there yet; None for anything else."""
+    from stat import S_ISREG
+
+    try:
+        about = os.fstat(stream.fileno()) if path == "-" else os.stat(path)
+    except FileNotFoundError:
+        return (os.path.realpath(path),)
+    except (OSError, ValueError, AttributeError):
+        return None
+    return (about.st_dev, about.st_ino) if S_ISREG(about.st_mode) else None
+
+
+# --- what is installed with this project ---------------------------------------------------------
 
 
 def packaged_bytes(package: str, name: str) -> bytes:

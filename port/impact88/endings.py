@@ -1,0 +1,66 @@
+"""How a command may be ended from outside: control-C, and the signals that ask it to leave.
+
+SIGTERM (kill, a shutdown) and SIGHUP (the terminal went away) would end Python on the spot, with
+half-written files left beside their names. Here they become exceptions, so that whoever has begun
+something can take it back. A second control-C while that happens changes nothing.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import FrameType
+    from typing import Any
+
+INTERRUPTED = 128 + signal.SIGINT
+BROKEN_PIPE = 141
+
+
+class Terminated(BaseException):
+    """The process was asked to leave; ``status`` is the shell's usual 128 + signal."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.status = 128 + number
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    signal.signal(number, signal.SIG_IGN)
+    raise Terminated(number)
+
+
+@contextmanager
+def orderly() -> Iterator[None]:
+    """Within, control-C is a KeyboardInterrupt once, SIGTERM and SIGHUP are `Terminated`.
+
+    A signal that the caller ignores (nohup, a shell's background job) or handles stays as it is.
+    Outside the main thread, where Python takes no handlers, nothing changes.
+    """
+    handlers: dict[int, tuple[Any, Any]] = {
+        signal.SIGINT: (signal.default_int_handler, _interrupt),
+        signal.SIGTERM: (signal.SIG_DFL, _leave),
+    }
+    if sys.platform != "win32":
+        handlers[signal.SIGHUP] = (signal.SIG_DFL, _leave)
+    before = {}
+    try:
+        for number, (usual, handler) in handlers.items():
+            if signal.getsignal(number) is usual or signal.getsignal(number) == usual:
+                before[number] = signal.signal(number, handler)
+    except ValueError:  # not the main thread
+        pass
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
