@@ -75,7 +75,7 @@ def _overview() -> str:
             *lines,
             "",
             "impact88 COMMAND --help tells a command's options; impact88 --version the version.",
-            "exit status: 0 done, 1 done with an adverse result, 2 unusable input, 3 a bug of impact88",
+            "exit status: 0 done, 1 done with an adverse result, 2 unusable input, 3 a bug here",
         ]
     )
 
@@ -173,7 +173,9 @@ def _status(arguments: Sequence[str], called: str, debug: bool) -> int:
             status = UNUSABLE
         sys.stdout.flush()
     except KeyboardInterrupt:
-        _tell("")
+        with suppress(ValueError):
+            if sys.stderr.isatty():
+                _tell("")  # the shell's prompt comes on a line of its own
         return INTERRUPTED
     except Terminated as signal:
         _drop_output()

@@ -24,7 +24,7 @@ LARGEST = 100_000_000
 LONGEST_LINE = 1_000_000
 """Characters of the longest line that is read."""
 ESCAPED = "impact88.escaped"
-"""The error handler of text streams that writes what they cannot encode as \\uXXXX, as JSON does."""
+"""The error handler of text streams: what they cannot encode becomes \\uXXXX, as in JSON."""
 
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
@@ -84,10 +84,11 @@ class Source(io.RawIOBase):
         self.count = 0
         self._keep = path == "-"
         try:
-            self._inner: Any = sys.stdin.buffer if self._keep else open(path, "rb", buffering=0)
+            inner: Any = sys.stdin.buffer if self._keep else io.FileIO(path)
         except (OSError, ValueError) as error:
             raise UserError(f"cannot be read: {_why(error)}", self.name) from None
-        self._fill = getattr(self._inner, "readinto1", self._inner.readinto)
+        self._inner = inner
+        self._fill = getattr(inner, "readinto1", inner.readinto)
 
     @property
     def size(self) -> int | None:

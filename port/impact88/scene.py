@@ -13,9 +13,11 @@ from collections.abc import Iterator, Mapping
 
 from .doubles import double, is_number
 from .errors import UserError
-from .files import packaged_text, read_text
+from .files import called, packaged_text, read_text
 from .names import DEFAULT_M, SCENE, VELOCITIES
 
+TOML_LIMIT = 100_000
+"""Bytes of the largest scene file that is read."""
 VALUE_LIMIT = 70
 """The longest value: three of them and their commas fit the 239 characters INPUT keeps."""
 DATA_LINES = (280, 290, 310)
@@ -57,7 +59,7 @@ class Scene(Mapping[str, str]):
     @classmethod
     def from_toml(cls, path: str) -> Scene:
         """The scene in a TOML file. Raises UserError naming file, line or key."""
-        return cls.from_toml_text(read_text(path, limit=1_000_000), path)
+        return cls.from_toml_text(read_text(path, TOML_LIMIT), called(path))
 
     @classmethod
     def from_toml_text(cls, text: str, source: str) -> Scene:
@@ -151,6 +153,11 @@ def check_value(name: str, text: str, source: str) -> str:
 # --- TOML ----------------------------------------------------------------------------------------
 
 
+def toml_file(path: str) -> dict[str, str]:
+    """The entries of a flat TOML file (``-`` is standard input), see `toml_texts`."""
+    return toml_texts(read_text(path, TOML_LIMIT), called(path))
+
+
 def toml_texts(text: str, source: str) -> dict[str, str]:
     """The entries of a flat TOML document as texts: numbers as they stand in the file, strings as
     what they hold. Raises UserError for anything that is neither, naming the line."""
@@ -161,6 +168,10 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _syntax_error(text, str(error), raw, source) from None
+    except RecursionError:
+        raise UserError("nested too deeply; expected one value a line", source) from None
+    except ValueError:  # Python's own limit on the digits of a whole number
+        raise UserError("has a number of thousands of digits; expected a value", source) from None
     texts = {}
     for key, value in document.items():
         line, raw_text = raw.get(key, (0, ""))

@@ -160,7 +160,7 @@ def read_file(path: str) -> list[Printout]:
     """The printouts in a file (``-``: standard input), UTF-8 or UTF-16.
 
     Raises UserError when it is too large, is no text or holds no printout."""
-    where = "standard input" if path == "-" else path
+    where = files.called(path)
     data = files.read_bytes(path, LARGEST_FILE)
     if data[:2] not in (b"\xff\xfe", b"\xfe\xff") and len(data) > 8:
         # UTF-16 whose byte-order mark was lost: every other byte of such a text is zero

@@ -11,12 +11,10 @@ from collections.abc import Collection, Sequence
 
 from ..applesoft.errors import ApplesoftError
 from ..errors import UserError
-from ..files import read_text
+from ..files import called
 from ..names import CHAPTER, RESULTS, SCENE
 from ..program.arithmetics import FLOAT64
-from ..scene import toml_texts
-
-_LIMIT = 1_000_000
+from ..scene import toml_file
 
 
 def givens(path: str | None, settings: Sequence[str], allowed: Collection[str]) -> dict[str, float]:
@@ -26,8 +24,8 @@ def givens(path: str | None, settings: Sequence[str], allowed: Collection[str]) 
     """
     values: dict[str, float] = {}
     if path is not None:
-        source = "standard input" if path == "-" else path
-        texts = toml_texts(read_text(path, limit=_LIMIT), source)
+        source = called(path)
+        texts = toml_file(path)
         texts.pop("title", None)
         for name, text in texts.items():
             _put(values, name, text, allowed, source)

@@ -22,8 +22,9 @@ from numpy.typing import NDArray
 from .. import doubles
 from ..accuracy import errorbound
 from ..closedform.solve import solve
-from ..errors import UserError
+from ..errors import UserError, quoted
 from ..fields import ANGLES, FIELDS
+from ..files import called
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..replay import replay
 from ..status import Status
@@ -187,7 +188,7 @@ def compare_file(path: str, form: str, given: Mapping[str, str] | None = None) -
     done = Comparison()
     with open_reader(path, form) as reader:
         wanted = [name for name in reader.names if name in RESULTS and name not in _NOT_COMPARED]
-        where = "standard input" if path == "-" else path
+        where = called(path)
         if not wanted:
             raise UserError(
                 f"no column of results; expected some of {' '.join(RESULTS)}, beside the scene's",
@@ -293,7 +294,7 @@ def _theirs(rows: Rows, name: str) -> Theirs:
             values[index] = doubles.double(text)
         except ValueError:
             if text:
-                rows.bad.append(rows.cell(index, name, f"{text!r} is no number"))
+                rows.bad.append(rows.cell(index, name, f"{quoted(text)} is no number"))
             continue
         written = _WRITTEN.fullmatch(text)
         if written:

@@ -26,14 +26,14 @@ from ..applesoft.console import PRINTER_SLOT, EndOfInput
 from ..applesoft.errors import ApplesoftError
 from ..emulator.emulator import Applesoft
 from ..emulator.machine import TooManyStatements
+from ..endings import INTERRUPTED
 from ..errors import UserError
-from ..files import packaged_text, read_text, replacing
+from ..files import called, check_apart, packaged_text, read_text, replacing, typed_line
 from .run import add_machine_arguments
 
 LISTING = "impact.bas"
 SLOT_LINE = '190 P$ = "PR# " + "{}"'
 PROGRAM_LIMIT = 1_000_000
-INTERRUPTED = 130
 _SHOWN_CONTROLS = "\n\a\b"
 
 
@@ -78,17 +78,13 @@ class Terminal:
         sys.stdout.flush()
         self.waiting = True
         try:
-            line = self._ask() if self.typing else sys.stdin.readline()
-        except UnicodeDecodeError:
-            raise UserError("standard input is no UTF-8 text") from None
+            line = self._ask() if self.typing else typed_line()
         finally:
             self.waiting = False
-        if not line:
-            return None
-        self.last = line.rstrip("\r\n")
-        return self.last
+        self.last = line or ""
+        return line
 
-    def _ask(self) -> str:
+    def _ask(self) -> str | None:
         """A line with the terminal's editing; what stands in the row is given as the prompt, so
         that editing does not wipe it out."""
         prompt = "".join(c for c in self._row if c >= " ")
@@ -97,9 +93,11 @@ class Terminal:
             sys.stdout.write("\r")
             sys.stdout.flush()
         try:
-            return input(prompt) + "\n"
+            return input(prompt)
         except EOFError:
-            return ""
+            return None
+        except UnicodeDecodeError:
+            raise UserError("holds bytes that are no text", called("-")) from None
 
     @property
     def row_begun(self) -> bool:
@@ -132,6 +130,7 @@ def main(args: argparse.Namespace) -> int:
             f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
             "or --no-dos"
         )
+    check_apart({"FILE.bas": args.program, "standard input": "-"}, {"--printer": args.printer})
     terminal = Terminal()
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
@@ -150,7 +149,10 @@ def main(args: argparse.Namespace) -> int:
             machine.enter(SLOT_LINE.format(args.slot))
         with _interrupts(machine, terminal):
             try:
-                return _session(machine, terminal, args)
+                status = _session(machine, terminal, args)
+                if status == INTERRUPTED and printer is not None:
+                    raise KeyboardInterrupt  # what the printer had so far replaces nothing
+                return status
             except TooManyStatements:
                 _end_row(terminal)
                 print(
@@ -165,7 +167,7 @@ def load_program(machine: Applesoft, path: str | None) -> None:
     if path is None:
         text, where = packaged_text("impact88.legacy", LISTING), LISTING
     else:
-        text, where = read_text(path, limit=PROGRAM_LIMIT), path
+        text, where = read_text(path, limit=PROGRAM_LIMIT), called(path)
     try:
         machine.load(text)
     except ValueError as error:

@@ -34,8 +34,8 @@ import sys
 from typing import TYPE_CHECKING
 
 from ..errors import UserError
-from ..files import read_text
-from ..scene import SAMPLES, sample, toml_texts
+from ..files import called
+from ..scene import SAMPLES, sample, toml_file
 from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
 
 if TYPE_CHECKING:
@@ -103,8 +103,8 @@ def read_scene(args: argparse.Namespace) -> Inputs:
     if bool(args.scene) == bool(args.sample):
         raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
     if args.scene:
-        texts: dict[str, str] = toml_texts(read_text(args.scene, limit=1_000_000), args.scene)
-        source = args.scene
+        texts: dict[str, str] = toml_file(args.scene)
+        source = called(args.scene)
     else:
         texts, source = dict(sample(args.sample)), f"sample {args.sample}"
     changes = {}

@@ -23,7 +23,7 @@ from typing import IO, Any
 
 from ..checking.oracle import Request, answer
 from ..errors import UserError
-from ..files import replacing
+from ..files import called, check_apart, open_bytes, replacing
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,6 +41,7 @@ def main(args: argparse.Namespace) -> int:
         raise UserError(f"--vectors is {args.vectors}; expected a number above 0")
     if args.vectors is not None and args.scenes != "-":
         raise UserError("--vectors makes its own scenes; expected no file beside it")
+    check_apart({"SCENES.jsonl": args.scenes}, {"--output": args.output})
     counts = {"answered": 0, "refused": 0}
     with nullcontext(sys.stdout) if args.output == "-" else replacing(args.output) as out:
         if args.vectors is not None:
@@ -71,22 +72,18 @@ def _batches(path: str) -> Iterator[list[Request]]:
     is answered line by line, a file in larger batches."""
     from ..checking.oracle import BATCH, LONGEST_LINE
 
-    try:
-        source = sys.stdin.buffer if path == "-" else open(path, "rb")  # noqa: SIM115
-    except OSError as error:
-        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
     number = 0
     rest = b""
-    with nullcontext(source) if path == "-" else source:
+    with open_bytes(path) as source:
         while True:
-            arrived = source.read1(1 << 16)  # type: ignore[union-attr]
+            arrived = source.read1(1 << 16)
             lines = (rest + arrived).split(b"\n")
             rest = lines.pop() if arrived else b""
             if len(rest) > LONGEST_LINE:
                 raise UserError(
                     f"line {number + len(lines) + 1} is longer than {LONGEST_LINE:,} "
                     "bytes; expected one JSON object a line",
-                    path,
+                    called(path),
                 )
             batch = []
             for line in lines:

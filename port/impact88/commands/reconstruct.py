@@ -33,6 +33,7 @@ import argparse
 
 from ..chapter.givens import givens, template
 from ..errors import UserError
+from ..files import called
 from ..names import SCENE
 from .options import add_set_argument
 
@@ -81,4 +82,4 @@ def main(args: argparse.Namespace) -> int:
 
 def source_of(path: str | None) -> str | None:
     """What errors call the file given."""
-    return "standard input" if path == "-" else path
+    return None if path is None else called(path)

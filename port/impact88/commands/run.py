@@ -20,7 +20,7 @@ from contextlib import ExitStack
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
 from ..errors import UserError
-from ..files import replacing
+from ..files import check_apart, replacing, typed_line
 from ..names import VELOCITIES
 from ..program.arithmetics import ARITHMETICS
 from ..program.run import finished, start
@@ -104,6 +104,7 @@ def main(args: argparse.Namespace) -> int:
             f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
             "or --no-dos"
         )
+    check_apart({"FILE.toml": args.scene or "-"}, {"--printer": args.printer})
     changes = settings(args.set)
     scene = chosen_scene(args, changes)
     data = scene if scene is not None else published_data() | changes
@@ -118,7 +119,7 @@ def main(args: argparse.Namespace) -> int:
             console = Console(lambda: next(replies, None), show, printer, dos=not args.no_dos)
         else:
             echo = args.json or not sys.stdin.isatty()
-            console = Console(_typed_line, show, printer, dos=not args.no_dos, echo=echo)
+            console = Console(typed_line, show, printer, dos=not args.no_dos, echo=echo)
         try:
             error, zero_determinant, left = start(data, console, args.arithmetic, str(args.slot))
         except EndOfInput:
@@ -159,10 +160,3 @@ def _prompting(shown: list[str]) -> Callable[[str], object]:
         sys.stderr.flush()
 
     return show
-
-
-def _typed_line() -> str | None:
-    """The next line of standard input, without its end."""
-    sys.stdout.flush()
-    line = sys.stdin.readline()
-    return line.rstrip("\r\n") if line else None

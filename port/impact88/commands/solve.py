@@ -39,7 +39,7 @@ from ..closedform.columns import UNUSED_BY_POINTS, refusals
 from ..closedform.solve import solve
 from ..doubles import is_number
 from ..errors import UserError
-from ..files import replacing
+from ..files import check_apart, replacing
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..progress import progress
 from ..scene import VALUE_LIMIT
@@ -103,6 +103,9 @@ def main(arguments: argparse.Namespace) -> int:
     kinds = {"float64": _Float64, "applesoft": _Applesoft}
     arithmetic = kinds[arguments.arithmetic](arguments.outputs)
     complaints = _Complaints(arguments.errors)
+    check_apart(
+        {"CASES": arguments.cases}, {"--output": arguments.output, "--errors": arguments.errors}
+    )
     with ExitStack() as stack:
         source = stack.enter_context(open_reader(arguments.cases, source_format))
         optional = ["M", *(UNUSED_BY_POINTS if given.get("M") == "4" else ())]

@@ -6,18 +6,24 @@ Read and written as a whole: memory grows with the file.
 from __future__ import annotations
 
 import sys
-import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import UserError
+from .. import doubles
+from ..errors import UserError, quoted
 from ..files import replacing
 from ..names import SCENE
-from .rows import Column, Reader, Rows, Writer
+from .npzfile import read_arrays, write_arrays
+from .rows import Column, Reader, Rows, Writer, refuse_late
+
+_NUMBERS = "fiu"
+_TEXT = "U"
+LARGEST_TEXTS = 256_000_000
+"""Bytes of the largest column of texts that is written: numpy gives each the longest one's."""
 
 
 class _NpzReader:
@@ -25,14 +31,18 @@ class _NpzReader:
 
     def __init__(self, arrays: dict[str, NDArray[Any]], where: str) -> None:
         self.names = list(arrays)
-        lengths = {name: array.shape for name, array in arrays.items() if array.size != 1}
-        if any(len(shape) != 1 for name, shape in lengths.items() if name in SCENE):
-            raise UserError("holds arrays with more than one dimension", where)
-        counts = {shape[0] for name, shape in lengths.items() if name in SCENE}
-        if len(counts) > 1:
-            told = ", ".join(f"{name} {s[0]}" for name, s in lengths.items() if name in SCENE)
+        scene = {name: array for name, array in arrays.items() if name in SCENE}
+        for name, array in scene.items():
+            if array.dtype.kind not in _NUMBERS + _TEXT:
+                raise UserError(f"{name} holds {array.dtype}; expected numbers", where)
+            if array.size != 1 and array.ndim != 1:
+                shape = " by ".join(map(str, array.shape))
+                raise UserError(f"{name} is an array of {shape}; expected one dimension", where)
+        lengths = {name: array.size for name, array in scene.items() if array.size != 1}
+        if len(set(lengths.values())) > 1:
+            told = ", ".join(f"{name} {length}" for name, length in lengths.items())
             raise UserError(f"its columns differ in length: {told}", where)
-        self._count = counts.pop() if counts else 1
+        self._count = next(iter(lengths.values()), 1)
         self.total: int | None = self._count
         self._arrays = arrays
 
@@ -45,7 +55,7 @@ class _NpzReader:
         for name, array in self._arrays.items():
             if name in SCENE:
                 column = np.broadcast_to(array.reshape(-1), (self._count,))
-                columns[name] = column if column.dtype.kind in "fiub" else column.tolist()
+                columns[name] = column if column.dtype.kind in _NUMBERS else column.tolist()
             else:
                 others[name] = array
         yield Rows(1, self._count, columns, others)
@@ -56,24 +66,17 @@ def read_npz(path: str) -> Iterator[Reader]:
     """Open an .npz table. Raises UserError if it is none, or holds Python objects."""
     if path == "-":
         raise UserError("an .npz table cannot be read from standard input; expected a file")
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            if not isinstance(file, np.lib.npyio.NpzFile):
-                raise UserError("is no .npz file", path)
-            arrays = {name: file[name] for name in file.files}
-    except OSError as error:
-        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
-    except (ValueError, zipfile.BadZipFile, EOFError, KeyError) as error:
-        raise UserError(f"is no .npz file of plain arrays: {error}", path) from None
-    yield _NpzReader(arrays, path)
+    yield _NpzReader(read_arrays(path), path)
 
 
 class _NpzWriter:
-    def __init__(self, kept: Sequence[str]) -> None:
+    def __init__(self, kept: Sequence[str], dropped: Collection[str]) -> None:
         self._kept = kept
+        self._dropped = dropped
         self._parts: list[dict[str, NDArray[Any]]] = []
 
     def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+        refuse_late(rows, self._dropped, "an .npz table")
         part = {}
         for name in self._kept:
             column = rows.kept(name)
@@ -90,25 +93,34 @@ class _NpzWriter:
 def _array(name: str, column: Column) -> NDArray[Any]:
     """A column of texts: doubles for a scene's name (NaN where it is no number), else text."""
     if name not in SCENE:
-        return np.array(["" if cell is None else str(cell) for cell in column])
+        texts = ["" if cell is None else str(cell) for cell in column]
+        longest = max(map(len, texts), default=0)
+        if 4 * longest * len(texts) > LARGEST_TEXTS:
+            raise UserError(
+                f"column {quoted(name)} has texts of up to {longest:,} characters, too long for "
+                ".npz; expected to write CSV or JSON Lines"
+            )
+        return np.array(texts, dtype=np.str_)
     values = np.full(len(column), np.nan)
     for i, cell in enumerate(column):
         try:
-            values[i] = float(cell)
-        except (TypeError, ValueError):
+            values[i] = doubles.double(cell)
+        except (TypeError, AttributeError, ValueError):
             continue
     return values
 
 
 @contextmanager
-def write_npz(path: str, kept: Sequence[str], results: Sequence[str]) -> Iterator[Writer]:
+def write_npz(
+    path: str, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
+) -> Iterator[Writer]:
     """Write an .npz table, see `tables.table.open_writer`."""
     if path == "-" and sys.stdout.isatty():
         raise UserError("an .npz table is not for a terminal; expected -o FILE.npz")
-    writer = _NpzWriter(kept)
+    writer = _NpzWriter(kept, dropped)
     yield writer
     if path == "-":
-        np.savez(sys.stdout.buffer, **writer.arrays())  # type: ignore[arg-type]
+        write_arrays(sys.stdout.buffer, writer.arrays())
         return
     with replacing(path, "wb") as file:
-        np.savez(file, **writer.arrays())  # type: ignore[arg-type]
+        write_arrays(file, writer.arrays())

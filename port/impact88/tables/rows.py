@@ -6,7 +6,7 @@ Numbers stay the decimal text they are written as until an arithmetic reads them
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
@@ -14,13 +14,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import doubles
-from ..errors import UserError
+from ..errors import UserError, quoted
 from ..names import SCENE
 
 Column = Sequence[Any] | NDArray[Any]
 
 BLOCK_ROWS = 16384
-"""Rows read, solved and written together."""
+"""Rows read, solved and written together, unless they are very long:"""
+BLOCK_CHARACTERS = 8_000_000
+"""Characters of text after which a block ends."""
+BLOCK_CELLS = 2_000_000
+"""Cells after which a block ends."""
+
+
+class _Absent(str):
+    """What a row holds for a key it does not have; an empty text to everybody else."""
+
+    __slots__ = ()
+
+
+ABSENT = _Absent()
 
 
 class BadCell(NamedTuple):
@@ -42,8 +55,9 @@ class Rows:
     """Some rows of a table.
 
     ``first``: the number of the first, from 1; ``columns``: scene name -> texts (None where the row
-    has none) or an array; ``others``: the other columns, passed through; ``lines``: the file's line
-    of each row, if it has lines; ``bad``: rows that could not be read.
+    has none, `ABSENT` where it lacks the key) or an array; ``others``: the other columns, passed
+    through; ``lines``: the file's line of each row, if it has lines; ``bad``: rows that could not
+    be read; ``late``: columns that the table's first rows did not have, and the line of each.
     """
 
     first: int
@@ -52,6 +66,7 @@ class Rows:
     others: dict[str, Column]
     lines: Sequence[int] | None = None
     bad: list[BadCell] = field(default_factory=list)
+    late: dict[str, int] = field(default_factory=dict)
 
     def kept(self, name: str) -> Column:
         """A column of either kind."""
@@ -83,6 +98,36 @@ class Writer(Protocol):
     """A table being written."""
 
     def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None: ...
+
+
+def one_per_row(rows: Rows, name: str) -> Column:
+    """A column with a cell for each row. Raises UserError for an array that has not as many."""
+    if name not in rows.columns and name not in rows.others:
+        return [ABSENT] * rows.count  # no row of this block has the key
+    column = rows.kept(name)
+    if not isinstance(column, np.ndarray):
+        return column
+    if column.size == 1:
+        return np.broadcast_to(column.reshape(-1), (rows.count,))
+    if column.shape != (rows.count,):
+        shape = " by ".join(map(str, column.shape))
+        raise UserError(
+            f"{quoted(name)} is an array of {shape}, not a column of {rows.count} rows; expected "
+            "to write .npz, or a table without it"
+        )
+    return column
+
+
+def refuse_late(rows: Rows, dropped: Collection[str], what: str) -> None:
+    """Raise UserError when these rows have columns that ``what``, begun without them, cannot take;
+    those ``dropped`` are not wanted anyway."""
+    for name, line in rows.late.items():
+        if name not in dropped:
+            raise UserError(
+                f"line {line} has the key {quoted(name)}, which no row before it has, and {what} "
+                "has its columns in front; expected to write JSON Lines, or the key in the first "
+                "row too"
+            )
 
 
 def shortest(values: NDArray[Any]) -> list[str]:
@@ -119,7 +164,7 @@ def _why_no_number(text: object) -> str | None:
         return "is empty; expected a number"
     if isinstance(text, str) and (_is_infinite(text) or doubles.is_number(text)):
         return None
-    return f"{text!r} is no number"
+    return f"{quoted(text)} is no number"
 
 
 def _is_infinite(text: str) -> bool:

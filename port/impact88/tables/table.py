@@ -58,15 +58,16 @@ def open_writer(
     """Open a table for writing ``results`` after the columns of ``source`` (its scene columns only
     if ``scene_too``; a column named like a result gives way to it). The file appears under its name
     when all is written."""
-    kept = [n for n in source.names if n not in results and (scene_too or n not in SCENE)]
+    dropped = {*results, *(() if scene_too else SCENE)}
+    kept = [name for name in source.names if name not in dropped]
     if form == "csv":
         from .csvtable import write_csv
 
-        return write_csv(path, kept, results, source.delimiter)
+        return write_csv(path, kept, results, dropped, source.delimiter)
     if form == "jsonl":
         from .jsontable import write_json_lines
 
-        return write_json_lines(path, kept, results)
+        return write_json_lines(path, kept, results, dropped)
     from .npztable import write_npz
 
-    return write_npz(path, kept, results)
+    return write_npz(path, kept, results, dropped)

@@ -1,0 +1,70 @@
+"""JSON values whose numbers keep their digits: read, and written again.
+
+A number is a `Numeral`, the text it is written as; everything else is what Python's json makes.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+DEEPEST = 100
+"""Lists and objects inside one another that are read."""
+
+
+class Numeral(str):
+    """The text of a JSON number."""
+
+    __slots__ = ()
+
+
+def _constant(name: str) -> Numeral:
+    return Numeral({"NaN": "nan", "Infinity": "inf", "-Infinity": "-inf"}[name])
+
+
+_decode = json.JSONDecoder(parse_float=Numeral, parse_int=Numeral, parse_constant=_constant).decode
+
+
+def read(text: str) -> Any:
+    """The value of a JSON text. Raises ValueError if it is none, or nested too deeply."""
+    try:
+        value = _decode(text)
+    except RecursionError:
+        raise ValueError(f"is nested deeper than {DEEPEST} levels") from None
+    except ValueError as error:
+        raise ValueError(f"is no JSON: {error}") from None
+    if text.count("[") + text.count("{") > DEEPEST and _is_deep(value):
+        raise ValueError(f"is nested deeper than {DEEPEST} levels")
+    return value
+
+
+def _is_deep(value: Any) -> bool:
+    level = [value]
+    for _ in range(DEEPEST):
+        level = [
+            inner
+            for outer in level
+            if isinstance(outer, dict | list)
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+        ]
+    return any(isinstance(value, dict | list) for value in level)
+
+
+def written(value: Any) -> str:
+    """JSON text of a value as `read` makes it; not ASCII alone."""
+    if isinstance(value, Numeral):
+        return number(float(value)) if value in ("nan", "inf", "-inf") else str(value)
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(k)}: {written(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(written, value)) + "]"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def number(value: float) -> str:
+    """A float in the fewest digits that read back to it; null for NaN, which JSON has not, and
+    1e999 for infinity, which readers take for it."""
+    if math.isfinite(value):
+        return repr(value)
+    return "null" if math.isnan(value) else ("1e999" if value > 0 else "-1e999")
