@@ -180,6 +180,62 @@ def test_barrier_forward_and_back(capsys: pytest.CaptureFixture[str]) -> None:
     assert "'VX' has no place here" in err
 
 
+POINT_MASSES = "M=4 MA=100 MB=80 GA=0 E=.1 UX=-10 UY=0 VX=0 VY=3"
+
+
+@pytest.mark.parametrize(
+    ("command", "pairs", "after"),
+    [
+        ("reconstruct", f"{POINT_MASSES} MU=.1", "-5.1111*"),
+        ("barrier", "M=4 MA=143.5 GA=-30 E=.005 MU=.4 UX=-29.04 UY=0", "-2.0961*"),
+    ],
+)
+def test_point_masses_have_no_spins(
+    command: str, pairs: str, after: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, err = run(capsys, command, *sets(pairs))
+    assert (status, err) == (0, "")
+    assert after in out
+    assert not any(word in out for word in ("spin ", "EM ", "PM ", "contact point", "CAX"))
+
+
+def test_barrier_without_mass_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, "barrier", *sets(CAR.replace("MA=143.5", "MA=0")))
+    assert (status, out) == (2, "")
+    assert err == "impact88 barrier: MA is not positive; expected mass of A [mass]\n"
+
+
+def test_pivot_tells_what_ends_the_sliding(capsys: pytest.CaptureFixture[str]) -> None:
+    """Typed as MU, the ratio told is critical: it ends the sliding, and a pivot does the same."""
+    status, out, _ = run(capsys, "reconstruct", *sets(f"{POINT_MASSES} MU=-10"))
+    assert status == 0
+    (line,) = [line for line in out.splitlines() if line.startswith("MUP")]
+    ratio = line.partition("P_t/P_n = ")[2].split()[0]
+    pivot = as_json(capsys, "reconstruct", *sets(f"{POINT_MASSES} MU=-10"))["solutions"][0]
+    friction = as_json(capsys, "reconstruct", *sets(f"{POINT_MASSES} MUP={ratio}"))["solutions"][0]
+    assert friction["values"]["VAY"] == pytest.approx(pivot["values"]["VAY"], abs=1e-5)
+    assert friction["values"]["VAY"] == pytest.approx(friction["values"]["VBY"], abs=1e-5)
+
+
+@pytest.mark.parametrize(("em", "ratio"), [("-1", 1 / 3), ("0", 0.0), ("1", 1.0), ("3.49", 0.5836)])
+def test_what_the_moment_leaves_of_the_spin(
+    em: str, ratio: float, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without any lever arm nothing but the moment turns the vehicles: the spins tell R/R0."""
+    scene = "DA=0 DB=0 PA=0 PB=0 TA=0 TB=0 GA=0 MA=9 MB=7 IA=20 IB=30 E=.1 MU=0 UX=-9 UY=0 WA=3"
+    (found,) = as_json(capsys, "reconstruct", *sets(f"{scene} VX=0 VY=0 WB=1 EM={em}"))["solutions"]
+    values = found["values"]
+    assert values["RR0"] == pytest.approx(ratio, abs=1e-4)
+    assert (values["WAF"] - values["WBF"]) / (3 - 1) == pytest.approx(values["RR0"])
+
+
+def test_the_help_shows_a_scene_without_fault(capsys: pytest.CaptureFixture[str]) -> None:
+    _, out, _ = run(capsys, "barrier", "--help")
+    command = out.partition("examples:")[2].replace("\\\n", " ").splitlines()[1].split()[2:]
+    (found,) = as_json(capsys, "barrier", *command)["solutions"]
+    assert found["warnings"] == []
+
+
 def test_colinear_forward_and_back(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, _ = run(capsys, "colinear", *sets(REAR_END), "--contact-time", ".12")
     assert status == 0
@@ -225,6 +281,9 @@ def test_delta_v_says_which_equation_19(capsys: pytest.CaptureFixture[str]) -> N
     found = as_json(capsys, "delta-v", *sets(SPEEDS), "--like", "90-side")
     assert [e["LOSS"] for e in found["estimates"]] == [38.9, 41.5]
     assert "collisions 8, 9, 10" in found["loss_from"]
+    fraction = as_json(capsys, "delta-v", *sets(f"{SPEEDS} DT=.374"))["estimates"]
+    assert fraction == as_json(capsys, "delta-v", *sets(f"{SPEEDS} LOSS=37.4"))["estimates"]
+    as_json(capsys, "delta-v", *sets(f"{SPEEDS} LOSS=1"))  # the least percentage taken as such
     velocities = as_json(
         capsys, "delta-v", *sets("MA=96 MB=145 UX=-36.667 UY=0 VX=0 VY=58.667 LOSS=37.4")
     )
@@ -238,6 +297,10 @@ def test_delta_v_says_which_equation_19(capsys: pytest.CaptureFixture[str]) -> N
         ("MA=96 MB=145 SA=1", "SB is missing; expected it, or VX and VY"),
         (SPEEDS, "LOSS is missing"),
         (f"{SPEEDS} LOSS=140", "LOSS is outside 0 ... 100"),
+        (f"{SPEEDS} LOSS=.4", "the chapter writes the fraction, DT = 0.4"),
+        (f"{SPEEDS} LOSS=.999", "less than one percent"),
+        (f"{SPEEDS} DT=1.2", "DT is outside 0 ... 1"),
+        (f"{SPEEDS} DT=.4 LOSS=40", "LOSS and DT are both given"),
         ("MA=96 MB=145 SA=-1 SB=1 LOSS=4", "SA is negative"),
     ],
 )

@@ -103,6 +103,10 @@ CHAPTER: dict[str, Quantity] = {
         Quantity("CAY", "-d3", "y from A's center of gravity to the contact point", _LENGTH, 0),
         Quantity("CBX", "d2", "x from B's center of gravity to the contact point", _LENGTH, 0),
         Quantity("CBY", "d1", "y from B's center of gravity to the contact point", _LENGTH, 0),
+        Quantity(
+            *("RR0", "R/R_0", "final over initial relative spin that the moment alone makes"),
+            *("1", 0),
+        ),
         Quantity("PDOFA", "", "force on A comes from, clockwise from its front", "degree", 0),
         Quantity("PDOFB", "", "force on B comes from, clockwise from its front", "degree", 0),
         Quantity("P", "P", "size of the impulse", "mass·length/time", 0),
@@ -110,6 +114,7 @@ CHAPTER: dict[str, Quantity] = {
         Quantity("FA", "F_A", "average force during contact", _FORCE, 0),
         Quantity("FM2", "F_M", "peak force, at twice the average", _FORCE, 0),
         Quantity("FM3", "F_M", "peak force, at three times the average", _FORCE, 0),
+        Quantity("DT", "ΔT", "fraction of the kinetic energy lost", "1", 0),
         Quantity("SA", "|v_a|", "initial speed of A", _VELOCITY, 0),
         Quantity("SB", "|v_b|", "initial speed of B", _VELOCITY, 0),
         Quantity("UN", "v_an", "initial normal velocity of A", _VELOCITY, 0),

@@ -14,6 +14,7 @@ from math import hypot, sqrt
 from ..closedform.solve import solve
 from ..names import FINAL_VELOCITIES
 from ..program.arithmetics import FLOAT64
+from ..reconstruction.outcome import moment_ratio
 from ..reconstruction.unknowns import solve_for
 from ..scene import sample
 from .deltav import AS_PRINTED, AS_USED, delta_v
@@ -187,6 +188,8 @@ def _coefficients(vehicles: dict[str, float]) -> Step:
     known = {**vehicles, **ESTIMATES, **NO_SWERVING, **NO_TURNING, **SPIN_ESTIMATE}
     (found,) = solve_for(known)
     worst = float(found.amplification["EM"])
+    em = float(found["EM"])
+    ratio = float(moment_ratio(em))
     return Step(
         "Coefficients, given a final spin of A of -2.9 rad/s and no initial spins",
         "Equations 13-18 for UX, VY, Ω_b, e, μ and e_m",
@@ -194,10 +197,13 @@ def _coefficients(vehicles: dict[str, float]) -> Step:
             Number("WBF", "final spin of B", float(found["WBF"]), "rad/s"),
             Number("E", "coefficient of restitution", float(found["E"]), "1"),
             Number("MUP", "P_t/P_n", float(found["MUP"]), "1"),
-            Number("EM", "moment coefficient", float(found["EM"]), "1"),
+            Number("EM", "moment coefficient", em, "1"),
+            Number("RR0", "share of relative spin the moment leaves", ratio, "1"),
         ),
         '"Generally, these estimates are not very accurate": Table 3 has e = .25, μ = .89, '
-        f"e_m = -.9. An e_m of {float(found['EM']):.2f} is outside -1 ... 0; the amplification "
+        f"e_m = -.9. An e_m of {em:.2f} is outside -1 ... 0: the moment alone would leave R/R0 = "
+        f"-e_m/(1 - 2 e_m) = {ratio:.3f} of a relative spin, more than the third that the elastic "
+        "e_m = -1 leaves and less than all of it (e_m = +1, no moment). The amplification "
         f"says why: an error of 1 % of the closing speed in each known velocity changes e_m by "
         f"{worst / 100:.2g}.",
     )

@@ -10,7 +10,7 @@ comes from, clockwise from the vehicle's front.
 
 examples:
   impact88 barrier --set MA=143.5 --set IA=3728 --set DA=7.59 --set PA=-19.8 --set TA=0 \\
-      --set GA=-30 --set E=.005 --set MU=.911 --set EM=-.715 --set UX=-29.04 --set UY=0 --set WA=0
+      --set GA=-30 --set E=.005 --set MU=.4 --set EM=-.715 --set UX=-29.04 --set UY=0 --set WA=0
   impact88 barrier --template > car.toml        a file to fill in
   impact88 barrier car.toml --contact-time .1
   impact88 barrier rebound.toml --json          VAX VAY WAF known, UX UY WA left out

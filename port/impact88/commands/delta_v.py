@@ -2,9 +2,10 @@
 fitted to eleven staged collisions; no impact is solved. By default it has the factor 2/3 with which
 all of Table 2 was computed and which the printed equation lacks; --as-printed leaves it out.
 
-Given are MA MB, the speeds SA SB (or UX UY VX VY) and the loss LOSS in percent; or, instead of
-LOSS, --like takes the range of losses of one category of Table 2. A scene file (impact88 scene)
-gives masses and velocities; its other values are not used. Units: any consistent set.
+Given are MA MB, the speeds SA SB (or UX UY VX VY) and the loss, LOSS in percent or DT as the
+fraction that the chapter writes; or, instead, --like takes the range of losses of one category of
+Table 2. A scene file (impact88 scene) gives masses and velocities; its other values are not used.
+Units: any consistent set.
 
 examples:
   impact88 delta-v --set MA=96 --set MB=145 --set SA=36.667 --set SB=58.667 --set LOSS=37.4
@@ -53,7 +54,7 @@ def main(args: argparse.Namespace) -> int:
     """Print the estimate, or its range."""
     from ..chapter.deltav import AS_PRINTED, AS_USED, delta_v, described
 
-    known = givens(args.file, args.set, (*SCENE, "SA", "SB", "LOSS"))
+    known = givens(args.file, args.set, (*SCENE, "SA", "SB", "LOSS", "DT"))
     for name in ("MA", "MB"):
         if not known.get(name, 0) > 0:
             raise UserError(f"{name} is missing or not positive; expected a mass", args.file)
@@ -96,17 +97,28 @@ def _losses(known: dict[str, float], args: argparse.Namespace) -> tuple[list[flo
     if args.like:
         from ..chapter.staged import collisions
 
-        if "LOSS" in known:
-            raise UserError("LOSS and --like are both given; expected one")
+        if "LOSS" in known or "DT" in known:
+            raise UserError("the loss and --like are both given; expected one")
         category = CATEGORIES[args.like]
         alike = [c for c in collisions() if c.category == category]
         losses = sorted(c.table2["loss"] for c in alike)
         numbers = ", ".join(str(c.number) for c in alike)
         return [losses[0], losses[-1]], f"Table 2, {category} (collisions {numbers})"
+    if "DT" in known:
+        if "LOSS" in known:
+            raise UserError("LOSS and DT are both given; expected one")
+        if not 0 <= known["DT"] <= 1:
+            raise UserError("DT is outside 0 ... 1; expected a fraction of the kinetic energy")
+        return [100 * known["DT"]], "given"
     if "LOSS" not in known:
-        raise UserError("LOSS is missing (percent of kinetic energy); expected it, or --like")
+        raise UserError("LOSS is missing (percent of kinetic energy); expected it, DT or --like")
     if not 0 <= known["LOSS"] <= 100:
         raise UserError("LOSS is outside 0 ... 100; expected percent of the initial kinetic energy")
+    if 0 < known["LOSS"] < 1:
+        raise UserError(
+            f"LOSS = {known['LOSS']:g} would be less than one percent; the chapter writes the "
+            f"fraction, DT = {known['LOSS']:g} (and DT = {known['LOSS'] / 100:g} is what this says)"
+        )
     return [known["LOSS"]], "given"
 
 

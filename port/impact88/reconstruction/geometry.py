@@ -26,6 +26,14 @@ Array = NDArray[np.float64]
 
 NAMES = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 """The values of a scene that make its geometry; M (6 or 4) is optional."""
+_POINT_MASS = dict.fromkeys(NAMES[:2] + NAMES[3:7], 0.0) | {"IA": 1.0, "IB": 1.0}
+"""What a point mass does not look at, and may be left out where M is 4 throughout."""
+
+
+def with_point_masses(columns: Mapping[str, Any]) -> dict[str, Any]:
+    """``columns`` with what point masses may leave out, where they are (M = 4 throughout)."""
+    m = np.asarray(columns.get("M", 6), np.float64)
+    return {**(_POINT_MASS if m.size and (m == 4).all() else {}), **columns}
 
 
 @dataclass(frozen=True)
@@ -50,7 +58,9 @@ class Geometry:
 
     @classmethod
     def of(cls, columns: Mapping[str, Any]) -> Geometry:
-        """The geometry of scenes given by name (`NAMES`, and M where not 6), angles in degrees."""
+        """The geometry of scenes given by name (`NAMES`, and M where not 6; see
+        `with_point_masses`), angles in degrees."""
+        columns = with_point_masses(columns)
         value = {name: np.asarray(columns[name], np.float64) for name in NAMES}
         point = np.asarray(columns.get("M", 6), np.float64) == 4
         sine, cosine = sin_cos(value["GA"])

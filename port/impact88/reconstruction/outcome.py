@@ -17,7 +17,7 @@ from ..closedform.energy import kinetic_energy
 from ..closedform.solve import solve
 from ..closedform.statusbits import set_bits
 from ..names import FINAL_STATE, SCENE, VELOCITIES
-from .geometry import Geometry
+from .geometry import Geometry, with_point_masses
 from .impulse import principal_direction
 
 Array = NDArray[Any]
@@ -34,7 +34,9 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     velocities XA ... YBF, KI, KF, LOSS, DVA, DVB where the velocities they need are; MUC where all
     initial velocities and coefficients are (MU as the listing's line 280 would hold it).
     """
-    given = {name: np.asarray(value, np.float64) for name, value in values.items()}
+    headings = [(v, f"T{v}") for v in "AB" if f"T{v}" in values]
+    whole = with_point_masses(values)
+    given = {name: np.asarray(value, np.float64) for name, value in whole.items()}
     here = Geometry.of(given)
     if here.point.all():
         given = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **given}
@@ -42,8 +44,10 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     result = here.contact_point()
     if "PN" in given and "PT" in given:
         pn, pt = given["PN"], given["PT"]
-        for vehicle, theta in (("A", given["TA"]), ("B", given["TB"])):
-            result[f"PDOF{vehicle}"] = principal_direction(vehicle, theta, given["GA"], pn, pt)
+        for vehicle, theta in headings:
+            result[f"PDOF{vehicle}"] = principal_direction(
+                vehicle, given[theta], given["GA"], pn, pt
+            )
         result["P"] = np.hypot(pn, pt)
     result |= _contact_velocities(here, given)
     result |= velocity_changes(given)
@@ -56,6 +60,15 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     result["STATUS"] = status(here, given | result, condition)
     shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
     return {name: np.broadcast_to(value, shape) for name, value in result.items()}
+
+
+def moment_ratio(em: Any) -> Any:
+    """R/R0: the relative spin after the impact over that before, as far as the moment impulse alone
+    makes it (Equation 18 as printed with P = 0): -em/(1 - 2 em). 1 at em = +1, no moment; 0 at 0,
+    where the spins become equal; 1/3 at -1. Infinite at em = 1/2."""
+    em = np.asarray(em, np.float64)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return -em / (1 - 2 * em)
 
 
 def _contact_velocities(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:

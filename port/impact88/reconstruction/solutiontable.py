@@ -12,7 +12,7 @@ from ..names import CHAPTER, RESULTS, SCENE, Quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..status import sentences
 from .impulse import clock, forces
-from .outcome import outcome
+from .outcome import moment_ratio, outcome
 from .unknowns import BADLY_CONDITIONED, PIVOT, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
@@ -21,6 +21,11 @@ _BARRIERS = (
     *("XB", "YB", "XBF", "YBF", "DVB", "CBX", "CBY", "PDOFB"),
 )
 """What is not worth telling of B when it is a rigid barrier."""
+_TURNING = (
+    *("EM", "RR0", "PM", "WA", "WAF", "WB", "WBF", "IA", "IB", "DA", "DB", "PA", "PB"),
+    *("XA", "YA", "XB", "YB", "XAF", "YAF", "XBF", "YBF", "CAX", "CAY", "CBX", "CBY"),
+)
+"""What point masses have not, or have twice."""
 
 
 def quantity(name: str) -> Quantity:
@@ -39,7 +44,10 @@ def complete(
         following["TF"] = contact_time
         following |= {n: float(v) for n, v in forces(following["P"], contact_time).items()}
     values |= following
+    if "EM" in values:
+        values["RR0"] = float(moment_ratio(values["EM"]))
     untold = _BARRIERS if math.isinf(known.get("MB", 0.0)) else ()
+    untold = (*untold, *_TURNING) if known.get("M") == 4 else untold
     return {name: values[name] for name in _ORDER if name in values and name not in untold}
 
 
@@ -63,7 +71,7 @@ def as_text(known: Mapping[str, float], solution: Solution, values: Mapping[str,
     """The solution as tables: velocities, coefficients, impulse, consequences, warnings."""
     blocks: list[list[str]] = [
         _velocities(known, values),
-        _named(("E", "MUP", "EM"), known, values),
+        _named(("E", "MUP", "EM", "RR0"), known, values),
         _named(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values),
         _named(("TF", "FA", "FM2", "FM3"), known, values),
         _named(("DVA", "DVB", "KI", "KF", "LOSS"), known, values),
@@ -122,13 +130,18 @@ def _named(
             note = f"{note} ({clock(values[name])})"
         if name == "MUP":
             note = _friction(values)
+        if name == "EM":
+            note = f"{note}; {number(-values[name])} where its sign is taken the other way round"
         rows.append([name, f"{number(values[name])}{mark}", what.unit, note])
     return table(rows, left=(0, 2, 3))
 
 
 def _friction(values: Mapping[str, float]) -> str:
     if values["MUP"] == PIVOT:
-        return "pivot: no tangential relative velocity at separation"
+        text = "pivot: no sliding at separation"
+        if values.get("PN"):
+            text += f"; P_t/P_n = {number(values['PT'] / values['PN'])} ends it"
+        return text
     text = "signed P_t/P_n"
     if "UX" in values and "MU" in values:
         text += f"; MU to type in line 280: {number(values['MU'])}"

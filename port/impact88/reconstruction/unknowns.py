@@ -34,6 +34,7 @@ from ..errors import UserError
 from ..names import RESULTS, SCENE
 from .equations import COEFFICIENTS, FINAL, IMPULSES, INITIAL, SPINS, Equations, Found
 from .geometry import NAMES as GEOMETRY
+from .geometry import with_point_masses
 
 Array = NDArray[np.float64]
 
@@ -378,10 +379,8 @@ def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:
             given[name] = np.asarray(value, np.float64)
         except (TypeError, ValueError):
             raise UserError(f"{name} = {value!r} is no number") from None
+    given = {name: np.asarray(value) for name, value in with_point_masses(given).items()}
     missing = [name for name in GEOMETRY if name not in given]
-    if _is_point_mass(given):
-        missing = [name for name in missing if name in ("GA", "MA", "MB")]
-        given = {n: np.zeros(()) for n in GEOMETRY} | {"IA": np.ones(()), "IB": np.ones(())} | given
     if missing:
         wanted = "; ".join(f"{name} ({SCENE[name].meaning})" for name in missing[:3])
         more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
@@ -402,17 +401,15 @@ def _check_physical(given: Mapping[str, Array]) -> None:
     mu = given.get("MUP", given.get("MU"))
     if mu is not None and (mu == PIVOT).any() and not (mu == PIVOT).all():
         raise UserError("MU is the pivot's -10 in some scenes only; solve pivots apart")
-    for kind, names in (("mass", ("MA", "MB")), ("moment of inertia", ("IA", "IB"))):
-        if np.isinf(given[names[0]] * given[names[1]]).any() and all(
-            np.isinf(given[name]).any() for name in names
-        ):
-            raise UserError(f"{' and '.join(names)} are both infinite; expected one {kind} at most")
     for name, value in given.items():
         infinite_allowed = name in ("MA", "MB", "IA", "IB")
         if np.isnan(value).any() or (np.isinf(value).any() and not infinite_allowed):
             raise UserError(f"{name} is not finite; expected {_meaning(name)}")
         if infinite_allowed and not (value > 0).all():
             raise UserError(f"{name} is not positive; expected {_meaning(name)}")
+    for kind, names in (("mass", ("MA", "MB")), ("moment of inertia", ("IA", "IB"))):
+        if all(np.isinf(given[name]).any() for name in names):
+            raise UserError(f"{' and '.join(names)} are both infinite; expected one {kind} at most")
 
 
 def _meaning(name: str) -> str:

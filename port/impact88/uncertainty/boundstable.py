@@ -6,6 +6,8 @@ import math
 from textwrap import wrap
 from typing import Any
 
+from ..plaintable import number
+from ..plaintable import table as columns
 from .bounds import Bounds, quantity
 
 DRIVERS_SHOWN = 4
@@ -86,25 +88,24 @@ def table(found: Bounds) -> str:
         lines.append(f"{name:6}{numbers}  {item.kind:<12}{what.unit:<16}{what.symbol}")
     spreads = next(iter(found.spreads.values())).quantiles
     lines += ["", "Bounds, and quantiles of the draws", ""]
-    heads = "".join(f"{f'{100 * share:g} %':>9}" for share in spreads)
-    lines.append(f"{'':6}{'nominal':>9}{'lower':>10}{'upper':>10}{heads}  unit")
-    inside = False
+    heading = ["", "nominal", "lower", "", "upper", ""]
+    heading += [*(f"{100 * share:g} %" for share in spreads), "unit"]
+    rows, inside = [], False
     for name, bound in found.bounds.items():
         width = bound.upper - bound.lower
         marks = [
-            "*" if abs(value - corner) > 1e-6 * width else " "
+            "*" if abs(value - corner) > 1e-6 * width else ""
             for value, corner in (
                 (bound.lower, bound.corner_lower),
                 (bound.upper, bound.corner_upper),
             )
         ]
         inside = inside or "*" in marks
-        cells = "".join(f"{value:>9.4g}" for value in found.spreads[name].quantiles.values())
         nominal = bound.nominal if abs(bound.nominal) > 1e-12 * width else 0.0
-        lines.append(
-            f"{name:6}{nominal:>9.4g}{bound.lower:>10.5g}{marks[0]}{bound.upper:>9.5g}"
-            f"{marks[1]}{cells}  {quantity(name).unit}"
-        )
+        cells = [number(nominal, 4), number(bound.lower, 5), marks[0], number(bound.upper, 5)]
+        cells += [marks[1], *(number(q, 4) for q in found.spreads[name].quantiles.values())]
+        rows.append([name, *cells, quantity(name).unit])
+    lines += columns(rows, heading, left=(0, 3, 5, len(heading) - 1))
     lines += [
         "",
         "What drives them: rank correlation, and how far the result goes with that alone",
@@ -112,12 +113,12 @@ def table(found: Bounds) -> str:
     ]
     for name in found.bounds:
         ranked = sorted(found.drives[name].items(), key=lambda entry: -abs(entry[1].swing or 0.0))
-        cells = "".join(
+        drivers = "".join(
             f"  {source:<4}{drive.rank_correlation:>+6.2f} ({drive.swing:.3g})".ljust(23)
             for source, drive in ranked[:DRIVERS_SHOWN]
             if drive.swing > 1e-9 * abs(found.bounds[name].upper - found.bounds[name].lower)
         )
-        lines.append(f"{name:6}{cells}".rstrip())
+        lines.append(f"{name:6}{drivers}".rstrip())
     lines.append("")
     if inside:
         lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
