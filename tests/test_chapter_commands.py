@@ -76,7 +76,7 @@ def test_reconstruct_shows_both_solutions_of_table_3(
     assert "SOLUTION 2 OF 2" in out
     assert "-36.6661*" in out
     assert "length/time" in out
-    assert "! friction reverses the sliding" in out
+    assert "! the sliding at the contact point is reversed" in out
     assert "11 o'clock" in out
     assert all(len(line) <= 100 for line in out.splitlines())
     first, second = as_json(capsys, "reconstruct", after, "--contact-time", ".15")["solutions"]
