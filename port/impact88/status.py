@@ -45,12 +45,12 @@ WORDS: dict[Status, str] = {
         "friction drives the sliding: the tangential impulse acts with the slip, not against it"
     ),
     Status.A_ON_WRONG_SIDE: (
-        "A's center of gravity lies on B's side of the contact plane (A belongs on the +n side, "
-        "n = (cos GA, sin GA)): turn round A (TA by 180; A faces TA + 180) or correct PA"
+        "A's center lies on B's side of the contact plane (A belongs on the +n side): turn round A "
+        "(TA by 180) or correct PA"
     ),
     Status.B_ON_WRONG_SIDE: (
-        "B's center of gravity lies on A's side of the contact plane (B belongs on the -n side, "
-        "n = (cos GA, sin GA)): turn round B (TB by 180; B faces TB) or correct PB"
+        "B's center lies on A's side of the contact plane (B belongs on the -n side): turn round B "
+        "(TB by 180) or correct PB"
     ),
     Status.EM_OUT_OF_RANGE: (
         "EM is outside -1 ... 0 (and not +1, which stands for no moment impulse)"
@@ -62,8 +62,8 @@ WORDS: dict[Status, str] = {
 
 _SIDES = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
 _BOTH_SIDES = (
-    "each center of gravity lies on the other vehicle's side of the contact plane: turn round the "
-    "plane (GA by 180), A belongs on the +n side, n = (cos GA, sin GA)"
+    "each center lies on the other vehicle's side of the contact plane (A belongs on the +n side): "
+    "turn round the plane (GA by 180)"
 )
 
 

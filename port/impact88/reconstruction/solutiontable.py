@@ -131,7 +131,7 @@ def _named(
         if name == "MUP":
             note = _friction(values)
         if name == "EM":
-            note = f"{note}; {number(-values[name])} where its sign is taken the other way round"
+            note = f"{note}; {number(-values[name])} with the sign the other way"
         rows.append([name, f"{number(values[name])}{mark}", what.unit, note])
     return table(rows, left=(0, 2, 3))
 
