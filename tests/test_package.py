@@ -52,14 +52,22 @@ def test_every_package_folder_is_listed(project: dict[str, Any]) -> None:
         assert (ROOT / folder / "__init__.py").is_file()
 
 
-@pytest.mark.parametrize("package", ["impact88", "impact88.legacy", "impact88.golden"])
+@pytest.mark.parametrize(
+    "package", ["impact88", "impact88.desk", "impact88.legacy", "impact88.golden"]
+)
 def test_every_data_file_matches_a_pattern_of_package_data(
     project: dict[str, Any], package: str
 ) -> None:
     setuptools = project["tool"]["setuptools"]
     folder = setuptools["package-dir"].get(package, "port/" + package.replace(".", "/"))
     patterns = setuptools["package-data"][package]
-    data = [path for path in kept(ROOT / folder) if path.suffix != ".py"]
+    within = [other for other in setuptools["package-data"] if other.startswith(f"{package}.")]
+    others = {tuple(other.removeprefix(f"{package}.").split(".")) for other in within}
+    data = [
+        path
+        for path in kept(ROOT / folder)
+        if path.suffix != ".py" and not any(path.parts[: len(it)] == it for it in others)
+    ]
     assert data
     # setuptools' * stays within a folder, as glob's does and fnmatch's does not
     missed = [
@@ -80,6 +88,8 @@ def test_every_data_file_matches_a_pattern_of_package_data(
         ("impact88.legacy", "ERRATA.md"),
         ("impact88.golden", "scenes.jsonl.gz"),
         ("impact88.golden", "arithmetic/add.tsv.gz"),
+        ("impact88.desk", "templates/desk.html"),
+        ("impact88.desk", "static/desk.css"),
     ],
 )
 def test_data_is_found_as_a_resource_of_the_package(package: str, name: str) -> None:

@@ -42,6 +42,7 @@ COMMANDS = {
     "delta-v": "delta-V of both vehicles from speeds, masses and energy loss, Equation 19",
     "staged": "the eleven staged collisions: Tables 1 and 2 recomputed, fitted, compared",
     "example": "Section VII's reconstruction, step by step",
+    "desk": "a page in your browser, served by your own machine (extra: desk)",
 }
 """Command -> one line of help, in the order ``--help`` lists them."""
 

@@ -1,0 +1,46 @@
+"""A page opens in your browser: a collision as a form, answered while you type. It is served
+Control-C, or closing this window, ends it. The address holds a random word: whoever does not have
+it gets nothing.
+
+Needs pip install 'impact88[desk]'.
+
+examples:
+  impact88 desk                     open the page
+  impact88 desk --no-browser        only print its address
+  impact88 desk --port 8088         at a port of your choice
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from ..errors import UserError
+
+HIGHEST_PORT = 65535
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 desk`."""
+    parser.add_argument(
+        "--port", type=int, default=0, metavar="N", help="the port (default: any that is free)"
+    )
+    parser.add_argument(
+        "--no-browser", action="store_true", help="print the address and open no browser"
+    )
+
+
+def main(args: argparse.Namespace) -> int:
+    """Serve the page until it is interrupted."""
+    from ..desk.serving import serve
+
+    if not 0 <= args.port <= HIGHEST_PORT:
+        raise UserError(f"--port {args.port}: expected 0 (any that is free) to {HIGHEST_PORT}")
+    serve(args.port, not args.no_browser, _tell)
+    return 0
+
+
+def _tell(address: str) -> None:
+    """The address is the result; how to end is talk."""
+    print(address, flush=True)
+    print("Control-C ends the desk", file=sys.stderr, flush=True)

@@ -1,0 +1,158 @@
+"""The desk's addresses, and what answers them.
+
+Everything lies below the token. The page is read once; then its scripts ask, with JSON or with a
+file's bytes, and are answered with JSON, or with the file that is to be saved. Input that cannot be
+used is status 400 with ``{"problem": ...}``, the sentence a command would end with; a question that
+a newer one has replaced is 409.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from flask import Blueprint, Flask, Response, abort, render_template, request
+from werkzeug.exceptions import HTTPException
+
+from .. import __version__
+from ..errors import UserError
+from . import collision, page
+from .bench import Bench, BrokenError, SupersededError
+from .guard import HEADERS, LARGEST_BODY, refusal
+
+
+class Desk:
+    """What outlives a request: a bench for each kind of work that takes long."""
+
+    def __init__(self) -> None:
+        self.benches = {name: Bench() for name in ("bounds",)}
+
+    def warm(self) -> None:
+        """Load and start what the first questions will need."""
+        collision.warm()
+        for bench in self.benches.values():
+            bench.warm()
+
+    def close(self) -> None:
+        """End all processes."""
+        for bench in self.benches.values():
+            bench.close()
+
+
+def application(desk: Desk, port: int, token: str) -> Flask:
+    """The WSGI application that answers for ``desk`` at 127.0.0.1:``port``, below ``token``."""
+    app = Flask(__name__, static_url_path=f"/{token}/static")
+    app.config["MAX_CONTENT_LENGTH"] = LARGEST_BODY
+    app.add_template_filter(page.symbol)
+
+    @app.before_request
+    def refuse() -> Response | None:
+        headers = request.headers
+        status = refusal(headers, request.method, request.path, port=port, token=token)
+        return Response("", status) if status else None
+
+    @app.after_request
+    def protect(response: Response) -> Response:
+        response.headers.update(HEADERS)
+        return response
+
+    @app.errorhandler(Exception)
+    def told(error: Exception) -> Any:
+        return _told(error)
+
+    app.register_blueprint(_addresses(desk), url_prefix=f"/{token}")
+    return app
+
+
+def _told(error: Exception) -> Any:
+    """An error as JSON, in the words a command would use."""
+    if isinstance(error, UserError):
+        return {"problem": str(error)}, 400
+    if isinstance(error, SupersededError):
+        return {"superseded": True}, 409
+    if isinstance(error, HTTPException):
+        return {"problem": _REFUSED.get(error.code or 0, error.name)}, error.code or 500
+    detail = str(error) if isinstance(error, BrokenError) else f"{type(error).__name__}: {error}"
+    return {"problem": f"a fault of impact88 {__version__}, not of your input: {detail}"}, 500
+
+
+_REFUSED = {413: f"more than {LARGEST_BODY:,} bytes, the most that is read here"}
+
+
+def _addresses(desk: Desk) -> Blueprint:
+    routes = Blueprint("desk", __name__)
+
+    def asked(bench: str, task: str, **arguments: Any) -> Any:
+        who = request.headers.get("X-Desk-Page", "")[:64]
+        return desk.benches[bench].ask(who, {"task": task, **arguments})
+
+    @routes.get("/")
+    def whole_page() -> str:
+        return render_template("desk.html", **page.contents())
+
+    @routes.post("/collision")
+    def collision_answer() -> Any:
+        return collision.answer(_texts("values"))
+
+    @routes.post("/figure")
+    def figure() -> Response:
+        return Response(collision.figure(_texts("values"), _title()), content_type="image/svg+xml")
+
+    @routes.post("/bounds")
+    def bounds() -> Any:
+        return asked("bounds", "bounds", values=_texts("values"))
+
+    @routes.post("/scene-file")
+    def scene_file() -> Response:
+        text = collision.scene_file(_texts("values"), _title())
+        return _saved(text, "application/toml", "scene.toml")
+
+    @routes.post("/scene")
+    def scene() -> Any:
+        name = request.args.get("name", "the file")
+        return collision.read_scene_file(request.get_data(), name)
+
+    @routes.post("/sample/<int:number>")
+    def sample(number: int) -> Any:
+        return collision.sample_scene(number)
+
+    @routes.post("/stop/<bench>")
+    def stop(bench: str) -> Any:
+        if bench not in desk.benches:
+            abort(404)
+        desk.benches[bench].stop(request.headers.get("X-Desk-Page", "")[:64])
+        return {}
+
+    return routes
+
+
+def _saved(text: str, kind: str, name: str) -> Response:
+    """A file to be saved by the browser under a name."""
+    return Response(
+        text.encode(),
+        content_type=f"{kind}; charset=utf-8",
+        headers={"Content-Disposition": f'attachment; filename="{name}"'},
+    )
+
+
+def _object() -> dict[str, Any]:
+    """The JSON object that was sent. Raises UserError."""
+    try:
+        whole = json.loads(request.get_data())
+    except (ValueError, RecursionError):
+        raise UserError("the request is no JSON; expected an object") from None
+    if not isinstance(whole, dict):
+        raise UserError("the request is no JSON object")
+    return whole
+
+
+def _title() -> str:
+    return str(_object().get("title") or "")
+
+
+def _texts(name: str) -> dict[str, str]:
+    """One entry of the object sent: texts by name. Raises UserError."""
+    values = _object().get(name)
+    if not isinstance(values, dict) or not all(isinstance(v, str) for v in values.values()):
+        raise UserError(f"{name!r} is no object of texts")
+    return values

@@ -1,0 +1,58 @@
+"""Who may ask the desk, and what goes with every answer.
+
+The server listens on this machine only, but other pages in the same browser, and other users of the
+machine, can reach it too. Against them: a random token that begins every path (others do not know
+it), the exact Host (a foreign name that was pointed at 127.0.0.1 fails), the Origin and the
+browser's own word on where a request comes from (a foreign page fails even with the token), and no
+header that would let one read an answer. Whoever is refused gets no word of the desk's.
+"""
+
+from __future__ import annotations
+
+import hmac
+from typing import Protocol
+
+LARGEST_BODY = 16_000_000
+"""Bytes of the largest request that is taken: a box of printouts for one report."""
+
+HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
+        "connect-src 'self'; frame-src blob:; object-src 'none'; base-uri 'none'; "
+        "form-action 'none'; frame-ancestors 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "X-Frame-Options": "DENY",
+    "Cache-Control": "no-store",
+}
+"""Sent with every answer: nothing from elsewhere runs in the page, and nothing of it is kept."""
+
+
+class Headers(Protocol):
+    """A request's headers, looked up without regard to case."""
+
+    def get(self, name: str, default: str, /) -> str: ...
+
+
+def refusal(headers: Headers, method: str, path: str, *, port: int, token: str) -> int | None:
+    """The HTTP status a request is refused with; None when it may be answered."""
+    hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
+    if headers.get("Host", "") not in hosts:
+        return 403
+    first = path.lstrip("/").partition("/")[0]
+    if not hmac.compare_digest(first.encode(), token.encode()):
+        return 404
+    origin = headers.get("Origin", "")
+    if not origin:
+        # browsers name the origin of everything but plain reading
+        if method not in ("GET", "HEAD"):
+            return 403
+    elif origin not in {f"http://{host}" for host in hosts}:
+        return 403
+    # "none": typed in, or opened by another program
+    if headers.get("Sec-Fetch-Site", "none") not in ("same-origin", "none"):
+        return 403
+    return None

@@ -1,0 +1,52 @@
+"""What the page's template is given: the project's one table of names, grouped for a form."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, NamedTuple
+
+from markupsafe import Markup, escape
+
+from .. import __version__
+from ..names import DEFAULT_M, SCENE, Quantity
+from ..scene import SAMPLES, sample
+
+
+class Group(NamedTuple):
+    """A part of the form: its heading and its quantities."""
+
+    heading: str
+    quantities: tuple[Quantity, ...]
+
+
+def _group(heading: str, names: str) -> Group:
+    return Group(heading, tuple(SCENE[name] for name in names.split()))
+
+
+GROUPS = (
+    _group("Vehicle A", "MA IA DA PA TA"),
+    _group("Vehicle B", "MB IB DB PB TB"),
+    _group("Before the impact, A", "UX UY WA"),
+    _group("Before the impact, B", "VX VY WB"),
+    _group("Contact and coefficients", "GA E MU EM M"),
+)
+
+
+def symbol(text: str) -> Markup:
+    """A symbol of the chapter as HTML: what follows ``_`` is a subscript."""
+    pieces = re.split("_([A-Za-z]+)", text)
+    marked = (
+        Markup("<sub>{}</sub>").format(piece) if place % 2 else escape(piece)
+        for place, piece in enumerate(pieces)
+    )
+    return Markup("").join(marked)
+
+
+def contents() -> dict[str, Any]:
+    """The template's values."""
+    return {
+        "version": __version__,
+        "groups": GROUPS,
+        "default_m": DEFAULT_M,
+        "samples": [(number, sample(number).title) for number in SAMPLES],
+    }

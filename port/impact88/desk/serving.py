@@ -1,0 +1,98 @@
+"""The socket, the address with its token, and how the desk starts and ends."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import sys
+import threading
+import webbrowser
+from collections.abc import Callable
+from typing import Any
+
+from ..errors import UserError
+from .guard import LARGEST_BODY
+
+HOST = "127.0.0.1"
+THREADS = 8
+"""Requests answered at a time: a browser keeps some connections open, and computing waits in one"""
+LARGEST_HEADER = 32_768
+
+
+def listening(port: int) -> socket.socket:
+    """A socket that listens on this machine only; port 0 takes a free one. Raises UserError."""
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    if sys.platform != "win32":  # there it would let another program take the port over
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((HOST, port))
+        listener.listen(64)
+    except OSError as error:
+        listener.close()
+        raise UserError(
+            f"port {port} cannot be had: {error.strerror or error}; expected another, "
+            "or 0 for any that is free",
+            "--port",
+        ) from None
+    return listener
+
+
+def serve(port: int, browser: bool, tell: Callable[[str], object]) -> None:
+    """Serve the desk until it is interrupted. ``tell`` is given its address once it listens.
+
+    Raises UserError where Flask or waitress is missing or the port cannot be had.
+    """
+    missing = _missing()
+    if missing:
+        raise UserError(
+            f"the desk needs {missing}, which is not installed; pip install 'impact88[desk]'"
+        )
+    with listening(port) as listener:
+        number: int = listener.getsockname()[1]
+        token = secrets.token_urlsafe(18)
+        address = f"http://{HOST}:{number}/{token}/"
+        tell(address)
+        if browser:
+            # the connection is queued by the socket, so the browser starts while we import
+            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+        _run(listener, number, token)
+
+
+def _missing() -> str:
+    """The names of the packages that are not installed, for a sentence."""
+    from importlib.util import find_spec
+
+    wanted = {"flask": "Flask", "waitress": "waitress"}
+    return " and ".join(name for module, name in wanted.items() if find_spec(module) is None)
+
+
+def _run(listener: socket.socket, port: int, token: str) -> None:
+    import logging
+    import mimetypes
+
+    from waitress.server import create_server  # type: ignore[import-untyped]
+
+    from .app import Desk, application
+
+    # Windows lets any program change what a suffix means, and a browser runs no script that is
+    # said to be plain text
+    mimetypes.add_type("text/javascript", ".js")
+    mimetypes.add_type("text/css", ".css")
+    # a browser that goes away, or asks much at once, is no news to who started the desk
+    logging.getLogger("waitress").setLevel(logging.ERROR)
+    desk = Desk()
+    server: Any = create_server(
+        application(desk, port, token),
+        sockets=[listener],
+        threads=THREADS,
+        ident=None,
+        max_request_body_size=LARGEST_BODY,
+        max_request_header_size=LARGEST_HEADER,
+        clear_untrusted_proxy_headers=True,
+    )
+    try:
+        threading.Thread(target=desk.warm, daemon=True).start()
+        server.run()
+    finally:
+        desk.close()
+        server.close()

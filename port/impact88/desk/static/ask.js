@@ -1,0 +1,148 @@
+// Asking the desk: questions to the program on this machine, and small helpers for its answers.
+
+const ID = crypto.randomUUID();
+const STOPPABLE = ["bounds"];
+
+/** Input that cannot be used, or a fault; the message is the program's sentence. */
+export class Problem extends Error {}
+
+/** The element with an id. */
+export function page(id) {
+  return document.getElementById(id);
+}
+
+/** An element with properties (or attributes) and children; texts stay texts. */
+export function element(tag, properties = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name in made) made[name] = value;
+    else made.setAttribute(name, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+/**
+ * The response to a question; null when a newer question has replaced it.
+ * Throws Problem with what is wrong.
+ */
+export async function ask(path, body, query = {}) {
+  const address = new URL(path, document.baseURI.replace(/#.*/, ""));
+  for (const [name, value] of Object.entries(query)) address.searchParams.set(name, value);
+  const raw = body instanceof Blob || typeof body === "string";
+  let response;
+  try {
+    response = await fetch(address, {
+      method: "POST",
+      headers: { "X-Desk-Page": ID, "Content-Type": raw ? "application/octet-stream" : "application/json" },
+      body: raw ? body : JSON.stringify(body ?? {}),
+    });
+  } catch {
+    page("lost").hidden = false;
+    throw new Problem("The desk does not answer.");
+  }
+  page("lost").hidden = true;
+  if (response.status === 409) return null;
+  if (!response.ok) {
+    const told = await response.json().catch(() => ({}));
+    throw new Problem(told.problem ?? `The desk refused the question (${response.status}).`);
+  }
+  return response;
+}
+
+/** The JSON object that answers a question; null when a newer one has replaced it. */
+export async function asked(path, body, query) {
+  const response = await ask(path, body, query);
+  return response && response.json();
+}
+
+/** End what one kind of long work is computing for this page. */
+export function stop(bench) {
+  return ask(`stop/${bench}`).catch(() => {});
+}
+
+/** End everything, as the page goes away. */
+export function stopAll() {
+  for (const bench of STOPPABLE) {
+    fetch(`stop/${bench}`, { method: "POST", headers: { "X-Desk-Page": ID }, keepalive: true }).catch(() => {});
+  }
+}
+
+/**
+ * A function that does `work` for the newest call only: calls that come while it is at work are one
+ * more time afterwards.
+ */
+export function newest(work) {
+  let running = false;
+  let again = false;
+  return async function run() {
+    if (running) {
+      again = true;
+      return;
+    }
+    running = true;
+    try {
+      do {
+        again = false;
+        await work();
+      } while (again);
+    } finally {
+      running = false;
+    }
+  };
+}
+
+/** A function that does `work` once nobody has called it for `pause` milliseconds. */
+export function settled(work, pause) {
+  let timer;
+  const later = () => {
+    clearTimeout(timer);
+    timer = setTimeout(work, pause);
+  };
+  later.forget = () => clearTimeout(timer);
+  return later;
+}
+
+/** Let the browser save a response under the name it was sent with. */
+export async function save(response) {
+  const name = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "");
+  const address = URL.createObjectURL(await response.blob());
+  const link = element("a", { href: address, download: name ? name[1] : "" });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 60_000);
+}
+
+/** A text with symbols as a piece of the page: what follows "_" is a subscript. */
+export function marked(text) {
+  const parts = text.split(/_([A-Za-z]+)/);
+  return element("span", {}, ...parts.map((part, place) => (place % 2 ? element("sub", {}, part) : part)));
+}
+
+/** What a quantity is, for a table's cell: symbol, meaning, unit. */
+export function what(quantity) {
+  const unit = quantity.unit === "1" ? "" : quantity.unit;
+  return element("span", {}, element("i", {}, marked(quantity.symbol ?? "")), " ", marked(quantity.meaning), " ",
+    element("small", {}, unit));
+}
+
+/** Fill a table: `heads` are texts, `rows` lists of texts or nodes; the first cell heads its row. */
+export function fill(table, heads, rows, classOf = () => "") {
+  const head = element("tr", {}, ...heads.map((text) => element("th", { scope: "col" }, text)));
+  const body = rows.map((row, place) =>
+    element("tr", { className: classOf(place) }, ...row.map((cell, column) =>
+      (column ? element("td", {}, cell) : element("th", { scope: "row" }, cell)))));
+  table.replaceChildren(element("thead", {}, head), element("tbody", {}, ...body));
+}
+
+/** A number for a table, to so many significant digits; nothing for none. */
+export function shown(value, digits = 5) {
+  return value === null || value === undefined ? "" : String(Number(value.toPrecision(digits)));
+}
+
+/** Show an error's sentence in a place, or hide the place. */
+export function tell(place, error) {
+  place.textContent = error ? error.message : "";
+  place.hidden = !error;
+}

@@ -1,0 +1,194 @@
+// The Collision view: 21 values, answered while one types.
+import { ask, asked, element, fill, newest, page, save, settled, shown, stop, tell, what } from "./ask.js";
+
+const form = () => page("collision-form");
+const inputs = () => [...form().querySelectorAll("fieldset input")];
+const values = () => Object.fromEntries(inputs().map((input) => [input.name, input.value]));
+const trouble = (error) => tell(page("collision-trouble"), error);
+
+/** What is wrong with each value, at its field. */
+function showProblems(problems, ranges) {
+  for (const input of inputs()) {
+    const problem = problems[input.name];
+    tell(page(`collision-${input.name}-problem`), problem && { message: problem });
+    if (problem) input.setAttribute("aria-invalid", "true");
+    else input.removeAttribute("aria-invalid");
+    input.classList.toggle("range", ranges.includes(input.name));
+  }
+}
+
+/** What stands between the form and an answer. */
+function waitingFor(answer) {
+  const wrong = Object.keys(answer.problems);
+  const parts = [];
+  if (answer.missing.length >= inputs().length - 1) {
+    parts.push("Fill in the values, or begin with a published run. The answer appears here while you type.");
+  } else if (answer.missing.length) {
+    parts.push(`Still to fill in: ${answer.missing.join(" ")}.`);
+  }
+  if (wrong.length) parts.push(`To be corrected: ${wrong.join(" ")}.`);
+  if (parts.length && !page("collision-answer").hidden) parts.push("Below is the answer to the values before.");
+  return parts.join(" ");
+}
+
+function showAnswer(answer) {
+  page("collision-answer").hidden = false;
+  page("collision-screen").textContent = answer.page;
+  page("collision-nominal").hidden = !answer.ranges.length;
+  page("collision-warnings").querySelector("ul")
+    .replaceChildren(...answer.warnings.map((text) => element("li", {}, text)));
+  page("collision-warnings").hidden = !answer.warnings.length;
+  fill(page("collision-results"), ["", "", "printed", "exact"], answer.results.map((row) =>
+    [row.name, what(row), row.printed, row.exact]));
+}
+
+let latest = null;
+const announce = settled(() => {
+  const loss = latest.results.find((row) => row.name === "LOSS");
+  const said = loss ? `${loss.meaning}: ${loss.exact} ${loss.unit}. ` : "";
+  page("collision-said").textContent = `${said}Warnings: ${latest.warnings.length}.`;
+}, 1200);
+
+let drawn = "";
+const draw = newest(async () => {
+  const picture = page("collision-figure");
+  let response = null;
+  try {
+    response = await ask("figure", { values: values(), title: page("collision-title").value });
+  } catch {
+    // the answer has said what is wrong with the values
+  }
+  picture.parentElement.classList.toggle("stale", !response);
+  if (!response) return;
+  const blob = await response.blob();
+  const drawing = new DOMParser().parseFromString(await blob.text(), "image/svg+xml");
+  picture.alt = drawing.querySelector("desc")?.textContent ?? "The scene from above";
+  const address = URL.createObjectURL(blob);
+  picture.src = address;
+  await picture.decode().catch(() => {});
+  if (drawn) URL.revokeObjectURL(drawn);
+  drawn = address;
+});
+
+function boundsRow([name, bound]) {
+  const width = Math.abs((bound.upper ?? 0) - (bound.lower ?? 0));
+  const drives = Object.entries(bound.drives)
+    .map(([input, drive]) => [input, (drive.highest ?? 0) - (drive.lowest ?? 0)])
+    .filter(([, swing]) => swing > 1e-9 * width)
+    .sort((one, other) => other[1] - one[1])
+    .slice(0, 3)
+    .map(([input, swing]) => `${input} ${shown(swing, 3)}`);
+  const quantiles = Object.values(bound.quantiles).map((value) => shown(value, 4));
+  return [
+    name, what(bound), shown(bound.lower), shown(bound.nominal), shown(bound.upper), ...quantiles, drives.join(", "),
+  ];
+}
+
+function showBounds(found) {
+  const [first] = Object.values(found.outputs);
+  const shares = Object.keys(first.quantiles).map((share) => `${shown(100 * share, 3)} %`);
+  fill(page("collision-bounds-table"),
+    ["", "", "lower", "nominal", "upper", ...shares, "driven by"],
+    Object.entries(found.outputs).map(boundsRow));
+  const warned = Object.entries(found.warnings).map(([name, share]) => `${shown(100 * share, 3)} % ${name}`);
+  page("collision-bounds-note").textContent =
+    `Lower and upper: extremes over all ranges, attained, sought in ${found.evaluations.toLocaleString("en")} scenes. `
+    + `Quantiles: ${found.samples.toLocaleString("en")} draws, seed ${found.seed}.`
+    + (warned.length ? ` Draws with a warning: ${warned.join(", ")}.` : "");
+}
+
+const explore = settled(async () => {
+  const note = page("collision-bounds-note");
+  const sent = JSON.stringify(values());
+  note.textContent = "Computing …";
+  page("collision-bounds-stop").hidden = false;
+  page("collision-bounds-table").classList.add("stale");
+  let found = null;
+  let problem = "Stopped.";
+  try {
+    found = await asked("bounds", { values: JSON.parse(sent) });
+  } catch (error) {
+    problem = error.message;
+  }
+  if (sent !== JSON.stringify(values())) return; // a newer one is on its way
+  page("collision-bounds-stop").hidden = true;
+  page("collision-bounds-table").classList.remove("stale");
+  if (found) {
+    showBounds(found);
+  } else {
+    note.textContent = problem;
+    page("collision-bounds-table").replaceChildren();
+  }
+}, 350);
+
+let exploring = false;
+const answer = newest(async () => {
+  let told;
+  try {
+    told = await asked("collision", { values: values() });
+  } catch (error) {
+    trouble(error);
+    return;
+  }
+  trouble(null);
+  showProblems(told.problems, told.ranges);
+  const ranged = told.ranges.length > 0 && Boolean(told.oracle);
+  if (exploring && !ranged) {
+    explore.forget();
+    stop("bounds");
+  }
+  exploring = ranged;
+  const waiting = waitingFor(told);
+  page("collision-waiting").textContent = waiting;
+  page("collision-answer").classList.toggle("stale", Boolean(waiting));
+  if (!told.oracle) return;
+  page("collision-bounds").hidden = !ranged;
+  latest = told;
+  showAnswer(told);
+  announce();
+  draw();
+  if (ranged) explore();
+});
+
+function load(scene) {
+  for (const input of inputs()) input.value = scene.values[input.name] ?? "";
+  page("collision-title").value = scene.title;
+  answer();
+}
+
+async function doing(work) {
+  try {
+    trouble(null);
+    await work();
+  } catch (error) {
+    trouble(error);
+  }
+}
+
+/** Start the view. */
+export function collision() {
+  form().addEventListener("input", (event) => {
+    if (event.target.name !== "title") answer();
+  });
+  form().addEventListener("submit", (event) => event.preventDefault());
+  page("collision-sample").addEventListener("change", (event) => {
+    const number = event.target.value;
+    event.target.value = "";
+    if (number) doing(async () => load(await asked(`sample/${number}`)));
+  });
+  page("collision-open").addEventListener("click", () => page("collision-file").click());
+  page("collision-file").addEventListener("change", (event) => {
+    const [file] = event.target.files;
+    if (file) {
+      doing(async () => {
+        load(await asked("scene", file, { name: file.name }));
+        page("collision-file").value = "";
+      });
+    }
+  });
+  page("collision-save").addEventListener("click", () => doing(async () =>
+    save(await ask("scene-file", { values: values(), title: page("collision-title").value }))));
+  page("collision-print").addEventListener("click", () => print());
+  page("collision-bounds-stop").addEventListener("click", () => stop("bounds"));
+  answer();
+}

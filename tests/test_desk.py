@@ -1,0 +1,370 @@
+"""The desk without a browser: who is answered, what with, and how it starts and ends."""
+
+from __future__ import annotations
+
+import json
+import signal
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Iterator
+from http.client import HTTPConnection
+from importlib import resources
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+
+from impact88.errors import UserError
+from impact88.names import SCENE
+from impact88.program.run import run
+from impact88.scene import Scene, sample
+from installed import COMMAND
+from installed import impact88 as command
+
+pytest.importorskip("flask", reason="the desk's extra is not installed")
+pytest.importorskip("waitress", reason="the desk's extra is not installed")
+
+from impact88.desk import app, bench, collision, guard, serving
+
+PORT, TOKEN = 8088, "a-token"
+OWN = f"http://127.0.0.1:{PORT}"
+
+
+def asked(method: str = "GET", path: str = f"/{TOKEN}/", **headers: str) -> int | None:
+    named = {"Host": f"127.0.0.1:{PORT}"}
+    named |= {name.replace("_", "-"): value for name, value in headers.items()}
+    return guard.refusal(named, method, path, port=PORT, token=TOKEN)
+
+
+# --- who is answered ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("request_", "status"),
+    [
+        ({}, None),
+        ({"Host": f"localhost:{PORT}"}, None),
+        ({"Host": "127.0.0.1"}, 403),
+        ({"Host": f"127.0.0.1:{PORT + 1}"}, 403),
+        ({"Host": f"rebound.example:{PORT}"}, 403),
+        ({"Host": ""}, 403),
+        ({"path": "/"}, 404),
+        ({"path": "/a-toke/"}, 404),
+        ({"path": "/a-tokens/"}, 404),
+        ({"path": f"/{TOKEN}/static/desk.css"}, None),
+        ({"Origin": OWN}, None),
+        ({"Origin": f"http://localhost:{PORT}"}, None),
+        ({"Origin": f"https://127.0.0.1:{PORT}"}, 403),
+        ({"Origin": "http://127.0.0.1"}, 403),
+        ({"Origin": "https://elsewhere.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"method": "POST", "Origin": OWN}, None),
+        ({"method": "POST"}, 403),
+        ({"method": "POST", "Origin": "https://elsewhere.example"}, 403),
+        ({"Sec_Fetch_Site": "same-origin"}, None),
+        ({"Sec_Fetch_Site": "none"}, None),
+        ({"Sec_Fetch_Site": "cross-site"}, 403),
+        ({"Sec_Fetch_Site": "same-site"}, 403),
+    ],
+)
+def test_only_the_desks_own_page_is_answered(request_: Any, status: int | None) -> None:
+    assert asked(**request_) == status
+
+
+class Client:
+    """A page's requests, without a browser."""
+
+    def __init__(self) -> None:
+        self.desk = app.Desk()
+        self.http = app.application(self.desk, PORT, TOKEN).test_client()
+
+    def get(self, path: str = "", **headers: str) -> Any:
+        return self.http.get(f"/{TOKEN}/{path}", base_url=OWN, headers=headers)
+
+    def post(self, path: str, body: Any = None, **headers: str) -> Any:
+        data = body if isinstance(body, bytes) else json.dumps(body)
+        headers = {"Origin": OWN, **headers}
+        return self.http.post(f"/{TOKEN}/{path}", base_url=OWN, data=data, headers=headers)
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Client]:
+    made = Client()
+    yield made
+    made.desk.close()
+
+
+def test_the_page_names_every_value_and_nothing_from_elsewhere(client: Client) -> None:
+    page = client.get().get_data(as_text=True)
+    for quantity in SCENE.values():
+        assert f'name="{quantity.name}"' in page
+        assert quantity.meaning.replace("'", "&#39;") in page
+    assert "http:" not in page
+    assert "https:" not in page
+    assert "//" not in page.replace("<!DOCTYPE", "")
+
+
+def test_static_files_name_no_other_place() -> None:
+    for file in resources.files("impact88.desk").joinpath("static").iterdir():
+        text = file.read_text(encoding="utf-8")
+        for address in ("http://", "https://", "url(", "@import"):
+            assert address not in text.replace("http://www.w3.org/2000/svg", ""), file.name
+
+
+def test_every_answer_carries_the_headers(client: Client) -> None:
+    for answer in (client.get(), client.get("static/desk.js"), client.get("nothing")):
+        for name, value in guard.HEADERS.items():
+            assert answer.headers[name] == value
+        assert "Access-Control-Allow-Origin" not in answer.headers
+    assert "default-src 'none'" in guard.HEADERS["Content-Security-Policy"]
+    assert "unsafe" not in guard.HEADERS["Content-Security-Policy"]
+
+
+def test_who_is_refused_gets_not_a_word(client: Client) -> None:
+    for answer in (
+        client.get(**{"Origin": "https://elsewhere.example"}),
+        client.post("collision", {"values": {}}, Origin="https://elsewhere.example"),
+        client.http.get("/", base_url=OWN),
+        client.http.get(f"/{TOKEN}/", base_url="http://elsewhere.example"),
+    ):
+        assert answer.status_code in (403, 404)
+        assert answer.data == b""
+
+
+def test_a_body_over_the_limit_is_refused(client: Client) -> None:
+    answer = client.post("scene", b" " * (guard.LARGEST_BODY + 1))
+    assert answer.status_code == 413
+    assert f"{guard.LARGEST_BODY:,}" in answer.json["problem"]
+    assert client.post("scene", b" " * 1000).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "body", [b"", b"{", b"[]", b"[" * 100_000, b'{"values": []}', b'{"values": {"E": 1}}']
+)
+def test_what_is_no_question_gets_a_sentence(client: Client, body: bytes) -> None:
+    answer = client.post("collision", body)
+    assert answer.status_code == 400
+    assert "\n" not in answer.json["problem"]
+
+
+# --- the collision -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_published_run_is_answered_with_the_programs_own_printout(number: int) -> None:
+    told = collision.answer(dict(sample(number)))
+    assert told["problems"] == {}
+    assert told["missing"] == told["ranges"] == []
+    assert told["oracle"]["printout"] == run(sample(number)).printout
+    printed = {row["name"]: row["printed"] for row in told["results"]}
+    assert all(text in told["page"] for text in printed.values())
+    assert all(character == "\n" or character >= " " for character in told["page"])
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "problem"),
+    [
+        ("MU", ".911", None),
+        ("MU", "much", "MU: 'much' is no value or range"),
+        ("MU", ".9 .. .7", "out of order"),
+        ("MU", "<script>", "<script>"),
+        ("M", "4", None),
+        ("M", "5", "expected 6, or 4"),
+        ("M", "4 .. 6", "expected 6, or 4"),
+        ("DA", "1" * 70, None),
+        ("DA", "1" * 71, "more than 70 characters"),
+    ],
+)
+def test_each_value_is_judged_alone(name: str, text: str, problem: str | None) -> None:
+    told = collision.answer({**sample(1), name: text, "E": ""})
+    assert told["missing"] == ["E"]
+    if problem is None:
+        assert told["problems"] == {}
+    else:
+        assert list(told["problems"]) == [name]
+        assert problem in told["problems"][name]
+
+
+def test_a_range_goes_to_the_bounds_and_its_middle_to_the_program() -> None:
+    told = collision.answer({**sample(1), "MU": "0.7 .. 0.9"})
+    assert told["ranges"] == ["MU"]
+    assert told["oracle"]["scene"]["MU"] == "0.8"
+    assert told["oracle"]["printout"] == run(sample(1).replaced({"MU": "0.8"})).printout
+    found = collision.bounds_answer({**sample(1), "MU": "0.7 .. 0.9"})
+    assert found["inputs"]["MU"]["limits"] == [0.7, 0.9]
+    for bound in found["outputs"].values():
+        assert bound["lower"] <= bound["nominal"] <= bound["upper"]
+    with pytest.raises(UserError, match="no ranges"):
+        collision.bounds_answer(dict(sample(1)))
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_scene_saved_is_the_commands_own_file(client: Client, number: int) -> None:
+    scene = client.post(f"sample/{number}").json
+    saved = client.post("scene-file", scene)
+    assert saved.data == command("scene", "--sample", str(number)).stdout.encode()
+    assert 'filename="scene.toml"' in saved.headers["Content-Disposition"]
+    assert client.post("scene?name=scene.toml", saved.data).json == scene
+
+
+def test_a_scene_file_with_ranges_is_read_again(client: Client) -> None:
+    values = {**sample(1), "MU": "0.7 .. 0.9", "GA": ""}
+    saved = client.post("scene-file", {"values": values, "title": "box 7"})
+    again = client.post("scene?name=s", saved.data).json
+    assert again == {"values": values, "title": "box 7"}
+
+
+@pytest.mark.parametrize(
+    ("data", "problem"),
+    [
+        (b"MU = 1\nMU = 2", "s.toml, line 2: MU is given twice"),
+        (b"QQ = 1", "s.toml: 'QQ' is no value of a scene"),
+        (b"\xff\xfe\x00", "s.toml"),
+    ],
+)
+def test_an_unusable_scene_file_is_named(client: Client, data: bytes, problem: str) -> None:
+    answer = client.post("scene?name=s.toml", data)
+    assert answer.status_code == 400
+    assert answer.json["problem"].startswith(problem)
+
+
+def test_the_figure_is_the_commands_own(client: Client, tmp_path: Any) -> None:
+    path = tmp_path / "scene.svg"
+    assert command("figure", "scene", "--sample", "3", "-o", str(path)).returncode == 0
+    drawn = client.post("figure", {"values": dict(sample(3)), "title": sample(3).title})
+    _, _, element = path.read_text(encoding="utf-8").partition("?>\n")
+    assert drawn.get_data(as_text=True) == element
+
+
+# --- processes ---------------------------------------------------------------------------------
+
+
+def wait_until(holds: Any) -> None:
+    for _ in range(600):
+        if holds():
+            return
+        time.sleep(0.02)
+    raise AssertionError("never came about")
+
+
+def in_thread(work: Any) -> tuple[threading.Thread, list[Any]]:
+    outcome: list[Any] = []
+
+    def caught() -> None:
+        try:
+            outcome.append(work())
+        except Exception as error:
+            outcome.append(error)
+
+    thread = threading.Thread(target=caught)
+    thread.start()
+    return thread, outcome
+
+
+def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
+    asking = bench.Bench()
+    question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
+    try:
+        first, first_outcome = in_thread(lambda: asking.ask("page", question))
+        wait_until(lambda: asking._asking == "page" and asking._process is not None)
+        process = asking._process
+        other, other_outcome = in_thread(lambda: asking.ask("other", question))
+        newer, newer_outcome = in_thread(lambda: asking.ask("page", question))
+        for thread in (first, other, newer):
+            thread.join()
+        assert [type(outcome) for outcome in first_outcome] == [bench.SupersededError]
+        assert process is not None
+        assert process.poll() is not None
+        assert newer_outcome[0]["inputs"]["MU"]["limits"] == [0.7, 0.9]
+        assert newer_outcome == other_outcome
+        with pytest.raises(UserError, match="no ranges"):
+            asking.ask("page", {"task": "bounds", "values": dict(sample(1))})
+        with pytest.raises(bench.BrokenError, match="KeyError"):
+            asking.ask("page", {"task": "nothing of the sort"})
+    finally:
+        asking.close()
+
+
+def test_stopping_ends_what_a_page_waits_for_and_no_other_pages() -> None:
+    asking = bench.Bench()
+    question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
+    try:
+        thread, outcome = in_thread(lambda: asking.ask("page", question))
+        wait_until(lambda: asking._asking == "page" and asking._process is not None)
+        process = asking._process
+        assert process is not None
+        asking.stop("other")
+        assert process.poll() is None
+        asking.stop("page")
+        thread.join()
+        assert [type(one) for one in outcome] == [bench.SupersededError]
+        assert process.poll() is not None
+    finally:
+        asking.close()
+
+
+# --- the command -------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def started() -> Iterator[tuple[subprocess.Popen[str], str]]:
+    process = subprocess.Popen(
+        [COMMAND, "desk", "--no-browser"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    yield process, process.stdout.readline().strip()
+    process.kill()
+    process.communicate()
+
+
+def test_it_prints_its_address_serves_only_there_and_ends_with_control_c(started: Any) -> None:
+    process, address = started
+    parts = urlsplit(address)
+    assert (parts.scheme, parts.hostname) == ("http", "127.0.0.1")
+    assert len(parts.path.strip("/")) >= 20
+    connection = HTTPConnection("127.0.0.1", parts.port, timeout=60)
+    connection.request("GET", parts.path)
+    answer = connection.getresponse()
+    assert answer.status == 200
+    assert b"<title>impact88 desk</title>" in answer.read()
+    assert not answer.headers.get("Server")
+    connection.request("GET", "/")
+    assert (refused := connection.getresponse()).status == 404
+    assert refused.read() == b""
+    connection.close()
+    # every address of 127.0.0.0/8 is this machine; the desk has but one
+    with pytest.raises(OSError, match=r"refused|timed out|reachable"):
+        socket.create_connection(("127.0.0.2", parts.port or 0), timeout=2)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert out == ""
+    assert err == "Control-C ends the desk\n"
+
+
+def test_a_port_that_is_taken_is_said_in_one_line() -> None:
+    with serving.listening(0) as taken:
+        port = taken.getsockname()[1]
+        done = command("desk", "--no-browser", "--port", str(port))
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith(f"impact88 desk: --port: port {port} cannot be had")
+    assert done.stderr.count("\n") == 1
+    assert command("desk", "--port", "65536").returncode == 2
+
+
+def test_without_the_extra_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(UserError, match=r"pip install 'impact88\[desk\]'") as caught:
+        serving.serve(0, False, lambda address: pytest.fail("it must not start"))
+    assert "Flask and waitress" in str(caught.value)
+
+
+def test_a_scene_of_the_form_is_the_scene_of_its_texts() -> None:
+    told = collision.answer(dict(sample(1)))
+    assert Scene(told["oracle"]["scene"]) == sample(1)
