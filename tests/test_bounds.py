@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from impact88.errors import UserError
-from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES
+from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES, quantity
 from impact88.reconstruction.model import forward_model, reconstruction_model
 from impact88.scene import sample
 from impact88.status import Status
@@ -19,7 +19,6 @@ from impact88.uncertainty.bounds import (
     RECONSTRUCTED,
     bounds,
     input_names,
-    quantity,
 )
 from impact88.uncertainty.extremes import extremes
 from impact88.uncertainty.ranges import read_correlations, read_inputs

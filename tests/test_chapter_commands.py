@@ -121,9 +121,12 @@ def test_reconstruct_flags_what_errors_do(after: str, capsys: pytest.CaptureFixt
         (["AFTER", "--set", "E=0"], "after.toml: E = 0: Equation 15"),
         (["AFTER", "--set", "EM=0"], "EM = 0: Equation 18"),
         (["AFTER", "--set", "MU=-10"], "MU = -10 (pivot)"),
-        (["AFTER", "--set", "E=abc"], "--set: E = 'abc' is no number; expected coefficient of"),
-        (["AFTER", "--set", "e5"], "'e5' is no setting; expected NAME=VALUE"),
-        (["AFTER", "--set", "FOO=1"], "'FOO' has no place here"),
+        (
+            ["AFTER", "--set", "E=abc"],
+            "--set: E = 'abc' is no number; expected one such as 1.5",
+        ),
+        (["AFTER", "--set", "e5"], "--set e5: expected NAME=VALUE"),
+        (["AFTER", "--set", "FOO=1"], "'FOO' is no value here"),
         (["AFTER", "--set", "E=.1", "--set", "E=.2"], "E is given twice"),
         (["AFTER", "--set", "MA="], "missing MA (mass of A)"),
         (["AFTER", "--set", "MA=-1"], "MA is not positive"),
@@ -152,7 +155,7 @@ def test_a_file_with_a_wrong_key_is_told_with_its_name(
     path.write_text("ma = 96\n", encoding="utf-8")
     status, _, err = run(capsys, "reconstruct", str(path))
     assert status == 2
-    assert f"{path}: 'ma' has no place here; did you mean MA?" in err
+    assert f"{path}: 'ma' is no value here; did you mean MA?" in err
     path.write_text("MA = .5\n", encoding="utf-8")
     status, _, err = run(capsys, "reconstruct", str(path))
     assert "line 1: MA = .5 is not TOML; write 0.5" in err
@@ -177,7 +180,7 @@ def test_barrier_forward_and_back(capsys: pytest.CaptureFixture[str]) -> None:
     assert back["badly_conditioned"]
     status, _, err = run(capsys, "barrier", "--set", "VX=1")
     assert status == 2
-    assert "'VX' has no place here" in err
+    assert "'VX' is no value here" in err
 
 
 POINT_MASSES = "M=4 MA=100 MB=80 GA=0 E=.1 UX=-10 UY=0 VX=0 VY=3"

@@ -15,6 +15,7 @@ import pytest
 
 import impact88
 from impact88.cli import COMMANDS
+from impact88.scene import Scene, sample
 from installed import COMMAND
 from installed import impact88 as command
 
@@ -331,3 +332,26 @@ def test_running_the_1988_program_loads_little() -> None:
     loads += "print(*sorted(set(sys.modules) - known))"
     done = subprocess.run([sys.executable, "-c", loads], capture_output=True, text=True, check=True)
     assert not {"numpy", "matplotlib", "typing", "dataclasses"} & set(done.stdout.split())
+
+
+def test_help_of_a_command_and_the_version_in_short() -> None:
+    assert command("help", "run").stdout == command("run", "--help").stdout
+    assert command("-V").stdout == command("--version").stdout
+
+
+def test_a_command_near_the_one_typed_is_pointed_at() -> None:
+    done = command("slove")
+    assert done.returncode == 2
+    assert "'slove' is no command; did you mean solve?" in done.stderr
+
+
+def test_the_result_is_utf_8_whatever_the_locale(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [COMMAND, "scene", "--sample", "1"],
+        capture_output=True,
+        env={**os.environ, "PYTHONIOENCODING": "cp1252", "LC_ALL": "C"},
+        check=True,
+    )
+    path = tmp_path / "crash.toml"
+    path.write_bytes(done.stdout)
+    assert Scene.from_toml(str(path)) == sample(1)

@@ -204,7 +204,7 @@ def test_standard_input_and_output(cases, capsys, monkeypatch):
         (["none.csv", "-o", "r.csv"], "none.csv: cannot be read"),
         (["cases.xls", "-o", "r.csv"], "cannot tell its format"),
         (["{cases}", "-o", "r.csv", "--outputs", "VAX,SPEED"], "'SPEED' is no result"),
-        (["{cases}", "-o", "r.csv", "--set", "MX=1"], "--set MX=1: expected NAME=VALUE"),
+        (["{cases}", "-o", "r.csv", "--set", "MX=1"], "--set: 'MX' is no value here"),
         (["{cases}", "-o", "r.csv", "--set", "MU=x"], "'x' is no number"),
         (["{cases}", "-o", "nowhere/r.csv"], "cannot be written"),
         (["{few}", "-o", "r.csv"], "no column MU EM"),

@@ -75,7 +75,7 @@ def _overview() -> str:
             "commands:",
             *lines,
             "",
-            "impact88 COMMAND --help tells a command's options; impact88 --version the version.",
+            "impact88 help COMMAND tells a command's options; impact88 -V the version.",
             "exit status: 0 done, 1 done with an adverse result, 2 unusable input, 3 a bug here",
         ]
     )
@@ -85,14 +85,19 @@ def _dispatch(arguments: Sequence[str]) -> int:
     if not arguments:
         raise UserError("no command given (see impact88 --help)")
     name, *rest = arguments
+    if name == "help" and rest:  # help COMMAND is COMMAND --help
+        name, rest = rest[0], ["--help"]
     if name in ("-h", "--help", "help"):
         print(_overview())
         return 0
-    if name == "--version":
+    if name in ("-V", "--version"):
         print(f"impact88 {__version__}")
         return 0
     if name not in COMMANDS:
-        raise UserError(f"{name!r} is no command; expected one of: {' '.join(COMMANDS)}")
+        from .names import did_you_mean
+
+        hint = did_you_mean(name, COMMANDS)
+        raise UserError(f"{name!r} is no command{hint} (expected one of: {' '.join(COMMANDS)})")
     module = import_module(f".commands.{name.replace('-', '_')}", __package__)
     parser = _Parser(
         prog=f"impact88 {name}",
@@ -102,10 +107,13 @@ def _dispatch(arguments: Sequence[str]) -> int:
     )
     module.add_arguments(parser)
     try:
-        parsed = parser.parse_args(rest)
+        args = parser.parse_args(rest)
     except SystemExit:  # --help has been printed
         return 0
-    return int(module.main(parsed))
+    if "output" not in args:
+        return int(module.main(args))
+    with import_module(".commands.options", __package__).output_of(args):
+        return int(module.main(args))
 
 
 def _open_closed_streams() -> None:
@@ -135,10 +143,14 @@ def _tell(text: str) -> None:
 
 
 def _speak_any_character() -> None:
-    """No character of a file's name, an id or a unit is an error on a terminal that lacks it."""
+    """The result is UTF-8 whatever the locale, so that a file made by ``>`` is one this project
+    reads; and no character of a file's name, an id or a unit is an error on a terminal that lacks
+    it."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors=ESCAPED)
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(encoding="utf-8")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

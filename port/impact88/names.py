@@ -11,6 +11,9 @@ So a unit here is a rule ("mass·length²"), not a unit.
 from __future__ import annotations
 
 from collections import namedtuple
+from collections.abc import Collection, Iterable, Sequence
+
+from .errors import UserError
 
 
 class Quantity(namedtuple("Quantity", ("name", "symbol", "meaning", "unit", "line"))):
@@ -138,3 +141,36 @@ FINAL_STATE = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
 
 DEFAULT_M = "6"
 """M where a scene does not give it: the published listing's line 350."""
+
+
+def quantity(name: str) -> Quantity:
+    """Symbol, meaning and unit of a value of any table. Raises KeyError for no name of theirs."""
+    return SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
+
+
+def check_names(
+    names: Iterable[str], allowed: Collection[str], what: str, where: str | None = None
+) -> None:
+    """Raises UserError, with a hint where one is near, for a name that is not ``allowed``."""
+    for name in names:
+        if name not in allowed:
+            hint = did_you_mean(name, allowed)
+            raise UserError(f"{name!r} is no {what}{hint} (expected {' '.join(allowed)})", where)
+
+
+def did_you_mean(word: str, known: Collection[str]) -> str:
+    """A hint at the known word that ``word`` comes near to, or nothing."""
+    from difflib import get_close_matches
+
+    in_any_case = {one.lower(): one for one in known}
+    # of short names one letter is most of what tells them apart
+    likeness = 0.75 if len(word) > 3 else 1.0
+    near = get_close_matches(word.lower()[:80], in_any_case, 1, likeness)
+    return f"; did you mean {in_any_case[near[0]]}?" if near else ""
+
+
+def missing(names: Sequence[str]) -> str:
+    """Says that values are missing, the first three with their meaning."""
+    wanted = "; ".join(f"{name} ({quantity(name).meaning})" for name in names[:3])
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return f"missing {wanted}{more}"

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from .doubles import double, is_number
 from .errors import UserError
 from .files import called, packaged_text, read_text
-from .names import DEFAULT_M, SCENE, VELOCITIES
+from .names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing, quantity
 
 TOML_LIMIT = 100_000
 """Bytes of the largest scene file that is read."""
@@ -41,12 +41,10 @@ class Scene(Mapping[str, str]):
         """Raises UserError for a missing or unknown name and for text that is no number."""
         given = dict(values)
         given.setdefault("M", DEFAULT_M)
-        check_names(given, source)
-        missing = [name for name in SCENE if name not in given]
-        if missing:
-            wanted = "; ".join(f"{name} ({SCENE[name].meaning})" for name in missing[:3])
-            more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
-            raise UserError(f"missing {wanted}{more}", source)
+        check_names(given, (*SCENE, "title"), "value of a scene", source)
+        absent = [name for name in SCENE if name not in given]
+        if absent:
+            raise UserError(missing(absent), source)
         self._values = {name: check_value(name, given[name], source) for name in SCENE}
         self.title = title
         self.source = source
@@ -125,24 +123,13 @@ def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
     return result
 
 
-def check_names(values: Mapping[str, str], source: str) -> None:
-    """Raises UserError for a name that is not a scene's."""
-    for name in values:
-        if name not in SCENE:
-            hint = f"; did you mean {name.upper()}?" if name.upper() in SCENE else ""
-            raise UserError(
-                f"{name!r} is no value of a scene{hint} (expected {' '.join(SCENE)}, or title)",
-                source,
-            )
-
-
-def check_value(name: str, text: str, source: str) -> str:
-    """``text`` if INPUT would take it for a number. Raises UserError if not."""
+def check_value(name: str, text: str, source: str | None) -> str:
+    """``text`` if INPUT would take it for a number; ``name`` is any table's. Raises UserError."""
     if not isinstance(text, str):
         raise UserError(f"{name} is {text!r}; expected the number's text", source)
     if not is_number(text):
         raise UserError(
-            f"{name} = {text!r} is no number; expected one such as 1.5 ({SCENE[name].meaning})",
+            f"{name} = {text!r} is no number; expected one such as 1.5 ({quantity(name).meaning})",
             source,
         )
     if len(text) > VALUE_LIMIT:
@@ -236,14 +223,14 @@ def template(values: Mapping[str, str] | None = None, title: str | None = None) 
         f'title = "{title or ""}"',
     ]
     heading = None
-    for quantity in SCENE.values():
-        if quantity.line != heading:
-            heading = quantity.line
+    for row in SCENE.values():
+        if row.line != heading:
+            heading = row.line
             lines += ["", f"# line {heading} of the listing"]
-        text = values[quantity.name] if values else (DEFAULT_M if quantity.name == "M" else "")
+        text = values[row.name] if values else (DEFAULT_M if row.name == "M" else "")
         value = text if _plain_toml(text) else f'"{text}"'
-        entry = f"{quantity.name} = {value}"
-        lines.append(f"{entry:<20} # {quantity.symbol}: {quantity.meaning} [{quantity.unit}]")
+        entry = f"{row.name} = {value}"
+        lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{row.unit}]")
     return "\n".join(lines) + "\n"
 
 

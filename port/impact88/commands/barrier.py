@@ -22,9 +22,9 @@ from __future__ import annotations
 
 import argparse
 
-from ..chapter.givens import givens, template
 from ..errors import UserError
-from .reconstruct import add_solution_arguments, source_of
+from .options import add_solution_arguments, known_values, template
+from .reconstruct import source_of
 
 KNOWABLE = (
     *("E", "MU", "MUP", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "M"),
@@ -34,7 +34,6 @@ KNOWABLE = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 barrier`."""
-    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
     add_solution_arguments(parser)
 
 
@@ -48,7 +47,7 @@ def main(args: argparse.Namespace) -> int:
         return 0
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
-    known = givens(args.file, args.set, KNOWABLE)
+    known = known_values(args.file, args.set, KNOWABLE)
     everything = {**known, **BARRIER, **BARRIER_AFTER}
     show(everything, None, source_of(args.file), args.contact_time, args.json)
     return 0

@@ -27,6 +27,7 @@ from typing import Any
 from ..bench.populations import BENCHMARK, POPULATIONS
 from ..errors import UserError
 from ..plaintable import plain
+from .options import add_json_argument, add_names_argument, add_output_argument, names_given
 
 __doc__ = (__doc__ or "").format(
     populations="\n".join(f"  {p.name:<14} {p.level:<8} {p.meaning}" for p in POPULATIONS.values())
@@ -49,15 +50,7 @@ _count.__name__ = "positive whole number"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 bench`."""
-    finite = [name for name in POPULATIONS if name != "barriers"]
-    parser.add_argument(
-        "--populations",
-        nargs="+",
-        choices=finite,
-        default=list(BENCHMARK),
-        metavar="NAME",
-        help=f"default: {' '.join(BENCHMARK)}",
-    )
+    add_names_argument(parser, "--populations", "NAMES", f"default: {','.join(BENCHMARK)}")
     parser.add_argument(
         "--scenes", type=_count, default=2000, help="of each population (%(default)s)"
     )
@@ -70,7 +63,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--paths", action="store_true", help="what skipping saves, instead")
     parser.add_argument("--sizes", action="store_true", help="growth with the scenes, instead")
-    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    add_json_argument(parser, "JSON instead of tables")
+    add_output_argument(parser)
     parser.add_argument("--figure", metavar="FILE", help="draw error against time: .svg .png .pdf")
 
 
@@ -88,10 +82,13 @@ def main(arguments: argparse.Namespace) -> int:
     from ..progress import progress
 
     told = measure.machine()
-    total = measure.steps(arguments.populations, arguments.repeats)
+    finite = [name for name in POPULATIONS if name != "barriers"]
+    populations = names_given(arguments.populations, finite, "--populations", "population")
+    populations = populations or list(BENCHMARK)
+    total = measure.steps(populations, arguments.repeats)
     with progress(total, "bench") as meter:
         rows = measure.measure(
-            arguments.populations,
+            populations,
             arguments.scenes,
             arguments.seed,
             arguments.repeats,

@@ -35,8 +35,15 @@ from typing import TYPE_CHECKING
 
 from ..errors import UserError
 from ..files import called
-from ..scene import SAMPLES, sample, toml_file
+from ..scene import sample, toml_file
 from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
+from .options import (
+    add_json_argument,
+    add_names_argument,
+    add_output_argument,
+    add_scene_argument,
+    pairs,
+)
 
 if TYPE_CHECKING:
     from ..uncertainty.bounds import Bounds
@@ -45,14 +52,14 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 bounds`."""
     add_scene_arguments(parser)
-    parser.add_argument("--outputs", nargs="+", metavar="NAME", help="the results wanted")
-    parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
+    add_names_argument(parser, "--outputs", "NAMES", "the results wanted")
+    add_json_argument(parser, "everything as one JSON object")
+    add_output_argument(parser)
 
 
 def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
     """The options that say what is uncertain, and how it is explored."""
-    parser.add_argument("scene", nargs="?", metavar="FILE.toml", help="a scene file (- is stdin)")
-    parser.add_argument("--sample", type=int, choices=SAMPLES, help="a published run's scene")
+    add_scene_argument(parser)
     parser.add_argument(
         "--range",
         action="append",
@@ -69,12 +76,11 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
         dest="correlations",
         help="the correlation of two inputs; repeatable",
     )
-    parser.add_argument(
+    add_names_argument(
+        parser,
         "--exclude",
-        nargs="+",
-        default=[],
-        metavar="WARNING",
-        help="leave out scenes that carry a warning, such as ENERGY_GAINED",
+        "WARNINGS",
+        "leave out scenes that carry a warning, such as ENERGY_GAINED",
     )
     parser.add_argument(
         "--reconstruct", action="store_true", help="from final to initial velocities"
@@ -107,23 +113,16 @@ def read_scene(args: argparse.Namespace) -> Inputs:
         source = called(args.scene)
     else:
         texts, source = dict(sample(args.sample)), f"sample {args.sample}"
-    changes = {}
-    for pair in args.ranges:
-        name, equals, text = pair.partition("=")
-        name = name.strip().upper()
-        if not equals or name in changes:
-            what = "is given twice" if equals else "expected NAME=RANGE, such as MU='.7 .. .9'"
-            raise UserError(f"--range {pair}: {what}")
-        changes[name] = text
+    changes = pairs(args.ranges, "--range", "NAME=RANGE, such as MU='.7 .. .9'")
     problem = "reconstruction" if args.reconstruct else "forward"
     inputs = read_inputs(texts, changes, problem, source)
-    pairs = dict(inputs.correlations)
+    correlations = dict(inputs.correlations)
     for text in args.correlations:
         names, equals, number = text.partition("=")
         if not equals:
             raise UserError(f"--correlation {text}: expected A,B=R, such as UX,VX=0.5")
-        pairs |= read_correlations(f"{names} {number.strip()}", "--correlation")
-    return Inputs(inputs.values, pairs, inputs.derived)
+        correlations |= read_correlations(f"{names} {number.strip()}", "--correlation")
+    return Inputs(inputs.values, correlations, inputs.derived)
 
 
 def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = False) -> Bounds:

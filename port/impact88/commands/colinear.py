@@ -19,9 +19,8 @@ import argparse
 import json
 import math
 
-from ..chapter.givens import givens, template
 from ..errors import UserError
-from .reconstruct import add_solution_arguments
+from .options import add_solution_arguments, known_values, template
 
 COMMON = ("MA", "MB", "E", "MUP")
 BEFORE = ("UN", "UT", "VN", "VT")
@@ -30,7 +29,6 @@ AFTER = ("VAN", "VAT", "VBN", "VBT")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 colinear`."""
-    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
     add_solution_arguments(parser)
 
 
@@ -41,7 +39,7 @@ def main(args: argparse.Namespace) -> int:
     if args.template:
         print(template((*COMMON, *BEFORE, *AFTER)))
         return 0
-    known = givens(args.file, args.set, (*COMMON, *BEFORE, *AFTER))
+    known = known_values(args.file, args.set, (*COMMON, *BEFORE, *AFTER))
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
     missing = [name for name in COMMON if name not in known]
     if before and after:
@@ -71,8 +69,8 @@ def main(args: argparse.Namespace) -> int:
 
 def show(values: dict[str, float], found: tuple[str, ...], as_json: bool) -> None:
     """Print the table or the JSON object."""
+    from ..names import quantity
     from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
-    from ..reconstruction.solutiontable import quantity
 
     warnings = _warnings(values)
     if as_json:

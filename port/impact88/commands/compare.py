@@ -20,10 +20,8 @@ import sys
 from collections.abc import Iterator
 
 from ..checking.compare import Comparison, compare_file
-from ..errors import UserError
-from ..scene import check_names, check_value
 from ..tables.table import format_of
-from .options import add_set_argument
+from .options import FORMATS, add_json_argument, add_output_argument, add_set_argument, settings
 
 SHOWN = 20
 """Unreadable rows told on stderr."""
@@ -33,24 +31,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 compare`."""
     parser.add_argument("theirs", metavar="THEIRS", help="the table (- is standard input, CSV)")
     parser.add_argument(
-        "--format", choices=("csv", "jsonl", "npz"), help="if its name does not tell"
+        "--from",
+        dest="form",
+        choices=FORMATS,
+        help="the format, if its name does not tell",
     )
     add_set_argument(
         parser, "a value of the scene for all rows, where the table has no such column"
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_json_argument(parser)
+    add_output_argument(parser)
 
 
 def main(args: argparse.Namespace) -> int:
     """Compare a table."""
-    given = {}
-    for text in args.set:
-        name, equals, value = text.partition("=")
-        if not equals:
-            raise UserError(f"--set {text!r}; expected NAME=VALUE")
-        check_names({name: value}, "--set")
-        given[name] = check_value(name, value, "--set")
-    done = compare_file(args.theirs, format_of(args.theirs, args.format), given)
+    given = settings(args.set)
+    done = compare_file(args.theirs, format_of(args.theirs, args.form), given)
     if args.json:
         print(json.dumps(done.as_json(), ensure_ascii=False))
     else:

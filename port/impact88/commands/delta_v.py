@@ -22,10 +22,9 @@ import json
 from math import hypot
 from typing import Any
 
-from ..chapter.givens import givens
 from ..errors import UserError
 from ..names import SCENE
-from .options import add_set_argument
+from .options import add_json_argument, add_known_arguments, add_output_argument, known_values
 
 CATEGORIES = {
     "60-side": "60° FRONT TO SIDE",
@@ -37,8 +36,7 @@ CATEGORIES = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 delta-v`."""
-    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
-    add_set_argument(parser, "give or change a value")
+    add_known_arguments(parser)
     parser.add_argument(
         "--like",
         choices=tuple(CATEGORIES),
@@ -47,14 +45,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--as-printed", action="store_true", help="Equation 19 as printed, without the factor 2/3"
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_json_argument(parser)
+    add_output_argument(parser)
 
 
 def main(args: argparse.Namespace) -> int:
     """Print the estimate, or its range."""
     from ..chapter.deltav import AS_PRINTED, AS_USED, delta_v, described
 
-    known = givens(args.file, args.set, (*SCENE, "SA", "SB", "LOSS", "DT"))
+    known = known_values(args.file, args.set, (*SCENE, "SA", "SB", "LOSS", "DT"))
     for name in ("MA", "MB"):
         if not known.get(name, 0) > 0:
             raise UserError(f"{name} is missing or not positive; expected a mass", args.file)
@@ -125,8 +124,8 @@ def _losses(known: dict[str, float], args: argparse.Namespace) -> tuple[list[flo
 def _show(
     given: dict[str, float], estimates: list[dict[str, Any]], source: str, equation: str
 ) -> None:
+    from ..names import quantity
     from ..plaintable import number, table
-    from ..reconstruction.solutiontable import quantity
 
     rows = [[n, number(v), quantity(n).unit, quantity(n).meaning] for n, v in given.items()]
     print("\n".join(table(rows, left=(0, 2, 3))))

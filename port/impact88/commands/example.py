@@ -14,10 +14,13 @@ from __future__ import annotations
 import argparse
 import json
 
+from .options import add_json_argument, add_output_argument
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 example`."""
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_json_argument(parser)
+    add_output_argument(parser)
 
 
 def main(args: argparse.Namespace) -> int:

@@ -27,10 +27,9 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
-from ..scene import Scene, numbers_of, sample
+from ..scene import Scene, numbers_of
 from .bounds import add_scene_arguments, explored
-from .options import add_set_argument
-from .run import settings
+from .options import add_names_argument, add_set_argument, one_scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_scene_arguments(parser)
     add_set_argument(parser, "change a value of the scene")
-    parser.add_argument("--outputs", nargs="+", metavar="NAME", help="the results wanted")
+    add_names_argument(parser, "--outputs", "NAMES", "the results wanted")
 
 
 def main(args: argparse.Namespace) -> int:
@@ -85,16 +84,16 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
     if kind == "friction":
         from ..figures import charts
 
-        return charts.friction_sweep(_scene(args))
+        return charts.friction_sweep(one_scene(args))
     if kind == "scene":
         from ..figures.sceneview import scene_drawing
 
-        scene = _scene(args)
+        scene = one_scene(args)
         return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
     if kind == "planar":
         from ..figures import freebody
 
-        return freebody.planar(_scene(args) if given or args.set else None)
+        return freebody.planar(one_scene(args) if given or args.set else None)
     if kind == "colinear":
         from ..figures import freebody
 
@@ -106,15 +105,6 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
     from ..figures import charts
 
     return charts.figure_5() if kind == "staged" else charts.force_and_impulse()
-
-
-def _scene(args: argparse.Namespace) -> Scene:
-    """The scene the options name. Raises UserError unless there is exactly one."""
-    if bool(args.scene) == bool(args.sample):
-        raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
-    scene = Scene.from_toml(args.scene) if args.scene else sample(args.sample)
-    changes = settings(args.set)
-    return scene.replaced(changes) if changes else scene
 
 
 def solved(scene: Scene) -> dict[str, Any]:

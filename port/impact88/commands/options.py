@@ -1,8 +1,24 @@
-"""Options that several commands have."""
+"""The options that several commands have, each declared and read in one place.
+
+``--set NAME=VALUE``, a scene by file or ``--sample``, names of results, ``-o FILE`` and ``--json``
+mean the same everywhere, and what is refused is refused in the same words.
+"""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
+from math import isfinite
+
+from ..doubles import double
+from ..errors import UserError
+from ..files import called
+from ..names import SCENE, check_names, quantity
+from ..scene import SAMPLES, Scene, check_value, sample, toml_file
+
+FORMATS = ("csv", "jsonl", "npz")
+"""What ``--from`` and ``--to`` take."""
 
 
 def add_set_argument(parser: argparse.ArgumentParser, meaning: str) -> None:
@@ -10,3 +26,181 @@ def add_set_argument(parser: argparse.ArgumentParser, meaning: str) -> None:
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help=f"{meaning}; repeatable"
     )
+
+
+def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
+    """Name -> text of a repeatable ``option`` that takes NAME=TEXT, names in either case.
+
+    Raises UserError for a text without ``=`` and for a name given twice.
+    """
+    given: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        name = name.strip().upper()
+        if not equals or not name:
+            raise UserError(f"{option} {text}: expected {example}")
+        if name in given:
+            raise UserError(f"{option}: {name} is given twice")
+        given[name] = value.strip()
+    return given
+
+
+def settings(
+    texts: Sequence[str],
+    allowed: Collection[str] = tuple(SCENE),
+    others: Collection[str] = (),
+) -> dict[str, str]:
+    """What ``--set`` gives: names that are ``allowed``, and the text of a number for each.
+
+    ``others``: texts that are no numbers and are taken all the same. Raises UserError.
+    """
+    given = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
+    check_names(given, allowed, "value here", "--set")
+    for name, text in given.items():
+        if text not in others:
+            check_value(name, text, "--set")
+    return given
+
+
+def known_values(
+    path: str | None, texts: Sequence[str], allowed: Collection[str]
+) -> dict[str, float]:
+    """What is known of a problem: the values of a flat TOML file, changed by what ``--set`` gives.
+
+    What is not known is left out of the file, or left empty as in a `template`; an empty setting
+    makes a value unknown. Raises UserError, naming file and name, for names not ``allowed`` and
+    texts that are no numbers.
+    """
+    values: dict[str, float] = {}
+    if path is not None:
+        source = called(path)
+        entries = toml_file(path)
+        entries.pop("title", None)
+        check_names(entries, allowed, "value here", source)
+        values = {n: _double(n, text, source) for n, text in entries.items() if text}
+    for name, text in settings(texts, allowed, others=("",)).items():
+        if text:
+            values[name] = _double(name, text, "--set")
+        else:
+            values.pop(name, None)
+    return values
+
+
+def _double(name: str, text: str, source: str) -> float:
+    value = double(check_value(name, text, source))
+    if not isfinite(value):
+        raise UserError(f"{name} = {text} is too large for a double", source)
+    return value
+
+
+def template(names: Sequence[str]) -> str:
+    """A file to fill in with what is known of ``names``."""
+    lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
+    for name in names:
+        what = quantity(name)
+        meaning = "signed P_t/P_n, in place of MU" if name == "MUP" else what.meaning
+        entry = f'{name} = "6"' if name == "M" else f'{name} = ""'
+        lines.append(f"{entry:<12} # {what.symbol}: {meaning} [{what.unit}]")
+    return "\n".join(lines)
+
+
+def add_known_arguments(parser: argparse.ArgumentParser) -> None:
+    """What is known of a problem: a file, and ``--set``."""
+    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
+    add_set_argument(parser, "give or change a value; an empty one makes it unknown")
+
+
+def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the commands that solve for what is not known and print the solution."""
+    add_known_arguments(parser)
+    parser.add_argument(
+        "--contact-time",
+        type=float,
+        metavar="T",
+        help="duration of contact (usually .1 to .2 s): average and peak force",
+    )
+    parser.add_argument("--template", action="store_true", help="print a file to fill in")
+    add_json_argument(parser)
+    add_output_argument(parser)
+
+
+def add_sample_argument(
+    parser: argparse.ArgumentParser, meaning: str = "a published run's scene"
+) -> None:
+    """The option ``--sample``."""
+    parser.add_argument("--sample", type=int, choices=SAMPLES, help=meaning)
+
+
+def add_scene_argument(parser: argparse.ArgumentParser) -> None:
+    """A scene: a file, or ``--sample``."""
+    parser.add_argument("scene", nargs="?", metavar="FILE.toml", help="a scene file (- is stdin)")
+    add_sample_argument(parser)
+
+
+def one_scene(args: argparse.Namespace) -> Scene:
+    """The scene that file or sample name, with what ``--set`` changes. Raises UserError unless
+    there is exactly one."""
+    if bool(args.scene) == bool(args.sample):
+        raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
+    scene = Scene.from_toml(args.scene) if args.scene else sample(args.sample)
+    changes = settings(args.set)
+    return scene.replaced(changes) if changes else scene
+
+
+def add_names_argument(
+    parser: argparse.ArgumentParser, option: str, metavar: str, meaning: str
+) -> None:
+    """An option that takes names: separated by commas, or the option repeated."""
+    parser.add_argument(
+        option,
+        action="append",
+        default=[],
+        metavar=metavar,
+        help=f"{meaning}; separated by commas, or repeated",
+    )
+
+
+def names_given(
+    texts: Sequence[str], known: Collection[str], option: str, what: str = "result"
+) -> list[str]:
+    """The names an option lists, in either case, each once; empty where the option is not given.
+
+    Raises UserError for a name that is not ``known`` and for an option without a name.
+    """
+    in_any_case = {name.lower(): name for name in known}
+    words = [word for text in texts for word in text.replace(",", " ").split()]
+    names = [in_any_case.get(word.lower(), word) for word in words]
+    if texts and not names:
+        raise UserError(f"{option}: no name given; expected some of {' '.join(known)}")
+    check_names(names, known, what, option)
+    return list(dict.fromkeys(names))
+
+
+def add_json_argument(parser: argparse.ArgumentParser, what: str = "one JSON object") -> None:
+    """The option ``--json``."""
+    parser.add_argument("--json", action="store_true", help=f"print {what}")
+
+
+def add_output_argument(parser: argparse.ArgumentParser) -> None:
+    """The option ``-o FILE`` of a command whose result is what it prints."""
+    parser.add_argument("-o", "--output", metavar="FILE", help="write here (default: stdout)")
+    parser.set_defaults(printed_to_output=True)
+
+
+@contextmanager
+def output_of(args: argparse.Namespace) -> Iterator[None]:
+    """Send what is printed in the block to the file ``-o`` names, whole or not at all.
+
+    For the commands of `add_output_argument`; others write their own files. Raises UserError when
+    the place cannot be written to.
+    """
+    path = getattr(args, "output", None)
+    if path in (None, "-") or not getattr(args, "printed_to_output", False):
+        yield
+        return
+    from contextlib import redirect_stdout
+
+    from ..files import replacing
+
+    with replacing(path) as file, redirect_stdout(file):
+        yield

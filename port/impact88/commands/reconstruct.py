@@ -31,18 +31,16 @@ from __future__ import annotations
 
 import argparse
 
-from ..chapter.givens import givens, template
 from ..errors import UserError
 from ..files import called
 from ..names import SCENE
-from .options import add_set_argument
+from .options import add_solution_arguments, known_values, template
 
 KNOWABLE = (*SCENE, "MUP", "VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 reconstruct`."""
-    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
     parser.add_argument(
         "--for",
         dest="wanted",
@@ -52,19 +50,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_solution_arguments(parser)
 
 
-def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of the commands that print a solution."""
-    add_set_argument(parser, "give or change a value; an empty one makes it unknown")
-    parser.add_argument(
-        "--contact-time",
-        type=float,
-        metavar="T",
-        help="duration of contact (usually .1 to .2 s): average and peak force",
-    )
-    parser.add_argument("--template", action="store_true", help="print a file to fill in")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-
-
 def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
     if args.template:
@@ -72,7 +57,7 @@ def main(args: argparse.Namespace) -> int:
         return 0
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
-    known = givens(args.file, args.set, KNOWABLE)
+    known = known_values(args.file, args.set, KNOWABLE)
     wanted = args.wanted.upper().replace(",", " ").split() if args.wanted else None
     from ..reconstruction.solutiontable import show
 

@@ -24,14 +24,19 @@ from ..files import check_apart, replacing, typed_line
 from ..names import VELOCITIES
 from ..program.arithmetics import ARITHMETICS
 from ..program.run import finished, start
-from ..scene import SAMPLES, Scene, check_names, check_value, published_data, sample
-from .options import add_set_argument
+from ..scene import Scene, published_data, sample
+from .options import (
+    add_json_argument,
+    add_output_argument,
+    add_scene_argument,
+    add_set_argument,
+    settings,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 run`."""
-    parser.add_argument("scene", nargs="?", metavar="FILE.toml", help="a scene file (- is stdin)")
-    parser.add_argument("--sample", type=int, choices=SAMPLES, help="a published run's scene")
+    add_scene_argument(parser)
     add_set_argument(parser, "change a value of the scene")
     parser.add_argument(
         "--arithmetic",
@@ -39,7 +44,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="applesoft",
         help="the numbers to compute with (default: %(default)s)",
     )
-    parser.add_argument("--json", action="store_true", help="print the run as one JSON object")
+    add_json_argument(parser, "the run as one JSON object")
+    add_output_argument(parser)
     add_machine_arguments(parser)
 
 
@@ -61,21 +67,6 @@ def add_machine_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--printer", metavar="FILE", help="where the printer's output goes (default: stdout)"
     )
-
-
-def settings(pairs: list[str]) -> dict[str, str]:
-    """The values of ``--set NAME=VALUE`` options. Raises UserError."""
-    changes: dict[str, str] = {}
-    for pair in pairs:
-        name, equals, value = pair.partition("=")
-        name = name.strip().upper()
-        if not equals:
-            raise UserError(f"--set {pair}: expected NAME=VALUE, such as --set MU=.5")
-        check_names({name: value}, "--set")
-        if name in changes:
-            raise UserError(f"--set: {name} is given twice")
-        changes[name] = check_value(name, value.strip(), "--set")
-    return changes
 
 
 def chosen_scene(args: argparse.Namespace, changes: dict[str, str]) -> Scene | None:

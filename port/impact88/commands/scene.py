@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import argparse
 
-from ..scene import SAMPLES, sample, template
+from ..scene import sample, template
+from .options import add_output_argument, add_sample_argument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 scene`."""
-    parser.add_argument("--sample", type=int, choices=SAMPLES, help="a published run's scene")
+    add_sample_argument(parser)
+    add_output_argument(parser)
 
 
 def main(args: argparse.Namespace) -> int:

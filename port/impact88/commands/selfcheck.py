@@ -15,11 +15,13 @@ import json
 import sys
 
 from ..checking.selfcheck import CHECKS, Check, checks, record
+from .options import add_json_argument, add_output_argument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 selfcheck`."""
-    parser.add_argument("--json", action="store_true", help="print the record as one JSON object")
+    add_json_argument(parser, "the record as one JSON object")
+    add_output_argument(parser)
 
 
 def main(args: argparse.Namespace) -> int:

@@ -46,7 +46,7 @@ from ..scene import VALUE_LIMIT
 from ..status import Status
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import format_of, open_reader, open_writer
-from .options import add_set_argument
+from .options import FORMATS, add_names_argument, add_set_argument, names_given, settings
 
 Results = dict[str, NDArray[Any]]
 
@@ -64,7 +64,6 @@ __doc__ = (__doc__ or "").format(results=_list_of_results())
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 solve`."""
-    formats = ("csv", "jsonl", "npz")
     parser.add_argument("cases", metavar="CASES", help="the table of scenes (- is stdin)")
     parser.add_argument(
         "-o",
@@ -73,9 +72,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="-",
         help="the table to write (default: stdout)",
     )
-    parser.add_argument(
-        "--outputs", metavar="NAMES", help="the results wanted, separated by commas (default: all)"
-    )
+    add_names_argument(parser, "--outputs", "NAMES", "the results wanted (default: all)")
     parser.add_argument(
         "--arithmetic",
         choices=("float64", "applesoft"),
@@ -89,8 +86,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="leave the scene's own columns out of the results; others are passed through",
     )
     parser.add_argument("--errors", metavar="FILE", help="write the bad rows here (CSV)")
-    parser.add_argument("--from", dest="form", choices=formats, help="the format of CASES")
-    parser.add_argument("--to", choices=formats, help="the format of RESULTS")
+    parser.add_argument("--from", dest="form", choices=FORMATS, help="the format of CASES")
+    parser.add_argument("--to", choices=FORMATS, help="the format of RESULTS")
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -98,7 +95,7 @@ def main(arguments: argparse.Namespace) -> int:
     source_format = format_of(arguments.cases, arguments.form)
     to = arguments.to or (source_format if arguments.output == "-" else None)
     result_format = format_of(arguments.output, to)
-    given = _given(arguments.set)
+    given = settings(arguments.set, others=("inf",))
     kinds: dict[str, type[_Float64] | type[_Applesoft]]
     kinds = {"float64": _Float64, "applesoft": _Applesoft}
     arithmetic = kinds[arguments.arithmetic](arguments.outputs)
@@ -136,34 +133,9 @@ def main(arguments: argparse.Namespace) -> int:
     return 1 if complaints.count or arithmetic.errors else 0
 
 
-def _given(settings: Sequence[str]) -> dict[str, str]:
-    given = {}
-    for setting in settings:
-        name, equals, text = setting.partition("=")
-        name, text = name.strip(), text.strip()
-        if not equals or name not in SCENE:
-            raise UserError(
-                f"--set {setting}: expected NAME=VALUE with a name of {' '.join(SCENE)}"
-            )
-        try:
-            float(text)
-        except ValueError:
-            raise UserError(f"--set {setting}: {text!r} is no number") from None
-        given[name] = text
-    return given
-
-
-def _names(outputs: str | None, known: Sequence[str], arithmetic: str) -> list[str]:
-    names = list(known) if outputs is None else outputs.replace(",", " ").split()
-    for name in names:
-        if name not in known:
-            raise UserError(
-                f"--outputs: {name!r} is no result of --arithmetic {arithmetic}; "
-                f"expected some of {' '.join(known)}"
-            )
-    if not names:
-        raise UserError("--outputs: no name given")
-    return list(dict.fromkeys(names))
+def _chosen(outputs: Sequence[str], known: Sequence[str], arithmetic: str) -> list[str]:
+    chosen = names_given(outputs, known, "--outputs", f"result of --arithmetic {arithmetic}")
+    return chosen or list(known)
 
 
 class _Float64:
@@ -171,8 +143,8 @@ class _Float64:
 
     errors = 0
 
-    def __init__(self, outputs: str | None) -> None:
-        self.columns = _names(outputs, tuple(RESULTS), "float64")
+    def __init__(self, outputs: Sequence[str]) -> None:
+        self.columns = _chosen(outputs, tuple(RESULTS), "float64")
 
     def __call__(self, rows: Rows, optional: Sequence[str]) -> Results:
         columns = numbers(_complete(rows, optional))
@@ -211,8 +183,8 @@ class _Applesoft:
 
     KNOWN = tuple(name for name in RESULTS if RESULTS[name].line or name == "KF")
 
-    def __init__(self, outputs: str | None) -> None:
-        self.names = _names(outputs, self.KNOWN, "applesoft")
+    def __init__(self, outputs: Sequence[str]) -> None:
+        self.names = _chosen(outputs, self.KNOWN, "applesoft")
         self.columns = [*self.names, "ERROR", "LINE"]
         self.errors = 0
 

@@ -23,6 +23,8 @@ import json
 from math import sqrt
 from typing import Any
 
+from .options import add_json_argument, add_output_argument
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 staged`."""
@@ -30,7 +32,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     views.add_argument("--fit", action="store_true", help="least-squares fits beside Table 2")
     views.add_argument("--cells", action="store_true", help="emended and doubtful cells, evidence")
     views.add_argument("--table", type=int, choices=(1, 2), help="print a table, emended")
-    parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
+    add_json_argument(parser, "everything as one JSON object")
+    add_output_argument(parser)
 
 
 def main(args: argparse.Namespace) -> int:

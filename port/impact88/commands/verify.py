@@ -22,12 +22,14 @@ from collections.abc import Iterator
 
 from ..casework.verify import FieldCheck, Verdict, Verification, verify_file
 from ..errors import UserError
+from .options import add_json_argument, add_output_argument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 verify`."""
     parser.add_argument("printouts", nargs="+", metavar="PRINTOUT", help="a text file (- is stdin)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object a printout")
+    add_json_argument(parser, "one JSON object a printout")
+    add_output_argument(parser)
     parser.add_argument("--brief", action="store_true", help="only verdicts and what differs")
     parser.add_argument("--report", metavar="FILE.html", help="write a page for the case file")
     parser.add_argument("--date", help="date to stand on the report, as given")

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UserError
 from ..progress import progress
 from ..scene import SAMPLES, Scene
+from .options import add_json_argument, add_output_argument, add_sample_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,10 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 witness`."""
     parser.add_argument("scenes", nargs="*", metavar="SCENE.toml", help="scenes to run")
     parser.add_argument("--rom", required=True, metavar="FILE", help="the ROM image")
-    parser.add_argument(
-        "--sample", type=int, action="append", default=[], metavar="N",
-        help="a published run, 1 to 3; all three when nothing is asked for",
-    )  # fmt: skip
+    add_sample_argument(parser, "one published run; all three when nothing is asked for")
     parser.add_argument(
         "--captures", metavar="N", help="N random packaged captures of each kind's mix, or all"
     )
@@ -56,7 +54,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of what is random")
     parser.add_argument("--any-rom", action="store_true", help="take a ROM that is not known, too")
     parser.add_argument("--save", metavar="DIR", help="write what the ROM did as captures")
-    parser.add_argument("--json", action="store_true", help="print the record as one JSON object")
+    add_json_argument(parser, "the record as one JSON object")
+    add_output_argument(parser)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -89,9 +88,7 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
 
     jobs: list[Job] = []
     asked = args.scenes or args.captures is not None or args.random
-    for number in args.sample or (() if asked else SAMPLES):
-        if number not in SAMPLES:
-            raise UserError(f"--sample {number}; expected {', '.join(map(str, SAMPLES))}")
+    for number in [args.sample] if args.sample else () if asked else SAMPLES:
         jobs.append(partial(hearing.hear_sample, number=number))
     for path in args.scenes:
         jobs.append(partial(hearing.hear_scene, name=path, scene=Scene.from_toml(path)))

@@ -40,7 +40,7 @@ def symbol(text: str) -> str:
 
 
 def _axis_label(name: str) -> str:
-    from ..uncertainty.bounds import quantity
+    from ..names import quantity
 
     what = quantity(name)
     return f"{symbol(what.symbol)}, {what.unit}"
@@ -126,7 +126,7 @@ def tornado(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
     Bars end at the results of the input's limits, whiskers where the result goes in between.
     Raises UserError for a result ``found`` lacks.
     """
-    from ..uncertainty.bounds import quantity
+    from ..names import quantity
 
     names = _chosen(found, outputs)
     bars = min(len(found.inputs), MOST_BARS)

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import UserError
-from ..names import CHAPTER, RESULTS, SCENE, Quantity
+from ..names import CHAPTER, RESULTS, SCENE, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..status import sentences
 from .impulse import clock, forces
@@ -26,11 +26,6 @@ _TURNING = (
     *("XA", "YA", "XB", "YB", "XAF", "YAF", "XBF", "YBF", "CAX", "CAY", "CBX", "CBY"),
 )
 """What point masses have not, or have twice."""
-
-
-def quantity(name: str) -> Quantity:
-    """Symbol, meaning and unit of any name a solution has."""
-    return SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
 
 
 def complete(

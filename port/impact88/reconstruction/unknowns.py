@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..errors import UserError
-from ..names import RESULTS, SCENE
+from ..names import RESULTS, SCENE, check_names, missing, quantity
 from .equations import COEFFICIENTS, FINAL, IMPULSES, INITIAL, SPINS, Equations, Found
 from .geometry import NAMES as GEOMETRY
 from .geometry import with_point_masses
@@ -367,24 +367,17 @@ def _blame(name: str, value: float) -> str:
 
 def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:
     allowed = {*GEOMETRY, "M", *INITIAL, *FINAL, "E", "EM", "MU", "MUP"}
+    check_names(known, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
     given = {}
     for name, value in known.items():
-        if name not in allowed:
-            hint = f"; did you mean {name.upper()}?" if name.upper() in allowed else ""
-            raise UserError(
-                f"{name!r} is no value of an impact{hint} "
-                f"(expected {' '.join(n for n in (*SCENE, *RESULTS) if n in allowed)})"
-            )
         try:
             given[name] = np.asarray(value, np.float64)
         except (TypeError, ValueError):
             raise UserError(f"{name} = {value!r} is no number") from None
     given = {name: np.asarray(value) for name, value in with_point_masses(given).items()}
-    missing = [name for name in GEOMETRY if name not in given]
-    if missing:
-        wanted = "; ".join(f"{name} ({SCENE[name].meaning})" for name in missing[:3])
-        more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
-        raise UserError(f"missing {wanted}{more}: the vehicles and their geometry must be known")
+    absent = [name for name in GEOMETRY if name not in given]
+    if absent:
+        raise UserError(f"{missing(absent)}: the vehicles and their geometry must be known")
     if "MU" in given and "MUP" in given:
         raise UserError("MU and MUP are both given; give MUP (signed Pt/Pn) or MU, not both")
     return given
@@ -413,5 +406,5 @@ def _check_physical(given: Mapping[str, Array]) -> None:
 
 
 def _meaning(name: str) -> str:
-    quantity = SCENE.get(name) or RESULTS[name]
-    return f"{quantity.meaning} [{quantity.unit}]"
+    what = quantity(name)
+    return f"{what.meaning} [{what.unit}]"

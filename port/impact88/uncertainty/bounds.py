@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from .. import status
 from ..errors import UserError
-from ..names import CHAPTER, FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES, Quantity
+from ..names import CHAPTER, FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES
 from ..reconstruction.model import (
     Model,
     forward_model,
@@ -103,11 +103,6 @@ class Bounds:
     corners_in_full: bool
     correlations: dict[tuple[str, str], float]
     draws: dict[str, Array] = field(default_factory=dict, repr=False)
-
-
-def quantity(name: str) -> Quantity:
-    """Symbol, meaning and unit of an input or output of `bounds`."""
-    return {**SCENE, **RESULTS, **SPEEDS}[name]
 
 
 def input_names(problem: str) -> tuple[str, ...]:

@@ -6,9 +6,10 @@ import math
 from textwrap import wrap
 from typing import Any
 
+from ..names import quantity
 from ..plaintable import number
 from ..plaintable import table as columns
-from .bounds import Bounds, quantity
+from .bounds import Bounds
 
 DRIVERS_SHOWN = 4
 
