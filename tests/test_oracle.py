@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 from collections import Counter
-from decimal import Decimal
+from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 
 import pytest
@@ -70,6 +70,53 @@ def test_reference_agrees_with_the_double_within_the_bound() -> None:
                 assert row["reference"] is not None, name
                 exact = float(row["reference"])
                 assert row["double"] == pytest.approx(exact, rel=1e-9, abs=1e-9), name
+
+
+def references(**changes: str) -> dict[str, str | None]:
+    (one,) = answered({"scene": {**SCENE1, **changes}})
+    return {name: row["reference"] for name, row in one["results"].items()}
+
+
+def test_zeros_are_written_as_zero() -> None:
+    square = dict.fromkeys(("PA", "PB", "TA", "TB", "UY", "WA", "WB"), "0")
+    found = references(**square, GA="90", MU="0", UX="0", VX="0", VY="30", E=".5")
+    for name in ("VAX", "VBX", "PT", "XAF", "XBF"):
+        assert found[name] == "0", name
+    assert found["VAY"] not in ("0", None)
+    # a plastic central impact of equal cars: both at half the speed, and the arms do not matter
+    equal = {
+        **dict.fromkeys(("DA", "DB", "GA", "E", "MU", "VX", "VY"), "0"),
+        "MA": "95.8",
+        "UX": "-10",
+    }
+    found = references(**square, **equal)
+    assert (found["VAX"], found["VBX"], found["VAY"]) == ("-5.0", "-5.0", "0")
+
+
+def test_a_quotient_of_zeros_has_no_digits() -> None:
+    found = references(UX="3", UY="4", VX="3", VY="4")
+    assert (found["MUC"], found["PN"], found["LOSS"], found["VAX"]) == (None, "0", "0", "3.0")
+    still = dict.fromkeys(("UX", "UY", "VX", "VY", "WA", "WB"), "0")
+    found = references(**still)
+    assert (found["LOSS"], found["MUC"], found["KF"]) == (None, None, "0")
+
+
+def test_thirty_digits_whatever_the_masses() -> None:
+    """A grain of 1e-25 units of mass against a car: momentum balances to the last digit."""
+    grain = {"MA": "1E-25", "IA": "1E-27", "DA": ".1"}
+    found = references(**grain)
+    with localcontext(Context(prec=60)):
+        for ours, u, v in (("X", "UX", "VX"), ("Y", "UY", "VY")):
+            a = Decimal(found["VA" + ours]) - Decimal(SCENE1[u])
+            # B's change is lost in its velocity's 30 digits, the impulses keep theirs
+            assert abs(Decimal(found["DVA"])) >= abs(a)
+        assert Decimal(found["DVA"]) * Decimal("1E-25") - Decimal(found["DVB"]) * Decimal(
+            SCENE1["MB"]
+        ) < Decimal("1E-50")
+        lost = Decimal(found["LOSS"]) / 100 * Decimal(found["KI"])
+        P = Decimal(found["PN"]) ** 2 + Decimal(found["PT"]) ** 2
+        assert abs(P.sqrt() / Decimal(found["DVA"]) * 10**25 - 1) < Decimal("1E-28")
+        assert 0 < lost < Decimal("1E-20")
 
 
 def test_numbers_keep_their_digits() -> None:

@@ -27,7 +27,8 @@ from impact88.accuracy.reference import exact, listing_elimination, relative_err
 from impact88.applesoft.operators import Real
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.bench.sensitivity import sensitivity
-from impact88.closedform.degrees import sin_cos
+from impact88.closedform.columns import ANGLES
+from impact88.closedform.degrees import STEP, sin_cos
 from impact88.names import FINAL_VELOCITIES
 from impact88.program.run import run
 from impact88.scene import Scene, sample
@@ -67,6 +68,59 @@ def test_backward_stable(name):
     assert np.max(error / sensitivity(g)) <= BACKWARD_STABLE * ROUNDOFF
 
 
+def hard_pivots(count, seed):
+    """Radii of gyration down to 1e-6 of the arms: casework with inertias as small as 1e-12 of a
+    car's, masses as large as 1e6 of one, and spins."""
+    rng = np.random.default_rng(seed)
+    g = scenes("casework", count, seed)
+    for name, low, high in (("IA", -12, 0), ("IB", -12, 0), ("MA", 0, 6), ("MB", 0, 6)):
+        g[name] = g[name] * 10.0 ** rng.uniform(low, high, count)
+    g["WA"], g["WB"] = rng.uniform(-2, 2, (2, count))
+    g["EM"] = -(10.0 ** rng.uniform(-18, 0, count))
+    return {**g, "MU": np.full(count, -10.0)}
+
+
+def lorry_and_child(count, seed):
+    """26 t against 54 kg (SI units), both spinning, EM from -1 to nearly nothing, E often 0."""
+    rng = np.random.default_rng(seed)
+    g = scenes("casework", count, seed)
+    g["MA"], g["IA"] = np.full(count, 26e3), np.full(count, 300e3)
+    g["MB"], g["IB"] = np.full(count, 54.0), np.full(count, 8.0)
+    g["WA"], g["WB"] = rng.uniform(-2, 2, (2, count))
+    g["EM"] = -(10.0 ** rng.uniform(-18, 0, count))
+    g["E"] = np.where(rng.random(count) < 0.5, 0.0, g["E"])
+    return g
+
+
+@pytest.mark.parametrize("make", [hard_pivots, lorry_and_child])
+def test_backward_stable_where_differences_would_lose_digits(make):
+    g = make(120, 5)
+    error = errors(g, solve(g, FINAL_VELOCITIES))
+    assert np.max(error / sensitivity(g)) <= BACKWARD_STABLE * ROUNDOFF
+
+
+def test_inertias_of_1e200():
+    g = {**scenes("casework", 20, 7), "IA": np.full(20, 1e200), "IB": np.full(20, 1e200)}
+    g["WA"] = np.linspace(-1, 1, 20)
+    assert errors(g, solve(g, FINAL_VELOCITIES)).max() < 1e-13
+
+
+def test_angles_of_many_turns():
+    """Each is the angle within a turn that it stands for, which takes no rounding to find."""
+    rng = np.random.default_rng(3)
+    g = scenes("casework", 60, 7)
+    for name in ("GA", "PA", "PB", "TA", "TB"):
+        g[name] = g[name] + 360.0 * np.round(10.0 ** rng.uniform(0, 12, 60)) * rng.choice([-1, 1])
+    within = {name: np.fmod(v, 360.0) if name in ANGLES else v for name, v in g.items()}
+    far, near = solve(g, FINAL_VELOCITIES), solve(within, FINAL_VELOCITIES)
+    error = errors(g, far)
+    assert np.max(error / sensitivity(within)) <= BACKWARD_STABLE * ROUNDOFF
+    beyond = np.all([np.abs(g[name]) > 720 for name in ANGLES], axis=0)
+    assert beyond.sum() > 40
+    for name in FINAL_VELOCITIES:
+        np.testing.assert_array_equal(far[name][beyond], near[name][beyond])
+
+
 def test_no_worse_than_lapack_on_casework_and_far_better_than_the_listing_on_heavy():
     g = scenes("casework", 300, 1)
     A, b = fill(g)
@@ -89,8 +143,9 @@ def test_the_two_references_agree():
         for i in range(10):
             scene = scene_at(g, i)
             six = exact(scene)
-            with mpmath.workdps(reference.DIGITS + reference.GUARD):
-                found = reference._by_impulse(reference._Terms(scene, None))
+            with reference.working(scene):
+                t = reference._Terms(scene, None)
+                found = reference.velocities(t, reference.impulse(t))
             three = dict(zip(ORDER, found, strict=True))
             assert relative_error(six, three) < 1e-38
 
@@ -107,16 +162,20 @@ def test_quarter_turns_are_exact():
 
 
 def test_sine_and_cosine_of_degrees():
-    """Below 1.5 units in the last place, everywhere, against 40 digits."""
+    """Below 3 units in the last place, everywhere, against 40 digits; the largest errors are close
+    to quarter turns, between half a step of the table and one and a half."""
     rng = np.random.default_rng(8)
     near = 90.0 * rng.integers(-8, 9, 500) + rng.uniform(-1e-3, 1e-3, 500)
-    angles = np.concatenate([rng.uniform(-720, 720, 4000), near, 10 ** rng.uniform(-300, 9, 200)])
+    beside = 90.0 * rng.integers(-8, 9, 2000) + STEP * rng.uniform(-2, 2, 2000)
+    angles = np.concatenate(
+        [rng.uniform(-720, 720, 3000), near, beside, 10 ** rng.uniform(-300, 9, 200)]
+    )
     found = sin_cos(angles)
     with mpmath.workdps(60):
         for values, function in zip(found, (mpmath.sin, mpmath.cos), strict=True):
             for angle, value in zip(angles.tolist(), values.tolist(), strict=True):
                 true = function(mpmath.radians(mpmath.mpf(angle)))
-                assert abs(mpmath.mpf(value) - true) <= 1.5 * np.spacing(abs(float(true)))
+                assert abs(mpmath.mpf(value) - true) <= 3 * np.spacing(abs(float(true)))
 
 
 def test_em_of_one_half_exactly():

@@ -40,7 +40,7 @@ WORDS: dict[Status, str] = {
     Status.ENERGY_GAINED: "kinetic energy is gained in the impact",
     Status.E_OUT_OF_RANGE: "E is outside 0 ... 1",
     Status.SINGULAR: "the equations are singular or nearly so",
-    Status.NOT_FINITE: "a value is missing, not finite or not allowed, or the result is not finite",
+    Status.NOT_FINITE: "a value is missing, not finite or not allowed, or a result is no number",
     Status.FRICTION_DRIVES: (
         "friction drives the sliding: the tangential impulse acts with the slip, not against it"
     ),

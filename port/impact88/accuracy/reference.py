@@ -33,7 +33,9 @@ else:
 
 DIGITS = 50
 GUARD = 15
-"""Working digits beyond those promised; scenes span units of 1e-9 to 1e15."""
+"""Working digits beyond those promised, besides what the spread of a scene's numbers may cost."""
+
+ANGLES = ("GA", "PA", "PB", "TA", "TB")
 
 Number = Any  # mpmath.mpf, which has no usable type
 
@@ -41,6 +43,33 @@ Number = Any  # mpmath.mpf, which has no usable type
 def number(value: object) -> Number:
     """Decimal text or an int exactly (to the working precision), a float with its exact value."""
     return mpmath.mpf(value if isinstance(value, (int, str)) else float(value))  # type: ignore[arg-type]
+
+
+def working(scene: Mapping[str, Any]) -> Any:
+    """A context in which arithmetic has the digits a scene takes: those promised, `GUARD`, and
+    three for each power of ten between its smallest and its largest number."""
+    with mpmath.workdps(GUARD):
+        sizes = [
+            abs(number(value)) for name, value in scene.items() if name not in (*ANGLES, "M", "MU")
+        ]
+        powers = [int(mpmath.log10(x)) for x in sizes if x and mpmath.isfinite(x)]
+    spread = max(powers, default=0) - min(powers, default=0)
+    return mpmath.workdps(DIGITS + GUARD + 3 * spread)
+
+
+def total(*terms: Number) -> Number:
+    """The sum of some terms; zero where they cancel beyond all digits promised, because then what
+    is left is the noise of the digits beyond."""
+    result = sum(terms[1:], terms[0])
+    noise = max(abs(term) for term in terms) * mpmath.mpf(10) ** -DIGITS
+    return result if abs(result) > noise else mpmath.mpf(0)
+
+
+def sine_and_cosine(degrees: Number, pi: Number | None) -> tuple[Number, Number]:
+    """Sine and cosine of an angle in degrees with ``pi`` for pi; exact for right angles without."""
+    if pi is None:
+        return mpmath.sinpi(degrees / 180), mpmath.cospi(degrees / 180)
+    return mpmath.sin(degrees * pi / 180), mpmath.cos(degrees * pi / 180)
 
 
 def listing_pi() -> Number:
@@ -56,30 +85,33 @@ class _Terms:
         self.g = {name: number(value) for name, value in scene.items()}
         g = self.g
         self.point = number(scene.get("M", DEFAULT_M)) == 4
-        ag = (mpmath.pi if pi is None else pi) / 180
-        ga = g["GA"] * ag
-        self.s, self.c = mpmath.sin(ga), mpmath.cos(ga)
+        self.s, self.c = sine_and_cosine(g["GA"], pi)
         zero = mpmath.mpf(0)
         if self.point:
             self.D1 = self.D2 = self.D3 = self.D4 = zero
             self.WA = self.WB = zero
         else:
-            b, a = (g["TB"] + g["PB"]) * ag, (g["TA"] + g["PA"]) * ag
-            self.D1, self.D2 = g["DB"] * mpmath.sin(b), g["DB"] * mpmath.cos(b)
-            self.D3, self.D4 = g["DA"] * mpmath.sin(a), g["DA"] * mpmath.cos(a)
+            s, c = sine_and_cosine(g["TB"] + g["PB"], pi)
+            self.D1, self.D2 = g["DB"] * s, g["DB"] * c
+            s, c = sine_and_cosine(g["TA"] + g["PA"], pi)
+            self.D3, self.D4 = g["DA"] * s, g["DA"] * c
             self.WA, self.WB = g["WA"], g["WB"]
-        dx = g["UX"] + self.D3 * self.WA - (g["VX"] - self.D1 * self.WB)
-        dy = g["UY"] - self.D4 * self.WA - (g["VY"] + self.D2 * self.WB)
-        self.gn = dx * self.c + dy * self.s
-        self.gt = dy * self.c - dx * self.s
+        x = (g["UX"], self.D3 * self.WA, -g["VX"], self.D1 * self.WB)
+        y = (g["UY"], -self.D4 * self.WA, -g["VY"], -self.D2 * self.WB)
+        self.gn = total(*(self.c * term for term in x), *(self.s * term for term in y))
+        self.gt = total(*(self.c * term for term in y), *(-self.s * term for term in x))
         self.pivot = g["MU"] == -10
         self.mu = -g["MU"] if self.gt > 0 and not self.pivot else g["MU"]
+
+    def before(self) -> list[Number]:
+        """The velocities before the impact, in the order of `ORDER`."""
+        return [*(self.g[name] for name in ("UX", "UY", "VX", "VY")), self.WA, self.WB]
 
 
 def equations(scene: Mapping[str, Any], pi: Number | None = None) -> list[list[Number]]:
     """The rows of lines 370 to 560 (6 of 7 numbers, or 4 of 5 for M = 4) for a scene of texts or
     numbers, with ``pi`` for pi. Line 510's misreading of MU below -10 is not followed."""
-    with mpmath.workdps(DIGITS + GUARD):
+    with working(scene):
         return _rows(_Terms(scene, pi))
 
 
@@ -119,18 +151,19 @@ def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Numbe
     ``scene``: scene name -> decimal text, int or float. M = 4: spins pass through. Infinite bodies
     are given as ``float("inf")`` and must be at rest.
     """
-    with mpmath.workdps(DIGITS + GUARD):
+    with working(scene):
         t = _Terms(scene, pi)
         if any(mpmath.isinf(t.g[name]) for name in ("MA", "IA", "MB", "IB") if name in t.g):
-            found = _by_impulse(t)
+            solution = impulse(t)
+            values = None if solution is None else velocities(t, solution)
         else:
             rows = _rows(t)
-            found = _solve([row[:-1] for row in rows], [row[-1] for row in rows])
-        if found is None:
+            values = _solve([row[:-1] for row in rows], [row[-1] for row in rows])
+        if values is None:
             return None
         if t.point:
-            found = [*found[:4], t.g.get("WA", 0), t.g.get("WB", 0)]
-        return dict(zip(ORDER, found, strict=True))
+            values = [*values[:4], t.g.get("WA", 0), t.g.get("WB", 0)]
+        return dict(zip(ORDER, values, strict=True))
 
 
 def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
@@ -146,7 +179,7 @@ def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
     order = list(range(n))
     for k in range(n):
         size, i, j = max((abs(rows[i][j]), i, j) for i in range(k, n) for j in range(k, n))
-        if size < mpmath.mpf(10) ** -(DIGITS + GUARD // 2):
+        if size < mpmath.mpf(10) ** (GUARD // 2 - mpmath.mp.dps):
             return None
         rows[k], rows[i] = rows[i], rows[k]
         for row in rows:
@@ -165,51 +198,82 @@ def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
     return found
 
 
-def _by_impulse(t: _Terms) -> list[Number] | None:
-    """Equations 15, 16 (or no slip) and 18 in the unknowns Px, Py and M; 13, 14 and 17 hold because
-    the same impulse acts on both bodies."""
-    g = t.g
+class Impulse(NamedTuple):
+    """What acts on A: along n, along t, and as a moment."""
+
+    normal: Number
+    tangential: Number
+    moment: Number
+
+
+class Inverses(NamedTuple):
+    """Inverse masses and inertias; 0 for an infinite body, and for a point mass's inertia."""
+
+    ma: Number
+    mb: Number
+    ia: Number
+    ib: Number
+
+
+def inverses(t: _Terms) -> Inverses:
+    """The inverse masses and inertias of a scene."""
     zero = mpmath.mpf(0)
-    ma, mb = (zero if mpmath.isinf(g[name]) else 1 / g[name] for name in ("MA", "MB"))
-    if t.point:
-        ia = ib = zero
-    else:
-        ia, ib = (zero if mpmath.isinf(g[name]) else 1 / g[name] for name in ("IA", "IB"))
-    # velocity changes: rows VAX VAY VBX VBY WAF WBF, columns Px Py M
-    change = [
-        [ma, zero, zero],
-        [zero, ma, zero],
-        [-mb, zero, zero],
-        [zero, -mb, zero],
-        [t.D3 * ia, -t.D4 * ia, ia],
-        [t.D1 * ib, -t.D2 * ib, -ib],
-    ]
-    x = [1, 0, -1, 0, t.D3, t.D1]
-    y = [0, 1, 0, -1, -t.D4, -t.D2]
-    per_x = [sum(x[i] * change[i][j] for i in range(6)) for j in range(3)]
-    per_y = [sum(y[i] * change[i][j] for i in range(6)) for j in range(3)]
-    rows = [[t.c * a + t.s * b for a, b in zip(per_x, per_y, strict=True)]]
-    right = [-(1 + g["E"]) * t.gn]
+    spinning = () if t.point else ("IA", "IB")
+    values = [zero if mpmath.isinf(t.g[x]) else 1 / t.g[x] for x in ("MA", "MB", *spinning)]
+    return Inverses(*values, *([zero, zero] if t.point else []))
+
+
+def arms(t: _Terms) -> tuple[Number, Number, Number, Number]:
+    """What A's and B's spin add to the relative contact velocity: an, at, bn, bt."""
+    s, c = t.s, t.c
+    return (
+        total(t.D3 * c, -t.D4 * s),
+        total(-t.D4 * c, -t.D3 * s),
+        total(t.D1 * c, -t.D2 * s),
+        total(-t.D2 * c, -t.D1 * s),
+    )
+
+
+def impulse(t: _Terms) -> Impulse | None:
+    """The impulse of a scene: Equations 15, 16 (or no slip) and 18 in the unknowns Pn, Pt and M;
+    13, 14 and 17 hold because the same impulse acts on both bodies. None if they are singular."""
+    zero, one = mpmath.mpf(0), mpmath.mpf(1)
+    ma, mb, ia, ib = inverses(t)
+    an, at, bn, bt = arms(t)
+    across = total(ia * an * at, ib * bn * bt)
+    turn_n, turn_t = total(ia * an, -ib * bn), total(ia * at, -ib * bt)
+    rows = [[ma + mb + ia * an**2 + ib * bn**2, across, turn_n]]
+    right = [-(1 + t.g["E"]) * t.gn]
     if t.pivot:
-        rows.append([t.c * b - t.s * a for a, b in zip(per_x, per_y, strict=True)])
+        rows.append([across, ma + mb + ia * at**2 + ib * bt**2, turn_t])
         right.append(-t.gt)
     else:
-        rows.append([-t.s - t.mu * t.c, t.c - t.mu * t.s, zero])
+        rows.append([-t.mu, one, zero])
         right.append(zero)
     if t.point:
-        P = _solve([row[:2] for row in rows], right)
-        P = None if P is None else [*P, zero]
-    else:
-        em = g["EM"]
-        turn = [change[4][j] - change[5][j] for j in range(3)]
-        rows.append([(em - 1) * turn[0], (em - 1) * turn[1], (em - 1) * turn[2] + em * (ia + ib)])
-        right.append((1 - em) * (t.WA - t.WB))
-        P = _solve(rows, right)
-    if P is None:
-        return None
-    before = [g["UX"], g["UY"], g["VX"], g["VY"], t.WA, t.WB]
-    count = 4 if t.point else 6
-    return [before[i] + sum(change[i][j] * P[j] for j in range(3)) for i in range(count)]
+        solution = _solve([row[:2] for row in rows], right)
+        return None if solution is None else Impulse(solution[0], solution[1], zero)
+    em = t.g["EM"]
+    rows.append([(1 - em) * turn_n, (1 - em) * turn_t, (1 - 2 * em) * (ia + ib)])
+    right.append((em - 1) * (t.WA - t.WB))
+    solution = _solve(rows, right)
+    return None if solution is None else Impulse(*solution)
+
+
+def velocities(t: _Terms, P: Impulse) -> list[Number]:
+    """The velocities that an impulse leaves, in the order of `ORDER`."""
+    ma, mb, ia, ib = inverses(t)
+    an, at, bn, bt = arms(t)
+    s, c, (pn, pt, m) = t.s, t.c, P
+    changes = [
+        (ma * c * pn, -ma * s * pt),
+        (ma * s * pn, ma * c * pt),
+        (-mb * c * pn, mb * s * pt),
+        (-mb * s * pn, -mb * c * pt),
+        (ia * an * pn, ia * at * pt, ia * m),
+        (ib * bn * pn, ib * bt * pt, -ib * m),
+    ]
+    return [total(u, *change) for u, change in zip(t.before(), changes, strict=True)]
 
 
 def listing_elimination(
@@ -219,7 +283,7 @@ def listing_elimination(
 
     ``pi``: the listing's 3.14159265 unless given.
     """
-    with mpmath.workdps(DIGITS + GUARD):
+    with working(scene):
         t = _Terms(scene, listing_pi() if pi is None else pi)
         found = eliminate(_rows(t), mpmath.mpf("1e-9"))
         if found is None:

@@ -27,7 +27,6 @@ from ..fields import ANGLES, FIELDS
 from ..files import called
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..replay import replay
-from ..status import Status
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import open_reader
 
@@ -216,7 +215,6 @@ def _compare_block(
     theirs = {name: _theirs(rows, name) for name in wanted}
     bad = {one.row for one in rows.bad}
     usable = np.array([rows.first + index not in bad for index in range(rows.count)])
-    usable &= (ours["STATUS"].astype(int) & Status.NOT_FINITE) == 0
     bounds = errorbound.relative_bounds(ours["COND"])
     sizes = errorbound.scales(columns, ours)
     agree = np.ones(rows.count, bool)

@@ -28,7 +28,9 @@ BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """What a point-mass scene (M = 4) does not look at."""
 
-_LARGE_ANGLE = 1e9  # degrees: taken modulo 360 first, so that sums of angles stay exact enough
+_LARGE_ANGLE = 720.0
+"""Angles beyond this, in degrees, are taken modulo 360 (which is exact) before they are added up:
+the sums are then rounded no more coarsely than the angles people give are."""
 
 
 class Source(NamedTuple):
@@ -176,22 +178,17 @@ def _all_finite(column: Floats) -> bool:
     return bool(np.isfinite(np.add.reduce(column)))
 
 
-def _sum_of_squares(column: Floats, piece: int = 8192) -> float:
-    # in pieces, because BLAS starts threads of its own for long arrays
-    pieces = (column[i : i + piece] for i in range(0, len(column), piece))
-    return float(sum(np.dot(p, p) for p in pieces))
-
-
 def _angle(column: Floats) -> tuple[Floats, str, bool]:
-    """An angle's column with what is very large taken modulo 360, its kind, and whether finite."""
-    squares = _sum_of_squares(column)
-    if not squares < _LARGE_ANGLE**2:
+    """An angle's column with what is large taken modulo 360, its kind, and whether finite."""
+    finite = True
+    if not (column.max() <= _LARGE_ANGLE and column.min() >= -_LARGE_ANGLE):  # NaN is neither
         with np.errstate(invalid="ignore"):
             turned = np.fmod(column, 360.0)
         column = np.where(np.abs(column) > _LARGE_ANGLE, turned, column)
+        finite = bool(np.isfinite(column).all())
     if len(column) > 1:
-        return column, "array", bool(np.isfinite(squares))
-    return column, _constant_kind(column), bool(np.isfinite(squares))
+        return column, "array", finite
+    return column, _constant_kind(column), finite
 
 
 def _constant_kind(column: Floats) -> str:

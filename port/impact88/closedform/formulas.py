@@ -8,8 +8,8 @@ arithmetic; it records *what* would be computed, and leaves out on the spot what
 - signs go into sums: a + (-b) · c becomes a - b · c;
 - what no wanted result depends on is never reached when a `plan` is made.
 
-None of these changes a bit of a result (but the sign of a zero), and no other rearrangement is
-made: a scene gets the same digits alone, in a column, and on every path.
+None of these changes a bit of a result (but the sign of a zero, which a plan clears), and no other
+rearrangement is made: a scene gets the same digits alone, in a column, and on every path.
 """
 
 from __future__ import annotations

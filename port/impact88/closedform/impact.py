@@ -1,22 +1,27 @@
 """The planar impact in closed form: Equations 13 to 18 solved once and for all.
 
 Written in inverse masses and inertias, so that a rigid barrier (a body that cannot be moved) is
-the number 0 and nothing special. The unknowns are the impulse (Pn, Pt) on A and h, the part of the
-spin change that is equal and opposite in angular momentum::
+the number 0 and nothing special. A spin is taken as the mean spin, (Ia omega_a + Ib omega_b)/(Ia +
+Ib), and what is left of the difference. The unknowns are the impulse (Pn, Pt) on A and H, Ired
+times the final spins' difference (J = 1/(Ia + Ib), Ired = Ia·Ib/(Ia + Ib))::
 
-    Omega_a - omega_a = J sigma·P + h/Ia        Omega_b - omega_b = J sigma·P - h/Ib
+    Omega_a = mean + J sigma·P + H/Ia        Omega_b = mean + J sigma·P - H/Ib
 
-With Q_ij = R delta_ij + J sigma_i sigma_j (J = 1/(Ia + Ib)), kappa_i = a_i/Ia - b_i/Ib, Ired the
-reduced inertia Ia·Ib/(Ia + Ib), the restitution equation (15), no slip at separation (listing
-lines 430-440) and the moment equation (18), *multiplied through by 1 - 2 em*, read::
+With gn° and gt° the relative contact velocities that both bodies would have at the mean spin,
+Q_ij = R delta_ij + J sigma_i sigma_j and kappa_i = a_i/Ia - b_i/Ib, the restitution equation (15),
+no slip at separation (listing lines 430-440) and the moment equation (18), *multiplied through by
+1 - 2 em*, read::
 
-    Q_nn Pn + Q_nt Pt + kappa_n h  = -(1 + e) gn
-    Q_nt Pn + Q_tt Pt + kappa_t h  = -gt                                     (pivot only)
-    em Ired kappa·P + (1 - 2 em) h = -(1 - em) Ired (omega_a - omega_b)
+    Q_nn Pn + Q_nt Pt + kappa_n H  = -(e gn + gn°)
+    Q_nt Pn + Q_tt Pt + kappa_t H  = -gt°                                    (pivot only)
+    em Ired kappa·P + (1 - 2 em) H = -em Ired (omega_a - omega_b)
 
-Friction has Pt = mu Pn for the middle line. Solved by Cramer's rule with the factor 1 - 2 em
-cancelled, no term becomes infinite at em = 1/2, and for -1 <= em <= 0 the pivot's determinant is a
-sum of terms of one sign.
+Friction has Pt = mu Pn for the middle line. Every unknown is found by Cramer's rule with the factor
+1 - 2 em cancelled: no term becomes infinite at em = 1/2, and for -1 <= em <= 0 the pivot's
+determinant is a sum of terms of one sign. None is found from another, nor from both spins apart:
+where an arm is far longer than a radius of gyration, or one body far lighter than the other, such
+differences would lose their digits. H has the factor em, so that at em = 0 the final spins are the
+same bits, and the moment impulse is (1 - em) H/em by Equation 18.
 
 Axes: n = (cos GA, sin GA), t = (-sin GA, cos GA), A on the +n side; P acts on A, -P on B. Every
 quantity below is an `Expression`; its formula is made when first asked for, so that what no wanted
@@ -144,11 +149,21 @@ class Impact:
 
     @cached_property
     def Ired(self) -> Expression:
-        return 1.0 / (self._ia + self._ib)
+        return 1.0 / self._spins
+
+    @cached_property
+    def _spins(self) -> Expression:
+        return self._ia + self._ib
+
+    @cached_property
+    def _share_b(self) -> Expression:
+        """Ia/(Ia + Ib): the weight of A's spin in the mean, B's part of a difference of spins."""
+        return self._ib * self.Ired
 
     @cached_property
     def J(self) -> Expression:
-        return self._ia * self._ib * self.Ired
+        """1/(Ia + Ib), in an order that the largest inertias survive."""
+        return self._ia * self._share_b
 
     # -- relative velocity before impact
 
@@ -156,19 +171,34 @@ class Impact:
     def _approach(self) -> Pair:
         return self.UX - self.VX, self.UY - self.VY
 
-    def _along(self, direction: Pair, arms: tuple[Expression, Expression]) -> Expression:
-        dx, dy = self._approach
-        x, y = direction
-        return x * dx + y * dy + arms[0] * self.WA + arms[1] * self.WB
+    @cached_property
+    def _closing(self) -> Pair:
+        """The relative velocity of the mass centers along n and t."""
+        (c, s), (dx, dy) = self._n, self._approach
+        return c * dx + s * dy, c * dy - s * dx
+
+    def _with_spins(self, i: int) -> Expression:
+        return self._closing[i] + self._a[i] * self.WA + self._b[i] * self.WB
 
     @cached_property
     def gn(self) -> Expression:
-        return self._along(self._n, (self._a[0], self._b[0]))
+        return self._with_spins(0)
 
     @cached_property
     def gt(self) -> Expression:
-        c, s = self._n
-        return self._along((-s, c), (self._a[1], self._b[1]))
+        return self._with_spins(1)
+
+    @cached_property
+    def _mean_spin(self) -> Expression:
+        return self._share_b * self.WA + (self._ia * self.Ired) * self.WB
+
+    def _with_mean_spin(self, i: int) -> Expression:
+        return self._closing[i] + self.sigma[i] * self._mean_spin
+
+    @cached_property
+    def _gt_mean(self) -> Expression:
+        """gt°."""
+        return self._with_mean_spin(1)
 
     @cached_property
     def gw(self) -> Expression:
@@ -187,15 +217,13 @@ class Impact:
 
     @cached_property
     def v(self) -> Expression:
-        return (1.0 + self.E) * self.gn
+        """e gn + gn°: what the normal impulse has to undo."""
+        return self.E * self.gn + self._with_mean_spin(0)
 
     @cached_property
-    def w(self) -> Expression:
-        return (1.0 - self.EM) * self.Ired * self.gw
-
-    @cached_property
-    def y(self) -> Expression:
-        return self.EM * self.Ired
+    def _turn(self) -> Expression:
+        """Ired (omega_a - omega_b)."""
+        return self.Ired * self.gw
 
     @cached_property
     def sigma(self) -> Pair:
@@ -218,61 +246,93 @@ class Impact:
         return a + b, a * self._ia - b * self._ib
 
     @cached_property
-    def _friction(self) -> tuple[Expression, Expression, Expression, Expression]:
-        """Q, g, D and kappa_n of the 2x2 system left when Pt = mu Pn."""
-        sigma_mu, kappa_mu = self._along_impulse
-        sigma_n = self._a[0] + self._b[0]
-        kappa_n = self._kappa(0)
-        Q = self.R + self.J * sigma_n * sigma_mu
-        g = self.y * kappa_mu
-        return Q, g, self.z * Q - g * kappa_n, kappa_n
+    def _J_sigma_mu(self) -> Expression:
+        return self.J * self._along_impulse[0]
+
+    @cached_property
+    def _friction(self) -> tuple[Expression, Expression, Expression]:
+        """Q, Ired kappa in the direction (1, mu), and D, of the 2x2 system left when Pt = mu Pn."""
+        Q = self.R + self._J_sigma_mu * (self._a[0] + self._b[0])
+        turn = self.Ired * self._along_impulse[1]
+        return Q, turn, self.z * Q - self.EM * (turn * self._kappa(0))
 
     @cached_property
     def _friction_Pn(self) -> Expression:
-        _, _, D, kappa_n = self._friction
-        return (kappa_n * self.w - self.z * self.v) / D
+        spin = self.EM * (self._kappa(0) * self._turn)
+        return (spin - self.z * self.v) / self._friction[2]
+
+    # -- pivot; with s' = (sigma_t, -sigma_n), adj(Q) x = R x + J s' (s'·x), all divided by R
 
     @cached_property
-    def _friction_h(self) -> Expression:
-        Q, g, D, _ = self._friction
-        return (g * self.v - Q * self.w) / D
-
-    # -- pivot
+    def _arms_cross(self) -> Expression:
+        """an bt - at bn = Ired sigma x kappa, without the difference of products whose digits are
+        lost in kappa already."""
+        (an, at), (bn, bt) = self._a, self._b
+        return an * bt - at * bn
 
     @cached_property
-    def _cross(self) -> Expression:
-        """sigma x kappa."""
-        return self.sigma[1] * self.kappa[0] - self.sigma[0] * self.kappa[1]
+    def _R_inverse(self) -> Expression:
+        return 1.0 / self.R
+
+    @cached_property
+    def _JR(self) -> Expression:
+        return self.J * self._R_inverse
 
     @cached_property
     def _RQ(self) -> Expression:
         """det Q / R."""
         sn, st = self.sigma
-        return self.R + (self.J * (sn * sn) + self.J * (st * st))
+        return self.R + self.J * (sn * sn + st * st)
 
     @cached_property
-    def _pivot_products(self) -> tuple[Expression, Expression, Expression, Expression]:
-        """det Q, kappa·adj Q·kappa, kappa·adj Q·r and the determinant of all three equations.
-
-        With s' = (sigma_t, -sigma_n), adj(Q) x = R x + J s' (s'·x): no cancellation in det Q and
-        in kappa·adj Q·kappa, however slight R is.
-        """
-        (sn, st), (kn, kt) = self.sigma, self.kappa
-        rn, rt = -self.v, -self.gt
-        kQk = self.R * (kn * kn + kt * kt) + self.J * (self._cross * self._cross)
-        kQr = self.R * (kn * rn + kt * rt) + self.J * (self._cross * (st * rn - sn * rt))
-        RRQ = self.R * self._RQ
-        return RRQ, kQk, kQr, self.z * RRQ - self.y * kQk
+    def _Ired_kappa(self) -> Pair:
+        return self.Ired * self.kappa[0], self.Ired * self.kappa[1]
 
     @cached_property
-    def _pivot(self) -> tuple[Expression, Expression, Expression]:
-        """(Pn, Pt, h) for no tangential relative velocity at separation."""
+    def _s_r(self) -> Expression:
+        """s'·r, with r = -(v, gt°) the right-hand sides."""
+        sn, st = self.sigma
+        return sn * self._gt_mean - st * self.v
+
+    @cached_property
+    def _moment_turned(self) -> Expression:
+        """em kappa_perp·r / R, with kappa_perp = (-kappa_t, kappa_n)."""
+        kn, kt = self.kappa
+        return self.EM * ((kt * self.v - kn * self._gt_mean) * self._R_inverse)
+
+    @cached_property
+    def _pivot_determinant(self) -> Expression:
+        """The determinant of the three equations, divided by R: z det Q - em Ired kappa·adj
+        Q·kappa, each a sum of squares, without cancellation however slight R is."""
+        (kn, kt), (tn, tt) = self.kappa, self._Ired_kappa
+        crossed = self._JR * self._arms_cross * (self._spins * self._arms_cross)
+        return self.z * self._RQ - self.EM * (tn * kn + tt * kt + crossed)
+
+    @cached_property
+    def _pivot_numerators(self) -> Pair:
+        """The impulse times the determinant: [z adj(Q) r + em Ired ((omega_a - omega_b) adj(Q)
+        kappa - kappa_perp (kappa_perp·r))] / R."""
+        (sn, st), (kn, kt), (tn, tt) = self.sigma, self.kappa, self._Ired_kappa
+        turn = self.EM * self._turn
+        along = self._JR * (self.z * self._s_r + self.EM * self.gw * self._arms_cross)
+        normal = turn * kn - self.z * self.v + st * along + tt * self._moment_turned
+        tangential = turn * kt - self.z * self._gt_mean - sn * along - tn * self._moment_turned
+        return normal, tangential
+
+    @cached_property
+    def _pivot_sigma_P(self) -> Expression:
+        """sigma·P, from which adj(Q) drops out: a slight R turns P nearly across sigma."""
         (sn, st), (kn, kt) = self.sigma, self.kappa
-        RRQ, _, kQr, determinant = self._pivot_products
-        h = -((self.w * RRQ + self.y * kQr) / determinant)
-        xn, xt = -self.v - kn * h, -self.gt - kt * h
-        turned = self.J * ((st * xn - sn * xt) / self.R)
-        return (xn + st * turned) / self._RQ, (xt - sn * turned) / self._RQ, h
+        turned = self.EM * self._turn * (sn * kn + st * kt)
+        pushed = sn * (self.z * self.v) + st * (self.z * self._gt_mean)
+        terms = turned - pushed - self._arms_cross * self._moment_turned
+        return terms / self._pivot_determinant
+
+    @cached_property
+    def _pivot(self) -> Pair:
+        """(Pn, Pt) for no tangential relative velocity at separation."""
+        normal, tangential = self._pivot_numerators
+        return normal / self._pivot_determinant, tangential / self._pivot_determinant
 
     # -- impulse
 
@@ -285,43 +345,42 @@ class Impact:
         return self._by_kind(lambda: self.mu * self._friction_Pn, lambda: self._pivot[1])
 
     @cached_property
-    def h(self) -> Expression:
-        h = self._by_kind(lambda: self._friction_h, lambda: self._pivot[2])
-        return self._unless_point(h)
-
-    def _times_impulse(self, name: str) -> Expression:
-        """sigma·P or kappa·P."""
+    def _common_spin(self) -> Expression:
+        """J sigma·P: what the impulse adds to both spins alike."""
 
         def friction() -> Expression:
-            return self._along_impulse[0 if name == "sigma" else 1] * self._friction_Pn
+            return self._J_sigma_mu * self._friction_Pn
 
         def pivot() -> Expression:
-            n, t = getattr(self, name)
-            return n * self._pivot[0] + t * self._pivot[1]
+            return self.J * self._pivot_sigma_P
 
         return self._by_kind(friction, pivot)
 
     @cached_property
-    def _common_spin(self) -> Expression:
-        """J sigma·P: what the impulse adds to both spins alike."""
-        return self.J * self._times_impulse("sigma")
+    def _moment(self) -> Expression:
+        """H/em = PM/(1 - em), by Cramer's rule."""
+
+        def friction() -> Expression:
+            Q, turn, D = self._friction
+            return (turn * self.v - self._turn * Q) / D
+
+        def pivot() -> Expression:
+            tn, tt = self._Ired_kappa
+            crossed = self._JR * self._arms_cross * self._s_r
+            pushed = tn * self.v + tt * self._gt_mean - crossed
+            return (pushed - self._turn * self._RQ) / self._pivot_determinant
+
+        return self._unless_point(self._by_kind(friction, pivot))
+
+    @cached_property
+    def H(self) -> Expression:
+        """Ired times the final spins' difference."""
+        return self.EM * self._moment
 
     @cached_property
     def PM(self) -> Expression:
-        """The moment impulse on A: h - Ired kappa·P, by Cramer's rule too (0 at em = 1)."""
-
-        def friction() -> Expression:
-            Q, _, D, kappa_n = self._friction
-            turn = self.Ired * self._along_impulse[1]
-            spin = self.gw * (Q + turn * kappa_n)
-            return (1.0 - self.EM) * self.Ired * (self._along_impulse[1] * self.v - spin) / D
-
-        def pivot() -> Expression:
-            RRQ, kQk, kQr, determinant = self._pivot_products
-            spin = self.gw * (RRQ + self.Ired * kQk)
-            return -((1.0 - self.EM) * self.Ired * (spin + kQr) / determinant)
-
-        return self._unless_point(self._by_kind(friction, pivot))
+        """The moment impulse on A (0 at em = 1)."""
+        return (1.0 - self.EM) * self._moment
 
     @cached_property
     def _Px(self) -> Expression:
@@ -360,12 +419,16 @@ class Impact:
         return self._pass_through("WB", self._spin_b)
 
     @cached_property
+    def _final_mean(self) -> Expression:
+        return self._mean_spin + self._common_spin
+
+    @cached_property
     def _spin_a(self) -> Expression:
-        return self.WA + (self._common_spin + self._ia * self.h)
+        return self._final_mean + self._ia * self.H
 
     @cached_property
     def _spin_b(self) -> Expression:
-        return self.WB + (self._common_spin - self._ib * self.h)
+        return self._final_mean - self._ib * self.H
 
     def _pass_through(self, name: str, spin: Expression) -> Expression:
         if self.point is False:
@@ -441,10 +504,10 @@ class Impact:
 
         def friction() -> Expression:
             return (
-                self.gt
+                self._gt_mean
                 + self.R * self.PT
                 + self.sigma[1] * self._common_spin
-                + self.kappa[1] * self.h
+                + self.kappa[1] * self.H
             )
 
         return self._by_kind(friction, lambda: self.book.constant(0.0))
@@ -457,8 +520,7 @@ class Impact:
         """
         normal = ((1.0 - self.E) * self.gn) * self.PN
         sliding = self.PT * (self.gt + self.Gt)
-        spins = self._ia + self._ib
-        turning = self.PM * (self.gw + (self.gw + spins * self.h))
+        turning = self.PM * (self.gw + self._spins * self.H)
         return -(normal + sliding + turning)
 
     @cached_property
@@ -485,7 +547,8 @@ class Impact:
 
     @cached_property
     def MUC(self) -> Expression:
-        return self._pivot[1] / self._pivot[0]
+        normal, tangential = self._pivot_numerators
+        return tangential / normal
 
     # -- how far the result can be trusted
 
@@ -506,14 +569,15 @@ class Impact:
         def friction() -> Expression:
             mu = absolute(self.mu)
             straight = self.R * (1.0 + mu) + self.J * (sn * (sn + mu * st))
-            moment = absolute(self.y * (kn * (kn + mu * kt)))
+            moment = absolute(self.EM) * (self.Ired * (kn * (kn + mu * kt)))
             return (absolute(self.z) * straight + moment) / absolute(self._friction[2])
 
         def pivot() -> Expression:
-            RRQ, _, _, determinant = self._pivot_products
-            cross = absolute(self._cross) * (st * kn + sn * kt)
-            moment = self.R * (kn * kn + kt * kt) + self.J * cross
-            return (absolute(self.z) * RRQ + absolute(self.y * moment)) / absolute(determinant)
+            crossed = self._spins * (an * bt + at * bn)
+            moment = self.Ired * (kn * kn + kt * kt)
+            moment = moment + absolute(self._JR * self._arms_cross) * crossed
+            terms = absolute(self.z) * self._RQ + absolute(self.EM) * moment
+            return terms / absolute(self._pivot_determinant)
 
         return 3.0 * self._by_kind(friction, pivot)
 

@@ -236,7 +236,10 @@ class Plan:
             else:
                 operation(*[places[i] for i in at])
         for name, e in self.results.items():
-            if name not in self._direct:
+            if e.dtype == "float":
+                # -0.0 becomes 0.0: a zero's sign would tell which path led to it
+                np.add(places[self._index[id(e)]], 0.0, out=results[name])
+            elif name not in self._direct:
                 np.copyto(results[name], places[self._index[id(e)]])
 
 

@@ -66,8 +66,10 @@ def solve(
 
     A scene with a number that cannot be used (not finite, M neither 4 nor 6, a mass or inertia
     that is not positive, a barrier that moves, two barriers) is NaN in every result and has
-    NOT_FINITE alone in STATUS; a scene without solution is NaN in what depends on it. Neither
-    disturbs another scene: every scene gets the bits it would get alone.
+    NOT_FINITE alone in STATUS; a scene without solution is NaN in what depends on it, and so are
+    ratios of zeros (LOSS and MUC where nothing moves) and what overflows; NOT_FINITE tells of all
+    but MUC, which other results seldom need. None disturbs another scene: every scene gets the bits
+    it would get alone. A zero is +0.0 always.
 
     Where the listing does not solve its own equations, the equations are solved: an MU below -10,
     or MU = 10 that the sign rule makes -10 (there line 510 zeroes a right-hand side that is not a
@@ -164,8 +166,9 @@ class _Worker:
         if results:
             self.run(plan, block, results, stop - start)
         for name, result in results.items():
-            if name not in ("STATUS", "COND") and not np.isfinite(result.sum()):
-                result[np.isinf(result)] = np.nan
+            if name != "STATUS" and not np.isfinite(result.sum()):
+                # NaN by one set of bits; COND alone may be infinite
+                result[np.isnan(result) if name == "COND" else ~np.isfinite(result)] = np.nan
         if block.refused is not None:
             for name, result in results.items():
                 result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan

@@ -66,7 +66,10 @@ def set_bits(
     set_where(Status.E_OUT_OF_RANGE, (e < 0) | (e > 1))
     # NaN: 0/0 in the condition itself, as singular as can be
     set_where(Status.SINGULAR, ~(condition < SINGULAR_FROM))
-    set_where(Status.NOT_FINITE, ~np.isfinite(sum_of_velocities))
+    # what the sum of velocities does not tell, the energies and the quotients do
+    for value in (sum_of_velocities, initial - 0.5 * twice_lost, twice_lost / initial):
+        set_where(Status.NOT_FINITE, ~np.isfinite(value))
+    set_where(Status.NOT_FINITE, np.isnan(condition))
     set_where(Status.FRICTION_DRIVES, pt * gt > ENERGY_TOLERANCE * initial)
     set_where(Status.A_ON_WRONG_SIDE, arm_a > SIDE_TOLERANCE * np.abs(da))
     set_where(Status.B_ON_WRONG_SIDE, arm_b > SIDE_TOLERANCE * np.abs(db))
