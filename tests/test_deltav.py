@@ -26,8 +26,8 @@ def test_the_default_reproduces_the_predicted_column_of_table_2() -> None:
 
 
 def test_as_printed_it_is_half_as_much_again_and_reproduces_nothing() -> None:
-    used = delta_v(96, 145, 36.667, 58.667, 37.4)
-    printed = delta_v(96, 145, 36.667, 58.667, 37.4, AS_PRINTED)
+    known = {"MA": 96, "MB": 145, "SA": 36.667, "SB": 58.667, "LOSS": 37.4}
+    used, printed = delta_v(known), delta_v(known, AS_PRINTED)
     for name in ("DVA", "DVB"):
         assert float(printed[name]) == pytest.approx(1.5 * float(used[name]))
     assert pytest.approx(2 / 3) == AS_USED
@@ -43,7 +43,7 @@ def test_docstrings_and_output_say_which_it_is() -> None:
 
 def test_momenta_are_equal_and_arrays_broadcast() -> None:
     losses = np.array([0.0, 30.0, 60.0, -1.0])
-    found = delta_v(100.0, 50.0, 30.0, 40.0, losses)
+    found = delta_v({"MA": 100.0, "MB": 50.0, "SA": 30.0, "SB": 40.0, "LOSS": losses})
     np.testing.assert_allclose(100.0 * found["DVA"][:3], 50.0 * found["DVB"][:3])
     assert found["DVA"][0] == 0
     assert np.isnan(found["DVA"][3])

@@ -1,7 +1,31 @@
 """impact88: Brach's 1988 planar impact program, digit for digit, and the same mechanics made fast.
 
-The public functions are imported on first use, so that running the 1988 program does not pay for
-numpy. Nor does it for ``typing``: the modules it needs import that for the type checker alone.
+A scene is a mapping of the listing's names (`names.SCENE`) to values, wherever one is asked for:
+texts for what computes as the Apple did, because the digits typed count, numbers or arrays for
+double precision. Results carry the names of `names.RESULTS`.
+
+The 1988 program
+    Scene, sample       a scene: from a mapping, a TOML file, or a published run
+    run, Run            the program on a scene, as an Apple II Plus prints it
+    replay, Replay      the same arithmetic over arrays of scenes, bit for bit
+    Applesoft           the machine itself, for any Applesoft program
+
+Old printouts and other programs
+    read_printouts, verify, verify_file     is a printout what the program prints, and if not, why
+    oracle              all that is known of some scenes, to check another program with
+    compare             another program's table against this one's results
+
+Today's work, in double precision
+    solve               final velocities and the rest, over arrays
+    bounds, Uncertain   what follows from values known within limits
+    solve_for           Equations 13-18 for any unknowns
+    colinear, colinear_inverse, barrier, delta_v    the chapter's other problems
+    scene_svg           a scene from above
+
+    names, status       the tables of names and of STATUS's bits
+    UserError           raised for input that cannot be used
+
+Each is imported on first use: running the 1988 program does not pay for numpy.
 """
 
 from __future__ import annotations
@@ -14,53 +38,116 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from . import names, status
+    from .casework.printout import read_printouts
+    from .casework.verify import Verification, verify, verify_file
+    from .chapter.barrier import barrier
+    from .chapter.colinear import colinear, colinear_inverse
+    from .chapter.deltav import delta_v
+    from .checking.compare import compare_file as compare
+    from .checking.oracle import look_up as oracle
+    from .closedform.solve import solve
+    from .emulator.emulator import Applesoft
+    from .errors import UserError
+    from .figures.sceneview import scene_svg
+    from .program.run import Run, run
+    from .reconstruction.unknowns import Solution, solve_for
+    from .replay import Replay, replay
+    from .scene import Scene, sample
+    from .uncertainty.bounds import Bounds, bounds
+    from .uncertainty.uncertain import Uncertain
+
 __version__ = "0.1.0"
 
 _LAZY = {
     "Applesoft": "emulator.emulator",
+    "Bounds": "uncertainty.bounds",
+    "Replay": "replay",
+    "Run": "program.run",
     "Scene": "scene",
-    "sample": "scene",
-    "run": "program.run",
-    "verify": "casework.verify",
-    "verify_file": "casework.verify",
-    "read_printouts": "casework.printout",
-    "solve_for": "reconstruction.unknowns",
+    "Solution": "reconstruction.unknowns",
+    "Uncertain": "uncertainty.uncertain",
+    "UserError": "errors",
+    "Verification": "casework.verify",
+    "barrier": "chapter.barrier",
+    "bounds": "uncertainty.bounds",
     "colinear": "chapter.colinear",
     "colinear_inverse": "chapter.colinear",
-    "barrier": "chapter.barrier",
+    "compare": "checking.compare:compare_file",
     "delta_v": "chapter.deltav",
-    "solve": "closedform.solve",
-    "bounds": "uncertainty.bounds",
-    "scene_svg": "figures.sceneview",
+    "names": "",
+    "oracle": "checking.oracle:look_up",
+    "read_printouts": "casework.printout",
     "replay": "replay",
+    "run": "program.run",
+    "sample": "scene",
+    "scene_svg": "figures.sceneview",
+    "solve": "closedform.solve",
+    "solve_for": "reconstruction.unknowns",
+    "status": "",
+    "verify": "casework.verify",
+    "verify_file": "casework.verify",
 }
-"""Public name -> the module that holds it."""
+"""Public name -> the module that holds it (after a colon, the name it has there), or nothing for a
+module of this package. A test holds this table against the imports above."""
 
-_ROOMS = ("names", "status")
-"""Public modules, imported on first use too: ``impact88.names.SCENE``."""
+__all__ = [  # written out: type checkers read no computed list
+    "Applesoft",
+    "Bounds",
+    "Replay",
+    "Run",
+    "Scene",
+    "Solution",
+    "Uncertain",
+    "UserError",
+    "Verification",
+    "__version__",
+    "barrier",
+    "bounds",
+    "colinear",
+    "colinear_inverse",
+    "compare",
+    "delta_v",
+    "names",
+    "oracle",
+    "read_printouts",
+    "replay",
+    "run",
+    "sample",
+    "scene_svg",
+    "solve",
+    "solve_for",
+    "status",
+    "verify",
+    "verify_file",
+]
 
 
 class _Package(ModuleType):
-    """This package: a public name stays the function when the module of that name is imported.
+    """This package: ``impact88.replay`` stays the function when the room of that name is imported.
 
-    Python would bind ``impact88.run`` to the module ``run`` once anything imports it.
+    Python would bind the name to the module once anything imports it.
     """
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if not (name in _LAZY and isinstance(value, ModuleType)):
+        if not (isinstance(value, ModuleType) and _LAZY.get(name)):
             super().__setattr__(name, value)
 
 
 sys.modules[__name__].__class__ = _Package
 
 
-def __getattr__(name: str) -> Any:
-    if name in _LAZY:
-        return getattr(import_module(f".{_LAZY[name]}", __name__), name)
-    if name in _ROOMS:
-        return import_module(f".{name}", __name__)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if not TYPE_CHECKING:  # a checker that saw it would take any name for a public one
+
+    def __getattr__(name: str) -> Any:
+        place = _LAZY.get(name)
+        if place is None:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        if not place:
+            return import_module(f".{name}", __name__)
+        module, _, inner = place.partition(":")
+        return getattr(import_module(f".{module}", __name__), inner or name)
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_LAZY, *_ROOMS])
+    return sorted(__all__)

@@ -97,6 +97,11 @@ class Scene(Mapping[str, str]):
             lines.append(f"{M_LINE} N = {DEFAULT_M}:M = {self['M']}")
         return lines
 
+    def numbers(self) -> dict[str, float]:
+        """The values in double precision, for `impact88.solve` and its like. Raises UserError for
+        one past the range of doubles."""
+        return numbers_of(self)
+
     def to_toml(self) -> str:
         """The scene as a commented TOML file."""
         return template(self, self.title)
@@ -118,7 +123,7 @@ def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
         except (TypeError, ValueError):
             value = math.nan
         if not math.isfinite(value):
-            raise UserError(f"{text!r} is not a number that can be drawn", name)
+            raise UserError(f"{text!r} is no finite number", name)
         result[name] = value
     return result
 

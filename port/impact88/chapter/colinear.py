@@ -8,12 +8,14 @@ unchanged. There is no inverse at e = 0. μ is the *signed* P_t/P_n: no sign rul
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError
+from ..names import missing
 
 Array = NDArray[np.float64]
 
@@ -21,28 +23,26 @@ INITIAL = ("UN", "UT", "VN", "VT")
 FINAL = ("VAN", "VAT", "VBN", "VBT")
 
 
-def colinear(
-    *, MA: Any, MB: Any, E: Any, MUP: Any, UN: Any, UT: Any, VN: Any, VT: Any
-) -> dict[str, Array]:
+def colinear(known: Mapping[str, Any]) -> dict[str, Array]:
     """Final velocities VAN VAT VBN VBT by Equations 9-12, and what `report` adds.
 
-    Masses MA MB, coefficients E and MUP (signed P_t/P_n), initial velocities of A (UN UT) and B
-    (VN VT) along n and t; all broadcast.
+    ``known``: masses MA MB, coefficients E and MUP (signed P_t/P_n), initial velocities of A (UN
+    UT) and B (VN VT) along n and t; numbers or arrays, which broadcast. Raises UserError for a
+    name that is missing.
     """
-    ma, mb, e, mu, *initial = _floats(MA, MB, E, MUP, UN, UT, VN, VT)
+    ma, mb, e, mu, *initial = _floats(known, INITIAL)
     final = _equations_9_to_12(ma, mb, e, mu, *initial)
     return report(ma, mb, e, mu, initial, final)
 
 
-def colinear_inverse(
-    *, MA: Any, MB: Any, E: Any, MUP: Any, VAN: Any, VAT: Any, VBN: Any, VBT: Any
-) -> dict[str, Array]:
+def colinear_inverse(known: Mapping[str, Any]) -> dict[str, Array]:
     """Initial velocities UN UT VN VT from the final ones, and what `report` adds.
 
-    Errors of the final normal velocities grow as 1/e. Elements with e = 0 are NaN; raises
-    UserError if e is 0 throughout: there is no inverse then.
+    ``known``: as for `colinear`, with the final velocities VAN VAT VBN VBT in place of the initial
+    ones. Errors of the final normal velocities grow as 1/e. Elements with e = 0 are NaN; raises
+    UserError for a name that is missing, and if e is 0 throughout: there is no inverse then.
     """
-    ma, mb, e, mu, *final = _floats(MA, MB, E, MUP, VAN, VAT, VBN, VBT)
+    ma, mb, e, mu, *final = _floats(known, FINAL)
     if not e.any():
         raise UserError(
             "E = 0: the vehicles leave together whatever their approach (Equation 7), so the "
@@ -88,5 +88,9 @@ def report(
     return {n: np.broadcast_to(v, shape) for n, v in zip(names, values, strict=True)}
 
 
-def _floats(*values: Any) -> list[Array]:
-    return [np.asarray(value, np.float64) for value in values]
+def _floats(known: Mapping[str, Any], velocities: Sequence[str]) -> list[Array]:
+    names = ("MA", "MB", "E", "MUP", *velocities)
+    absent = [name for name in names if name not in known]
+    if absent:
+        raise UserError(missing(absent))
+    return [np.asarray(known[name], np.float64) for name in names]

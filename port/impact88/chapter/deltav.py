@@ -12,10 +12,14 @@ no other data; expect an error of a few ft/s.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ..errors import UserError
+from ..names import missing
 
 Array = NDArray[np.float64]
 
@@ -25,18 +29,24 @@ AS_PRINTED = 1.0
 """The factor of Equation 19 as printed: none."""
 
 
-def delta_v(
-    mass_a: Any, mass_b: Any, speed_a: Any, speed_b: Any, loss: Any, factor: float = AS_USED
-) -> dict[str, Array]:
+GIVEN = ("MA", "MB", "SA", "SB", "LOSS")
+"""What Equation 19 asks for."""
+
+
+def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Array]:
     """DVA and DVB by Equation 19, by default with the factor 2/3 that Table 2 has.
 
-    ``speed_a``, ``speed_b``: sizes of the initial velocities; ``loss``: kinetic energy lost in
-    percent of the initial (LOSS; the chapter's 100 ΔT). All broadcast. A negative loss gives NaN.
+    ``known``: masses MA MB, sizes of the initial velocities SA SB, and LOSS, the kinetic energy
+    lost in percent of the initial (the chapter's 100 ΔT); numbers or arrays, which broadcast. A
+    negative loss gives NaN. Raises UserError for a name that is missing.
     """
-    a, b = np.asarray(mass_a, np.float64), np.asarray(mass_b, np.float64)
-    momentum = np.hypot(a * np.asarray(speed_a), b * np.asarray(speed_b))
+    absent = [name for name in GIVEN if name not in known]
+    if absent:
+        raise UserError(missing(absent))
+    a, b, speed_a, speed_b, loss = (np.asarray(known[name], np.float64) for name in GIVEN)
+    momentum = np.hypot(a * speed_a, b * speed_b)
     with np.errstate(invalid="ignore"):
-        change = factor * np.sqrt(np.asarray(loss, np.float64) / 100) * momentum
+        change = factor * np.sqrt(loss / 100) * momentum
     return {"DVA": change / a, "DVB": change / b}
 
 

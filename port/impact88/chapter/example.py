@@ -136,7 +136,8 @@ def _equation_19(
     """Equation 19, with what gives the printed numbers beside what the text says."""
 
     def changes(speeds: tuple[float, float], loss: float, factor: float) -> tuple[float, float]:
-        found = delta_v(scene["MA"], scene["MB"], *speeds, loss, factor)
+        speed_a, speed_b = speeds
+        found = delta_v({**scene, "SA": speed_a, "SB": speed_b, "LOSS": loss}, factor)
         return float(found["DVA"]), float(found["DVB"])
 
     true_speeds = (abs(scene["UX"]), abs(scene["VY"]))

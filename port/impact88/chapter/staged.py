@@ -224,9 +224,9 @@ def experimental(collision: Collision) -> dict[str, float]:
 def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
     """ΔV by Equation 19 from the energy loss (percent), by default Table 2's printed one."""
     scene = collision.scene
-    speeds = (np.hypot(scene["UX"], scene["UY"]), np.hypot(scene["VX"], scene["VY"]))
+    speeds = {"SA": np.hypot(scene["UX"], scene["UY"]), "SB": np.hypot(scene["VX"], scene["VY"])}
     loss = collision.table2["loss"] if loss is None else loss
-    return delta_v(scene["MA"], scene["MB"], *speeds, loss)
+    return delta_v({**scene, **speeds, "LOSS": loss})
 
 
 # -- least squares

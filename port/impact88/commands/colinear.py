@@ -55,7 +55,7 @@ def main(args: argparse.Namespace) -> int:
         if not known[name] > 0:
             raise UserError(f"{name} is not positive; expected a mass", args.file)
     solve = colinear_inverse if after else colinear
-    values = {name: float(value) for name, value in solve(**known).items()}
+    values = {name: float(value) for name, value in solve(known).items()}
     values = {"MA": known["MA"], "MB": known["MB"], "E": known["E"], **values}
     if args.contact_time is not None:
         from ..reconstruction.impulse import forces

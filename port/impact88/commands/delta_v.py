@@ -62,10 +62,10 @@ def main(args: argparse.Namespace) -> int:
     factor = AS_PRINTED if args.as_printed else AS_USED
     losses, source = _losses(known, args)
     estimates = []
-    for loss in losses:
-        found = delta_v(known["MA"], known["MB"], speed_a, speed_b, loss, factor)
-        estimates.append({"LOSS": loss, **{name: float(v) for name, v in found.items()}})
     given = {"MA": known["MA"], "MB": known["MB"], "SA": speed_a, "SB": speed_b}
+    for loss in losses:
+        found = delta_v({**given, "LOSS": loss}, factor)
+        estimates.append({"LOSS": loss, **{name: float(v) for name, v in found.items()}})
     if args.json:
         whole = {
             "equation": described(factor),

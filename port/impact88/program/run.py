@@ -19,12 +19,22 @@ from . import arithmetics, listing, stepping
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, NamedTuple
+
+    class _Run(NamedTuple):
+        printout: str
+        error: str | None
+        line: int | None
+        reals: dict[str, Any]
+        A: dict[str, Any] | None
+        zero_determinant: bool
+else:
+    _Run = namedtuple("_Run", ("printout", "error", "line", "reals", "A", "zero_determinant"))
 
 BELL = "\a"
 
 
-class Run(namedtuple("Run", ("printout", "error", "line", "reals", "A", "zero_determinant"))):
+class Run(_Run):
     """What a run left behind.
 
     ``printout``: every character sent, RETURN as newline, control characters kept. ``error``: the
