@@ -1,0 +1,167 @@
+"""Running a case in this process, and what is wrong with how it went."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import resource
+import shutil
+import signal
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+
+from impact88 import cli
+from impact88.program.run import run
+from impact88.scene import Scene
+
+from .case import Case
+
+SECONDS = 10
+BYTES = 1_000_000_000
+STATUSES = (0, 1, 2)
+LONGEST_LINE = 900
+MOST_LINES = 200
+_CONTROL = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+
+
+class Hang(BaseException):
+    """A case that took too long."""
+
+
+class _Stream(io.TextIOWrapper):
+    """A stream of the process's kind that is kept."""
+
+    def __init__(self, data: bytes = b"") -> None:
+        self.bytes = io.BytesIO(data)
+        super().__init__(self.bytes, encoding="utf-8", newline="\n" if data else "")
+
+    def text(self) -> str:
+        self.flush()
+        return self.bytes.getvalue().decode("utf-8", "replace")
+
+
+def faults(case: Case) -> list[str]:
+    """What is wrong with how the case goes; nothing, when all is well."""
+    if case.kind == "replay":
+        return _replay_faults(case)
+    with _folder(case) as folder, _streams(case.stdin) as (out, err):
+        began, before = time.monotonic(), _listing(folder)
+        try:
+            with _no_longer_than(SECONDS):
+                status = cli.main(case.arguments)
+        except Hang as hang:
+            return [f"took longer than {SECONDS} s: {hang}"]
+        except BaseException:
+            return [f"escaped: {traceback.format_exc()}"]
+        found = []
+        said, shown = err.text(), out.text()
+        if status not in STATUSES:
+            found.append(f"status {status}: {said[:500]}")
+        if "Traceback" in said or "Traceback" in shown:
+            found.append(f"traceback: {said[-500:]}")
+        if "not enough memory" in said:
+            found.append("took all the memory there is")
+        lines = said.split("\n")
+        if max(map(len, lines)) > LONGEST_LINE or len(lines) > MOST_LINES:
+            found.append(f"{len(lines)} lines, longest {max(map(len, lines))}, on stderr")
+        if _CONTROL.search(said):
+            found.append(f"control characters on stderr: {said[:300]!r}")
+        if status == 2 and not lines[0].startswith("impact88"):
+            found.append(f"status 2 with {lines[0][:100]!r}")
+        after = _listing(folder)
+        if any(name.endswith(".part") for name in after):
+            found.append(f"left behind: {sorted(after)}")
+        if any(after.get(name) != before[name] for name in before):
+            found.append("an input was changed")
+        if status == 2 and set(after) != set(before) and case.arguments[:1] != ["basic"]:
+            found.append(f"status 2 and written: {sorted(set(after) - set(before))}")
+        if time.monotonic() - began > SECONDS:
+            found.append(f"took {time.monotonic() - began:.1f} s")
+        largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+        if largest > BYTES:
+            found.append(f"memory reached {largest / 1e6:.0f} MB")
+        return found
+
+
+def _listing(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+@contextmanager
+def _folder(case: Case) -> Iterator[Path]:
+    home = os.getcwd()
+    shared = "/dev/shm"
+    folder = Path(tempfile.mkdtemp(dir=shared if os.path.isdir(shared) else None))
+    try:
+        for name, data in case.files.items():
+            (folder / name).write_bytes(data)
+        os.chdir(folder)
+        yield folder
+    finally:
+        os.chdir(home)
+        shutil.rmtree(folder)
+
+
+@contextmanager
+def _streams(stdin: bytes) -> Iterator[tuple[_Stream, _Stream]]:
+    before = sys.stdin, sys.stdout, sys.stderr, sys.warnoptions
+    out, err = _Stream(), _Stream()
+    sys.stdin, sys.stdout, sys.stderr = io.TextIOWrapper(io.BytesIO(stdin), "utf-8"), out, err
+    sys.warnoptions = ["error"]  # so that the command line leaves the filters alone
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            warnings.simplefilter("error", RuntimeWarning)
+            yield out, err
+    finally:
+        sys.stdin, sys.stdout, sys.stderr, sys.warnoptions = before
+
+
+@contextmanager
+def _no_longer_than(seconds: float) -> Iterator[None]:
+    def ring(number: int, frame: FrameType | None) -> None:
+        raise Hang("".join(traceback.format_stack(frame)[-4:]))
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+# --- replay against run --------------------------------------------------------------------------
+
+
+def _replay_faults(case: Case) -> list[str]:
+    """Where `impact88.replay` over all scenes of a case differs from `impact88.run` on each."""
+    from impact88.replay import replay
+
+    rows = [line.split(",") for line in case.stdin.decode().splitlines()]
+    names, scenes = rows[0], [dict(zip(rows[0], row, strict=True)) for row in rows[1:]]
+    try:
+        found = replay({name: [scene[name] for scene in scenes] for name in names})
+    except Exception:
+        return [f"replay: {traceback.format_exc()}"]
+    wrong = []
+    for index, scene in enumerate(scenes):
+        done = run(Scene(scene))
+        error = str(found.error[index])
+        if (error or None) != done.error or bool(found.zero_determinant[index]) != (
+            done.zero_determinant
+        ):
+            wrong.append(f"row {index + 1}: replay {error!r}, run {done.error!r}")
+        for name in set(found.names) & set(done.reals):
+            stored = f"{int(found.reals(name)[index]):010x}"
+            if bool(found.present(name)[index]) and stored != done.reals[name]:
+                wrong.append(f"row {index + 1}: {name} {stored}, run {done.reals[name]}")
+    return wrong[:5]
