@@ -20,6 +20,7 @@ import sys
 import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
+from itertools import repeat
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -94,7 +95,7 @@ def campaign(
         ):
             numbers = range(number, number + (jobs or 1))
             number = numbers.stop
-            for count, found in pool.map(batch, *zip(*((kinds, seed, n) for n in numbers))):
+            for count, found in pool.map(batch, repeat(kinds), repeat(seed), numbers):
                 counts += count
                 for case, faults_of_it in found:
                     wrong += 1

@@ -110,9 +110,9 @@ def _dispatch(arguments: Sequence[str]) -> int:
         args = parser.parse_args(rest)
     except SystemExit:  # --help has been printed
         return 0
-    if "output" not in args:
-        return int(module.main(args))
-    with import_module(".commands.options", __package__).output_of(args):
+    options = import_module(".commands.options", __package__)
+    options.check_files(args)
+    with options.output_of(args):
         return int(module.main(args))
 
 

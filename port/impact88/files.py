@@ -10,7 +10,7 @@ import errno
 import io
 import os
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 
 from .errors import UserError
@@ -272,35 +272,30 @@ def _take_usual_mode(beside: str, path: str) -> None:
     os.chmod(beside, mode)
 
 
-def check_apart(inputs: Mapping[str, str | None], outputs: Mapping[str, str | None]) -> None:
-    """Raise UserError when something to write is a file that is read, or another one to write,
-    links of either kind included.
+def check_apart(inputs: Iterable[str], outputs: Mapping[str, str | None]) -> None:
+    """Raise UserError when a file to write is one that is read, or another one to write, links of
+    either kind included.
 
-    Both: what a message calls the place (an option) -> its path; None where there is none, ``-``
-    for a standard stream.
+    ``inputs``: paths; ``outputs``: what a message calls the place (an option) -> its path, None
+    where there is none. ``-`` is a standard stream.
     """
-    places = {
-        name: place
-        for name, path in inputs.items()
-        if path is not None and (place := _place(path, sys.stdin)) is not None
-    }
+    places = {}
+    for path in inputs:
+        places[_place(path)] = "a file that is read"
     for name, path in outputs.items():
-        place = None if path in (None, "-") else _place(str(path), None)
-        if place is None:
+        if path is None or path == "-" or (place := _place(path)) is None:
             continue
-        other = next((one for one, known in places.items() if known == place), None)
-        if other is not None:
-            told = other if other.startswith("-") else "what is read"
-            raise UserError(f"{name} is the same file as {told}; expected another name", path)
-        places[name] = place
+        if place in places:
+            raise UserError(f"{name} names {places[place]}; expected another name", path)
+        places[place] = f"the file of {name} too"
 
 
-def _place(path: str, stream: Any) -> tuple[Any, ...] | None:
+def _place(path: str) -> tuple[Any, ...] | None:
     """What identifies a regular file, or one that is not there yet; None for anything else."""
     from stat import S_ISREG
 
     try:
-        about = os.fstat(stream.fileno()) if path == "-" else os.stat(path)
+        about = os.fstat(sys.stdin.fileno()) if path == "-" else os.stat(path)
     except FileNotFoundError:
         return (os.path.realpath(path),)
     except (OSError, ValueError, AttributeError):

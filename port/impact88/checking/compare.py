@@ -204,6 +204,7 @@ def compare_file(path: str, form: str, given: Mapping[str, str] | None = None) -
     return done
 
 
+@np.errstate(all="ignore")
 def _compare_block(
     rows: Rows, given: Mapping[str, str], wanted: Sequence[str], done: Comparison
 ) -> None:
@@ -225,8 +226,7 @@ def _compare_block(
         there = usable & np.isfinite(theirs[name].values) & np.isfinite(ours[name])
         double, digits = _agreement(theirs[name], ours[name], bounds * sizes[name])
         off = np.abs(theirs[name].values - ours[name])
-        with np.errstate(all="ignore"):
-            relative = np.where(sizes[name] > 0, off / sizes[name], np.where(off > 0, np.inf, 0.0))
+        relative = np.where(sizes[name] > 0, off / sizes[name], np.where(off > 0, np.inf, 0.0))
         tally = done.tallies[name]
         differ = there & ~double & ~digits
         tally.compared += int(there.sum())
@@ -297,7 +297,8 @@ def _theirs(rows: Rows, name: str) -> Theirs:
         written = _WRITTEN.fullmatch(text)
         if written:
             decimals, exponent = written.groups(default="")
-            units[index] = 10.0 ** min(300, int(exponent or 0) - len(decimals))
+            power = float(exponent or 0) - len(decimals)
+            units[index] = 10.0 ** min(300.0, max(power, -400.0))
     return Theirs(values, units)
 
 

@@ -8,6 +8,7 @@ says which case. The same count and seed give the same scenes on any machine.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import islice
 from random import Random
 from typing import Any
 
@@ -22,9 +23,9 @@ CASEWORK, EDGE, FAILURE = "casework", "edge", "failure"
 
 def vectors(count: int, seed: int = 0, reference: bool = True) -> Iterator[dict[str, Any]]:
     """``count`` vectors: id, class, label, scene and the oracle's answer."""
-    labelled = list(scenes(count, seed))
+    labelled = scenes(count, seed)
     for at in range(0, count, BATCH):
-        batch = labelled[at : at + BATCH]
+        batch = list(islice(labelled, BATCH))
         answers = look_up([scene for _, _, scene in batch], reference)
         for place, ((kind, label, scene), answer) in enumerate(zip(batch, answers, strict=True)):
             head = {"id": f"{seed}-{at + place:06d}", "class": kind, "label": label}

@@ -28,7 +28,7 @@ from ..emulator.emulator import Applesoft
 from ..emulator.machine import TooManyStatements
 from ..endings import INTERRUPTED
 from ..errors import UserError
-from ..files import called, check_apart, packaged_text, read_text, replacing, typed_line
+from ..files import called, packaged_text, read_text, replacing, typed_line
 from .run import add_machine_arguments
 
 LISTING = "impact.bas"
@@ -130,7 +130,6 @@ def main(args: argparse.Namespace) -> int:
             f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
             "or --no-dos"
         )
-    check_apart({"FILE.bas": args.program, "standard input": "-"}, {"--printer": args.printer})
     terminal = Terminal()
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None

@@ -27,7 +27,13 @@ from typing import Any
 from ..bench.populations import BENCHMARK, POPULATIONS
 from ..errors import UserError
 from ..plaintable import plain
-from .options import add_json_argument, add_names_argument, add_output_argument, names_given
+from .options import (
+    add_json_argument,
+    add_names_argument,
+    add_output_argument,
+    names_given,
+    whole_number,
+)
 
 __doc__ = (__doc__ or "").format(
     populations="\n".join(f"  {p.name:<14} {p.level:<8} {p.meaning}" for p in POPULATIONS.values())
@@ -35,28 +41,25 @@ __doc__ = (__doc__ or "").format(
 
 QUICK = 0.05
 PATH_SCENES = 500_000
+MOST_SCENES = 10_000_000
 SIZES = (1_000, 10_000, 100_000, 1_000_000, 10_000_000)
-
-
-def _count(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise ValueError(text)
-    return number
-
-
-_count.__name__ = "positive whole number"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 bench`."""
     add_names_argument(parser, "--populations", "NAMES", f"default: {','.join(BENCHMARK)}")
     parser.add_argument(
-        "--scenes", type=_count, default=2000, help="of each population (%(default)s)"
+        "--scenes",
+        type=whole_number(1, MOST_SCENES),
+        default=2000,
+        help="of each population (%(default)s)",
     )
     parser.add_argument("--seed", type=int, default=1988, help="of the populations (%(default)s)")
     parser.add_argument(
-        "--repeats", type=_count, default=5, help="times are medians of so many (%(default)s)"
+        "--repeats",
+        type=whole_number(1, 1000),
+        default=5,
+        help="times are medians of so many (%(default)s)",
     )
     parser.add_argument(
         "--quick", action="store_true", help="time a twentieth of the scenes: rougher, sooner"

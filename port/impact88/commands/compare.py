@@ -20,6 +20,7 @@ import sys
 from collections.abc import Iterator
 
 from ..checking.compare import Comparison, compare_file
+from ..errors import shown
 from ..tables.table import format_of
 from .options import FORMATS, add_json_argument, add_output_argument, add_set_argument, settings
 
@@ -52,7 +53,7 @@ def main(args: argparse.Namespace) -> int:
     else:
         print("\n".join(_lines(done)))
     for bad in done.bad[:SHOWN]:
-        print(f"impact88 compare: {bad}", file=sys.stderr)
+        print(f"impact88 compare: {shown(str(bad))}", file=sys.stderr)
     if len(done.bad) > SHOWN:
         print(f"impact88 compare: and {len(done.bad) - SHOWN} more", file=sys.stderr)
     return int(done.differing > 0 or bool(done.bad))
@@ -77,11 +78,11 @@ def _lines(done: Comparison) -> Iterator[str]:
         yield "worst first:"
         for one in done.worst:
             place = f"row {one.row}" + (f" (line {one.line})" if one.line else "")
-            name = f", id {one.id}" if one.id else ""
+            name = f", id {shown(one.id, 40)}" if one.id else ""
             yield (
-                f"  {place}{name}: {one.result} {one.theirs}, here {one.ours:.12g}, "
+                f"  {place}{name}: {one.result} {shown(one.theirs, 40)}, here {one.ours:.12g}, "
                 f"off by {one.relative:.2g}; {one.cause}"
             )
     if done.ignored:
         yield ""
-        yield f"columns not looked at: {' '.join(done.ignored)}"
+        yield f"columns not looked at: {shown(' '.join(done.ignored))}"

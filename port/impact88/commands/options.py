@@ -7,18 +7,34 @@ mean the same everywhere, and what is refused is refused in the same words.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from math import isfinite
 
 from ..doubles import double
-from ..errors import UserError
-from ..files import called
+from ..errors import UserError, quoted
+from ..files import called, check_apart
 from ..names import SCENE, check_names, quantity
 from ..scene import SAMPLES, Scene, check_value, sample, toml_file
 
 FORMATS = ("csv", "jsonl", "npz")
 """What ``--from`` and ``--to`` take."""
+
+
+_READ = ("scene", "file", "cases", "theirs", "printouts", "scenes", "program", "rom")
+"""Where the commands keep the files they read,"""
+_WRITTEN = {"output": "-o", "errors": "--errors", "printer": "--printer", "report": "--report"}
+"""and those they write: attribute -> option."""
+
+
+def check_files(args: argparse.Namespace) -> None:
+    """Raise UserError when a file that a command is to write is one it reads, or writes twice."""
+    outputs = {option: getattr(args, name, None) for name, option in _WRITTEN.items()}
+    inputs = ["-"]
+    for name in _READ:
+        paths = getattr(args, name, None)
+        inputs += paths if isinstance(paths, list) else [] if paths is None else [paths]
+    check_apart(inputs, outputs)
 
 
 def add_set_argument(parser: argparse.ArgumentParser, meaning: str) -> None:
@@ -204,3 +220,20 @@ def output_of(args: argparse.Namespace) -> Iterator[None]:
 
     with replacing(path) as file, redirect_stdout(file):
         yield
+
+
+def whole_number(low: int, high: int) -> Callable[[str], int]:
+    """An argument's type: a whole number within limits, which the message says."""
+
+    def read(text: str) -> int:
+        try:
+            number = int(text)
+        except ValueError:
+            number = low - 1
+        if not low <= number <= high:
+            raise argparse.ArgumentTypeError(
+                f"{quoted(text)} is no whole number from {low:,} to {high:,}"
+            )
+        return number
+
+    return read

@@ -23,7 +23,10 @@ from typing import IO, Any
 
 from ..checking.oracle import Request, answer
 from ..errors import UserError
-from ..files import called, check_apart, open_bytes, replacing
+from ..files import called, open_bytes, replacing
+from .options import whole_number
+
+MOST_VECTORS = 10_000_000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,17 +34,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scenes", nargs="?", default="-", metavar="SCENES.jsonl")
     parser.add_argument("-o", "--output", default="-", metavar="FILE", help="default: stdout")
     parser.add_argument("--no-reference", action="store_true", help="leave out the 30 digits")
-    parser.add_argument("--vectors", type=int, metavar="N", help="write N test vectors")
+    parser.add_argument(
+        "--vectors", type=whole_number(1, MOST_VECTORS), metavar="N", help="write N test vectors"
+    )
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the test vectors")
 
 
 def main(args: argparse.Namespace) -> int:
     """Answer every line, or write test vectors."""
-    if args.vectors is not None and args.vectors < 1:
-        raise UserError(f"--vectors is {args.vectors}; expected a number above 0")
     if args.vectors is not None and args.scenes != "-":
         raise UserError("--vectors makes its own scenes; expected no file beside it")
-    check_apart({"SCENES.jsonl": args.scenes}, {"--output": args.output})
     counts = {"answered": 0, "refused": 0}
     with nullcontext(sys.stdout) if args.output == "-" else replacing(args.output) as out:
         if args.vectors is not None:

@@ -20,7 +20,7 @@ from contextlib import ExitStack
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
 from ..errors import UserError
-from ..files import check_apart, replacing, typed_line
+from ..files import replacing, typed_line
 from ..names import VELOCITIES
 from ..program.arithmetics import ARITHMETICS
 from ..program.run import finished, start
@@ -95,7 +95,6 @@ def main(args: argparse.Namespace) -> int:
             f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
             "or --no-dos"
         )
-    check_apart({"FILE.toml": args.scene or "-"}, {"--printer": args.printer})
     changes = settings(args.set)
     scene = chosen_scene(args, changes)
     data = scene if scene is not None else published_data() | changes

@@ -38,8 +38,8 @@ from numpy.typing import NDArray
 from ..closedform.columns import UNUSED_BY_POINTS, refusals
 from ..closedform.solve import solve
 from ..doubles import is_number
-from ..errors import UserError
-from ..files import check_apart, replacing
+from ..errors import quoted, shown
+from ..files import replacing
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..progress import progress
 from ..scene import VALUE_LIMIT
@@ -100,9 +100,6 @@ def main(arguments: argparse.Namespace) -> int:
     kinds = {"float64": _Float64, "applesoft": _Applesoft}
     arithmetic = kinds[arguments.arithmetic](arguments.outputs)
     complaints = _Complaints(arguments.errors)
-    check_apart(
-        {"CASES": arguments.cases}, {"--output": arguments.output, "--errors": arguments.errors}
-    )
     with ExitStack() as stack:
         source = stack.enter_context(open_reader(arguments.cases, source_format))
         optional = ["M", *(UNUSED_BY_POINTS if given.get("M") == "4" else ())]
@@ -197,7 +194,7 @@ class _Applesoft:
         try:
             # nearly always all cells can be read, and looking at each takes as long as solving
             found = None if unread else replay(columns)
-        except UserError:
+        except (ValueError, TypeError):  # UserError, or cells of several types
             found = None
         if found is None:
             unread |= _complain(rows, columns, unread)
@@ -239,7 +236,7 @@ def _unreadable(text: Any) -> str | None:
     if text is None or text == "":
         return "is empty; expected a number"
     if not (isinstance(text, str) and is_number(text)):
-        return f"{text!r} is no number that Applesoft reads"
+        return f"{quoted(text)} is no number that Applesoft reads"
     if len(text) > VALUE_LIMIT:
         return f"has more than {VALUE_LIMIT} characters"
     return None
@@ -272,7 +269,7 @@ class _Complaints:
 
     def _tell(self, cell: BadCell) -> None:
         if self.count <= SHOWN:
-            print(f"impact88 solve: {cell}", file=sys.stderr)
+            print(f"impact88 solve: {shown(str(cell))}", file=sys.stderr)
 
     def summarise(self) -> None:
         if not self.count:

@@ -21,7 +21,8 @@ import sys
 from collections.abc import Iterator
 
 from ..casework.verify import FieldCheck, Verdict, Verification, verify_file
-from ..errors import UserError
+from ..errors import UserError, shown
+from ..files import called
 from .options import add_json_argument, add_output_argument
 
 
@@ -39,7 +40,8 @@ def main(args: argparse.Namespace) -> int:
     """Verify every printout of every file."""
     if args.date and not args.report:
         raise UserError("--date is for the report; expected --report FILE.html with it")
-    status = 0
+    for path in args.printouts:
+        status = 0
     results = []
     for path in args.printouts:
         try:
@@ -55,7 +57,7 @@ def main(args: argparse.Namespace) -> int:
         except UserError as error:
             print(f"impact88 verify: {error}", file=sys.stderr)
             status = 2
-    if args.report and results:
+    if args.report and results and status != 2:
         from ..casework.report import write_report
 
         write_report(args.report, results, args.date)
@@ -63,7 +65,7 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _lines(result: Verification, brief: bool) -> Iterator[str]:
-    where = "standard input" if result.file == "-" else result.file
+    where = shown(called(result.file))
     compared = sum(check.same is not None for check in result.fields)
     yield f"{where}, printout {result.number} (line {result.line}): {str(result.verdict).upper()}"
     if result.verdict is Verdict.IDENTICAL:

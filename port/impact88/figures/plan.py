@@ -23,10 +23,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from ..errors import UserError
 from ..scene import numbers_of
 from ..status import sentences
 from .drawing import Point
 
+DRAWABLE = 1e100
+"""The largest number that is drawn: products of some must be doubles too."""
 PROPORTION = 2.6
 """Length over width."""
 WALL = 1e4
@@ -83,8 +86,12 @@ def plan(scene: Any, result: Mapping[str, Any] | None = None) -> Plan:
     VAX, VAY, VBX, VBY and, unless the scene has point masses, WAF and WBF; STATUS where known.
 
     Without a result, or where it is not finite, there is nothing after the impact to show.
+    Raises UserError for a value that is no finite number, or too large to draw.
     """
     values = numbers_of(scene)
+    for name, value in values.items():
+        if abs(value) > DRAWABLE:
+            raise UserError(f"{value:g} is too large to be drawn", name)
     normal = direction(values["GA"])
     tangent = (-normal[1], normal[0])
     final = _finals(result)

@@ -100,7 +100,10 @@ def _sort_out(
     elif isinstance(column, (list, tuple)) and column and isinstance(column[0], str):
         texts[name] = column
     else:
-        array = np.asarray(column)
+        try:
+            array = np.asarray(column)
+        except ValueError:
+            raise UserError(f"{name} holds cells of several shapes") from None
         if array.ndim > 1:
             raise UserError(f"{name} has {array.ndim} dimensions; expected one value or a column")
         array = array.reshape(-1)

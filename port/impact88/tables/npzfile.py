@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError, quoted
+from ..files import ESCAPED
 
 MOST_ARRAYS = 10_000
 UNPACKED = 256_000_000
@@ -112,6 +113,7 @@ def write_arrays(file: IO[bytes], arrays: Mapping[str, NDArray[Any]]) -> None:
     """An .npz file as numpy.savez writes it, but of arrays with any name."""
     with zipfile.ZipFile(file, "w") as archive:
         for name, array in arrays.items():
-            member = zipfile.ZipInfo(f"{name}.npy")  # the same arrays give the same bytes
+            # a fixed date: the same arrays give the same bytes
+            member = zipfile.ZipInfo(f"{name}.npy".encode("utf-8", ESCAPED).decode())
             with archive.open(member, "w", force_zip64=True) as out:
                 np.lib.format.write_array(out, np.asanyarray(array), allow_pickle=False)

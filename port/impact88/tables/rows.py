@@ -151,10 +151,12 @@ def _numbers(rows: Rows, name: str, column: Column) -> NDArray[np.float64]:
     values = np.full(rows.count, np.nan)
     already = {bad.row for bad in rows.bad}
     for index, text in enumerate(column):
+        if rows.first + index in already:
+            continue
         reason = _why_no_number(text)
         if reason is None:
             values[index] = math.inf if _is_infinite(text) else doubles.double(text)
-        elif rows.first + index not in already:
+        else:
             rows.bad.append(rows.cell(index, name, reason))
     return values
 

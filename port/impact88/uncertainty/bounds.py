@@ -142,6 +142,7 @@ def bounds(
     """
     _check(samples, sigmas, quantiles)
     box = _Box.of(values, outputs, problem, sigmas, exclude)
+    _check_memory(samples, len(box.outputs))
     pairs = dict(correlations or {})
     correlated = correlation_root(pairs, box.inputs)
     nominal = box.nominal()
@@ -195,6 +196,18 @@ def bounds(
         correlations=pairs,
         draws=draws if keep_draws else {},
     )
+
+
+MOST_DRAWS = 100_000_000
+"""Draws of all outputs together that are kept: 800 MB."""
+
+
+def _check_memory(samples: int, outputs: int) -> None:
+    if samples * outputs > MOST_DRAWS:
+        raise UserError(
+            f"{samples:,} samples of {outputs} outputs are more than {MOST_DRAWS:,} numbers; "
+            "expected fewer samples, or fewer outputs"
+        )
 
 
 def _check(samples: int, sigmas: float, quantiles: Sequence[float]) -> None:
