@@ -146,11 +146,10 @@ def _speak_any_character() -> None:
     """The result is UTF-8 whatever the locale, so that a file made by ``>`` is one this project
     reads; and no character of a file's name, an id or a unit is an error on a terminal that lacks
     it."""
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors=ESCAPED)
     if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(encoding="utf-8")
+        sys.stdout.reconfigure(encoding="utf-8", errors=ESCAPED)
+    if hasattr(sys.stderr, "reconfigure"):
+        sys.stderr.reconfigure(errors=ESCAPED)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -279,9 +279,7 @@ def check_apart(inputs: Iterable[str], outputs: Mapping[str, str | None]) -> Non
     ``inputs``: paths; ``outputs``: what a message calls the place (an option) -> its path, None
     where there is none. ``-`` is a standard stream.
     """
-    places = {}
-    for path in inputs:
-        places[_place(path)] = "a file that is read"
+    places = {_place(path): "a file that is read" for path in inputs}
     for name, path in outputs.items():
         if path is None or path == "-" or (place := _place(path)) is None:
             continue

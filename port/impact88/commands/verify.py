@@ -40,8 +40,7 @@ def main(args: argparse.Namespace) -> int:
     """Verify every printout of every file."""
     if args.date and not args.report:
         raise UserError("--date is for the report; expected --report FILE.html with it")
-    for path in args.printouts:
-        status = 0
+    status = 0
     results = []
     for path in args.printouts:
         try:
