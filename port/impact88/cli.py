@@ -23,6 +23,10 @@ from .endings import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
 from .errors import UserError, shown
 from .files import ESCAPED
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import IO
+
 COMMANDS = {
     "run": "run the 1988 program on its own data, a sample or a scene file",
     "basic": "the ] prompt with the restored listing, or run any Applesoft program",
@@ -55,6 +59,11 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> None:  # type: ignore[override]
         raise UserError(f"{message} (see {self.prog} --help)")
+
+    def _print_message(self, message: str, file: IO[str] | None = None) -> None:  # type: ignore[override]
+        """argparse swallows what goes wrong here, and a full disk would look like success."""
+        if message:
+            (file or sys.stderr).write(message)
 
 
 def _help_formatter(prog: str) -> argparse.HelpFormatter:

@@ -202,7 +202,7 @@ def options_case(rng: Random) -> Case:
     command = rng.choice([*COMMANDS, "", "frob\x1b"])
     arguments = [command, *_options(rng, command, 4)]
     match command:
-        case "witness" | "selfcheck" | "staged" | "example":
+        case "witness" | "selfcheck" | "staged" | "example" | "desk":
             arguments = [command, "--no-such"]
         case "bench":
             arguments += ["--scenes", rng.choice(("0", "-1", "1e12", "9" * 15))]
