@@ -1,26 +1,33 @@
 """THEIRS is a CSV or JSON Lines table of another program's results: a row a scene, with columns
 named as the scene's (impact88 scene lists them; M may be missing) and any of the results: VAX VAY
 VBX VBY WAF WBF, contact velocities XA YA XB YB before and XAF YAF XBF YBF after, KI KF LOSS DVA DVB
-PN PT PM MUP MUC. Each result agrees to the double, or to the digits it is written with, or not.
-Rows that disagree are grouped by their likely cause: units of angle, signs, conventions, precision.
+PN PT PM MUP MUC. Each result agrees to the double, to the digits it is written with, as closely as
+plain elimination in double precision can in that scene, or not. Rows that disagree are explained:
+hundreds of mistakes and other conventions are made here too, alone and two together, and the one
+that gives their numbers is named. What could not be compared is told on standard error.
 
 examples:
   impact88 compare theirs.csv
   impact88 compare theirs.jsonl --json
+  impact88 compare theirs.jsonl --strict --junit results.xml
   impact88 compare theirs.csv --set EM=1 --set M=6
 
-exit status: 0 everything agrees; 1 something does not, or a row could not be read; 2 bad input
+exit status: 0 everything agrees; 1 something does not, or a row could not be read (with --strict:
+or was not compared); 2 bad input
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 from collections.abc import Iterator
 
-from ..checking.compare import Comparison, compare_file
-from ..errors import shown
+from ..accuracy.errorbound import DOUBLE
+from ..checking.compare import HARMLESS, Comparison, compare_file
+from ..checking.slipsfilling import EQUATIONS
+from ..errors import UserError, shown
 from ..tables.table import format_of
 from .options import FORMATS, add_json_argument, add_output_argument, add_set_argument, settings
 
@@ -40,6 +47,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_set_argument(
         parser, "a value of the scene for all rows, where the table has no such column"
     )
+    parser.add_argument(
+        "--rtol",
+        type=float,
+        metavar="SHARE",
+        help="the difference that agrees, as a share of the scene's largest velocity, spin or "
+        "energy; default: what rounding in double precision allows in that scene",
+    )
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="rows, cells and columns that were not compared are failures",
+    )
+    parser.add_argument("--junit", metavar="FILE", help="write a JUnit report, a test a row")
     add_json_argument(parser)
     add_output_argument(parser)
 
@@ -47,33 +67,66 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Compare a table."""
     given = settings(args.set)
-    done = compare_file(args.theirs, format_of(args.theirs, args.form), given)
+    if args.rtol is not None and not 0 <= args.rtol < 1:
+        raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
+    done = compare_file(args.theirs, format_of(args.theirs, args.form), given, args.rtol)
+    if args.junit:
+        from ..checking.junit import write_junit
+
+        write_junit(args.junit, args.theirs, done, args.strict)
     if args.json:
         print(json.dumps(done.as_json(), ensure_ascii=False))
     else:
         print("\n".join(_lines(done)))
-    for bad in done.bad[:SHOWN]:
-        print(f"impact88 compare: {shown(str(bad))}", file=sys.stderr)
+    for line in _talk(done):
+        print(f"impact88 compare: {shown(line)}", file=sys.stderr)
+    return int(done.differing > 0 or bool(done.bad) or (args.strict and bool(done.silent)))
+
+
+def _talk(done: Comparison) -> Iterator[str]:
+    """What is said on stderr: what could not be read or was not compared."""
+    yield from map(str, done.bad[:SHOWN])
     if len(done.bad) > SHOWN:
-        print(f"impact88 compare: and {len(done.bad) - SHOWN} more", file=sys.stderr)
-    return int(done.differing > 0 or bool(done.bad))
+        yield f"and {len(done.bad) - SHOWN} more"
+    for name, meant in done.unknown.items():
+        yield f"column {name} is not recognised{f'; did you mean {meant}?' if meant else ''}"
+    for reason, count in done.not_compared.items():
+        if reason not in HARMLESS:
+            first = ", ".join(map(str, done.places_not_compared[reason][:5]))
+            yield f"{count} rows not compared ({first}{', ...' if count > 5 else ''}): {reason}"
+    for name, tally in done.tallies.items():
+        if tally.missing:
+            yield f"{tally.missing} cells of {name} are empty where there is a result"
 
 
 def _lines(done: Comparison) -> Iterator[str]:
-    yield f"{done.rows} rows: {done.agreeing} agree, {done.differing} disagree"
+    yield done.summary.partition("; ")[0]
     yield ""
-    yield "result  compared  to the double  to digits claimed      not  largest difference"
+    yield (
+        "result  compared  to the double  to digits claimed  as elimination      not  "
+        "largest difference"
+    )
     for name, tally in done.tallies.items():
         yield (
-            f"{name:<6}  {tally.compared:>8}  {tally.double:>13}  {tally.digits:>17}"
-            f"  {tally.differ:>7}  {tally.largest:>18.2g}"
+            f"{name:<6}  {tally.compared:>8}  {tally.double:>13}  {tally.digits:>17}  "
+            f"{tally.elimination:>14}  {tally.differ:>7}  {tally.largest:>18.2g}"
         )
     yield "(difference relative to the scene's largest velocity, spin or energy)"
+    loose = done.elimination
+    if loose.rows:
+        yield ""
+        lost = _digits_lost(loose.worst_relative)
+        yield f"{loose.rows} rows agree only as closely as plain elimination in double can there;"
+        yield (
+            f"the worst, row {loose.worst_row}, has lost {lost} of 16 digits (the best of programs "
+            f"has condition {loose.worst_condition:.2g} there)"
+        )
     if done.causes:
         yield ""
         yield "rows that disagree, by likely cause:"
         for cause, count in done.causes.most_common():
             yield f"  {count:>7}  {cause}"
+        yield from _equations(done)
         yield ""
         yield "worst first:"
         for one in done.worst:
@@ -83,6 +136,23 @@ def _lines(done: Comparison) -> Iterator[str]:
                 f"  {place}{name}: {one.result} {shown(one.theirs, 40)}, here {one.ours:.12g}, "
                 f"off by {one.relative:.2g}; {one.cause}"
             )
-    if done.ignored:
+    for reason, count in done.not_compared.items():
         yield ""
-        yield f"columns not looked at: {shown(' '.join(done.ignored))}"
+        yield f"{count} rows not compared: {reason}"
+
+
+def _equations(done: Comparison) -> Iterator[str]:
+    """Which of Equations 13 to 18 their own results violate."""
+    broken = {number: tally for number, tally in done.equations.items() if tally[1]}
+    if broken:
+        yield ""
+        yield "equations that their final velocities violate:"
+        for number, (checked, violated) in broken.items():
+            yield f"  {number} ({EQUATIONS[number]}): in {violated} of {checked} rows that disagree"
+    elif done.equations:
+        yield ""
+        yield "their final velocities violate none of Equations 13 to 18"
+
+
+def _digits_lost(relative: float) -> int:
+    return max(0, round(math.log10(max(relative, DOUBLE) / DOUBLE)))

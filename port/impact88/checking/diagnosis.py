@@ -1,0 +1,411 @@
+"""Why another program's results differ: one cause for a table where one explains it.
+
+Every imagined program (`slips.SLIPS`) is run over a sample of the table, those that explain rows
+are run over all of it, and rows are given to the cause that explains most, then to the one that
+explains most of what is left. Where that leaves much unexplained, slips are tried in pairs. A cause
+must earn its name: the digits that it gets right must be many more than chance would give
+(`_CERTAIN`), and it must explain a share of the rows that disagree.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..accuracy import errorbound
+from ..errors import UserError
+from ..fields import FIELDS
+from ..replay import replay
+from . import otherprograms, residuals
+from .agreement import Slack, Theirs, given
+from .slip import Slip
+from .slips import SLIPS
+from .slipsreading import changing, constant_of
+from .slipsshowing import ALL_SPEEDS, ENERGIES, FINAL_SPINS, IMPULSES, scaled
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Columns = dict[str, Floats]
+Program = tuple[Slip, ...]
+
+PRINTED = "digits of the 1988 printout, which floors"
+FLOORED = "floored to the digits given, not rounded"
+TRUNCATED = "cut off at the digits given, not rounded"
+APPLESOFT = "rounding in 32 bits, as Applesoft's"
+SINGLE = "rounding in single precision"
+UNKNOWN = "unexplained"
+
+_WRONG_SAMPLE, _RIGHT_SAMPLE = 60, 30
+_PAIR_SAMPLES = (5, 24)
+_ENOUGH = 0.9
+"""The share of rows explained from which no pairs are tried."""
+_MAIN = 0.5
+"""The share of the rows that disagree that makes a cause the table's."""
+_LEAST_SHARE = 0.03
+"""A cause of a smaller share of the rows that disagree is not named, where there are many."""
+_MANY = 40
+_LEAST_PAIR_SHARE = 0.6
+_LARGE = 1e-5
+"""Differences below this share of their size are no pair of slips."""
+_CERTAIN, _PAIR_CERTAIN = 4.0, 8.0
+"""Digits that a cause must get right beyond ours, all rows together."""
+_CLOSE = 1e-9
+"""Results this close, as a share of their size, are the same program's."""
+_EXPLAINED = 0.1
+"""A cause leaves at most this share of a row's difference."""
+_WIDESPREAD = 0.5
+"""The share of the rows in which coarser arithmetic can be seen that it spoils."""
+_TYPICAL = 1 / 64
+"""Its error there, as a share of the bound."""
+_BITS = {SINGLE: (24, (27.0, 33.5)), APPLESOFT: (32, (34.0, 40.0))}
+"""Cause -> bits of the arithmetic, and the range in which the bits measured against the bound lie:
+rounding spoils a few bits less than the bound allows."""
+
+
+@dataclass
+class Case:
+    """Rows of a table to be explained; all columns are of one length.
+
+    ``texts``: the scenes as decimal text; ``wrong``: the rows that disagree."""
+
+    scene: Columns
+    texts: dict[str, list[str]]
+    theirs: dict[str, Theirs]
+    ours: Columns
+    allowed: Slack
+    wrong: Bools
+
+    def part(self, rows: NDArray[np.intp]) -> Case:
+        """Some of the rows."""
+        return Case(
+            {name: column[rows] for name, column in self.scene.items()},
+            {name: [column[row] for row in rows] for name, column in self.texts.items()},
+            {name: Theirs(c.values[rows], c.units[rows]) for name, c in self.theirs.items()},
+            {name: column[rows] for name, column in self.ours.items()},
+            self.allowed.part(rows),
+            self.wrong[rows],
+        )
+
+
+@dataclass
+class Diagnosis:
+    """What `diagnose` found: the cause of each row that disagrees, in order; and for each equation
+    in how many rows that disagree it could be checked, and is violated."""
+
+    causes: list[str]
+    equations: dict[str, tuple[int, int]] = field(default_factory=dict)
+
+
+class _Fit(NamedTuple):
+    """How a program fits a case: the rows it explains, and the digits it gets right in each."""
+
+    says: str
+    rows: Bools
+    digits: Floats
+
+
+@np.errstate(all="ignore")
+def diagnose(case: Case) -> Diagnosis:
+    """The likely causes of a case's disagreements."""
+    if not case.wrong.any():
+        return Diagnosis([])
+    fits = [*_cuts(case), *_fits(_candidates(case), case)]
+    found = np.where(case.wrong, UNKNOWN, "").astype(object)
+    covering = [fits[place] for place in _cover(fits, case)]
+    if not covering or (covering[0].rows & case.wrong).sum() < _MAIN * case.wrong.sum():
+        _by_precision(found, case)
+    for fit in covering:
+        found[(found == UNKNOWN) & fit.rows] = fit.says
+    violations = residuals.violated(case.scene, case.theirs, case.allowed)
+    _by_residuals(found, case, violations)
+    rows = int(case.wrong.sum())
+    return Diagnosis(
+        found[case.wrong].tolist(),
+        {number: (rows, int((off & case.wrong).sum())) for number, off in violations.items()},
+    )
+
+
+# --- which programs to imagine -------------------------------------------------------------------
+
+
+def _candidates(case: Case) -> list[Program]:
+    """The programs that explain rows of a sample, alone or, where none alone does, in pairs."""
+    sample = case.part(_spread(case, _WRONG_SAMPLE, _RIGHT_SAMPLE))
+    singles: list[Program] = [(slip,) for slip in (*SLIPS, *_measured(case))]
+    results = otherprograms.run([(), *singles], sample.scene)
+    seen = [
+        (program, result)
+        for program, result in zip(singles, results[1:], strict=True)
+        if _differs(result, results[0], sample.theirs)
+    ]
+    measure = _Measure(sample)
+    fits = [measure.fit(_says(program), result) for program, result in seen]
+    left = sample.wrong.copy()
+    chosen: list[Program] = []
+    for place in _cover(fits, sample):
+        chosen.append(seen[place][0])
+        left &= ~fits[place].rows
+    total = sample.wrong.sum()
+    if left.sum() > (1 - _ENOUGH) * total and np.median(measure.off[left]) > _LARGE:
+        common = [program[0] for program, _ in seen if program[0].common]
+        main = [program[0] for program in chosen] if left.sum() <= (1 - _MAIN) * total else common
+        chosen += _pairs(main, common, sample, left)
+    return chosen
+
+
+def _spread(case: Case, wrong: int, right: int) -> NDArray[np.intp]:
+    """Row numbers of some rows that disagree and some that agree, spread over the table."""
+    chosen = []
+    for rows, count in ((case.wrong, wrong), (~case.wrong, right)):
+        places = np.flatnonzero(rows)
+        if places.size > count:
+            places = places[np.linspace(0, places.size - 1, count).astype(int)]
+        chosen.append(places)
+    return np.concatenate(chosen)
+
+
+def _differs(results: Columns, plain: Columns, theirs: Mapping[str, Theirs]) -> bool:
+    """Whether a slip can be seen in the table's columns at all."""
+    return any(
+        name in results and not np.array_equal(results[name], plain[name], equal_nan=True)
+        for name in theirs
+    )
+
+
+def _measured(case: Case) -> list[Slip]:
+    """Slips whose size the table itself tells: results a constant times ours, coefficients that
+    are the same in every row."""
+    slips = []
+    groups = {
+        "velocities": ALL_SPEEDS,
+        "final spins": FINAL_SPINS,
+        "energies": ENERGIES,
+        "impulses": IMPULSES,
+        **{name: (name,) for name in case.theirs},
+    }
+    for what, names in groups.items():
+        there = [name for name in names if name in case.theirs]
+        factor = _ratio(
+            [case.theirs[name].values[case.wrong] for name in there],
+            [case.ours[name][case.wrong] for name in there],
+        )
+        if factor is not None:
+            says = f"{what} {factor:.6g} times as large as here"
+            slips.append(Slip(says, results=scaled(there, factor), common=False))
+    for name, values in residuals.effective(case.scene, case.theirs).items():
+        usable = values[case.wrong & np.isfinite(values)]
+        if usable.size and (constant := _rounded(float(np.median(usable)))) is not None:
+            change = changing((name,), constant_of(constant))
+            slips.append(Slip(f"{name} fixed at {constant:g}", change, late=True, common=False))
+    return slips
+
+
+def _ratio(theirs: Sequence[Floats], ours: Sequence[Floats]) -> float | None:
+    """The median ratio, where there is one that is not 1."""
+    if not theirs:
+        return None
+    with np.errstate(all="ignore"):
+        ratios = np.concatenate(theirs) / np.concatenate(ours)
+    ratios = ratios[np.isfinite(ratios)]
+    if not ratios.size:
+        return None
+    factor = float(np.median(ratios))
+    return None if abs(factor - 1) < 1e-6 or factor == 0 else factor
+
+
+def _rounded(value: float) -> float | None:
+    """A constant as somebody would type it: three digits."""
+    return float(f"{value:.3g}") if math.isfinite(value) else None
+
+
+def _pairs(
+    main: Sequence[Slip], common: Sequence[Slip], sample: Case, left: Bools
+) -> list[Program]:
+    """Pairs that explain what no slip alone explains: one of ``main``, which explain other rows
+    alone if any do, and one of ``common``."""
+    if main is common:
+        pairs: list[Program] = list(combinations(common, 2))
+    else:
+        pairs = [(one, other) for one in main for other in common if other not in main]
+    for size in _PAIR_SAMPLES:
+        places = np.flatnonzero(left)
+        few = sample.part(places[:: max(1, places.size // size)][:size])
+        results = otherprograms.run(pairs, few.scene)
+        measure = _Measure(few)
+        explained = [measure.fit("", one).rows.mean() >= _LEAST_PAIR_SHARE for one in results]
+        pairs = [pair for pair, good in zip(pairs, explained, strict=True) if good]
+        if not pairs:
+            break
+    return pairs
+
+
+def _says(program: Program) -> str:
+    return "; and ".join(slip.says for slip in program)
+
+
+# --- which of them fit ---------------------------------------------------------------------------
+
+
+def _fits(programs: Sequence[Program], case: Case) -> list[_Fit]:
+    results = otherprograms.run(programs, case.scene) if programs else []
+    measure = _Measure(case)
+    return [
+        measure.fit(_says(program), result, len(program))
+        for program, result in zip(programs, results, strict=True)
+    ]
+
+
+class _Measure:
+    """How far a case's results are from ours, and how near a program must come to explain them."""
+
+    def __init__(self, case: Case) -> None:
+        # a result is a row here: numpy then has few operations to start for each program
+        self.names = list(case.theirs)
+        there = given(case.theirs, case.ours)
+        self.there = np.stack([there[name] for name in self.names])
+        self.values = np.stack([case.theirs[name].values for name in self.names])
+        units = np.stack([case.theirs[name].units for name in self.names])
+        self.sizes = np.stack([case.allowed.sizes[name] for name in self.names])
+        self.written = units * (0.5 + 1e-9)
+        with np.errstate(all="ignore"):
+            real = np.where(self.there, self._difference(case.ours), 0.0)
+            shown = np.where(self.there & (self.sizes > 0), self.written / self.sizes, 0.0)
+            worst = np.argmax(real, axis=0)[None]
+            off = np.take_along_axis(real, worst, 0)[0]
+            room = np.fmax(np.take_along_axis(shown, worst, 0)[0], case.allowed.elimination)
+            digits = np.log10(np.clip(off / np.fmax(room, 1e-12), 1.0, 1e12))
+        near = np.fmin(np.fmax(4 * case.allowed.elimination, _CLOSE), _EXPLAINED * off)
+        self.limit = np.where(case.wrong, near, case.allowed.elimination)
+        self.off, self.room = off, room
+        self.digits = np.where(case.wrong, digits, 0.0)
+
+    def _difference(self, results: Columns) -> Floats:
+        """How far results are off beyond the digits they are written with, as shares."""
+        mine = np.stack([results.get(name, values) for name, values in self._columns()])
+        beyond = np.maximum(np.abs(self.values - mine) - self.written, 0.0)
+        return np.where(self.sizes > 0, beyond / self.sizes, np.where(beyond == 0, 0.0, np.inf))
+
+    def _columns(self) -> Iterator[tuple[str, Floats]]:
+        return zip(self.names, self.values, strict=True)
+
+    def fit(self, says: str, results: Columns, slips: int = 1) -> _Fit:
+        """The rows whose every result a program explains; MUC, which it does not give, it does."""
+        with np.errstate(all="ignore"):
+            near = (self._difference(results) <= self.limit) | ~self.there
+        need = _CERTAIN if slips == 1 else _PAIR_CERTAIN
+        rows: Bools = np.logical_and.reduce(near)
+        return _Fit(says, rows, self.digits * _CERTAIN / need)
+
+
+def _cover(fits: Sequence[_Fit], case: Case) -> list[int]:
+    """The programs that explain most rows that disagree, then most of those left. Of equals, the
+    one that the rows that agree do not contradict, then the first."""
+    left = case.wrong.copy()
+    chosen: list[int] = []
+    least = _LEAST_SHARE * case.wrong.sum() if case.wrong.sum() >= _MANY else 0
+    while left.any() and fits:
+        merit = [
+            (int((fit.rows & left).sum()), int((fit.rows & ~case.wrong).sum()), -place)
+            for place, fit in enumerate(fits)
+        ]
+        best = -max(merit)[2]
+        explained = fits[best].rows & left
+        if explained.sum() <= least or fits[best].digits[explained].sum() < _CERTAIN:
+            break
+        chosen.append(best)
+        left &= ~fits[best].rows
+    return chosen
+
+
+# --- digits and rounding -------------------------------------------------------------------------
+
+
+def _cuts(case: Case) -> list[_Fit]:
+    """Ways of writing right numbers: as the 1988 program does, floored, cut off."""
+    digits = np.where(case.wrong, _CERTAIN, 0.0)
+    cuts: list[tuple[str, Callable[[Floats], Floats]]] = [
+        (FLOORED, np.floor),
+        (TRUNCATED, np.trunc),
+    ]
+    fits = [_Fit(PRINTED, _as_printed(case), digits)]
+    for says, cut in cuts:
+        rows = np.ones(case.wrong.size, bool)
+        for name, column in case.theirs.items():
+            there = np.isfinite(column.values)
+            rows &= ~there | _is_cut(column, case.ours[name], cut)
+        fits.append(_Fit(says, rows, digits))
+    return fits
+
+
+def _is_cut(theirs: Theirs, ours: Floats, cut: Callable[[Floats], Floats]) -> Bools:
+    """Whether a result is ours cut at the last digit written (a hair of rounding allowed)."""
+    with np.errstate(all="ignore"):
+        unit = np.where(theirs.units > 0, theirs.units, np.nan)
+        steps, near = theirs.values / unit, ours / unit
+        hair = 1e-9 * np.maximum(np.abs(near), 1.0)
+        low, high = cut(near - hair), cut(near + hair)
+        return (np.abs(steps - low) < 1e-6) | (np.abs(steps - high) < 1e-6)
+
+
+def _as_printed(case: Case) -> Bools:
+    """Rows that are the 1988 program's own digits."""
+    none = np.zeros(case.wrong.size, bool)
+    if not all(name in FIELDS for name in case.theirs):
+        return none
+    try:
+        replayed = replay(case.texts)
+    except UserError:
+        return none
+    rows = np.ones(case.wrong.size, bool)
+    for name, column in case.theirs.items():
+        printed = replayed.printed(name).tolist()
+        values = np.array([float(text) if text else np.nan for text in printed])
+        rows &= ~np.isfinite(column.values) | (values == column.values)
+    return rows
+
+
+def _by_precision(found: NDArray[np.object_], case: Case) -> None:
+    """Name coarser arithmetic where it is the whole table's: most rows in which it could be seen
+    suffer from it, and hardly a row more than it explains."""
+    measure = _Measure(case)
+    bound = case.allowed.per_unit
+    with np.errstate(all="ignore"):
+        share = measure.off / bound
+        best = measure.off / errorbound.relative_bounds(case.ours["COND"], 1.0)
+        bits = -math.log2(max(float(np.median(best[case.wrong])), 1e-300))
+    for says, (width, (low, high)) in _BITS.items():
+        visible = errorbound.relative_bounds(case.ours["COND"], 2.0**-width) * _TYPICAL
+        seen = visible > measure.room
+        explained = case.wrong & (share <= 2.0**-width)
+        if (
+            low <= bits < high
+            and explained.sum() >= _ENOUGH * case.wrong.sum()
+            and (case.wrong & seen).sum() >= _WIDESPREAD * seen.sum()
+        ):
+            found[explained] = says
+            return
+
+
+def _by_residuals(found: NDArray[np.object_], case: Case, violations: Mapping[str, Bools]) -> None:
+    """For rows without a cause: how closely they agree, or which equations they violate."""
+    worst = _Measure(case).off
+    for row in np.flatnonzero(found == UNKNOWN).tolist():
+        broken = [number for number, off in violations.items() if off[row]]
+        if broken and len(broken) < len(violations):
+            word = "Equation" if len(broken) == 1 else "Equations"
+            found[row] = f"{UNKNOWN}, but only {word} {_listed(broken)} violated"
+        elif 0 < worst[row] < 1e-2:
+            found[row] = f"{UNKNOWN}, but agrees to about {int(-math.log10(worst[row]))} digits"
+        elif violations and not broken:
+            found[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
+
+
+def _listed(words: Sequence[str]) -> str:
+    *first, last = words
+    return f"{', '.join(first)} and {last} are" if first else f"{last} is"
