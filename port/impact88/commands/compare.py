@@ -88,8 +88,10 @@ def _talk(done: Comparison) -> Iterator[str]:
     yield from map(str, done.bad[:SHOWN])
     if len(done.bad) > SHOWN:
         yield f"and {len(done.bad) - SHOWN} more"
-    for name, meant in done.unknown.items():
+    for name, meant in list(done.unknown.items())[:SHOWN]:
         yield f"column {name} is not recognised{f'; did you mean {meant}?' if meant else ''}"
+    if len(done.unknown) > SHOWN:
+        yield f"and {len(done.unknown) - SHOWN} more columns are not recognised"
     for reason, count in done.not_compared.items():
         if reason not in HARMLESS:
             first = ", ".join(map(str, done.places_not_compared[reason][:5]))
