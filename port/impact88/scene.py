@@ -18,6 +18,8 @@ from .names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing, quantity
 
 TOML_LIMIT = 100_000
 """Bytes of the largest scene file that is read."""
+LONGEST_ENTRY = 2_000
+"""Characters of the longest line of a scene file; a TOML reader may be slow with long keys."""
 VALUE_LIMIT = 70
 """The longest value: three of them and their commas fit the 239 characters INPUT keeps."""
 DATA_LINES = (280, 290, 310)
@@ -186,6 +188,11 @@ def _raw_values(text: str, source: str) -> dict[str, tuple[int, str]]:
     """Line and raw text of each entry's value, a comment cut off."""
     raw: dict[str, tuple[int, str]] = {}
     for number, line in enumerate(text.split("\n"), 1):
+        if len(line) > LONGEST_ENTRY:
+            raise UserError(
+                f"has more than {LONGEST_ENTRY:,} characters; expected one value a line",
+                f"{source}, line {number}",
+            )
         if '"""' in line or "'''" in line:
             raise UserError(
                 "text over several lines is not used here; expected one value a line",

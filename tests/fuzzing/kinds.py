@@ -338,7 +338,7 @@ def npz_case(rng: Random) -> Case:
                 data = spoilt(rng, data)
             if rng.random() < 0.02:
                 data = data.replace(b"'shape': (", b"'shape': (9" + b"9" * rng.randint(0, 12))
-            archive.writestr(name + rng.choice([".npy"] * 30 + ["", ".txt"]), data)
+            archive.writestr((name + rng.choice([".npy"] * 30 + ["", ".txt"])) or "x", data)
     data = file.getvalue()
     if rng.random() < 0.4:
         data = spoilt(rng, data)
