@@ -22,6 +22,7 @@ from . import __version__
 from .endings import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
 from .errors import UserError, shown
 from .files import ESCAPED
+from .talk import tell
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -145,12 +146,6 @@ def _drop_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _tell(text: str) -> None:
-    """A line on stderr, where there is one that takes it."""
-    with suppress(OSError, ValueError):
-        print(text, file=sys.stderr, flush=True)
-
-
 def _speak_any_character() -> None:
     """The result is UTF-8 whatever the locale, so that a file made by ``>`` is one this project
     reads; and no character of a file's name, an id or a unit is an error on a terminal that lacks
@@ -164,9 +159,7 @@ def _speak_any_character() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    called = "impact88"
-    if arguments and arguments[0] in COMMANDS:
-        called += f" {arguments[0]}"
+    called = arguments[0] if arguments and arguments[0] in COMMANDS else None
     debug = os.environ.get("IMPACT88_DEBUG") == "1"
     with orderly(), warnings.catch_warnings():
         if not sys.warnoptions and not debug:
@@ -176,7 +169,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
-def _status(arguments: Sequence[str], called: str, debug: bool) -> int:
+def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
     """Run one command, and make one line and a status of whatever ends it."""
     try:
         try:
@@ -184,19 +177,19 @@ def _status(arguments: Sequence[str], called: str, debug: bool) -> int:
             _speak_any_character()
             status = _dispatch(arguments)
         except UserError as error:
-            _tell(f"{called}: {error}")
+            tell(called, str(error))
             status = UNUSABLE
         except MemoryError:
-            _tell(f"{called}: not enough memory; expected a smaller input, or more memory")
+            tell(called, "not enough memory; expected a smaller input, or more memory")
             status = UNUSABLE
         except RecursionError:
-            _tell(f"{called}: the input is nested too deeply; expected a plainer one")
+            tell(called, "the input is nested too deeply; expected a plainer one")
             status = UNUSABLE
         sys.stdout.flush()
     except KeyboardInterrupt:
         with suppress(ValueError):
             if sys.stderr.isatty():
-                _tell("")  # the shell's prompt comes on a line of its own
+                print(file=sys.stderr)  # the shell's prompt comes on a line of its own
         return INTERRUPTED
     except Terminated as signal:
         _drop_output()
@@ -206,7 +199,7 @@ def _status(arguments: Sequence[str], called: str, debug: bool) -> int:
         return BROKEN_PIPE
     except OSError as error:  # a full disk, most likely
         place = shown(str(error.filename)) if error.filename else "standard output"
-        _tell(f"{called}: {place}: {error.strerror or error}")
+        tell(called, f"{place}: {error.strerror or error}")
         _drop_output()
         return UNUSABLE
     except Exception as error:
@@ -215,7 +208,7 @@ def _status(arguments: Sequence[str], called: str, debug: bool) -> int:
     return status
 
 
-def _tell_bug(called: str, error: Exception, debug: bool) -> None:
+def _tell_bug(called: str | None, error: Exception, debug: bool) -> None:
     """Say that it is ours, and where, in one line; the whole traceback on request."""
     if debug:
         import traceback
@@ -228,7 +221,8 @@ def _tell_bug(called: str, error: Exception, debug: bool) -> None:
     if step is not None:
         place = f" at {os.path.basename(step.tb_frame.f_code.co_filename)}:{step.tb_lineno}"
     what = shown(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
-    _tell(
-        f"{called}: a bug of impact88, not of your input: {what}{place}"
-        f"{'' if debug else ' (IMPACT88_DEBUG=1 shows the way there)'}"
+    tell(
+        called,
+        f"a bug of impact88, not of your input: {what}{place}"
+        f"{'' if debug else ' (IMPACT88_DEBUG=1 shows the way there)'}",
     )

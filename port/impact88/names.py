@@ -139,6 +139,9 @@ VELOCITIES = ("UX", "UY", "WA", "VX", "VY", "WB")
 FINAL_STATE = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
 """The final velocities in the order of `VELOCITIES`; `FINAL_VELOCITIES` is the listing's own."""
 
+PIVOT = -10.0
+"""MU that makes the contact point a pivot (lines 260, 390 and 510)."""
+
 DEFAULT_M = "6"
 """M where a scene does not give it: the published listing's line 350."""
 

@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import PIVOT
+
 Array = NDArray[Any]
 
 LISTING_PI = 3.14159265
 """The pi of line 300."""
-PIVOT = -10
 ORDER = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 """The unknowns, column by column."""
 

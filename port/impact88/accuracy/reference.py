@@ -18,7 +18,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..errors import UserError
-from ..names import DEFAULT_M
+from ..names import DEFAULT_M, PIVOT
 from .elimination import ORDER, eliminate
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ class _Terms:
         y = (g["UY"], -self.D4 * self.WA, -g["VY"], -self.D2 * self.WB)
         self.gn = total(*(self.c * term for term in x), *(self.s * term for term in y))
         self.gt = total(*(self.c * term for term in y), *(-self.s * term for term in x))
-        self.pivot = g["MU"] == -10
+        self.pivot = g["MU"] == PIVOT
         self.mu = -g["MU"] if self.gt > 0 and not self.pivot else g["MU"]
 
     def before(self) -> list[Number]:

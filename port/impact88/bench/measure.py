@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from ..accuracy.elimination import equilibrated_condition, fill
+from ..processors import processors
 from ..progress import Meter
 from .methods import (
     METHODS,
@@ -71,9 +72,7 @@ def machine() -> dict[str, Any]:
         pass
     return {
         "processor": name,
-        "cores": len(os.sched_getaffinity(0))
-        if hasattr(os, "sched_getaffinity")
-        else os.cpu_count(),
+        "cores": processors(),
         "python": platform.python_version(),
         "numpy": np.__version__,
         "impact88": __version__,

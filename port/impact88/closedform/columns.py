@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 
 from ..errors import UserError
 from ..fields import ANGLES
-from ..names import DEFAULT_M, SCENE
+from ..names import DEFAULT_M, PIVOT, SCENE
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
 
-PIVOT = -10.0
 INERTIAS = ("MA", "MB", "IA", "IB")
 BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 """Mass, inertia, velocities and spin of A and of B."""

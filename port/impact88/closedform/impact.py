@@ -34,6 +34,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
+from ..names import PIVOT
 from . import statusbits  # noqa: F401 - makes "status" an operation of plans
 from .energy import kinetic_energy
 from .formulas import Book, Expression
@@ -543,7 +544,7 @@ class Impact:
 
     @cached_property
     def MUP(self) -> Expression:
-        return self._by_kind(lambda: self.mu, lambda: self.book.constant(-10.0))
+        return self._by_kind(lambda: self.mu, lambda: self.book.constant(PIVOT))
 
     @cached_property
     def MUC(self) -> Expression:

@@ -6,7 +6,6 @@ point masses) with exact pi, by the closed form of `closedform.impact`.
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -17,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError
-from ..names import RESULTS, SCENE
+from ..names import PIVOT, RESULTS, SCENE
+from ..processors import processors
 from ..status import Status
 from .columns import Block, Buffers, Source, examine, sources
 from .formulas import Book, Expression
@@ -124,8 +124,7 @@ def _wanted(outputs: Sequence[str] | str | None) -> tuple[str, ...]:
 
 def _workers(count: int, threads: int | None) -> int:
     if threads is None:
-        processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else None
-        threads = min(processors or os.cpu_count() or 1, 1 + count // WORTH_A_THREAD)
+        threads = min(processors(), 1 + count // WORTH_A_THREAD)
     return max(1, min(threads, -(-count // SHARED_TILE)))
 
 
@@ -203,7 +202,7 @@ def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...]) -> Plan:
             scene[name] = book.column(name, varies=what.startswith(("array", "mixed")))
     pivot: bool | Expression = kind["MU"] == "pivot"
     if kind["MU"] == "mixed":
-        pivot = book.equals(scene["MU"], -10.0)
+        pivot = book.equals(scene["MU"], PIVOT)
     point: bool | Expression = kind["M"] == "4"
     if kind["M"] == "mixed":
         point = book.equals(scene["M"], 4.0)

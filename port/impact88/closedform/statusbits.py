@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import PIVOT
 from ..status import Status
 from .passes import register
 
@@ -22,7 +23,7 @@ SLIP_TOLERANCE = 1e-12
 of it is none, so that rounding cannot make a scene at the critical friction slide back."""
 SIDE_TOLERANCE = 1e-9
 """How far a center may lie beyond the contact plane, of its distance to the contact point."""
-LISTING_MISREADS = -10.0
+LISTING_MISREADS = PIVOT
 """Line 510 takes any MU not above this for a pivot."""
 
 

@@ -21,7 +21,6 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import sys
 from collections.abc import Iterator
 
 from ..accuracy.errorbound import DOUBLE
@@ -29,6 +28,7 @@ from ..checking.compare import HARMLESS, Comparison, compare_file
 from ..checking.slipsfilling import EQUATIONS
 from ..errors import UserError, shown
 from ..tables.table import format_of
+from ..talk import tell
 from .options import FORMATS, add_json_argument, add_output_argument, add_set_argument, settings
 
 SHOWN = 20
@@ -79,7 +79,7 @@ def main(args: argparse.Namespace) -> int:
     else:
         print("\n".join(_lines(done)))
     for line in _talk(done):
-        print(f"impact88 compare: {shown(line)}", file=sys.stderr)
+        tell("compare", line)
     return int(done.differing > 0 or bool(done.bad) or (args.strict and bool(done.silent)))
 
 

@@ -27,7 +27,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import IO, Any
@@ -38,7 +37,7 @@ from numpy.typing import NDArray
 from ..closedform.columns import UNUSED_BY_POINTS, refusals
 from ..closedform.solve import solve
 from ..doubles import is_number
-from ..errors import quoted, shown
+from ..errors import quoted
 from ..files import replacing
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..progress import progress
@@ -46,6 +45,7 @@ from ..scene import VALUE_LIMIT
 from ..status import Status
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import format_of, open_reader, open_writer
+from ..talk import tell
 from .options import FORMATS, add_names_argument, add_set_argument, names_given, settings
 
 Results = dict[str, NDArray[Any]]
@@ -269,13 +269,13 @@ class _Complaints:
 
     def _tell(self, cell: BadCell) -> None:
         if self.count <= SHOWN:
-            print(f"impact88 solve: {shown(str(cell))}", file=sys.stderr)
+            tell("solve", str(cell))
 
     def summarise(self) -> None:
         if not self.count:
             return
         rows = f"{self.count:,} row{'s' if self.count > 1 else ''} could not be solved"
         if self._path is not None:
-            print(f"impact88 solve: {rows}: see {self._path}", file=sys.stderr)
+            tell("solve", f"{rows}: see {self._path}")
         elif self.count > SHOWN:
-            print(f"impact88 solve: {rows}; --errors FILE tells all", file=sys.stderr)
+            tell("solve", f"{rows}; --errors FILE tells all")

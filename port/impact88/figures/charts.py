@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
+from ..names import PIVOT
 from ..scene import numbers_of
 from ..status import Status
 from .canvas import new_figure, style
@@ -190,11 +191,11 @@ def friction_sweep(scene: Any) -> Figure:
     from ..closedform.solve import solve
 
     values: dict[str, Any] = numbers_of(scene)
-    pivot = solve({**values, "MU": -10.0}, ["MUC", "STATUS"])
+    pivot = solve({**values, "MU": PIVOT}, ["MUC", "STATUS"])
     # line 400 turns the sign of what is typed where gt > 0: the critical value as one would type it
     sign = float(np.sign(solve({**values, "MU": 1.0}, ["MUP"])["MUP"]))
     critical = sign * float(pivot["MUC"])
-    own = critical if values["MU"] == -10 else values["MU"]
+    own = critical if values["MU"] == PIVOT else values["MU"]
     reach = max(1.0, 1.5 * abs(critical) if np.isfinite(critical) else 0.0, 1.2 * abs(own))
     reach = min(reach, WIDEST_SWEEP)
     friction = np.linspace(-reach, reach, SWEEP)
@@ -226,7 +227,7 @@ def friction_sweep(scene: Any) -> Figure:
         entries = [
             ("line", BLUE, "-", symbol("ΔV_a")),
             ("line", VERMILION, (0, (4, 1.5)), symbol("ΔV_b")),
-            ("mark", BLACK, "o", "pivot" if values["MU"] == -10 else "this scene"),
+            ("mark", BLACK, "o", "pivot" if values["MU"] == PIVOT else "this scene"),
         ]
         if abs(critical) <= reach:
             what = f"critical: {short(critical)}"

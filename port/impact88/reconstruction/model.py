@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..closedform.solve import solve
-from ..names import FINAL_STATE, SCENE, VELOCITIES
+from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from .geometry import Geometry
 from .outcome import energies, status, velocity_changes
 
@@ -46,7 +46,7 @@ def initial_velocities(columns: Mapping[str, Any]) -> dict[str, Array]:
     e, em, mu = (np.asarray(columns[name], np.float64) for name in ("E", "EM", "MUP"))
     final = [np.asarray(columns[name], np.float64) for name in FINAL_STATE]
     with np.errstate(all="ignore"):
-        mu = np.where(mu == -10, np.nan, mu)
+        mu = np.where(mu == PIVOT, np.nan, mu)
         normal, _, spin = here.relative(final)
         a, b = here.inverse_ia, here.inverse_ib
         snn = here.an * here.an * a + here.bn * here.bn * b

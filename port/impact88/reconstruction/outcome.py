@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.columns import PIVOT
 from ..closedform.energy import kinetic_energy
 from ..closedform.solve import solve
 from ..closedform.statusbits import set_bits
-from ..names import FINAL_STATE, SCENE, VELOCITIES
+from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from .geometry import Geometry, with_point_masses
 from .impulse import principal_direction
 

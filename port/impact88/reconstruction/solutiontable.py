@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import UserError
-from ..names import CHAPTER, RESULTS, SCENE, quantity
+from ..names import CHAPTER, PIVOT, RESULTS, SCENE, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..status import sentences
 from .impulse import clock, forces
 from .outcome import moment_ratio, outcome
-from .unknowns import BADLY_CONDITIONED, PIVOT, Solution, solve_for
+from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
 _BARRIERS = (

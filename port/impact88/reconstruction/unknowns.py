@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..errors import UserError
-from ..names import RESULTS, SCENE, check_names, missing, quantity
+from ..names import PIVOT, RESULTS, SCENE, check_names, missing, quantity
 from .equations import COEFFICIENTS, FINAL, IMPULSES, INITIAL, SPINS, Equations, Found
 from .geometry import NAMES as GEOMETRY
 from .geometry import with_point_masses
@@ -40,7 +40,6 @@ Array = NDArray[np.float64]
 
 UNKNOWNS = (*INITIAL, *FINAL, *COEFFICIENTS)
 
-PIVOT = -10.0
 BADLY_CONDITIONED = 10.0
 """From this amplification on a solution is flagged: an error of the known velocities is found
 tenfold, or worse, in some unknown."""

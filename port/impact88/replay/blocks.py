@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from ..processors import processors
 from . import listing
 from .columns import Scenes
 from .reals import Floats, Reals, compare, from_floats
@@ -37,7 +37,7 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
     unit.record(~known, OTHER_M)
     values = {name: np.zeros(scenes.size) for name in listing.ASSIGNED}
     useful = max(1, scenes.size // WORTH_A_THREAD)
-    threads = min(threads if threads is not None else _processors(), useful)
+    threads = min(threads if threads is not None else processors(), useful)
     if block is None:
         block = BLOCK if threads == 1 else SHARED_BLOCK
     block = max(1, min(block, -(-scenes.size // threads)))
@@ -55,13 +55,6 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
         for job in jobs:
             compute(job)
     return Replay(scenes, six, unit, values)
-
-
-def _processors() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _blocks(

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from .. import status
 from ..errors import UserError
-from ..names import CHAPTER, FINAL_VELOCITIES, RESULTS, SCENE, VELOCITIES
+from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
 from ..reconstruction.model import (
     Model,
     forward_model,
@@ -344,7 +344,7 @@ def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
 
 def _check_invertible(given: Mapping[str, Uncertain]) -> None:
     """Raises UserError where no reconstruction exists: pivot, e = 0, e_m = 0."""
-    if given["MUP"].nominal == -10:
+    if given["MUP"].nominal == PIVOT:
         raise UserError(
             "the pivot has five equations for the six initial velocities; expected the signed "
             "P_t/P_n",

@@ -1,0 +1,15 @@
+"""What is said on standard error beside the result: one line at a time, who says it in front."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import suppress
+
+from .errors import shown
+
+
+def tell(command: str | None, text: str) -> None:
+    """A line on stderr, where there is one that takes it: "impact88 COMMAND: text"."""
+    name = f"impact88 {command}" if command else "impact88"
+    with suppress(OSError, ValueError):  # closed, or full: there is nobody to tell
+        print(f"{name}: {shown(text)}", file=sys.stderr, flush=True)
