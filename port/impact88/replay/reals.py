@@ -60,37 +60,41 @@ def _wrapped(value: int) -> np.int64:
     return np.int64(value - (1 << 64) if value >> 63 else value)
 
 
+# Parts of a real, by the bits they take.
 _SIGN = _mask(63, 63)
-_MAGNITUDE = _mask(0, 62)
+_MAGNITUDE = _mask(0, 62)  # exponent and mantissa, without the sign
 _EXPONENT = _mask(52, 62)
-_FRACTION = _mask(0, 51)
-_HALF_UNIT = np.int64(1 << 20)
-_32_BITS = _mask(21, 63)
-_40_BITS = _mask(13, 63)
-_UPPER_HALF = _mask(33, 62)
+_FRACTION = _mask(0, 51)  # the mantissa without its top bit, which a float64 does not hold
+_HALF_UNIT = np.int64(1 << 20)  # the extension's top bit: half of what a stored real can show
+_32_BITS = _mask(21, 63)  # what a stored real keeps: the extension cleared
+_40_BITS = _mask(13, 63)  # what a real keeps: what no register holds cleared
+_UPPER_HALF = _mask(33, 62)  # of a factor: 20 bits, so that its products are exact
+# Bytes of a right factor, the extension being byte 0, in the order multiplying takes them: two
+# that are zero one after the other, and what is then shifted once too often.
 _BYTES_1_2 = _mask(21, 36)
 _BYTES_2_3 = _mask(29, 44)
 _BYTE_0 = _mask(13, 20)
 _BYTES_0_1 = _mask(13, 28)
 
-_TO_UNITS = _wrapped((1023 + 39 + 1023) << 52)
-_FROM_UNITS = np.int64(39 << 52)
-_BELOW_256 = np.int64(((1023 + 8) << 52) - 1)
-_EQUAL_CARRY = np.uint64(51)
+_TO_UNITS = _wrapped((1023 + 39 + 1023) << 52)  # less an exponent: the scale that makes it 2^39
+_FROM_UNITS = np.int64(39 << 52)  # takes that scale's power of two back
+_BELOW_256 = np.int64(((1023 + 8) << 52) - 1)  # a sum of fewer units has its upper 32 bits clear
+_EQUAL_CARRY = np.uint64(51)  # how far right: 13 ones are left of a word of ones, else none
 _ONE = np.uint64(1)
-_TWO_BITS = np.uint64(2**62)  # 2.0
-_52 = np.uint64(52)
+_TWO_BITS = np.uint64(2**62)  # 2.0: above every magnitude's place in a minimum
+_52 = np.uint64(52)  # the bits below the exponent
 
-_TOP = np.int64(1 << 52)
+_TOP = np.int64(1 << 52)  # the mantissa's top bit, put back
 _EIGHT, _LAST_BYTE = np.uint64(8), np.uint64(0xFF)
-_BYTE_SHIFTS = [np.uint64(8 * position) for position in range(5)]
+_BYTE_SHIFTS = [np.uint64(8 * position) for position in range(5)]  # extension first
 
 _minimum = np.minimum.reduce
 _maximum = np.maximum.reduce
 
-_UP = 1.0 + 2.0**-30
-_DOWN = 0.9
-_CANCELLED = 2.0**-33
+# How the bounds on a result's magnitude are kept safe.
+_UP = 1.0 + 2.0**-30  # more than any rounding adds
+_DOWN = 0.9  # less than any cutting off leaves
+_CANCELLED = 2.0**-33  # the least that is left of the larger operand when digits cancel
 
 
 def _nowhere() -> Unit:
