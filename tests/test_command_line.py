@@ -220,6 +220,13 @@ def test_input_that_ends_at_a_prompt_is_one_line() -> None:
     assert_one_line(done.stderr)
 
 
+def test_replies_without_end_are_refused() -> None:
+    done = command("run", "--json", input="yes\n" * 20_000)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert_one_line(done.stderr)
+    assert "10,000 replies" in done.stderr
+
+
 class Terminal:
     """The command on a terminal of its own."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import subprocess
 import sys
@@ -447,6 +448,32 @@ class TestCanvas:
                 canvas.save(charts.tornado(found, ["DVA"]), str(tmp_path / f"{name}.{ending}"))
             first, second = ((tmp_path / f"{name}.{ending}").read_bytes() for name in "ab")
             assert first == second
+
+    @pytest.mark.parametrize("settings", [b"font.size: 40\nbogus\n", b"\xff\xfe"])
+    def test_nobody_elses_settings_change_a_figure(self, tmp_path, monkeypatch, settings):
+        line = "figure colinear -o {}.pdf"
+        monkeypatch.chdir(tmp_path)
+        assert main(line.format("usual").split()) == 0
+        (tmp_path / "matplotlibrc").write_bytes(settings)
+        code = "import sys; from impact88.cli import main; sys.exit(main(sys.argv[1:]))"
+        done = subprocess.run(
+            [sys.executable, "-c", code, *line.format("set").split()],
+            env={**os.environ, "MPLBACKEND": "nonsense"},
+            capture_output=True,
+            check=False,
+        )
+        assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+        assert (tmp_path / "set.pdf").read_bytes() == (tmp_path / "usual.pdf").read_bytes()
+
+    def test_parameters_set_in_python_stay_outside(self, tmp_path):
+        import matplotlib
+
+        drawing = freebody.colinear()
+        canvas.save(drawing, str(tmp_path / "usual.pdf"))
+        with matplotlib.rc_context({"font.size": 40, "savefig.bbox": "tight"}):
+            canvas.save(drawing, str(tmp_path / "set.pdf"))
+            assert matplotlib.rcParams["font.size"] == 40
+        assert (tmp_path / "set.pdf").read_bytes() == (tmp_path / "usual.pdf").read_bytes()
 
     def test_other_endings_are_refused(self, tmp_path):
         with pytest.raises(UserError, match=r"expected \.svg, \.png, \.pdf"):

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
@@ -32,6 +32,9 @@ from .options import (
     add_set_argument,
     settings,
 )
+
+MOST_REPLIES = 10_000
+"""Replies that are read: the program asks twice, and once more for each it refuses."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -109,7 +112,9 @@ def main(args: argparse.Namespace) -> int:
             console = Console(lambda: next(replies, None), show, printer, dos=not args.no_dos)
         else:
             echo = args.json or not sys.stdin.isatty()
-            console = Console(typed_line, show, printer, dos=not args.no_dos, echo=echo)
+            console = Console(
+                _typed_lines().__next__, show, printer, dos=not args.no_dos, echo=echo
+            )
         try:
             error, zero_determinant, left = start(data, console, args.arithmetic, str(args.slot))
         except EndOfInput:
@@ -139,6 +144,13 @@ def main(args: argparse.Namespace) -> int:
     elif error is not None and sys.stdout.isatty():
         print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
     return 1 if error else 0
+
+
+def _typed_lines() -> Iterator[str | None]:
+    """Lines of standard input. Raises UserError when a program that never stops writes them."""
+    for _ in range(MOST_REPLIES):
+        yield typed_line()
+    raise UserError(f"{MOST_REPLIES:,} replies, and none that the program takes; expected numbers")
 
 
 def _prompting(shown: list[str]) -> Callable[[str], object]:

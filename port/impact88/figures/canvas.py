@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import logging
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
@@ -56,27 +61,80 @@ def new_figure(width_mm: float, height_mm: float) -> Figure:
 
     Raises UserError naming the extra to install when matplotlib is missing.
     """
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise UserError(
-            "figures need matplotlib, which is not installed; pip install 'impact88[plot]'"
-        ) from None
+    import_matplotlib()
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(width_mm / 25.4, height_mm / 25.4), dpi=DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     return figure
 
 
-def style() -> Any:
-    """A context in which matplotlib uses this project's style. Raises UserError as above."""
+@contextmanager
+def style() -> Iterator[None]:
+    """A context in which matplotlib uses this project's style, whatever the user has set, and says
+    nothing. Raises UserError as above."""
+    import_matplotlib()
+    import matplotlib
+
+    with _quiet(), matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(dict[Any, Any](STYLE))
+        yield
+
+
+def import_matplotlib() -> None:
+    """Import matplotlib without anybody's settings, unless somebody has imported it already.
+
+    It reads MPLBACKEND and a file ``matplotlibrc`` of the current folder or the user's while it is
+    imported, and fails, or talks on stderr, about what it finds there. Raises UserError naming the
+    extra to install when it is missing.
+    """
+    if sys.modules.get("matplotlib") is not None:
+        return
+    settings = {"MPLBACKEND": "agg", "MATPLOTLIBRC": os.devnull}
+    before = {name: os.environ.get(name) for name in settings}
+    os.environ.update(settings)
     try:
-        from matplotlib import rc_context
-    except ImportError:
-        raise UserError(
-            "figures need matplotlib, which is not installed; pip install 'impact88[plot]'"
-        ) from None
-    return rc_context(dict[Any, Any](STYLE))
+        with _quiet():
+            try:
+                import matplotlib  # noqa: F401
+            except ImportError:
+                raise UserError(
+                    "figures need matplotlib, which is not installed; pip install 'impact88[plot]'"
+                ) from None
+            except Exception:  # the current folder's file comes before all others
+                _import_elsewhere()
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _import_elsewhere() -> None:
+    """Import matplotlib with another current folder, one that has no file of its name."""
+    for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
+        del sys.modules[name]  # what the first try left
+    folder = os.getcwd()
+    os.chdir(os.path.dirname(__file__))
+    try:
+        import matplotlib  # noqa: F401
+    finally:
+        os.chdir(folder)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Matplotlib's remarks on fonts, caches and settings are no message of this project's."""
+    logger = logging.getLogger("matplotlib")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
 
 
 def drawn(drawing: Drawing) -> Figure:
