@@ -19,6 +19,7 @@ import pytest
 
 from captures import ROOT
 from impact88.cli import COMMANDS
+from impact88.names import SCENE
 from installed import COMMAND
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -102,13 +103,31 @@ def test_every_command_is_mentioned() -> None:
     assert not missing
 
 
-def test_every_linked_file_is_there() -> None:
-    links = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
+def anchors(text: str) -> set[str]:
+    """Where a heading can be linked to, as the usual renderers name it."""
+    headings = re.findall(r"^#+ (.*)$", text, re.M)
+    return {re.sub(r"[^a-z0-9 -]", "", h.lower()).replace(" ", "-") for h in headings}
+
+
+def test_links_work_wherever_readme_is_shown() -> None:
+    """A package index shows this page alone: nothing but the page itself and the web is linked."""
+    links = [link for link in re.findall(r"\]\(([^)]+)\)", README) if "://" not in link]
     assert links
-    assert [link for link in links if not (ROOT / link).exists()] == []
+    assert {link.removeprefix("#") for link in links if link.startswith("#")} <= anchors(README)
+    assert [link for link in links if not link.startswith("#")] == []
 
 
-def test_rooms_named_in_readme_are_there() -> None:
-    rooms = re.findall(r"\| `([a-z_/]+\.py)`", README)
-    assert rooms
-    assert [room for room in rooms if not (ROOT / "port" / "impact88" / room).is_file()] == []
+@pytest.mark.parametrize("page", ["README.md", "port/README.md", "tests/README.md"])
+def test_files_and_rooms_named_are_there(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    named = re.findall(r"`([A-Za-z0-9_./-]+(?:\.py|\.md|/))`", text)
+    assert named
+    places = [ROOT, ROOT / "port", ROOT / "port" / "impact88", ROOT / "tests", ROOT / "golden"]
+    assert [name for name in named if not any((place / name).exists() for place in places)] == []
+
+
+def test_the_table_of_names_is_names_py_s() -> None:
+    rows = [
+        f"| `{q.name}` | {q.symbol} | {q.meaning} | {q.unit} | {q.line} |" for q in SCENE.values()
+    ]
+    assert "\n".join(rows) in README
