@@ -98,6 +98,7 @@ RESULTS: dict[str, Quantity] = {
 
 _LENGTH = "length"
 _FORCE = "mass·length/time²"
+_ENERGY = "mass·length²/time²"
 
 CHAPTER: dict[str, Quantity] = {
     quantity.name: quantity
@@ -118,8 +119,19 @@ CHAPTER: dict[str, Quantity] = {
         Quantity("FM2", "F_M", "peak force, at twice the average", _FORCE, 0),
         Quantity("FM3", "F_M", "peak force, at three times the average", _FORCE, 0),
         Quantity("DT", "ΔT", "fraction of the kinetic energy lost", "1", 0),
+        Quantity("EL", "T - T'", "kinetic energy lost, such as in crush", _ENERGY, 0),
         Quantity("SA", "|v_a|", "initial speed of A", _VELOCITY, 0),
         Quantity("SB", "|v_b|", "initial speed of B", _VELOCITY, 0),
+        Quantity("HA", "", "course of A before impact, from the x axis", "degree", 0),
+        Quantity("HB", "", "course of B before impact, from the x axis", "degree", 0),
+        Quantity("SAF", "|V_a|", "final speed of A", _VELOCITY, 0),
+        Quantity("SBF", "|V_b|", "final speed of B", _VELOCITY, 0),
+        Quantity("HAF", "", "course of A after impact, from the x axis", "degree", 0),
+        Quantity("HBF", "", "course of B after impact, from the x axis", "degree", 0),
+        Quantity("DVAF", "", "A's velocity change along its length, forward", _VELOCITY, 0),
+        Quantity("DVAR", "", "A's velocity change across it, to its right", _VELOCITY, 0),
+        Quantity("DVBF", "", "B's velocity change along its length, forward", _VELOCITY, 0),
+        Quantity("DVBR", "", "B's velocity change across it, to its right", _VELOCITY, 0),
         Quantity("UN", "v_an", "initial normal velocity of A", _VELOCITY, 0),
         Quantity("UT", "v_at", "initial tangential velocity of A", _VELOCITY, 0),
         Quantity("VN", "v_bn", "initial normal velocity of B", _VELOCITY, 0),
@@ -138,6 +150,9 @@ VELOCITIES = ("UX", "UY", "WA", "VX", "VY", "WB")
 """The six values lines 210 and 230 ask for, in that order."""
 FINAL_STATE = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
 """The final velocities in the order of `VELOCITIES`; `FINAL_VELOCITIES` is the listing's own."""
+IMPULSES = ("PN", "PT", "PM")
+COEFFICIENTS = ("E", "MUP", "EM")
+"""The coefficients as they may be asked for: friction as the signed P_t/P_n."""
 
 PIVOT = -10.0
 """MU that makes the contact point a pivot (lines 260, 390 and 510)."""

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import FINAL_STATE, VELOCITIES
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, VELOCITIES
 from .geometry import Geometry
 
 Array = NDArray[np.float64]
@@ -27,10 +27,7 @@ Rows = tuple[Array, Array]
 """A velocity, or an impulse as one: its rows over z and over the known velocities k."""
 
 INITIAL, FINAL = VELOCITIES, FINAL_STATE
-COEFFICIENTS = ("E", "MUP", "EM")
-"""The coefficients as they may be asked for: friction as the signed P_t/P_n."""
 SPINS = ("WA", "WB", "WAF", "WBF")
-IMPULSES = ("PN", "PT", "PM")
 
 RANK_TOLERANCE = 1e-12
 """Singular values below this share of the largest count as zero."""

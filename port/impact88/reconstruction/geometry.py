@@ -20,14 +20,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.degrees import sin_cos
+from ..closedform.degrees import sin_cos as real_sin_cos
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 NAMES = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 """The values of a scene that make its geometry; M (6 or 4) is optional."""
 _POINT_MASS = dict.fromkeys(NAMES[:2] + NAMES[3:7], 0.0) | {"IA": 1.0, "IB": 1.0}
 """What a point mass does not look at, and may be left out where M is 4 throughout."""
+
+
+def _numbers(value: Any) -> Array:
+    """Doubles; complex ones stay, whose imaginary part carries a derivative (`adjustment`)."""
+    array = np.asarray(value)
+    return array if np.iscomplexobj(array) else array.astype(np.float64, copy=False)
+
+
+def sin_cos(degrees: Any) -> tuple[Array, Array]:
+    """Sine and cosine of angles in degrees, derivatives too where they are complex."""
+    degrees = np.asarray(degrees)
+    if not np.iscomplexobj(degrees):
+        return real_sin_cos(degrees)
+    sine, cosine = real_sin_cos(degrees.real)
+    turn = 1j * np.radians(degrees.imag)
+    return sine + turn * cosine, cosine - turn * sine
 
 
 def with_point_masses(columns: Mapping[str, Any]) -> dict[str, Any]:
@@ -61,7 +77,7 @@ class Geometry:
         """The geometry of scenes given by name (`NAMES`, and M where not 6; see
         `with_point_masses`), angles in degrees."""
         columns = with_point_masses(columns)
-        value = {name: np.asarray(columns[name], np.float64) for name in NAMES}
+        value = {name: _numbers(columns[name]) for name in NAMES}
         point = np.asarray(columns.get("M", 6), np.float64) == 4
         sine, cosine = sin_cos(value["GA"])
         sine_a, cosine_a = sin_cos(value["TA"] + value["PA"])

@@ -42,7 +42,7 @@ def forces(impulse: Any, contact_time: Any) -> dict[str, Array]:
 
 def facing(vehicle: str, theta: Any) -> Array:
     """The direction (degrees from the x axis) a vehicle's front points to; see above."""
-    return np.asarray(theta, np.float64) + (180.0 if vehicle == "A" else 0.0)
+    return np.asarray(theta) + (180.0 if vehicle == "A" else 0.0)
 
 
 def principal_direction(vehicle: str, theta: Any, gamma: Any, pn: Any, pt: Any) -> Array:

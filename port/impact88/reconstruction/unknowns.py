@@ -31,8 +31,8 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..errors import UserError
-from ..names import PIVOT, RESULTS, SCENE, check_names, missing, quantity
-from .equations import COEFFICIENTS, FINAL, IMPULSES, INITIAL, SPINS, Equations, Found
+from ..names import COEFFICIENTS, IMPULSES, PIVOT, RESULTS, SCENE, check_names, missing, quantity
+from .equations import FINAL, INITIAL, SPINS, Equations, Found
 from .geometry import NAMES as GEOMETRY
 from .geometry import with_point_masses
 

@@ -1,0 +1,550 @@
+"""Any reconstruction with its tolerances: adjustment of observations with conditions.
+
+What is known of an impact, velocities and spins, speeds and courses, coefficients, energy lost,
+velocity changes, masses and angles, each exactly or within a tolerance, is adjusted so that the
+laws hold exactly: Equations 13, 14 and 17 by the way an impact is written (`State`), Equations 15,
+16 and 18 and the exact values as conditions. Among all impacts that meet them the one is sought
+whose sum of squared adjustments, each in units of its standard deviation, is least (Gauss, Newton,
+with the conditions' null space at each step). With as many known values as unknowns nothing is
+adjusted and the solution is that of `unknowns`; with fewer, what is determined is found and the
+rest is told.
+
+First-order deviations and correlations come from the same linear equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..closedform.columns import PIVOT
+from ..errors import UserError
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, VELOCITIES
+from ..uncertainty.uncertain import Uncertain, fixed
+from .geometry import NAMES as GEOMETRY
+from .geometry import Geometry
+from .state import CHANGES, COURSES, ENERGIES, QUANTITIES, SPEEDS, State
+from .unknowns import TIE, UnsolvableError
+
+Array = NDArray[Any]
+Floats = NDArray[np.float64]
+
+PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *COURSES)
+"""Known values that enter the conditions; the others are quantities a state has."""
+MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES)
+KNOWABLE = ("M", *PARAMETERS, "MU", *MEASURABLE)
+"""What may be known."""
+_SPINS = ("WA", "WB", "WAF", "WBF")
+_CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES)
+"""Quantities that more than one impact may have: solutions are sought from several starts."""
+_STARTS = 12
+_STEPS = 80
+_TINY = 1e-30
+"""Of a scaled variable: the imaginary step whose derivative has no error."""
+_RANK = 1e-10
+_NO_ROWS = np.zeros((0, 1))
+_OPEN = 1e-7
+"""From this share of its gradient in the null space on, a quantity is not determined."""
+_HOLDS = 1e-10
+"""What scaled conditions may leave over."""
+DEGREES = float(np.degrees(1.0))
+
+
+class System:
+    """The equations of one reading of what is known, in scaled variables (rows) of n impacts.
+
+    ``known``: by name, friction as MUP; ``adjusted``: whether values with a tolerance are adjusted
+    (each a variable or a quantity with an observation) or taken as they are (conditions all).
+    """
+
+    def __init__(self, known: Mapping[str, Uncertain], adjusted: bool) -> None:
+        self.known, self.adjusted = dict(known), adjusted
+        self.nominal = {name: item.nominal for name, item in known.items()}
+        self.point = self.nominal.get("M", 6.0) == 4
+        here = Geometry.of(self.nominal)
+        self.mass = float(1 / here.inverse_mass)
+        self.gyration = 1.0
+        if not self.point:
+            self.gyration = float(np.sqrt(here.inverse_mass / here.inverse_spin_inertia))
+        still = self._still()
+        self.speed = self._typical_speed()
+        loose = {n for n, item in known.items() if adjusted and item.varies}
+        parameters = [n for n in known if n in PARAMETERS and n in loose]
+        unknown = [n for n in VELOCITIES if n not in still and (n not in known or n in loose)]
+        self.from_after: tuple[str, ...] = ()
+        if not adjusted:
+            self.from_after = tuple(n for n in unknown if FINAL_STATE[VELOCITIES.index(n)] in known)
+            unknown = [n for n in unknown if n not in self.from_after]
+        impulses = [n for n in IMPULSES if n not in still]
+        self.variables = (*unknown, *impulses, *parameters)
+        self.scales = np.array([self.scale(name) for name in self.variables])
+        self.constants = {**dict.fromkeys(still, 0.0), **self.nominal}
+        laws = [n for n in COEFFICIENTS if n in known and not (self.point and n == "EM")]
+        exact = [
+            n
+            for n in known
+            if ((n in MEASURABLE and n not in loose) or n in SPEEDS or n in COURSES)
+            and n not in VELOCITIES
+            and not (
+                n in FINAL_STATE and VELOCITIES[FINAL_STATE.index(n)] in (*still, *self.from_after)
+            )
+        ]
+        self.laws, self.exact = laws, exact
+        self.conditions = (*laws, *exact)
+        self.observations = tuple(n for n in known if n in loose and n not in still)
+        self.geometry = None if set(parameters) & set(GEOMETRY) else here
+        self.linear = not adjusted and not any(
+            n in _CURVED and _COURSE_OF.get(n) not in known for n in known
+        )
+
+    def _still(self) -> tuple[str, ...]:
+        """What is 0 and no variable: a point mass's spins, a barrier's velocities."""
+        still: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
+        for mass, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
+            if np.isinf(self.nominal[mass]):
+                still += names
+        return still
+
+    def _typical_speed(self) -> float:
+        sizes = [abs(v) for n, v in self.nominal.items() if n in _VELOCITY_LIKE]
+        sizes += [abs(v) * self.gyration for n, v in self.nominal.items() if n in _SPINS]
+        energies = [abs(v) for n, v in self.nominal.items() if n in ("KI", "KF", "EL")]
+        sizes += [float(np.sqrt(2 * v / self.mass)) for v in energies]
+        return max(sizes, default=1.0) or 1.0
+
+    def scale(self, name: str) -> float:
+        """What a quantity of ordinary size measures in the problem's units."""
+        speed, mass, length = self.speed, self.mass, self.gyration
+        if name in _SPINS:
+            return speed / length
+        if name in IMPULSES:
+            return mass * speed * (length if name == "PM" else 1.0)
+        if name in COURSES or name in ("GA", "PA", "PB", "TA", "TB"):
+            return DEGREES
+        if name in COEFFICIENTS or name == "DT":
+            return 1.0
+        if name in ("KI", "KF", "EL"):
+            return mass * speed**2
+        if name in ("DA", "DB"):
+            return length
+        if name in GEOMETRY:
+            return abs(self.nominal[name])
+        return 100.0 if name == "LOSS" else speed
+
+    # -- residuals
+
+    def state(
+        self, x: Array, data: Mapping[str, Array] | None = None, here: Geometry | None = None
+    ) -> State:
+        """The impact with these variables; ``data`` replaces known values (when not adjusted) and
+        ``here`` is the geometry they make, where it has been worked out before."""
+        moved = {
+            n: row * scale for n, row, scale in zip(self.variables, x, self.scales, strict=True)
+        }
+        if here is None and not (data and set(data) & set(GEOMETRY)):
+            here = self.geometry
+        return State({**self.constants, **(data or {}), **moved}, here, self.from_after)
+
+    def left(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
+        """What conditions, then observations leave over, scaled: rows, one column an impact."""
+        targets = {**self.nominal, **(targets or {})}
+        rows = [state.law(n) / self._law_scale(n) for n in self.laws]
+        rows += [self._exact(state, n, targets) for n in self.exact]
+        for name in self.observations:
+            off = self.measured(state, name) - targets[name]
+            rows.append(off / standard_deviation(self.known[name]))
+        return np.stack(np.broadcast_arrays(*map(np.atleast_1d, rows))) if rows else _NO_ROWS
+
+    def measured(self, state: State, name: str) -> Any:
+        """What an observation is of: an adjusted value that conditions hold, or a quantity."""
+        return state.values[name] if name in self.variables else state[name]
+
+    def _law_scale(self, coefficient: str) -> float:
+        if coefficient == "MUP" and self.nominal["MUP"] != PIVOT:
+            return self.mass * self.speed
+        return self.speed / (self.gyration if coefficient == "EM" else 1.0)
+
+    def _exact(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
+        if name in COURSES:
+            return state.across(name) / self.speed
+        if name in SPEEDS:
+            course = _COURSE_OF[name]
+            size = state.along(course) if course in self.known else state[name]
+            value = state.values[name] if name in self.variables else targets[name]
+            return (size - value) / self.speed
+        return (state[name] - targets[name]) / self.scale(name)
+
+    def jacobian(
+        self, x: Array, rows: Any, data: Mapping[str, Array] | None = None
+    ) -> NDArray[np.float64]:
+        """Derivatives of ``rows(state)`` over the scaled variables: rows, variables, impacts."""
+        columns = []
+        for i in range(len(self.variables)):
+            moved = x.astype(complex)
+            moved[i] += 1j * _TINY
+            columns.append(np.imag(rows(self.state(moved, data))) / _TINY)
+        return np.stack(columns, axis=1)
+
+    def gradient(self, x: Array, name: str) -> Floats:
+        """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
+        if name in self.variables and name not in QUANTITIES:
+            return self.scales * (np.array(self.variables) == name)
+        return self.jacobian(x, lambda state: np.reshape(state[name], (1, -1)))[0, :, 0]
+
+    # -- one impact
+
+    def start(self, rng: np.random.Generator, spread: float) -> Floats:
+        """Scaled variables to begin with."""
+        x = spread * rng.standard_normal(len(self.variables))
+        for i, name in enumerate(self.variables):
+            if name in self.nominal:
+                x[i] = self.nominal[name] / self.scales[i]
+        return x[:, None]
+
+    def solved(self, x: Floats) -> tuple[Floats, float]:
+        """The adjusted impact near ``x``, and what its conditions leave over (largest)."""
+        count = len(self.conditions)
+        left = self.left(self.state(x))
+        for _ in range(_STEPS):
+            step = _step(left[:, 0], self.jacobian(x, self.left)[:, :, 0], count)
+            size = np.abs(step).max(initial=0.0)
+            if not np.isfinite(size):
+                return x, np.inf
+            step *= min(1.0, 2.0 / size) if size else 1.0
+            before = np.abs(left[:count]).max(initial=0.0)
+            for _ in range(12):
+                tried = x + step[:, None]
+                after = self.left(self.state(tried))
+                if not np.abs(after[:count]).max(initial=0.0) > max(1.5 * before, 1e-9):
+                    break
+                step = step / 2
+            x, left = tried, after
+            if size < 1e-14 * (1 + np.abs(x).max(initial=0.0)):
+                break
+        return x, float(np.abs(left[:count]).max(initial=0.0))
+
+
+_VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES} - {*_SPINS}
+_COURSE_OF = {speed: course for course, speed in COURSES.items()}
+
+
+def _step(left: Floats, jacobian: Floats, count: int) -> Floats:
+    """The Gauss-Newton step that meets the first ``count`` rows and brings the others nearest."""
+    inverse, free = pseudo_inverse(jacobian[:count])
+    step: Floats = -inverse @ left[:count]
+    if len(left) > count and free.shape[1]:
+        narrowed, _ = pseudo_inverse(jacobian[count:] @ free)
+        step = step - free @ (narrowed @ (left[count:] + jacobian[count:] @ step))
+    return step
+
+
+def pseudo_inverse(matrix: Floats) -> tuple[Floats, Floats]:
+    """The Moore-Penrose inverse, and a basis of the null space."""
+    if not matrix.size:
+        return np.zeros(matrix.shape[::-1]), np.eye(matrix.shape[1])
+    u, s, vt = np.linalg.svd(matrix)
+    rank = int((s > _RANK * s[0]).sum()) if len(s) and s[0] else 0
+    return (vt[:rank].T / s[:rank]) @ u[:, :rank].T, vt[rank:].T
+
+
+def standard_deviation(item: Uncertain) -> float:
+    """Of a value known within limits; a normal's is its own, limits or not."""
+    width = item.high - item.low
+    if item.kind == "uniform":
+        return float(width / np.sqrt(12))
+    if item.kind == "triangular":
+        a, c, b = item.low, item.nominal, item.high
+        return float(np.sqrt((a * a + b * b + c * c - a * b - a * c - b * c) / 18))
+    return item.deviation
+
+
+def tolerance(item: Uncertain) -> float:
+    """What a person calls the tolerance: half of a range, a normal's standard deviation."""
+    return item.deviation if item.kind == "normal" else (item.high - item.low) / 2
+
+
+# -- solutions
+
+
+@dataclass(frozen=True)
+class Adjusted:
+    """One known value: as measured, its tolerance, as adjusted, and by how many tolerances."""
+
+    name: str
+    measured: float
+    tolerance: float
+    adjusted: float
+
+    @property
+    def moved(self) -> float:
+        return (self.adjusted - self.measured) / self.tolerance
+
+
+@dataclass(frozen=True)
+class Reconstruction:
+    """One impact that agrees with what is known.
+
+    ``values``: every quantity determined, by name (`state.QUANTITIES`), and the scene's values,
+    adjusted. ``undetermined``: the velocities and coefficients that are not. ``adjusted``: what was
+    known within a tolerance. ``redundancy``: known values more than needed. ``squares``: the sum of
+    squared adjustments in standard deviations; about the redundancy when tolerances are right.
+    ``assumed``: the tolerances were not given but taken equal for all known velocities.
+    """
+
+    system: System
+    x: Floats
+    values: dict[str, float]
+    undetermined: tuple[str, ...]
+    adjusted: tuple[Adjusted, ...]
+    redundancy: int
+    squares: float
+    left_over: float
+    assumed: bool = False
+
+    @cached_property
+    def _responses(self) -> Floats:
+        """Of the scaled variables (rows) to an error of each observation by its deviation."""
+        jacobian = self.system.jacobian(self.x, self.system.left)[:, :, 0]
+        count = len(self.system.conditions)
+        _, free = pseudo_inverse(jacobian[:count])
+        if not free.shape[1] or len(jacobian) == count:
+            return np.zeros((len(self.x), len(self.system.observations)))
+        narrowed, _ = pseudo_inverse(jacobian[count:] @ free)
+        responses: Floats = free @ narrowed
+        if self.assumed and self.redundancy:
+            responses = responses * np.sqrt(self.squares / self.redundancy)
+        return responses
+
+    def responses(self, names: Sequence[str]) -> Floats:
+        """What an error of each known value (column) by its standard deviation does to quantities
+        (rows), to first order."""
+        rows = np.array([self.system.gradient(self.x, name) for name in names])
+        product: Floats = rows.reshape(len(names), -1) @ self._responses
+        return product
+
+    def covariance(self, names: Sequence[str]) -> Floats:
+        """First-order covariances of quantities that are determined."""
+        responses = self.responses(names)
+        product: Floats = responses @ responses.T
+        return product
+
+    def deviations(self, names: Sequence[str]) -> dict[str, float]:
+        """First-order standard deviations."""
+        variances = np.maximum(np.diag(self.covariance(names)), 0.0)
+        return dict(zip(names, np.sqrt(variances).tolist(), strict=True))
+
+    def correlations(self, names: Sequence[str]) -> Floats:
+        """First-order correlations; nan where a quantity does not vary."""
+        covariance = self.covariance(names)
+        deviations = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            matrix: Floats = covariance / np.outer(deviations, deviations)
+        return matrix
+
+    def scene(self) -> dict[str, float]:
+        """The impact as a scene's values, MU as line 280 would hold it.
+
+        Raises UnsolvableError naming what is not determined.
+        """
+        names = [n for n in ("E", "EM", *VELOCITIES) if not (self.system.point and n == "EM")]
+        missing = [n for n in (*names, "MUP") if n not in self.values]
+        if missing:
+            raise UnsolvableError(f"no scene: {' '.join(missing)} not determined")
+        kept = {n: self.values[n] for n in (*GEOMETRY, *names)}
+        kept |= {"MU": typed_friction(self.system.state(self.x), self.values["MUP"])}
+        return {"M": 4.0 if self.system.point else 6.0, "EM": 0.0, **kept}
+
+
+def typed_friction(state: State, signed: float) -> float:
+    """The MU that line 400 turns into ``signed`` for this impact's sliding."""
+    sliding = float(np.ravel(np.real(state.relative_before[1]))[0])
+    speed = max(float(np.abs(np.real(v)).max()) for v in state.before)
+    return -signed if sliding > TIE * speed and signed not in (0, PIVOT) else signed
+
+
+def reconstruct(known: Mapping[str, Uncertain | float]) -> list[Reconstruction]:
+    """Every impact found that agrees with what is ``known`` (`KNOWABLE` names; M 6 where left out).
+
+    A number is exact, an `Uncertain` known within its tolerance. MU is known in size only: friction
+    opposes the sliding (line 400), and each solution that agrees with its own sign is returned; MUP
+    is signed. Where exact values contradict one another and none has a tolerance, all known
+    velocities are given the same one (spins divided by the radius of gyration).
+
+    Raises UserError for names and numbers that cannot be used and for exact values that contradict
+    one another beside others with a tolerance, UnsolvableError where nothing unknown is determined.
+    """
+    given = _checked(known)
+    mu = given.pop("MU", None)
+    if mu is None:
+        readings = [given]
+    elif mu.nominal in (0, PIVOT) and not mu.varies:
+        readings = [{**given, "MUP": mu}]
+    else:
+        readings = [{**given, "MUP": mu}, {**given, "MUP": _negative(mu)}]
+    solutions: list[Reconstruction] = []
+    failure: UserError | None = None
+    for reading in readings:
+        try:
+            found = _solutions(reading)
+        except UserError as error:
+            failure = error
+            continue
+        solutions += [s for s in found if mu is None or _agrees(s, mu.nominal)]
+    if not solutions:
+        raise failure or UnsolvableError(
+            "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
+            "opposes the sliding joins what is known"
+        )
+    return solutions
+
+
+def _checked(known: Mapping[str, Uncertain | float]) -> dict[str, Uncertain]:
+    given = {
+        name: item if isinstance(item, Uncertain) else fixed(float(item))
+        for name, item in known.items()
+    }
+    for name in given:
+        if name not in KNOWABLE:
+            raise UserError(f"{name!r} is no value of an impact; expected {' '.join(KNOWABLE)}")
+    m = given.setdefault("M", fixed(6.0))
+    if m.varies or m.nominal not in (4, 6):
+        raise UserError("M must be 6, or 4 for point masses")
+    if m.nominal == 4:
+        ignored = (*_SPINS, "EM", "DA", "DB", "PA", "PB", "IA", "IB")
+        given = {name: item for name, item in given.items() if name not in ignored}
+        given |= {name: fixed(0.0) for name in ("DA", "DB", "PA", "PB")}
+        given |= {"IA": fixed(1.0), "IB": fixed(1.0)}
+        given = {"TA": fixed(0.0), "TB": fixed(0.0), **given}
+    missing = [name for name in GEOMETRY if name not in given]
+    if missing:
+        raise UserError(f"missing {' '.join(missing)}: the vehicles and their geometry are needed")
+    for name in ("MA", "MB", "IA", "IB"):
+        if (not given[name].low > 0 and given[name].kind != "normal") or not given[
+            name
+        ].nominal > 0:
+            raise UserError(f"{name} is not positive")
+    if "MU" in given and "MUP" in given:
+        raise UserError("MU and MUP are both given; expected one")
+    for name, item in given.items():
+        infinite = name in ("MA", "MB", "IA", "IB") and not item.varies
+        if np.isnan(item.nominal) or (np.isinf(item.nominal) and not infinite):
+            raise UserError(f"{name} is not finite")
+        if name in SPEEDS and item.nominal < 0:
+            raise UserError(f"{name} is negative; expected a speed, its course beside it")
+    return given
+
+
+def _negative(item: Uncertain) -> Uncertain:
+    return Uncertain(item.kind, -item.nominal, -item.high, -item.low, item.deviation)
+
+
+def _agrees(solution: Reconstruction, mu: float) -> bool:
+    """Whether friction with this solution's sign opposes its own sliding, as line 400 has it."""
+    signed = solution.system.nominal["MUP"]
+    if "UX" in solution.undetermined:
+        return True
+    return typed_friction(solution.system.state(solution.x), signed) == mu
+
+
+def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
+    rng = np.random.default_rng(1988)
+    plain = System(known, adjusted=False)
+    curved = any(name in known for name in _CURVED if _COURSE_OF.get(name) not in known)
+    starts = [plain.solved(plain.start(rng, 0.3)) for _ in range(_STARTS if curved else 1)]
+    assumed = False
+    if all(left > _HOLDS for _, left in starts):
+        known, assumed = _with_tolerances(known)
+    system = System(known, adjusted=True)
+    found: list[Reconstruction] = []
+    for x, _ in starts:
+        begin = system.start(rng, 0.0)
+        state = plain.state(x)
+        for i, name in enumerate(system.variables):
+            if name in VELOCITIES or name in IMPULSES:
+                begin[i] = np.ravel(state[name])[0] / system.scales[i]
+        x, left = system.solved(begin)
+        if left > _HOLDS:
+            continue
+        solution = _described(system, x, left, assumed)
+        if not any(_same(solution, other) for other in found):
+            found.append(solution)
+        if solution.undetermined:
+            break  # from elsewhere the undetermined would only come out otherwise
+    if not found:
+        raise UnsolvableError(
+            "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
+            "what is measured"
+        )
+    least = min(s.squares for s in found)
+    return [s for s in found if s.squares <= max(4 * least, 1e-9)]
+
+
+def _with_tolerances(known: Mapping[str, Uncertain]) -> tuple[Mapping[str, Uncertain], bool]:
+    """The same with one tolerance for all known velocities, where nothing has any."""
+    if any(item.varies for item in known.values()):
+        return known, False
+    length = System(known, adjusted=False).gyration
+    measured = {
+        name: Uncertain(
+            *("normal", item.nominal, -np.inf, np.inf), 1 / length if name in _SPINS else 1.0
+        )
+        for name, item in known.items()
+        if name in (*VELOCITIES, *FINAL_STATE)
+    }
+    return {**known, **measured}, True
+
+
+def _same(one: Reconstruction, other: Reconstruction) -> bool:
+    return bool(np.abs(one.x - other.x).max(initial=0.0) < 1e-6)
+
+
+def _described(system: System, x: Floats, left: float, assumed: bool) -> Reconstruction:
+    state = system.state(x)
+    rest = system.left(state)[:, 0]
+    rows = system.jacobian(x, system.left)[:, :, 0]
+    _, null = pseudo_inverse(rows)
+    count = len(system.conditions)
+    rank = rows.shape[1] - null.shape[1]
+    values = {n: float(np.ravel(state.values[n])[0]) for n in ("M", *GEOMETRY)}
+    undetermined = []
+    with np.errstate(all="ignore"):
+        for name in QUANTITIES:
+            if system.point and name in (*_SPINS, "PM", "EM"):
+                continue
+            if name in COEFFICIENTS and name in system.known:
+                values[name] = float(np.ravel(state.values[name])[0])
+                continue
+            gradient = system.gradient(x, name)
+            largest = np.abs(gradient).max(initial=0.0)
+            value = float(np.ravel(state[name])[0])
+            is_open = np.abs(gradient @ null).max(initial=0.0) > _OPEN * largest
+            if np.isfinite(value) and np.isfinite(largest) and not is_open:
+                values[name] = value
+            elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):
+                undetermined.append(name)
+    unknown = [n for n in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS) if n not in system.known]
+    if unknown and not any(name in values for name in unknown) and not system.observations:
+        raise UnsolvableError(
+            f"nothing of {' '.join(unknown)} is determined by what is known; expected more of it"
+        )
+    adjusted = []
+    for name in system.observations:
+        item = system.known[name]
+        value = float(np.ravel(system.measured(state, name))[0])
+        adjusted.append(Adjusted(name, item.nominal, tolerance(item), value))
+    return Reconstruction(
+        system=system,
+        x=x,
+        values=values,
+        undetermined=tuple(undetermined),
+        adjusted=tuple(adjusted),
+        redundancy=len(rows) - rank,
+        squares=float(rest[count:] @ rest[count:]),
+        left_over=left,
+        assumed=assumed,
+    )

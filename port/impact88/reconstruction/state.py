@@ -1,0 +1,201 @@
+"""An impact known from its vehicles, initial velocities and impulse: everything else follows.
+
+Equations 13, 14 and 17 are "velocity after = velocity before + impulse / inertia" for each vehicle,
+so that a `State` obeys them whatever its numbers are. Equations 15, 16 and 18 are its `law`s; the
+velocities after, speeds and courses, changes of velocity and energies are its quantities. All is
+made of sums, products, roots and quotients, over numbers or arrays, real or complex (an imaginary
+part carries a derivative).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..closedform.columns import PIVOT
+from ..closedform.energy import kinetic_energy
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, VELOCITIES
+from .geometry import Geometry, sin_cos
+from .impulse import facing
+
+SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": ("VBX", "VBY")}
+"""Speeds, each with its velocity's components."""
+COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
+"""The course that belongs to each speed, the direction of that velocity from the x axis."""
+CHANGES = ("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR")
+ENERGIES = ("KI", "KF", "EL", "LOSS", "DT")
+QUANTITIES = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS, *IMPULSES, *SPEEDS, *COURSES)
+QUANTITIES = (*QUANTITIES, *CHANGES, *ENERGIES)
+"""What a state can be asked for."""
+
+
+class State:
+    """``values``: vehicles and geometry, IMPULSES, and each of VELOCITIES or, where it stands in
+    ``from_after``, the velocity after the impact instead; for laws the coefficients too."""
+
+    def __init__(
+        self,
+        values: Mapping[str, Any],
+        here: Geometry | None = None,
+        from_after: Collection[str] = (),
+    ) -> None:
+        self.values = values
+        self.here = Geometry.of(values) if here is None else here
+        self.from_after = from_after
+
+    @cached_property
+    def impulse(self) -> list[Any]:
+        return [self.values[name] for name in IMPULSES]
+
+    @cached_property
+    def changes(self) -> list[Any]:
+        return self.here.changes(*self.impulse)
+
+    @cached_property
+    def before(self) -> list[Any]:
+        return [
+            self.values[late] - change if early in self.from_after else self.values[early]
+            for early, late, change in zip(VELOCITIES, FINAL_STATE, self.changes, strict=True)
+        ]
+
+    @cached_property
+    def after(self) -> list[Any]:
+        return [
+            self.values[late] if early in self.from_after else self.values[early] + change
+            for early, late, change in zip(VELOCITIES, FINAL_STATE, self.changes, strict=True)
+        ]
+
+    @cached_property
+    def relative_before(self) -> tuple[Any, Any, Any]:
+        return self.here.relative(self.before)
+
+    @cached_property
+    def relative_after(self) -> tuple[Any, Any, Any]:
+        return self.here.relative(self.after)
+
+    def law(self, coefficient: str) -> Any:
+        """What Equation 15 (E), 16 (MUP) or 18 (EM) leaves over, 0 where it holds: a velocity, an
+        impulse, a spin. MUP = -10 is the pivot, no tangential relative velocity afterwards."""
+        value = self.values[coefficient]
+        pn, pt, moment = self.impulse
+        if coefficient == "E":
+            return self.relative_after[0] + value * self.relative_before[0]
+        if coefficient == "MUP":
+            return self.relative_after[1] if np.all(value == PIVOT) else pt - value * pn
+        turned = value * moment * self.here.inverse_spin_inertia
+        return (1 - value) * self.relative_after[2] - turned
+
+    def __getitem__(self, name: str) -> Any:
+        """A quantity by name; coefficients are what velocities and impulse make them."""
+        if name in VELOCITIES:
+            return self.before[VELOCITIES.index(name)]
+        if name in IMPULSES:
+            return self.values[name]
+        if name in FINAL_STATE:
+            return self.after[FINAL_STATE.index(name)]
+        if name in SPEEDS:
+            x, y = self._components(name)
+            return np.sqrt(x * x + y * y)
+        if name in COURSES:
+            return _angle(*self._components(COURSES[name]))
+        return _QUANTITIES[name](self)
+
+    def _components(self, speed: str) -> tuple[Any, Any]:
+        x, y = SPEEDS[speed]
+        return self[x], self[y]
+
+    def across(self, course: str) -> Any:
+        """The velocity's component across the course given, 0 where it runs along it."""
+        x, y = self._components(COURSES[course])
+        cosine, sine = _unit(self.values[course])
+        return y * cosine - x * sine
+
+    def along(self, course: str) -> Any:
+        """The velocity's component along the course given."""
+        x, y = self._components(COURSES[course])
+        cosine, sine = _unit(self.values[course])
+        return x * cosine + y * sine
+
+    # -- quantities
+
+    def _restitution(self) -> Any:
+        return -self.relative_after[0] / self.relative_before[0]
+
+    def _friction(self) -> Any:
+        return self.impulse[1] / self.impulse[0]
+
+    def _moment_coefficient(self) -> Any:
+        spin = self.relative_after[2]
+        return spin / (spin + self.impulse[2] * self.here.inverse_spin_inertia)
+
+    def _size_of_change(self, inverse_mass: Any) -> Any:
+        pn, pt, _ = self.impulse
+        return np.sqrt(pn * pn + pt * pt) * inverse_mass
+
+    def _change(self, vehicle: str) -> tuple[Any, Any]:
+        """A vehicle's change of velocity along its length, forward, and across, to its right."""
+        first = 0 if vehicle == "A" else 3
+        x, y = self.changes[first : first + 2]
+        cosine, sine = _unit(facing(vehicle, self.values["T" + vehicle]))
+        return x * cosine + y * sine, x * sine - y * cosine
+
+    def _energy(self, velocities: list[Any]) -> Any:
+        inertias = [
+            np.where(np.isinf(np.real(self.values[n])), 0, self.values[n])
+            for n in ("MA", "MB", "IA", "IB")
+        ]
+        six = list(velocities)
+        six[2], six[5] = (np.where(self.here.point, 0.0, six[i]) for i in (2, 5))
+        return kinetic_energy(inertias, six)
+
+    @cached_property
+    def initial_energy(self) -> Any:
+        return self._energy(self.before)
+
+    @cached_property
+    def energy_lost(self) -> Any:
+        """The work of the impulse at the mean relative velocities, negated: no digits are lost as
+        in the difference of two energies."""
+        work: Any = 0.0
+        for part, early, late in zip(
+            self.impulse, self.relative_before, self.relative_after, strict=True
+        ):
+            work = work + part * (early + late)
+        return -0.5 * work
+
+
+_QUANTITIES: dict[str, Callable[[State], Any]] = {
+    "E": State._restitution,
+    "MUP": State._friction,
+    "EM": State._moment_coefficient,
+    "DVA": lambda state: state._size_of_change(state.here.inverse_ma),
+    "DVB": lambda state: state._size_of_change(state.here.inverse_mb),
+    "DVAF": lambda state: state._change("A")[0],
+    "DVAR": lambda state: state._change("A")[1],
+    "DVBF": lambda state: state._change("B")[0],
+    "DVBR": lambda state: state._change("B")[1],
+    "KI": lambda state: state.initial_energy,
+    "KF": lambda state: state.initial_energy - state.energy_lost,
+    "EL": lambda state: state.energy_lost,
+    "LOSS": lambda state: 100 * state.energy_lost / state.initial_energy,
+    "DT": lambda state: state.energy_lost / state.initial_energy,
+}
+
+
+def _unit(degrees: Any) -> tuple[Any, Any]:
+    """Cosine and sine."""
+    sine, cosine = sin_cos(degrees)
+    return cosine, sine
+
+
+def _angle(x: Any, y: Any) -> Any:
+    """The direction of (x, y) in degrees; the imaginary part is its derivative's."""
+    real = np.degrees(np.arctan2(np.real(y), np.real(x)))
+    if not (np.iscomplexobj(x) or np.iscomplexobj(y)):
+        return real
+    square = np.real(x) ** 2 + np.real(y) ** 2
+    turn = (np.real(x) * np.imag(y) - np.real(y) * np.imag(x)) / square
+    return real + 1j * np.degrees(turn)

@@ -1,0 +1,313 @@
+"""How uncertain a reconstruction is: draws of what is known, and bounds, beside the first order.
+
+A reconstruction without redundancy is a function of its known values: each draw, and each place of
+the box that their limits span, is solved for itself, by iterations with the inverse Jacobian of the
+nominal solution (one where only measured velocities vary, a few where coefficients or geometry do)
+and by Newton's method where those do not settle. With redundancy each draw is adjusted as the
+measured values are; bounds are sought over the impacts that lie within *all* limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..reconstruction.adjustment import (
+    PARAMETERS,
+    Reconstruction,
+    System,
+    pseudo_inverse,
+    tolerance,
+)
+from ..reconstruction.geometry import NAMES as GEOMETRY
+from ..reconstruction.geometry import Geometry
+from ..reconstruction.state import State
+from .extremes import extremes
+from .uncertain import Uncertain
+
+Floats = NDArray[np.float64]
+
+CHUNK = 1 << 14
+CHORDS = 24
+NEWTONS = 25
+SETTLED = 1e-11
+"""Scaled conditions below count as met by a draw."""
+ADJUSTMENTS = 12
+
+
+@dataclass(frozen=True)
+class Draws:
+    """``values``: each quantity's draws, NaN where one has no solution; ``failed``: their share."""
+
+    values: dict[str, Floats]
+    failed: float
+
+
+@dataclass(frozen=True)
+class Range:
+    """Lowest and highest value found of a quantity, and the known values that give them; NaN where
+    no impact was found within all limits, infinite where E = 0 lies within its limits."""
+
+    lower: float
+    upper: float
+    at_lower: dict[str, float]
+    at_upper: dict[str, float]
+
+
+def draws(
+    solution: Reconstruction,
+    names: Sequence[str],
+    count: int,
+    seed: int = 0,
+    progress: Callable[[int], object] = lambda draws: None,
+) -> Draws:
+    """``count`` random draws of what is known, each reconstructed: the quantities ``names``."""
+    rng = np.random.default_rng([seed, 1])
+    known = solution.system.known
+    varying = solution.system.observations
+    solver = _Adjusting(solution) if solution.redundancy else _Solving(solution, known)
+    values = {name: np.empty(count) for name in names}
+    for first in range(0, count, CHUNK):
+        part = slice(first, min(first + CHUNK, count))
+        data = {name: known[name].draws(rng, part.stop - part.start) for name in varying}
+        state, usable = solver(data)
+        for name in names:
+            values[name][part] = np.where(usable, _quantity(state, known, name), np.nan)
+        progress(part.stop - part.start)
+    failed = np.isnan(np.stack(list(values.values()))).any(axis=0) if names else np.zeros(1)
+    return Draws(values, float(failed.mean()))
+
+
+def ranges(
+    solution: Reconstruction, names: Sequence[str], sigmas: float = 3.0, seed: int = 0
+) -> dict[str, Range]:
+    """The lowest and highest value of each quantity over the limits of what is known."""
+    known = solution.system.known
+    kept, rest = _independent(solution)
+    solver = _Solving(solution, {n: item for n, item in known.items() if n not in rest})
+    limits = {name: known[name].limits(sigmas) for name in (*kept, *rest)}
+    endless = _endless(solver, known, names)
+
+    def data_at(points: Floats) -> dict[str, Floats]:
+        columns = {}
+        for i, name in enumerate(kept):
+            low, high = limits[name]
+            columns[name] = np.where(points[:, i] < 1, low + points[:, i] * (high - low), high)
+        return columns
+
+    def outputs(points: Floats) -> Floats:
+        state, usable = solver(data_at(points))
+        for name in rest:
+            low, high = limits[name]
+            value, slack = state[name], 1e-9 * (high - low)
+            usable = usable & (value >= low - slack) & (value <= high + slack)
+        columns = [_quantity(state, known, name) for name in names]
+        broad = [np.broadcast_to(column, usable.shape) for column in columns]
+        return np.where(usable[:, None], np.stack(broad, axis=1), np.nan)
+
+    found = extremes(outputs, len(kept), np.random.default_rng([seed, 0]))
+
+    def inputs(point: Floats) -> dict[str, float]:
+        return {name: float(column[0]) for name, column in data_at(point[None]).items()}
+
+    return {
+        name: Range(-np.inf, np.inf, {}, {})
+        if name in endless
+        else Range(
+            float(found.lower[i]),
+            float(found.upper[i]),
+            inputs(found.at_lower[i]),
+            inputs(found.at_upper[i]),
+        )
+        for i, name in enumerate(names)
+    }
+
+
+def _quantity(state: State, known: Mapping[str, Uncertain], name: str) -> Floats:
+    """A quantity of drawn impacts; a coefficient that is known is what was drawn."""
+    value: Floats = state.values[name] if name in known and name in state.values else state[name]
+    return value
+
+
+class _Solving:
+    """Impacts from known values, as many as unknowns: n of each -> n impacts."""
+
+    def __init__(self, solution: Reconstruction, known: Mapping[str, Uncertain]) -> None:
+        self.system = System(known, adjusted=False)
+        adjusted = solution.system.state(solution.x)
+        names, scales = self.system.variables, self.system.scales
+        self.x = np.array(
+            [np.ravel(adjusted[n])[0] / scale for n, scale in zip(names, scales, strict=True)]
+        ).reshape(-1, 1)
+        jacobian = self.system.jacobian(self.x, self.system.left)[:, :, 0]
+        self.inverse, null = pseudo_inverse(jacobian)
+        self.square = jacobian.shape[0] == jacobian.shape[1] and not null.shape[1]
+
+    def __call__(self, data: Mapping[str, Floats]) -> tuple[State, NDArray[np.bool_]]:
+        """The impacts, and which of them meet all conditions."""
+        here = None
+        if set(data) & set(GEOMETRY):
+            here = Geometry.of({**self.system.constants, **data})
+        with np.errstate(all="ignore"):
+            if self.system.linear and self.square and set(data) & set(PARAMETERS):
+                x = self._linear(data, here)
+                settled = np.asarray(np.isfinite(x).all(axis=0))
+            else:
+                x, settled = self._chords(data, here)
+        return self.system.state(x, data, here), settled
+
+    def _linear(self, data: Mapping[str, Floats], here: Geometry | None) -> Floats:
+        """The conditions are linear in the variables: their matrix, column by column, and right
+        side are what they leave over of unit vectors and of none."""
+        count, size = len(next(iter(data.values()))), len(self.x)
+        none = np.zeros((size, 1))
+        right = np.broadcast_to(self.left(none, data, here), (size, count))
+        matrices = np.empty((count, size, size))
+        for i in range(size):
+            unit = none.copy()
+            unit[i] = 1.0
+            matrices[:, :, i] = (self.left(unit, data, here) - right).T
+        return -_solved(matrices, right.T).T
+
+    def _chords(
+        self, data: Mapping[str, Floats], here: Geometry | None
+    ) -> tuple[Floats, NDArray[np.bool_]]:
+        count = len(next(iter(data.values()))) if data else 1
+        x = np.repeat(self.x, count, axis=1)
+        left = self.left(x, data, here)
+        for _ in range(CHORDS):
+            if not np.abs(left).max(initial=0.0) > SETTLED:
+                break
+            x = x - self.inverse @ left
+            left = self.left(x, data, here)
+        settled = np.abs(left).max(axis=0, initial=0.0) <= SETTLED
+        if not settled.all():
+            wild = np.broadcast_to(~settled, (count,))
+            x[:, wild] = self._newton({n: column[wild] for n, column in data.items()})
+            left = self.left(x, data, here)
+            settled = np.abs(left).max(axis=0, initial=0.0) <= 100 * SETTLED
+        return x, np.broadcast_to(settled, (count,))
+
+    def left(self, x: Floats, data: Mapping[str, Floats], here: Geometry | None = None) -> Floats:
+        return np.asarray(self.system.left(self.system.state(x, data, here), data))
+
+    def _newton(self, data: Mapping[str, Floats]) -> Floats:
+        """The same by Newton's method, from the nominal impact."""
+        x = np.repeat(self.x, len(next(iter(data.values()))), axis=1)
+        for _ in range(NEWTONS):
+            left = self.left(x, data)
+            jacobian = self.system.jacobian(
+                x, lambda state: self.system.left(state, data), data
+            ).transpose(2, 0, 1)
+            jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
+            step = np.einsum("nij,jn->in", np.linalg.pinv(jacobian, rcond=1e-13), left)
+            step = np.nan_to_num(step)
+            x = x - step
+            if not np.abs(step).max(initial=0.0) > 1e-13 * (1 + np.abs(x).max(initial=0.0)):
+                break
+        return x
+
+
+class _Adjusting:
+    """Impacts adjusted to measured values: n of each -> n impacts."""
+
+    def __init__(self, solution: Reconstruction) -> None:
+        self.system, self.x = solution.system, solution.x
+
+    def __call__(self, data: Mapping[str, Floats]) -> tuple[State, NDArray[np.bool_]]:
+        system, count = self.system, len(self.system.conditions)
+        x = np.repeat(self.x, len(next(iter(data.values()))), axis=1)
+        size = len(system.variables)
+
+        def left_of(state: State) -> Floats:
+            return np.asarray(system.left(state, data))
+
+        with np.errstate(all="ignore"):
+            for _ in range(ADJUSTMENTS):
+                left = left_of(system.state(x))
+                jacobian = np.broadcast_to(
+                    system.jacobian(x, left_of), (len(left), size, x.shape[1])
+                ).transpose(2, 0, 1)
+                exact, loose = jacobian[:, :count], jacobian[:, count:]
+                # Lagrange: the normal equations bordered with the conditions
+                bordered = np.zeros((x.shape[1], size + count, size + count))
+                bordered[:, :size, :size] = loose.transpose(0, 2, 1) @ loose
+                bordered[:, :size, size:] = exact.transpose(0, 2, 1)
+                bordered[:, size:, :size] = exact
+                right = np.zeros((x.shape[1], size + count))
+                right[:, :size] = np.einsum("nji,jn->ni", loose, left[count:])
+                right[:, size:] = left[:count].T
+                step = _solved(bordered, right).T[:size]
+                x = x - step
+                if not np.abs(step).max(initial=0.0) > 1e-10:
+                    break
+            state = system.state(x)
+            met = np.abs(left_of(state)[:count]).max(axis=0, initial=0.0) <= 1e-9
+        return state, np.broadcast_to(met, x.shape[1:])
+
+
+def _solved(matrices: Floats, right: Floats) -> Floats:
+    finite = np.asarray(np.isfinite(matrices).all(axis=(1, 2)))
+    matrices = np.where(finite[:, None, None], matrices, 0.0)
+    try:
+        solution = np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0], np.float64)
+        if np.nanmax(np.abs(solution), initial=0.0) < 1e6:
+            return solution
+    except np.linalg.LinAlgError:
+        pass
+    product: Floats = (np.linalg.pinv(matrices, rcond=1e-12) @ right[:, :, None])[:, :, 0]
+    return product
+
+
+def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
+    """The values with a tolerance that determine the impact, and the redundant rest; the tightest
+    first, so that few impacts fall outside the others' limits."""
+    system = solution.system
+    jacobian = system.jacobian(solution.x, system.left)[:, :, 0]
+    count = len(system.conditions)
+    basis = jacobian[:count]
+    order = sorted(
+        range(len(system.observations)),
+        key=lambda i: (
+            system.observations[i] not in GEOMETRY,
+            tolerance(system.known[system.observations[i]]) / system.scale(system.observations[i]),
+        ),
+    )
+    rank = _rank(basis)
+    kept, rest = [], []
+    for i in order:
+        row = jacobian[count + i]
+        tried = np.vstack([basis, row / np.linalg.norm(row)])
+        if _rank(tried) > rank:
+            basis, rank = tried, rank + 1
+            kept.append(i)
+        else:
+            rest.append(i)
+    names = system.observations
+    return [names[i] for i in sorted(kept)], [names[i] for i in sorted(rest)]
+
+
+def _rank(rows: Floats) -> int:
+    return rows.shape[1] - pseudo_inverse(rows)[1].shape[1]
+
+
+def _endless(
+    solver: _Solving, known: Mapping[str, Uncertain], names: Sequence[str]
+) -> tuple[str, ...]:
+    """The quantities that nothing determines when E is 0, where it may be."""
+    system = solver.system
+    if "E" not in system.laws or not known["E"].low <= 0 <= known["E"].high:
+        return ()
+    nothing = System({**system.known, "E": Uncertain("fixed", 0.0, 0.0, 0.0)}, adjusted=False)
+    _, null = pseudo_inverse(nothing.jacobian(solver.x, nothing.left)[:, :, 0])
+    if not null.shape[1]:
+        return ()
+    gradients = {name: nothing.gradient(solver.x, name) for name in names}
+    return tuple(
+        name
+        for name, slope in gradients.items()
+        if np.abs(slope @ null).max() > 1e-7 * np.abs(slope).max(initial=0.0)
+    )
