@@ -2,8 +2,8 @@
 
 In a ``console`` block a line that begins with ``$`` is a command and what follows is its output, in
 order of appearance on the terminal; a line ``...`` stands for any lines. All blocks share one
-folder, where a ``csv`` block stands under the name given before it. The ``pycon`` blocks are one
-Python session. Control characters are not compared: they cannot be seen in
+folder, where a ``csv`` or ``toml`` block stands under the name given before it. The ``pycon``
+blocks are one Python session. Control characters are not compared: they cannot be seen in
 README, and other tests compare them.
 """
 
@@ -49,7 +49,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where the examples run, one after the other; legacy/ is found there as in the checkout."""
     folder = tmp_path_factory.mktemp("readme")
     (folder / "legacy").symlink_to(ROOT / "legacy")
-    for name, table in re.findall(r"With `(\S+)`:\n\n```csv\n(.*?)^```$", README, re.M | re.S):
+    for name, table in re.findall(
+        r"[Ww]ith\s`(\S+)`:\n\n```(?:csv|toml)\n(.*?)^```$", README, re.M | re.S
+    ):
         (folder / name).write_text(table, encoding="utf-8")
     return folder
 

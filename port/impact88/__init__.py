@@ -18,7 +18,8 @@ Old printouts and other programs
 Today's work, in double precision
     solve               final velocities and the rest, over arrays
     bounds, Uncertain   what follows from values known within limits
-    solve_for           Equations 13-18 for any unknowns
+    solve_for           Equations 13-18 for any unknowns, over arrays
+    reconstruct, Reconstruction     the same with tolerances: what was measured is adjusted
     colinear, colinear_inverse, barrier, delta_v    the chapter's other problems
     scene_svg           a scene from above
 
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from .errors import UserError
     from .figures.sceneview import scene_svg
     from .program.run import Run, run
+    from .reconstruction.adjustment import Reconstruction, reconstruct
     from .reconstruction.unknowns import Solution, solve_for
     from .replay import Replay, replay
     from .scene import Scene, sample
@@ -62,6 +64,7 @@ __version__ = "0.1.0"
 _LAZY = {
     "Applesoft": "emulator.emulator",
     "Bounds": "uncertainty.bounds",
+    "Reconstruction": "reconstruction.adjustment",
     "Replay": "replay",
     "Run": "program.run",
     "Scene": "scene",
@@ -78,6 +81,7 @@ _LAZY = {
     "names": "",
     "oracle": "checking.oracle:look_up",
     "read_printouts": "casework.printout",
+    "reconstruct": "reconstruction.adjustment",
     "replay": "replay",
     "run": "program.run",
     "sample": "scene",
@@ -94,6 +98,7 @@ module of this package. A test holds this table against the imports above."""
 __all__ = [  # written out: type checkers read no computed list
     "Applesoft",
     "Bounds",
+    "Reconstruction",
     "Replay",
     "Run",
     "Scene",
@@ -111,6 +116,7 @@ __all__ = [  # written out: type checkers read no computed list
     "names",
     "oracle",
     "read_printouts",
+    "reconstruct",
     "replay",
     "run",
     "sample",

@@ -17,6 +17,10 @@ from ..files import called, check_apart
 from ..names import SCENE, check_names, quantity
 from ..scene import SAMPLES, Scene, check_value, sample, toml_file
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from ..uncertainty.uncertain import Uncertain
+
 FORMATS = ("csv", "jsonl", "npz")
 """What ``--from`` and ``--to`` take."""
 
@@ -97,6 +101,31 @@ def known_values(
     for name, text in settings(texts, allowed, others=("",)).items():
         if text:
             values[name] = _double(name, text, "--set")
+        else:
+            values.pop(name, None)
+    return values
+
+
+def known_within_limits(
+    path: str | None, texts: Sequence[str], allowed: Collection[str]
+) -> dict[str, Uncertain]:
+    """As `known_values`, but each value a number or known within limits (`uncertainty.uncertain`);
+    a setting's ``+- D`` is around the file's value."""
+    from ..uncertainty import uncertain
+
+    values: dict[str, Uncertain] = {}
+    if path is not None:
+        source = called(path)
+        entries = toml_file(path)
+        entries.pop("title", None)
+        check_names(entries, allowed, "value here", source)
+        values = {n: uncertain.read(text, f"{source}, {n}") for n, text in entries.items() if text}
+    changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
+    check_names(changes, allowed, "value here", "--set")
+    for name, text in changes.items():
+        center = values[name].nominal if name in values else None
+        if text:
+            values[name] = uncertain.read(text, f"--set {name}", center)
         else:
             values.pop(name, None)
     return values

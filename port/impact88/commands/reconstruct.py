@@ -1,15 +1,19 @@
 """The file is flat TOML with the listing's names, like a scene (impact88 scene --help): whatever
 is not known is left out, or left empty, and is solved for. The vehicles and their geometry (DA DB
-GA PA PB TA TB MA MB IA IB) must be known; then any of the velocities
+GA PA PB TA TB MA MB IA IB) must be known; then any of
 
-  before   UX UY WA   VX VY WB            A, then B; x, y, spin
-  after    VAX VAY WAF   VBX VBY WBF
+  before         UX UY WA   VX VY WB      A, then B; x, y, spin; or SA HA, SB HB: speed and course
+  after          VAX VAY WAF  VBX VBY WBF                        or SAF HAF, SBF HBF
+  coefficients   E, EM and MU or MUP
+  the rest       DVA DVB (velocity changes; DVAF DVAR DVBF DVBR along and across the vehicle),
+                 KI KF, EL (energy lost, such as in crush), LOSS (percent) or DT (fraction)
 
-and of the coefficients E, EM and MU. Usual sets of unknowns (Equations 13-18): the six velocities
-after; the six before; before of one vehicle with after of the other; three velocities with the
-three coefficients; any other set of up to six that the equations determine. One that they do not
-is refused with the reason. With fewer unknowns than equations the known values are fitted by least
-squares, and the mismatch is told.
+Each is a number, exact, or known within limits: "41 +- 2", "0.7 .. 0.9", "normal 41 1.5" (impact88
+bounds --help). Equations 13 to 18 always hold. With more known than needed the values with limits
+are adjusted (adjustment of observations with conditions, weighted by their tolerances): the table
+shows each as measured, as adjusted, and how many tolerances it moved. With exact values alone, sets
+that the equations do not determine are refused with the reason; --for asks for some of them only.
+Uncertainties stand side by side: first order, random draws, bounds that are attained.
 
 MU is the number of line 280: friction opposes the sliding (line 400). Where the velocities before
 are unknown, both signs are tried and every solution that agrees with itself is shown. MUP is the
@@ -20,8 +24,10 @@ examples:
   impact88 reconstruct --template > after.toml          a file to fill in
   impact88 reconstruct after.toml                       all that the file leaves out
   impact88 reconstruct after.toml --set E=.1            a value changed
+  impact88 reconstruct after.toml --set VAX="+- 2"      known within 2
   impact88 reconstruct after.toml --set E= --set MU=    two values no longer known
   impact88 reconstruct after.toml --for UX,VY           only these; others may stay unknown
+  impact88 reconstruct after.toml --scene found.toml    the impact found, for run, figure, bounds
   impact88 reconstruct after.toml --contact-time .15 --json
 
 exit status: 0 solved; 2 bad input, or unknowns that are not determined
@@ -30,13 +36,34 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 from __future__ import annotations
 
 import argparse
+import json
+import sys
+from typing import TYPE_CHECKING
 
 from ..errors import UserError
-from ..files import called
+from ..files import called, replacing
 from ..names import SCENE
-from .options import add_solution_arguments, known_values, template
+from ..scene import template as scene_template
+from .options import (
+    add_solution_arguments,
+    known_within_limits,
+    names_given,
+    template,
+    whole_number,
+)
 
-KNOWABLE = (*SCENE, "MUP", "VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
+if TYPE_CHECKING:
+    from ..reconstruction.adjustment import Reconstruction
+    from ..uncertainty.uncertain import Uncertain
+
+PLAIN = (*SCENE, "MUP", "VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
+"""What `solve_for` knows; the other names need the adjustment."""
+OTHERS = (
+    *("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF"),
+    *("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR", "KI", "KF", "EL", "LOSS", "DT"),
+)
+KNOWABLE = (*PLAIN, *OTHERS)
+SAMPLES = 20_000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,6 +74,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAMES",
         help="solve for these names only; others may stay unknown",
     )
+    parser.add_argument(
+        "--samples",
+        type=whole_number(0, 100_000_000),
+        default=SAMPLES,
+        metavar="N",
+        help="random draws of values known within limits; 0: neither draws nor bounds "
+        "(default: %(default)s)",
+    )
+    parser.add_argument(
+        "--seed", type=whole_number(0, 2**63), default=0, help="which draws (default: 0)"
+    )
+    parser.add_argument("--scene", metavar="FILE", help="write the impact found as a scene file")
     add_solution_arguments(parser)
 
 
@@ -57,14 +96,71 @@ def main(args: argparse.Namespace) -> int:
         return 0
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
-    known = known_values(args.file, args.set, KNOWABLE)
-    wanted = args.wanted.upper().replace(",", " ").split() if args.wanted else None
-    from ..reconstruction.solutiontable import show
+    known = known_within_limits(args.file, args.set, KNOWABLE)
+    plain = not any(item.varies or name in OTHERS for name, item in known.items())
+    if plain and not args.scene and not _contradictory(known, args):
+        from ..reconstruction.solutiontable import show
 
-    show(known, wanted, source_of(args.file), args.contact_time, args.json)
+        numbers = {name: item.nominal for name, item in known.items()}
+        show(numbers, _wanted(args), source_of(args.file), args.contact_time, args.json)
+        return 0
+    _reconstruct(known, args)
     return 0
 
 
 def source_of(path: str | None) -> str | None:
     """What errors call the file given."""
     return None if path is None else called(path)
+
+
+def _wanted(args: argparse.Namespace) -> list[str] | None:
+    return args.wanted.upper().replace(",", " ").split() if args.wanted else None
+
+
+def _contradictory(known: dict[str, Uncertain], args: argparse.Namespace) -> bool:
+    """Whether exact values alone leave over equations that do not hold."""
+    from ..reconstruction.unknowns import solve_for
+
+    try:
+        solutions = solve_for({n: item.nominal for n, item in known.items()}, _wanted(args))
+    except UserError:
+        return False  # told by the one who shows it
+    return any(bool(solution.contradictory) for solution in solutions)
+
+
+def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace) -> None:
+    from ..reconstruction.adjustment import reconstruct
+    from ..reconstruction.state import QUANTITIES
+    from ..uncertainty.reconstructedtable import as_json, as_text, completed_values, uncertainty
+
+    wanted = names_given([args.wanted], QUANTITIES, "--for") if args.wanted else None
+    try:
+        solutions = reconstruct(known)
+    except UserError as error:
+        raise UserError(str(error), source_of(args.file)) from None
+    for name in wanted or ():
+        if any(name not in solution.values for solution in solutions):
+            raise UserError(f"{name} is not determined by what is known", source_of(args.file))
+    if args.scene:
+        _write_scene(solutions, args)
+    tables = []
+    for solution in solutions:
+        spread = uncertainty(solution, args.samples, args.seed, wanted)
+        tables.append((solution, completed_values(solution, args.contact_time), spread))
+    if args.json:
+        print(json.dumps({"solutions": [as_json(*one) for one in tables]}, allow_nan=False))
+        return
+    for count, one in enumerate(tables, 1):
+        if len(tables) > 1:
+            print(f"{chr(10) if count > 1 else ''}SOLUTION {count} OF {len(tables)}\n")
+        print(as_text(*one))
+
+
+def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace) -> None:
+    if len(solutions) > 1:
+        raise UserError(f"{len(solutions)} impacts agree with what is known; expected one")
+    texts = {name: repr(value).upper() for name, value in solutions[0].scene().items()}
+    texts["M"] = "4" if texts["M"] == "4.0" else "6"
+    with replacing(args.scene) as file:
+        file.write(scene_template(texts, f"Reconstructed from {called(args.file or '--set')}"))
+    print(f"scene written to {args.scene}", file=sys.stderr)

@@ -22,9 +22,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.columns import PIVOT
 from ..errors import UserError
-from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, VELOCITIES
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 from ..uncertainty.uncertain import Uncertain, fixed
 from .geometry import NAMES as GEOMETRY
 from .geometry import Geometry
@@ -332,6 +331,11 @@ class Reconstruction:
         responses = self.responses(names)
         product: Floats = responses @ responses.T
         return product
+
+    @property
+    def varies(self) -> bool:
+        """Whether anything known has a tolerance."""
+        return bool(self.system.observations)
 
     def deviations(self, names: Sequence[str]) -> dict[str, float]:
         """First-order standard deviations."""

@@ -33,6 +33,8 @@ RANK_TOLERANCE = 1e-12
 """Singular values below this share of the largest count as zero."""
 _OPEN = 1e-9
 """From this share of what is left open in a quantity, the quantity is not determined."""
+_MISMATCH = 1e-9
+"""What equations leave over below this share of the largest speed is rounding."""
 _NOTHING = 1e-12
 """Denominators of coefficients below this share of the largest speed count as zero."""
 
@@ -43,7 +45,7 @@ class Found:
 
     ``values``: by name, NaN where not determined. ``amplification``: of each wanted quantity, see
     `unknowns.Solution`. ``sliding``: the tangential relative velocity before the impact,
-    NaN where not determined. ``mismatch``: root mean square, 0 when no equation is left over.
+    NaN where not determined. ``mismatch``: root mean square, 0 when the equations hold.
     ``made_of_something``: where both parts of every wanted coefficient's quotient are determined.
     """
 
@@ -188,6 +190,7 @@ class Equations:
         """What the equations determine, ``wanted`` above all."""
         left, right = self._assembled()
         over = left.shape[1] > self.unknowns
+        scale = np.ones((1, 1, 1))
         if not over:
             # the solution is the same however the equations are scaled; this is best for rounding
             largest = np.abs(left).max(axis=2, initial=0.0)
@@ -206,10 +209,17 @@ class Equations:
             values=values,
             amplification={n: np.sqrt((slopes[n] ** 2).sum(axis=1)) for n in wanted},
             sliding=np.where(determined, sliding, np.nan),
-            mismatch=np.sqrt((rest**2).mean(axis=1)) if over else np.zeros(self.count),
+            mismatch=self._mismatch(rest if over else rest * scale[:, :, 0]),
             gyration=self.gyration,
             made_of_something=made,
         )
+
+    def _mismatch(self, rest: Array) -> Array:
+        """Root mean square of what the equations leave over, 0 where that is rounding. Even fewer
+        equations than unknowns contradict one another where some hold nothing unknown."""
+        mismatch = np.sqrt((rest**2).mean(axis=1))
+        largest = np.abs(self.k).max(axis=1, initial=0.0)
+        return np.where(mismatch > _MISMATCH * largest, mismatch, 0.0)
 
     def _evaluated(self, rows: Rows) -> tuple[Array, Array, Flags]:
         """Value, slopes over the known velocities, and whether it is determined."""

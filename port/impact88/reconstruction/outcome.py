@@ -18,11 +18,14 @@ from ..closedform.statusbits import set_bits
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from .geometry import Geometry, with_point_masses
 from .impulse import principal_direction
+from .state import COURSES, SPEEDS, course, in_vehicle_axes
 
 Array = NDArray[Any]
 
 _FORWARD = ("MUC", "COND")
 """What only the forward solution can tell: it needs all initial velocities and coefficients."""
+_PLANE = {"A": (("UX", "VAX"), ("UY", "VAY")), "B": (("VX", "VBX"), ("VY", "VBY"))}
+"""The components of each vehicle's velocity, before and after."""
 _INERTIAS = ("MA", "MB", "IA", "IB")
 
 
@@ -30,8 +33,9 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     """The consequences of ``values``: geometry, velocities, coefficients, PN and PT, by name.
 
     CAX CAY CBX CBY and STATUS always; PDOFA PDOFB and P where PN and PT are given; contact
-    velocities XA ... YBF, KI, KF, LOSS, DVA, DVB where the velocities they need are; MUC where all
-    initial velocities and coefficients are (MU as the listing's line 280 would hold it).
+    velocities XA ... YBF, KI, KF, LOSS, DVA, DVB (with their components in vehicle axes), speeds
+    and courses where the velocities they need are; MUC where all initial velocities and
+    coefficients are (MU as the listing's line 280 would hold it).
     """
     headings = [(v, f"T{v}") for v in "AB" if f"T{v}" in values]
     whole = with_point_masses(values)
@@ -51,11 +55,20 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     result |= _contact_velocities(here, given)
     result |= velocity_changes(given)
     result |= energies(here, given)
+    for course_name, speed in COURSES.items():
+        if all(name in given for name in SPEEDS[speed]):
+            x, y = (given[name] for name in SPEEDS[speed])
+            result[speed], result[course_name] = np.hypot(x, y), course(x, y)
+    for vehicle, theta in headings:
+        if f"DV{vehicle}" in result:
+            change = (given[late] - given[early] for early, late in _PLANE[vehicle])
+            forward, right = in_vehicle_axes(vehicle, given[theta], *change)
+            result |= {f"DV{vehicle}F": forward, f"DV{vehicle}R": right}
     condition: Any = 1.0
     if all(name in given for name in SCENE if name != "M"):
         scene = {name: given[name] for name in SCENE if name in given}
-        forward = solve(scene, _FORWARD)
-        result["MUC"], condition = forward["MUC"], forward["COND"]
+        solved = solve(scene, _FORWARD)
+        result["MUC"], condition = solved["MUC"], solved["COND"]
     result["STATUS"] = status(here, given | result, condition)
     shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
     return {name: np.broadcast_to(value, shape) for name, value in result.items()}
@@ -136,8 +149,9 @@ def status(here: Geometry, given: Mapping[str, Array], condition: Any = 1.0) -> 
             here.bt,
             np.where(here.point, 0.0, given["DA"]),
             np.where(here.point, 0.0, given["DB"]),
-            2 * (value("KI") - value("KF")),
-            value("KI"),
+            # energies that are not known are no numbers that are not finite
+            2 * (value("KI") - value("KF")) if "KF" in given and "KI" in given else np.zeros(()),
+            given.get("KI", np.ones(())),
             value("E"),
             np.where(here.point, 0.0, value("EM")),
             np.where(pivot, 0.0, value("MUP")),

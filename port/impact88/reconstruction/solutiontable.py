@@ -13,12 +13,14 @@ from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..status import sentences
 from .impulse import clock, forces
 from .outcome import moment_ratio, outcome
+from .state import CHANGES
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
 _BARRIERS = (
     *("MB", "IB", "DB", "PB", "TB", "VX", "VY", "WB", "VBX", "VBY", "WBF"),
-    *("XB", "YB", "XBF", "YBF", "DVB", "CBX", "CBY", "PDOFB"),
+    *("XB", "YB", "XBF", "YBF", "DVB", "DVBF", "DVBR", "CBX", "CBY", "PDOFB"),
+    *("SB", "HB", "SBF", "HBF"),
 )
 """What is not worth telling of B when it is a rigid barrier."""
 _TURNING = (
@@ -34,15 +36,20 @@ def complete(
     """Everything about one solution of a single scene, by name, in the tables' order: what was
     given, what was found, and what follows (`outcome`; forces for a contact time)."""
     values = {**known, **{name: float(value) for name, value in solution.values.items()}}
+    return completed(values, contact_time)
+
+
+def completed(values: dict[str, float], contact_time: float | None) -> dict[str, float]:
+    """One impact's values and what follows from them, in the tables' order."""
     following = {name: float(value) for name, value in outcome(values).items()}
     if contact_time is not None and "P" in following:
         following["TF"] = contact_time
         following |= {n: float(v) for n, v in forces(following["P"], contact_time).items()}
-    values |= following
+    values = values | following
     if "EM" in values:
         values["RR0"] = float(moment_ratio(values["EM"]))
-    untold = _BARRIERS if math.isinf(known.get("MB", 0.0)) else ()
-    untold = (*untold, *_TURNING) if known.get("M") == 4 else untold
+    untold = _BARRIERS if math.isinf(values.get("MB", 0.0)) else ()
+    untold = (*untold, *_TURNING) if values.get("M") == 4 else untold
     return {name: values[name] for name in _ORDER if name in values and name not in untold}
 
 
@@ -65,12 +72,13 @@ def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
 def as_text(known: Mapping[str, float], solution: Solution, values: Mapping[str, float]) -> str:
     """The solution as tables: velocities, coefficients, impulse, consequences, warnings."""
     blocks: list[list[str]] = [
-        _velocities(known, values),
-        _named(("E", "MUP", "EM", "RR0"), known, values),
-        _named(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values),
-        _named(("TF", "FA", "FM2", "FM3"), known, values),
-        _named(("DVA", "DVB", "KI", "KF", "LOSS"), known, values),
-        _named(("CAX", "CAY", "CBX", "CBY"), known, values),
+        velocities_table(known, values),
+        named_table(("E", "MUP", "EM", "RR0"), known, values),
+        named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values),
+        named_table(("TF", "FA", "FM2", "FM3"), known, values),
+        named_table(CHANGES, known, values),
+        named_table(("KI", "KF", "LOSS"), known, values),
+        named_table(("CAX", "CAY", "CBX", "CBY"), known, values),
         _conditions(solution),
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
@@ -83,14 +91,16 @@ _ROWS = (
     ("x", "length/time", ("UX", "VAX", "VX", "VBX")),
     ("y", "length/time", ("UY", "VAY", "VY", "VBY")),
     ("spin", "rad/time", ("WA", "WAF", "WB", "WBF")),
+    ("speed", "length/time", ("SA", "SAF", "SB", "SBF")),
+    ("course", "degree", ("HA", "HAF", "HB", "HBF")),
     ("x at contact point", "length/time", ("XA", "XAF", "XB", "XBF")),
     ("y at contact point", "length/time", ("YA", "YAF", "YB", "YBF")),
 )
 
 
-def _velocities(known: Mapping[str, float], values: Mapping[str, float]) -> list[str]:
+def velocities_table(known: Mapping[str, float], values: Mapping[str, float]) -> list[str]:
     decimals = {}
-    for unit in ("length/time", "rad/time"):
+    for unit in ("length/time", "rad/time", "degree"):
         alike = [name for _, row_unit, row in _ROWS if row_unit == unit for name in row]
         decimals[unit] = decimals_for([values[name] for name in alike if name in values])
     rows = []
@@ -102,7 +112,7 @@ def _velocities(known: Mapping[str, float], values: Mapping[str, float]) -> list
         cells = []
         for name in names:
             text = fixed(values[name], decimals[unit]) if name in values else "unknown"
-            given = name in known or "contact" in label or name not in values
+            given = name in known or label not in ("x", "y", "spin") or name not in values
             cells.append(f"{text}{' ' if given else '*'}")
         rows.append([label, *cells, unit])
     heading = ["A before ", "A after ", "B before ", "B after "][: 2 * vehicles]
@@ -110,7 +120,7 @@ def _velocities(known: Mapping[str, float], values: Mapping[str, float]) -> list
     return [*lines, "* solved for"]
 
 
-def _named(
+def named_table(
     names: tuple[str, ...], known: Mapping[str, float], values: Mapping[str, float]
 ) -> list[str]:
     rows = []

@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from ..closedform.columns import PIVOT
 from ..closedform.energy import kinetic_energy
-from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, VELOCITIES
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 from .geometry import Geometry, sin_cos
 from .impulse import facing
 
@@ -100,7 +99,7 @@ class State:
             x, y = self._components(name)
             return np.sqrt(x * x + y * y)
         if name in COURSES:
-            return _angle(*self._components(COURSES[name]))
+            return course(*self._components(COURSES[name]))
         return _QUANTITIES[name](self)
 
     def _components(self, speed: str) -> tuple[Any, Any]:
@@ -139,8 +138,7 @@ class State:
         """A vehicle's change of velocity along its length, forward, and across, to its right."""
         first = 0 if vehicle == "A" else 3
         x, y = self.changes[first : first + 2]
-        cosine, sine = _unit(facing(vehicle, self.values["T" + vehicle]))
-        return x * cosine + y * sine, x * sine - y * cosine
+        return in_vehicle_axes(vehicle, self.values["T" + vehicle], x, y)
 
     def _energy(self, velocities: list[Any]) -> Any:
         inertias = [
@@ -185,13 +183,19 @@ _QUANTITIES: dict[str, Callable[[State], Any]] = {
 }
 
 
+def in_vehicle_axes(vehicle: str, theta: Any, x: Any, y: Any) -> tuple[Any, Any]:
+    """A vector's components along a vehicle's length, forward, and across, to its right."""
+    cosine, sine = _unit(facing(vehicle, theta))
+    return x * cosine + y * sine, x * sine - y * cosine
+
+
 def _unit(degrees: Any) -> tuple[Any, Any]:
     """Cosine and sine."""
     sine, cosine = sin_cos(degrees)
     return cosine, sine
 
 
-def _angle(x: Any, y: Any) -> Any:
+def course(x: Any, y: Any) -> Any:
     """The direction of (x, y) in degrees; the imaginary part is its derivative's."""
     real = np.degrees(np.arctan2(np.real(y), np.real(x)))
     if not (np.iscomplexobj(x) or np.iscomplexobj(y)):

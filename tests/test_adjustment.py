@@ -1,0 +1,432 @@
+"""Reconstructions with tolerances, against the chapter's equations as printed and plain least
+squares: neither shares code with the adjustment."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from impact88.chapter.staged import collisions, fit
+from impact88.cli import main
+from impact88.closedform.solve import solve
+from impact88.errors import UserError
+from impact88.reconstruction.adjustment import reconstruct
+from impact88.reconstruction.unknowns import solve_for
+from impact88.scene import Scene, sample
+from impact88.uncertainty.reconstructed import draws, ranges
+from impact88.uncertainty.uncertain import read
+
+GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
+INITIAL = ("UX", "UY", "WA", "VX", "VY", "WB")
+FINAL = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
+TABLE_3 = {name: float(text) for name, text in sample(3).items()}
+VEHICLES = {name: TABLE_3[name] for name in GEOMETRY}
+ESTIMATES = {"VAX": -10.0, "VAY": 20.0, "VBX": -20.0, "VBY": 45.0}
+NO_SWERVE = {"UY": 0.0, "VX": 0.0}
+SPINS = {"WAF": (-2.9, 0.3), "WBF": (-0.9, 0.3)}
+
+
+def within(values, tolerance):
+    return {name: read(f"{value!r} +- {tolerance}", name) for name, value in values.items()}
+
+
+SECTION_7 = VEHICLES | NO_SWERVE | within(ESTIMATES, 2)
+BOTH_SPINS = {
+    **SECTION_7,
+    **{"WA": 0.0, "WB": 0.0},
+    **{name: read(f"{value} +- {tolerance}", name) for name, (value, tolerance) in SPINS.items()},
+}
+
+
+def equations(v):
+    """What Equations 13 to 18, as the chapter prints them, leave over, each divided so that it is
+    a share of the largest speed."""
+    g, ta, tb = (math.radians(v[n]) for n in ("GA", "TA", "TB"))
+    pa, pb = math.radians(v["PA"]), math.radians(v["PB"])
+    d1, d2 = v["DB"] * math.sin(tb + pb), v["DB"] * math.cos(tb + pb)
+    d3, d4 = v["DA"] * math.sin(ta + pa), v["DA"] * math.cos(ta + pa)
+    s, c = math.sin(g), math.cos(g)
+    ma, mb, ia, ib, e, mu, em = (v[n] for n in ("MA", "MB", "IA", "IB", "E", "MUP", "EM"))
+    ax, ay, wa = v["VAX"] - v["UX"], v["VAY"] - v["UY"], v["WAF"] - v["WA"]
+    bx, by, wb = v["VBX"] - v["VX"], v["VBY"] - v["VY"], v["WBF"] - v["WB"]
+
+    def closing(ux, uy, wa, vx, vy, wb):
+        return (uy - d4 * wa - vy - d2 * wb) * s + (ux + d3 * wa - vx + d1 * wb) * c
+
+    speed = max(abs(v[n]) for n in ("UX", "UY", "VX", "VY", "VAX", "VAY", "VBX", "VBY"))
+    length = math.sqrt((ia + ib) / (ma + mb))
+    bracket = (
+        wa - ma * d3 * ax / ia + ma * d4 * ay / ia - wb - mb * d1 * bx / ib + mb * d2 * by / ib
+    )
+    return [
+        (ma * ax + mb * bx) / (ma * speed),
+        (ma * ay + mb * by) / (ma * speed),
+        (closing(*(v[n] for n in FINAL)) + e * closing(*(v[n] for n in INITIAL))) / speed,
+        (ma * ay * (c - mu * s) + mb * bx * (s + mu * c)) / (ma * speed),
+        (ib * wb + ia * wa + mb * (d1 + d3) * bx + ma * (d2 + d4) * ay) / (ma * length * speed),
+        ((v["WBF"] - v["WAF"]) * (1 - em) + em * bracket) * length / speed,
+    ]
+
+
+class TestLaws:
+    @pytest.mark.parametrize(
+        "known",
+        [
+            BOTH_SPINS,
+            {**BOTH_SPINS, "E": read("0.1 .. 0.3", "E"), "EM": read("-.9 +- .1", "EM")},
+            {**BOTH_SPINS, "MA": read("96 +- 5", "MA"), "GA": read("0 +- 10", "GA"), "TB": 90.0},
+            {**BOTH_SPINS, "DVA": read("37 +- 3", "DVA"), "EL": read("110000 +- 20000", "EL")},
+            {**BOTH_SPINS, "SA": read("38 +- 2", "SA"), "HA": 180.0},
+        ],
+    )
+    def test_adjusted_values_satisfy_the_chapters_equations(self, known):
+        for solution in reconstruct(known):
+            assert solution.redundancy >= 1
+            assert np.abs(equations(solution.values)).max() < 1e-12
+
+    def test_twelve_measured_velocities(self):
+        """Adjusted, both vehicles tell the same impulse; as measured they do not."""
+        collision = collisions()[0]
+        (solution,) = reconstruct({**collision.scene, **collision.measured})
+        values = solution.values
+        assert solution.assumed
+        assert solution.redundancy == 3
+        assert np.abs(equations(values)).max() < 1e-12
+        size = math.hypot(values["PN"], values["PT"])
+        for vehicle, (x, y), (late_x, late_y) in (
+            ("A", ("UX", "UY"), ("VAX", "VAY")),
+            ("B", ("VX", "VY"), ("VBX", "VBY")),
+        ):
+            change = math.hypot(values[late_x] - values[x], values[late_y] - values[y])
+            assert change * values[f"M{vehicle}"] == pytest.approx(size, rel=1e-12)
+            assert values[f"DV{vehicle}"] == pytest.approx(change, rel=1e-12)
+
+
+class TestLeastSquares:
+    def test_both_spins_of_section_7(self):
+        """Linear in (v_ax, v_by, P_x, P_y, M): weighted least squares of six measured values."""
+        ma, mb, ia, ib = (VEHICLES[n] for n in ("MA", "MB", "IA", "IB"))
+        beta = math.radians(VEHICLES["TB"] + VEHICLES["PB"])
+        d1, d2, d3, d4 = 4 * math.sin(beta), 4 * math.cos(beta), 0.0, 4.5
+        rows = np.array(
+            [
+                [1, 0, 1 / ma, 0, 0],
+                [0, 0, 0, 1 / ma, 0],
+                [0, 0, -1 / mb, 0, 0],
+                [0, 1, 0, -1 / mb, 0],
+                # the impulse acts at (-d4, -d3) from A and its opposite at (d2, d1) from B
+                [0, 0, d3 / ia, -d4 / ia, 1 / ia],
+                [0, 0, d1 / ib, -d2 / ib, -1 / ib],
+            ]
+        )
+        measured = np.array([*ESTIMATES.values(), -2.9, -0.9])
+        weight = 1 / np.array([2, 2, 2, 2, 0.3, 0.3])
+        best = np.linalg.lstsq(rows * weight[:, None], measured * weight, rcond=None)[0]
+        covariance = np.linalg.inv((rows * weight[:, None]).T @ (rows * weight[:, None])) / 3
+        (solution,) = reconstruct(BOTH_SPINS)
+        assert solution.values["UX"] == pytest.approx(best[0], rel=1e-11)
+        assert solution.values["VY"] == pytest.approx(best[1], rel=1e-11)
+        adjusted = {a.name: a for a in solution.adjusted}
+        for name, value, was in zip(
+            ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF"), rows @ best, measured, strict=True
+        ):
+            assert adjusted[name].adjusted == pytest.approx(value, rel=1e-11)
+            tolerance = 2 if name[0] == "V" else 0.3
+            assert adjusted[name].moved == pytest.approx((value - was) / tolerance, abs=1e-9)
+        deviations = solution.deviations(["UX", "VY"])
+        assert deviations["UX"] == pytest.approx(math.sqrt(covariance[0, 0]), rel=1e-9)
+        assert deviations["VY"] == pytest.approx(math.sqrt(covariance[1, 1]), rel=1e-9)
+        expected = covariance[0, 1] / math.sqrt(covariance[0, 0] * covariance[1, 1])
+        assert solution.correlations(["UX", "VY"])[0, 1] == pytest.approx(expected, rel=1e-9)
+
+    def test_as_measured_angular_momentum_is_missed(self):
+        """Why it must be adjusted: Equation 17 over UX and VY of Equations 13 and 14."""
+        values = {**VEHICLES, **ESTIMATES, **NO_SWERVE, "WA": 0.0, "WB": 0.0}
+        values |= {name: value for name, (value, _) in SPINS.items()}
+        values["UX"] = -10 + 145 / 96 * -20
+        values["VY"] = 45 + 96 / 145 * 20
+        beta = math.radians(50)
+        d1, d2, d4 = 4 * math.sin(beta), 4 * math.cos(beta), 4.5
+        missed = 3770 * -0.9 + 1970 * -2.9 + 145 * d1 * -20 + 96 * (d2 + d4) * 20
+        assert abs(missed) > 100
+        (solution,) = reconstruct(BOTH_SPINS)
+        assert solution.squares > 1
+
+    @pytest.mark.parametrize("number", [1, 6, 9, 10])
+    def test_a_staged_collision_is_fitted_as_section_5_does(self, number):
+        """Initial velocities exact, spins weighted by 25 ft²: where no bound holds the fit back."""
+        collision = next(c for c in collisions() if c.number == number)
+        known = dict(collision.scene)
+        for name, value in collision.measured.items():
+            known[name] = read(f"normal {value!r} {0.2 if name[0] == 'W' else 1.0}", name)
+        (solution,) = reconstruct(known)
+        free = (
+            fit(collision, em=solution.values["EM"]) if -1 <= solution.values["EM"] <= 0 else None
+        )
+        best = fit(collision)
+        assert solution.squares <= best.sum_of_squares * (1 + 1e-9)
+        if free is not None and "E" not in free.at_bound:
+            assert solution.values["E"] == pytest.approx(free.E, abs=1e-6)
+            assert solution.values["MUP"] == pytest.approx(free.MUP, abs=1e-6)
+
+
+class TestDetermined:
+    """With no more known than needed nothing is adjusted."""
+
+    @pytest.mark.parametrize(
+        "unknown",
+        [
+            FINAL,
+            INITIAL,
+            ("UX", "UY", "WA", "VBX", "VBY", "WBF"),
+            ("VAX", "VAY", "WAF", "E", "MUP", "EM"),
+        ],
+    )
+    def test_as_solve_for_finds_it(self, unknown):
+        after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP")).items()}
+        whole = {n: v for n, v in {**TABLE_3, **after}.items() if n != "MU"}
+        known = {n: v for n, v in whole.items() if n not in unknown}
+        loose = {
+            n: read(f"{v!r} +- {max(abs(v), 1) * 0.01}", n) for n, v in known.items() if n != "M"
+        }
+        (expected,) = solve_for(known)
+        (solution,) = reconstruct({**loose, "M": 6.0})
+        for name in unknown:
+            assert solution.values[name] == pytest.approx(float(expected[name]), abs=1e-9)
+        assert solution.redundancy == 0
+        assert max(abs(a.moved) for a in solution.adjusted) < 1e-9
+
+    def test_size_of_friction_gives_both_signs(self):
+        after = {n: float(v) for n, v in solve(TABLE_3, FINAL).items()}
+        known = {**VEHICLES, "E": 0.25, "EM": -0.9, "MU": read(".89 +- .02", "MU"), **after}
+        expected = solve_for({**known, "MU": 0.89})
+        found = reconstruct(known)
+        assert len(found) == len(expected) == 2
+        for one, other in zip(found, expected, strict=True):
+            assert one.values["UX"] == pytest.approx(float(other["UX"]), abs=1e-9)
+
+    def test_speed_and_course_stand_for_components(self):
+        course = {"SA": 36.667, "HA": 180.0, "SB": 58.667, "HB": 90.0, "WA": 0.0, "WB": 0.0}
+        coefficients = {name: TABLE_3[name] for name in ("E", "MU", "EM")}
+        (solution,) = reconstruct({**VEHICLES, **course, **coefficients})
+        after = solve(TABLE_3, FINAL)
+        for name in FINAL:
+            assert solution.values[name] == pytest.approx(float(after[name]), abs=1e-11)
+
+    @pytest.mark.parametrize("course", [60.0, 213.0])
+    def test_a_course_at_an_angle_with_the_speed_unknown(self, course):
+        angle = math.radians(course)
+        true = TABLE_3 | {"VX": 30 * math.cos(angle), "VY": 30 * math.sin(angle)}
+        after = {n: float(v) for n, v in solve(true, (*FINAL, "MUP")).items()}
+        known = {n: v for n, v in {**true, **after}.items() if n not in ("VX", "VY", "VBX", "MU")}
+        (solution,) = reconstruct({**known, "HB": course})
+        assert solution.values["SB"] == pytest.approx(30, rel=1e-9)
+        assert solution.values["VBX"] == pytest.approx(after["VBX"], rel=1e-9)
+
+    @pytest.mark.parametrize("name", ["LOSS", "DT", "EL", "DVA", "DVB"])
+    def test_energy_or_velocity_change_in_place_of_a_speed(self, name):
+        after = {
+            n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP", "KI", "KF", "LOSS")).items()
+        }
+        sizes = {n: float(v) for n, v in solve(TABLE_3, ("DVA", "DVB")).items()}
+        lost = after["KI"] - after["KF"]
+        value = {**sizes, "LOSS": after["LOSS"], "DT": lost / after["KI"], "EL": lost}[name]
+        known = {n: v for n, v in TABLE_3.items() if n not in ("MU", "UX")}
+        found = reconstruct({**known, "MUP": after["MUP"], name: value})
+        assert any(s.values["UX"] == pytest.approx(TABLE_3["UX"], rel=1e-8) for s in found)
+        for solution in found:
+            assert solution.values[name] == pytest.approx(value, rel=1e-9)
+            assert np.abs(equations(solution.values)).max() < 1e-11
+
+    def test_barrier_and_point_masses(self):
+        wall = TABLE_3 | {"MB": np.inf, "IB": np.inf, "VX": 0.0, "VY": 0.0, "WB": 0.0, "MU": 0.1}
+        after = {n: float(v) for n, v in solve(wall, (*FINAL, "MUP")).items()}
+        known = {n: v for n, v in {**wall, **after}.items() if n not in ("UX", "UY", "WA", "MU")}
+        (solution,) = reconstruct({**known, "VAX": read(f"{after['VAX']!r} +- .1", "VAX")})
+        assert solution.values["UX"] == pytest.approx(wall["UX"], rel=1e-9)
+        point = {"M": 4.0, "MA": 96.0, "MB": 145.0, "GA": 0.0, **NO_SWERVE, **within(ESTIMATES, 2)}
+        (solution,) = reconstruct(point)
+        assert solution.values["UX"] == pytest.approx(-40.2083333333)
+        assert "WA" not in solution.values
+
+
+class TestUncertainty:
+    def test_momentum_alone(self):
+        """v_ax = V_ax + m_b/m_a V_bx: bounds are sums, variances sums of squares."""
+        (solution,) = reconstruct(SECTION_7)
+        ratio = 145 / 96
+        assert solution.values["UX"] == pytest.approx(-10 - 20 * ratio, rel=1e-13)
+        assert solution.undetermined == ("WA", "WB", "WAF", "WBF", "E", "EM")
+        deviation = 2 / math.sqrt(3) * math.hypot(1, ratio)
+        assert solution.deviations(["UX"])["UX"] == pytest.approx(deviation, rel=1e-10)
+        bound = ranges(solution, ["UX"])["UX"]
+        assert bound.lower == pytest.approx(-10 - 20 * ratio - 2 * (1 + ratio), rel=1e-9)
+        assert bound.upper == pytest.approx(-10 - 20 * ratio + 2 * (1 + ratio), rel=1e-9)
+        assert bound.at_lower["VBX"] == pytest.approx(-22)
+        drawn = draws(solution, ["UX"], 20_000).values["UX"]
+        assert drawn.std() == pytest.approx(deviation, rel=0.02)
+        assert bound.lower <= drawn.min() <= drawn.max() <= bound.upper
+
+    def test_each_draw_is_solved(self):
+        """Coefficients and geometry vary: `solve` gives back the drawn velocities after."""
+        after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP")).items()}
+        known = {**VEHICLES, **{n: read(f"{v!r} +- 2%", n) for n, v in after.items()}}
+        known |= {"E": read(".22 .. .28", "E"), "EM": read("-.92 .. -.88", "EM")}
+        known |= {"GA": read("0 +- 2", "GA"), "MB": read("145 +- 5%", "MB")}
+        (solution,) = reconstruct(known)
+        names = [*INITIAL, "E", "EM", "MUP", *FINAL]
+        found = draws(solution, names, 300)
+        assert found.failed == 0
+        # GA and MB as drawn: the same seed, in the order of the known values
+        rng = np.random.default_rng([0, 1])
+        drawn = {n: known[n].draws(rng, 300) for n in solution.system.observations}
+        for i in range(0, 300, 30):
+            values = {n: float(found.values[n][i]) for n in names}
+            scene = {**VEHICLES, "GA": drawn["GA"][i], "MB": drawn["MB"][i], **values}
+            assert np.abs(equations(scene)).max() < 1e-9
+            assert values["VAX"] == pytest.approx(drawn["VAX"][i], rel=1e-9)
+        assert solution.deviations(["UX"])["UX"] == pytest.approx(
+            float(draws(solution, ["UX"], 4000).values["UX"].std()), rel=0.15
+        )
+
+    def test_draws_are_adjusted_where_more_is_known_than_needed(self):
+        (solution,) = reconstruct(BOTH_SPINS)
+        drawn = draws(solution, ["UX", "VY"], 4000)
+        deviations = solution.deviations(["UX", "VY"])
+        for name in ("UX", "VY"):
+            assert drawn.values[name].std() == pytest.approx(deviations[name], rel=0.05)
+            assert drawn.values[name].mean() == pytest.approx(solution.values[name], abs=0.1)
+
+    def test_bounds_lie_within_all_limits(self):
+        """A redundant value narrows the bounds; one that contradicts leaves none."""
+        loose = ranges(reconstruct(SECTION_7)[0], ["UX"])["UX"]
+        (narrowed,) = reconstruct({**SECTION_7, "SA": read("36 .. 41", "SA")})
+        bound = ranges(narrowed, ["UX"])["UX"]
+        assert loose.lower < bound.lower
+        assert bound.lower == pytest.approx(-41, abs=1e-3)
+        (against,) = reconstruct({**SECTION_7, "SA": read("60 .. 61", "SA")})
+        assert math.isnan(ranges(against, ["UX"])["UX"].lower)
+
+    def test_near_e_0(self):
+        after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP")).items()}
+        known = {**VEHICLES, "E": read(".25 +- .25", "E"), "EM": -0.9, **after}
+        (solution,) = reconstruct(known)
+        found = ranges(solution, ["UX", "DVA"])
+        assert math.isinf(found["UX"].lower)
+        assert math.isinf(found["UX"].upper)
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(
+        ("known", "message"),
+        [
+            ({"FOO": 1.0}, "no value of an impact"),
+            ({**VEHICLES, "MA": 0.0}, "MA is not positive"),
+            ({n: v for n, v in VEHICLES.items() if n != "GA"}, "missing GA"),
+            ({**SECTION_7, "MU": 0.5, "MUP": 0.5}, "MU and MUP are both given"),
+            ({**SECTION_7, "SA": -3.0}, "SA is negative"),
+            ({**SECTION_7, "UX": -20.0, "VAX": -10.0, "VBX": 3.0}, "agrees with all that is known"),
+            ({**VEHICLES, "UY": 0.0}, "nothing of"),
+        ],
+    )
+    def test_in_words(self, known, message):
+        with pytest.raises(UserError, match=message):
+            reconstruct(known)
+
+
+class TestCommand:
+    @pytest.fixture
+    def section_7(self, tmp_path):
+        lines = [f"{n} = {v:g}" for n, v in {**VEHICLES, **NO_SWERVE}.items()]
+        lines += [f'{n} = "{v:g} +- 2"' for n, v in ESTIMATES.items()]
+        path = tmp_path / "section7.toml"
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return str(path)
+
+    def run(self, capsys, *arguments):
+        status = main(arguments)
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    def test_section_7_in_one_command_from_one_file(self, section_7, capsys):
+        status, out, err = self.run(capsys, "reconstruct", section_7, "--samples", "2000", "--json")
+        assert (status, err) == (0, "")
+        (found,) = json.loads(out)["solutions"]
+        chapter = {"UX": -40.21, "VY": 58.24, "DVA": 36.2, "DVB": 24.0}
+        for name, printed in chapter.items():
+            decimals = len(str(printed).partition(".")[2])
+            assert round(found["values"][name], decimals) == printed
+        assert found["uncertainty"]["UX"]["lower"] < -40.21 < found["uncertainty"]["UX"]["upper"]
+        status, out, _ = self.run(capsys, "reconstruct", section_7, "--samples", "2000")
+        assert status == 0
+        assert "! not determined by what is known: WA WB WAF WBF E EM" in out
+        assert "VBX 70 %" in out
+        assert all(len(line) <= 104 for line in out.splitlines())
+
+    def test_step_5_with_both_spins_and_the_scene_it_gives(self, section_7, tmp_path, capsys):
+        scene = str(tmp_path / "found.toml")
+        settings = [
+            part
+            for text in ("WA=0", "WB=0", "WAF=-2.9 +- .3", "WBF=-.9 +- .3")
+            for part in ("--set", text)
+        ]
+        status, out, err = self.run(
+            capsys, "reconstruct", section_7, *settings, "--samples", "1000", "--scene", scene
+        )
+        assert status == 0
+        assert f"scene written to {scene}" in err
+        assert "adjustment of observations with conditions" in " ".join(out.split())
+        assert "1 value more than needed" in out
+        assert "no impact was found that lies within the limits" in out
+        (solution,) = reconstruct(BOTH_SPINS)
+        read_again = {n: float(t) for n, t in Scene.from_toml(scene).items()}
+        after = solve(read_again, FINAL)
+        for name in FINAL:
+            assert float(after[name]) == pytest.approx(solution.values[name], rel=1e-9, abs=1e-9)
+        for command in (
+            ("run", scene),
+            ("bounds", scene, "--range", "MU=+- .1", "--samples", "500", "--outputs", "DVA"),
+            ("figure", "scene", scene, "-o", str(tmp_path / "found.svg")),
+        ):
+            assert self.run(capsys, *command)[0] == 0, command
+
+    def test_ill_posed_is_said_with_the_number(self, tmp_path, capsys):
+        after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP")).items()}
+        lines = [f'{n} = "{v!r}"' for n, v in {**VEHICLES, **after, "EM": -0.9}.items()]
+        path = tmp_path / "near0.toml"
+        path.write_text("\n".join([*lines, 'E = ".005 +- .002"']), encoding="utf-8")
+        status, out, _ = self.run(capsys, "reconstruct", str(path), "--samples", "500")
+        assert status == 0
+        text = " ".join(out.split())
+        assert "! ill-posed: UX has a standard deviation of" in text
+        assert "E = 0.005 divides: errors after the impact grow 1/E = 200" in text
+
+    def test_exact_values_that_contradict_are_adjusted_with_equal_tolerances(
+        self, section_7, capsys
+    ):
+        exact = [
+            part
+            for n, v in {**ESTIMATES, "UX": -36.0, "VY": 58.0}.items()
+            for part in ("--set", f"{n}={v}")
+        ]
+        status, out, _ = self.run(capsys, "reconstruct", section_7, *exact, "--for", "MUP")
+        assert status == 0
+        assert "moved, tolerances" in out
+        assert "none has a tolerance" in " ".join(out.split())
+
+    @pytest.mark.parametrize(
+        ("setting", "message"),
+        [
+            ("VAX=about 3", "'about 3' is no value or range"),
+            ("UX=-20 +- 1%x", "is no value or range"),
+            ("FOO=1", "'FOO' is no value here"),
+        ],
+    )
+    def test_refuses_in_one_line(self, setting, message, section_7, capsys):
+        status, out, err = self.run(capsys, "reconstruct", section_7, "--set", setting)
+        assert (status, out) == (2, "")
+        assert message in err
+        assert err.count("\n") == 1
