@@ -26,7 +26,7 @@ from . import otherprograms, residuals
 from .agreement import Slack, Theirs, given
 from .slip import Slip
 from .slips import SLIPS
-from .slipsreading import changing, constant_of
+from .slipsreading import changing, constant_of, times
 from .slipsshowing import ALL_SPEEDS, ENERGIES, FINAL_SPINS, IMPULSES, scaled
 
 Floats = NDArray[np.float64]
@@ -203,6 +203,11 @@ def _measured(case: Case) -> list[Slip]:
         if usable.size and (constant := _rounded(float(np.median(usable)))) is not None:
             change = changing((name,), constant_of(constant))
             slips.append(Slip(f"{name} fixed at {constant:g}", change, late=True, common=False))
+        own = case.ours["MUP"] if name == "MU" else case.scene[name]
+        factor = _ratio([values[case.wrong]], [own[case.wrong]])
+        if factor is not None:
+            change = times((name,), factor)
+            slips.append(Slip(f"{name} taken {factor:.6g} times as large", change, common=False))
     return slips
 
 
@@ -215,7 +220,7 @@ def _ratio(theirs: Sequence[Floats], ours: Sequence[Floats]) -> float | None:
     ratios = ratios[np.isfinite(ratios)]
     if not ratios.size:
         return None
-    factor = float(np.median(ratios))
+    factor = float(f"{np.median(ratios):.12g}")
     return None if abs(factor - 1) < 1e-6 or factor == 0 else factor
 
 

@@ -19,6 +19,8 @@ from ..reconstruction.geometry import Geometry
 from .otherprograms import used_friction
 from .slip import Columns, Fills, Floats, Slip
 
+INITIAL = ("UX", "UY", "VX", "VY", "WA", "WB")
+"""The initial velocities in the order of the unknowns."""
 EQUATIONS = {
     "13": "momentum along x",
     "14": "momentum along y",
@@ -147,6 +149,40 @@ def _term(row: int, column: int, *, factor: float = -1.0) -> Fills:
     return change
 
 
+def _term_throughout(row: int, column: int, factor: float) -> Fills:
+    """The same, with its share of the right-hand side, which holds the initial velocity there."""
+
+    def change(matrix: Floats, right: Floats, g: Columns) -> None:
+        term = matrix[:, row, column].copy()
+        before = term * g[INITIAL[column]]
+        if row == _row("15"):
+            before = -g["E"] * before
+        elif row == _row("18") and column >= 4:
+            before = np.sign(column - 4.5) * -g["EM"] * g[INITIAL[column]]
+        held = np.where((row == _row("16")) & (g["MU"] == -10), 0.0, before)
+        matrix[:, row, column] *= factor
+        right[:, row] += (factor - 1) * held
+
+    return change
+
+
+def _one_inertia(number: int) -> Fills:
+    """Equation 18 with the moment's effect on one vehicle only."""
+    inertia = ("IA", "IB")[number]
+
+    def change(matrix: Floats, right: Floats, g: Columns) -> None:
+        moment_on_a(matrix, right, g)
+        row, em = _row("18"), g["EM"]
+        both, one = 1 / g["IA"] + 1 / g["IB"], 1 / g[inertia]
+        share = np.where(g["M"] == 4, 1.0, one / both)
+        spin = np.where(g["M"] == 4, 0.0, -(1 - em))
+        matrix[:, row, 4] = (matrix[:, row, 4] - spin) * share + spin
+        matrix[:, row, :4] *= share[:, None]
+        right[:, row] *= share
+
+    return change
+
+
 def _right_side(row: int) -> Fills:
     def change(matrix: Floats, right: Floats, g: Columns) -> None:
         right[:, row] *= -1
@@ -154,16 +190,38 @@ def _right_side(row: int) -> Fills:
     return change
 
 
+def _in_form(forms: Sequence[Fills], change: Fills) -> Fills:
+    """A change of the equations after some have been written otherwise."""
+
+    def both(matrix: Floats, right: Floats, g: Columns) -> None:
+        for form in forms:
+            form(matrix, right, g)
+        change(matrix, right, g)
+
+    return both
+
+
+_FORMS: dict[str, tuple[tuple[Fills, ...], ...]] = {
+    "13": ((), ON_A),
+    "14": ((), ON_A),
+    "17": ((), (moment_on_a,)),
+}
+"""An equation -> the ways to write the others, which are no longer the same once it is wrong."""
+
+
 def _terms() -> Iterator[Slip]:
     """One term of one equation with the wrong sign, or left out."""
     for row, (number, subject) in enumerate(EQUATIONS.items()):
         where = f"Equation {number} ({subject})"
-        yield Slip(f"{where}: right-hand side with the wrong sign", equations=_right_side(row),
-                   common=False)  # fmt: skip
+        changes = {f"{where}: right-hand side with the wrong sign": _right_side(row)}
         for column, unknown in enumerate(UNKNOWNS):
+            both = f"{where}: terms of {unknown} and {INITIAL[column]}"
             for how, factor in (("with the wrong sign", -1.0), ("left out", 0.0)):
-                yield Slip(f"{where}: term of {unknown} {how}", common=False,
-                           equations=_term(row, column, factor=factor))  # fmt: skip
+                changes[f"{where}: term of {unknown} {how}"] = _term(row, column, factor=factor)
+                changes[f"{both} {how}"] = _term_throughout(row, column, factor)
+        for says, change in changes.items():
+            for forms in _FORMS.get(number, ((),)):
+                yield Slip(says, equations=_in_form(forms, change), common=False)
 
 
 FILLED: tuple[Slip, ...] = (
@@ -177,5 +235,7 @@ FILLED: tuple[Slip, ...] = (
     *_nothing("momentum's right-hand side along y 0", "14"),
     *_nothing("friction's right-hand side 0", "16"),
     *_nothing("the moment's right-hand side 0", "18"),
+    Slip("Equation 18: the moment's effect on A only", equations=_one_inertia(0)),
+    Slip("Equation 18: the moment's effect on B only", equations=_one_inertia(1)),
     *_terms(),
 )  # fmt: skip

@@ -44,11 +44,17 @@ VEHICLES = (
 
 def _mu_as_typed(scene: Columns) -> Columns:
     """Line 400 flips MU where MUP shows it; a program without it must be given the opposite."""
-    return {"MU": np.where(used_friction(scene) == scene["MU"], scene["MU"], -scene["MU"])}
+    kept = used_friction(scene) == scene["MU"]
+    return {"MU": np.where(kept, scene["MU"], _opposite(scene["MU"]))}
+
+
+def _opposite(mu: Floats) -> Floats:
+    """MU with the other sign; what is no pivot stays none."""
+    return np.where(mu == 10, np.nextafter(-10.0, -11.0), -mu)
 
 
 def _mu_opposite(scene: Columns) -> Columns:
-    return {"MU": np.where(scene["MU"] == -10, scene["MU"], -scene["MU"])}
+    return {"MU": np.where(scene["MU"] == -10, scene["MU"], _opposite(scene["MU"]))}
 
 
 def _mu_against_sliding(scene: Columns) -> Columns:
@@ -64,6 +70,16 @@ def _no_pivot_as_typed(scene: Columns) -> Columns:
     """The same in a program without line 400's rule."""
     changed = {**scene, **_no_pivot(scene)}
     return {"MU": np.where(scene["MU"] == -10, _mu_as_typed(changed)["MU"], scene["MU"])}
+
+
+def _slides_at_centres(scene: Columns) -> Columns:
+    """Line 400's rule with the spins left out."""
+    centres = used_friction({**scene, "WA": 0 * scene["WA"], "WB": 0 * scene["WB"]})
+    return {"MU": np.where(centres == used_friction(scene), scene["MU"], _opposite(scene["MU"]))}
+
+
+def _tangent(mu: Floats, unit: float = 1.0) -> Floats:
+    return np.where(mu == -10, mu, np.tan(mu * unit))
 
 
 def _friction_limited(scene: Columns) -> Columns:
@@ -94,6 +110,9 @@ READ: tuple[Slip, ...] = (
     Slip("3.14 for pi", times(ANGLES, 3.14 / math.pi)),
     Slip("3.1416 for pi", times(ANGLES, 3.1416 / math.pi)),
     Slip("22/7 for pi", times(ANGLES, 22 / 7 / math.pi)),
+    Slip("angles in gradians", times(ANGLES, 0.9)),
+    Slip("angles cut to whole degrees", changing(ANGLES, np.trunc), common=False),
+    Slip("angles rounded to whole degrees", changing(ANGLES, np.round), common=False),
     Slip("degrees taken as radians: angles are not converted", changing(ANGLES, np.degrees)),
     Slip("angles converted to radians twice", changing(ANGLES, np.radians)),
     Slip("Γ is not converted to radians", changing(("GA",), np.degrees)),
@@ -163,6 +182,9 @@ READ: tuple[Slip, ...] = (
     Slip("MU's sign as typed, without line 400's rule", _mu_as_typed, late=True),
     Slip("MU's sign rule inverted", _mu_opposite, late=True),
     Slip("MU always against the sliding, whatever sign is typed", _mu_against_sliding, late=True),
+    Slip("sliding judged at the mass centres, not at the contact point", _slides_at_centres, late=True),
+    Slip("MU as a friction angle in radians", changing(("MU",), _tangent)),
+    Slip("MU as a friction angle in degrees", changing(("MU",), lambda x: _tangent(x, math.pi / 180))),
     Slip("friction left out", changing(("MU",), np.zeros_like)),
     Slip("the pivot for friction", changing(("MU",), constant_of(-10.0))),
     Slip("no pivot: MU = -10 taken as a coefficient", _no_pivot),
@@ -193,6 +215,7 @@ INERTIAS = tuple(
     for which, names in (
         ("inertias", ("IA", "IB")),
         ("masses", ("MA", "MB")),
+        ("masses and inertias", ("MA", "MB", "IA", "IB")),
         ("IA", ("IA",)),
         ("IB", ("IB",)),
         ("MA", ("MA",)),

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from .slip import Columns, Floats, Shows, Slip
-from .slipsreading import SPINS, UNITS, VELOCITIES, times
+from .slipsreading import SPINS, UNITS, VELOCITIES, changing, times
 
 FINAL_SPINS = ("WAF", "WBF")
 FINAL_SPEEDS = ("VAX", "VAY", "VBX", "VBY")
@@ -86,6 +86,15 @@ def _without_rotation(r: Columns, g: Columns) -> Columns:
     return {"KI": before, "KF": after, "LOSS": 100 * (before - after) / before}
 
 
+def _along_the_plane(r: Columns, g: Columns) -> Columns:
+    c, s = np.cos(np.radians(g["GA"])), np.sin(np.radians(g["GA"]))
+    return {
+        name: value
+        for x, y in _AXES
+        for name, value in ((x, c * r[x] + s * r[y]), (y, c * r[y] - s * r[x]))
+    }
+
+
 def _spin_sign_at_contact(r: Columns, g: Columns) -> Columns:
     centres = dict(zip(CONTACT, FINAL_SPEEDS, strict=True))
     return {name: 2 * r[centre] - r[name] for name, centre in centres.items()}
@@ -117,6 +126,10 @@ SHOWN: tuple[Slip, ...] = (
     *(Slip(f"velocities, initial and final, converted, {how}, and spins not", times(VELOCITIES, k),
            results=scaled(ALL_SPEEDS, 1 / k), common=False)
       for how, k in UNITS.items()),
+    *(Slip(f"{name[1]}'s spin, initial and final, positive clockwise", changing((name,), np.negative),
+           results=showing((f"{name}F",), np.negative), common=False)
+      for name in SPINS),
+    Slip("final velocities along n and t, not along x and y", results=_along_the_plane),
     Slip("A and B exchanged in the results", results=swapping(*_BODIES)),
     Slip("A and B exchanged in the results: velocities only", results=swapping(*_BODIES[:2]), common=False),
     Slip("final spins exchanged", results=swapping(("WAF", "WBF"))),
@@ -165,6 +178,8 @@ SHOWN: tuple[Slip, ...] = (
     Slip("LOSS: what is left, not what is lost", results=showing(("LOSS",), lambda x: 100 - x)),
     Slip("LOSS: what is left, as a fraction", results=showing(("LOSS",), lambda x: 1 - x / 100)),
     Slip("LOSS in percent of the final energy", results=lambda r, g: {"LOSS": 100 * (r["KI"] - r["KF"]) / r["KF"]}),
+    Slip("LOSS in percent of the initial energy without rotation", results=lambda r, g: {
+        "LOSS": 100 * (r["KI"] - r["KF"]) / _translation(r, g, False)}),
     Slip("LOSS as an energy", results=lambda r, g: {"LOSS": r["KI"] - r["KF"]}),
     Slip("impulses with the opposite sign: on B, not on A", results=showing(IMPULSES, np.negative)),
     Slip("PT with the opposite sign", results=showing(("PT",), np.negative)),
