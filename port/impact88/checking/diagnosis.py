@@ -25,7 +25,7 @@ from ..replay import replay
 from . import otherprograms, residuals
 from .agreement import Slack, Theirs, given
 from .slip import Slip
-from .slips import SLIPS
+from .slips import RARE, SLIPS
 from .slipsreading import changing, constant_of, times
 from .slipsshowing import ALL_SPEEDS, ENERGIES, FINAL_SPINS, IMPULSES, scaled
 
@@ -137,26 +137,38 @@ def diagnose(case: Case) -> Diagnosis:
 def _candidates(case: Case) -> list[Program]:
     """The programs that explain rows of a sample, alone or, where none alone does, in pairs."""
     sample = case.part(_spread(case, _WRONG_SAMPLE, _RIGHT_SAMPLE))
-    singles: list[Program] = [(slip,) for slip in (*SLIPS, *_measured(case))]
-    results = otherprograms.run([(), *singles], sample.scene)
-    seen = [
-        (program, result)
-        for program, result in zip(singles, results[1:], strict=True)
-        if _differs(result, results[0], sample.theirs)
-    ]
     measure = _Measure(sample)
-    fits = [measure.fit(_says(program), result) for program, result in seen]
-    left = sample.wrong.copy()
-    chosen: list[Program] = []
-    for place in _cover(fits, sample):
-        chosen.append(seen[place][0])
-        left &= ~fits[place].rows
     total = sample.wrong.sum()
+    seen: list[Slip] = []
+    fits: list[_Fit] = []
+    chosen: list[Slip] = []
+    left = sample.wrong
+    for slips in ((*SLIPS, *_measured(case)), RARE):
+        more = list(_visible(slips, sample))
+        seen += [slip for slip, _ in more]
+        fits += [measure.fit(slip.says, results) for slip, results in more]
+        places = _cover(fits, sample)
+        chosen = [seen[place] for place in places]
+        left = sample.wrong & ~np.logical_or.reduce([fits[place].rows for place in places])
+        if left.sum() <= (1 - _ENOUGH) * total:
+            break
+    found: list[Program] = [(slip,) for slip in chosen]
     if left.sum() > (1 - _ENOUGH) * total and np.median(measure.off[left]) > _LARGE:
-        common = [program[0] for program, _ in seen if program[0].common]
-        main = [program[0] for program in chosen] if left.sum() <= (1 - _MAIN) * total else common
-        chosen += _pairs(main, common, sample, left)
-    return chosen
+        common = [slip for slip in seen if slip.common]
+        main = chosen if left.sum() <= (1 - _MAIN) * total else common
+        found += _pairs(main, common, sample, left)
+    return found
+
+
+def _visible(slips: Sequence[Slip], sample: Case) -> Iterator[tuple[Slip, Columns]]:
+    """The slips that can be seen in the table's columns at all, and their results."""
+    plain, *results = otherprograms.run([(), *((slip,) for slip in slips)], sample.scene)
+    for slip, changed in zip(slips, results, strict=True):
+        if any(
+            name in changed and not np.array_equal(changed[name], plain[name], equal_nan=True)
+            for name in sample.theirs
+        ):
+            yield slip, changed
 
 
 def _spread(case: Case, wrong: int, right: int) -> NDArray[np.intp]:
@@ -168,14 +180,6 @@ def _spread(case: Case, wrong: int, right: int) -> NDArray[np.intp]:
             places = places[np.linspace(0, places.size - 1, count).astype(int)]
         chosen.append(places)
     return np.concatenate(chosen)
-
-
-def _differs(results: Columns, plain: Columns, theirs: Mapping[str, Theirs]) -> bool:
-    """Whether a slip can be seen in the table's columns at all."""
-    return any(
-        name in results and not np.array_equal(results[name], plain[name], equal_nan=True)
-        for name in theirs
-    )
 
 
 def _measured(case: Case) -> list[Slip]:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from .slip import Slip
-from .slipsfilling import FILLED
+from .slipsfilling import FILLED, TERMS
 from .slipsreading import CONVERTED, INERTIAS, READ
 from .slipsshowing import SHOWN
 
 SLIPS: tuple[Slip, ...] = (*READ, *INERTIAS, *CONVERTED, *FILLED, *SHOWN)
+"""What is tried first."""
+RARE: tuple[Slip, ...] = TERMS
+"""What is tried where those do not explain a table."""

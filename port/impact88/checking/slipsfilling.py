@@ -237,5 +237,5 @@ FILLED: tuple[Slip, ...] = (
     *_nothing("the moment's right-hand side 0", "18"),
     Slip("Equation 18: the moment's effect on A only", equations=_one_inertia(0)),
     Slip("Equation 18: the moment's effect on B only", equations=_one_inertia(1)),
-    *_terms(),
 )  # fmt: skip
+TERMS = tuple(_terms())
