@@ -46,7 +46,7 @@ class Impact:
     """The quantities of an impact, given the expressions of a scene's columns.
 
     ``pivot``: True when MU = -10 throughout, False when nowhere, else the condition where it is.
-    ``point``: the same for M = 4.
+    ``point``: the same for M = 4. ``sign``: what MU is multiplied with instead of the sign rule.
     """
 
     def __init__(
@@ -56,12 +56,14 @@ class Impact:
         pivot: bool | Expression,
         point: bool | Expression,
         infinite: bool,
+        sign: float | None = None,
     ) -> None:
         self.book = book
         self.scene = scene
         self.pivot = pivot
         self.point = point
         self.infinite = infinite
+        self.sign = sign
         self.GA, self.E, self.MU = scene["GA"], scene["E"], scene["MU"]
         self.UX, self.UY, self.VX, self.VY = (scene[name] for name in ("UX", "UY", "VX", "VY"))
         self.MA, self.MB = scene["MA"], scene["MB"]
@@ -210,7 +212,9 @@ class Impact:
     @cached_property
     def mu(self) -> Expression:
         """MU after the sign rule of line 400: changed where gt > 0, kept on a tie."""
-        return self.book.against(self.MU, self.gt)
+        if self.sign is None:
+            return self.book.against(self.MU, self.gt)
+        return self.sign * self.MU
 
     @cached_property
     def z(self) -> Expression:
@@ -334,6 +338,18 @@ class Impact:
         """(Pn, Pt) for no tangential relative velocity at separation."""
         normal, tangential = self._pivot_numerators
         return normal / self._pivot_determinant, tangential / self._pivot_determinant
+
+    # -- denominators, for whoever has to know where results are infinite
+
+    @cached_property
+    def determinant(self) -> Expression:
+        """What divides every impulse: where it is zero, the equations have no solution."""
+        return self._by_kind(lambda: self._friction[2], lambda: self._pivot_determinant)
+
+    @cached_property
+    def critical_denominator(self) -> Expression:
+        """What divides MUC."""
+        return self._pivot_numerators[0]
 
     # -- impulse
 

@@ -81,7 +81,15 @@ def solve(
 
     Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast.
     """
-    wanted = _wanted(outputs)
+    return _solved(columns, _wanted(outputs), threads)
+
+
+def _solved(
+    columns: Mapping[str, object],
+    wanted: tuple[str, ...],
+    threads: int | None,
+    sign: float | None = None,
+) -> dict[str, Array]:
     given, shape = sources(columns)
     count = int(np.prod(shape, dtype=np.int64))
     results: dict[str, Array] = {
@@ -89,7 +97,7 @@ def solve(
     }
     workers = _workers(count, threads)
     if workers == 1:
-        _Worker(given, wanted, results, count, TILE, BLOCK)(range(0, count, BLOCK))
+        _Worker(given, wanted, results, count, TILE, BLOCK, sign)(range(0, count, BLOCK))
     else:
         starts = range(0, count, SHARED_TILE)
         lock = threading.Lock()
@@ -110,6 +118,17 @@ def solve(
         for job in jobs:
             job.result()
     return {name: array.reshape(shape) for name, array in results.items()}
+
+
+def quantities(
+    columns: Mapping[str, object], names: Sequence[str], sign: float | None = None
+) -> dict[str, Array]:
+    """Results and other quantities of `closedform.impact.Impact`, such as ``gt`` and
+    ``determinant``, by their names there; otherwise as `solve`, on one thread.
+
+    ``sign``: +1 to keep MU's sign in all scenes, -1 to change it, instead of line 400's rule.
+    """
+    return _solved(columns, tuple(names), 1, sign)
 
 
 def _wanted(outputs: Sequence[str] | str | None) -> tuple[str, ...]:
@@ -139,8 +158,10 @@ class _Worker:
         count: int,
         tile: int,
         block: int,
+        sign: float | None = None,
     ) -> None:
         self.tile = min(tile, count)
+        self.sign = sign
         self.block = block
         self.given = given
         self.wanted = wanted
@@ -160,7 +181,7 @@ class _Worker:
             for name, source in self.given.items()
         }
         block = examine(values)
-        plan = plan_for(block.kinds, self.wanted)
+        plan = plan_for(block.kinds, self.wanted, self.sign)
         results = {name: array[start:stop] for name, array in self.results.items()}
         if results:
             self.run(plan, block, results, stop - start)
@@ -188,8 +209,9 @@ class _Worker:
 
 
 @lru_cache(maxsize=1024)
-def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...]) -> Plan:
-    """The plan for a kind of block (see `closedform.columns.Block`) and the results wanted."""
+def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...], sign: float | None = None) -> Plan:
+    """The plan for a kind of block (see `closedform.columns.Block`) and the results wanted, with
+    MU's sign by line 400's rule or as `quantities` has it."""
     book = Book()
     kind = dict(zip(SCENE, kinds, strict=True))
     scene: dict[str, Expression] = {}
@@ -207,7 +229,7 @@ def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...]) -> Plan:
     if kind["M"] == "mixed":
         point = book.equals(scene["M"], 4.0)
     infinite = any("inf" in what for what in kinds)
-    impact = Impact(book, scene, pivot, point, infinite)
+    impact = Impact(book, scene, pivot, point, infinite, sign)
     return Plan({name: _expression(impact, name) for name in wanted})
 
 

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.solve import solve
+from ..closedform.solve import quantities, solve
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from .geometry import Geometry
 from .outcome import energies, status, velocity_changes
@@ -31,6 +31,9 @@ from .outcome import energies, status, velocity_changes
 Array = NDArray[Any]
 Model = Callable[[Mapping[str, Any], Sequence[str]], dict[str, Array]]
 """Columns (arrays or numbers by name) and the outputs wanted -> arrays by name."""
+Divided = tuple[dict[str, Array], list[Array]]
+"""Arrays by name, and what divides them: where one of these is zero, some of them are infinite."""
+DividedModel = Callable[[Mapping[str, Any], Sequence[str], float | None], Divided]
 
 
 def initial_velocities(columns: Mapping[str, Any]) -> dict[str, Array]:
@@ -49,16 +52,46 @@ def initial_velocities(columns: Mapping[str, Any]) -> dict[str, Array]:
         mu = np.where(mu == PIVOT, np.nan, mu)
         normal, _, spin = here.relative(final)
         a, b = here.inverse_ia, here.inverse_ib
-        snn = here.an * here.an * a + here.bn * here.bn * b
-        snt = here.an * here.at * a + here.bn * here.bt * b
         moment = np.where(here.point, 0.0, (1 - em) / em * spin / here.inverse_spin_inertia)
         turned = (here.an * a - here.bn * b) * moment
-        pn = ((1 + 1 / e) * normal - turned) / (here.inverse_mass + snn + mu * snt)
+        pn = ((1 + 1 / e) * normal - turned) / _along_impulse(here, mu)
         pt = mu * pn
         changes = here.changes(pn, pt, moment)
         initial = [after - change for after, change in zip(final, changes, strict=True)]
     names = (*VELOCITIES, "PN", "PT", "PM")
     return dict(zip(names, (*initial, pn, pt, moment), strict=True))
+
+
+def _along_impulse(here: Geometry, mu: Array) -> Array:
+    """R + S_nn + μ S_nt: what a unit of Pn, with the friction that goes with it, changes of Gn."""
+    a, b = here.inverse_ia, here.inverse_ib
+    snn = here.an * here.an * a + here.bn * here.bn * b
+    snt = here.an * here.at * a + here.bn * here.bt * b
+    result: Array = here.inverse_mass + snn + mu * snt
+    return result
+
+
+def forward_with_denominators(
+    columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None
+) -> Divided:
+    """`forward_model` (``sign``: as `closedform.solve.quantities`)."""
+    names = ["determinant", "critical_denominator"] if "MUC" in outputs else ["determinant"]
+    values = quantities(columns, (*outputs, *names), sign)
+    return {name: values[name] for name in outputs}, [values[name] for name in names]
+
+
+def reconstruction_with_denominators(
+    columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None
+) -> Divided:
+    """`reconstruction_model` (``sign`` counts for nothing)."""
+    values = reconstruction_model(columns, [*outputs, *(VELOCITIES if "MUC" in outputs else ())])
+    e, em, mu = (np.asarray(columns[name], np.float64) for name in ("E", "EM", "MUP"))
+    denominators = [e, em, _along_impulse(Geometry.of(columns), mu)]
+    if "MUC" in outputs:
+        given = {**columns, **values, "MU": 0.0}
+        scene = {name: given[name] for name in SCENE if name in given}
+        denominators += quantities(scene, ["critical_denominator"]).values()
+    return {name: values[name] for name in outputs}, denominators
 
 
 def forward_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Array]:

@@ -4,9 +4,11 @@ variables should be used ... to provide upper and lower bounds on vehicle speed"
 Three questions about one scene whose values are known within limits (`uncertainty.uncertain`):
 
 - How far can a result go? `Bound`: corners of the box the ranges span, its faces and its interior
-  are searched (`uncertainty.extremes`). Every bound is a value the equations do give for the inputs
-  kept beside it, so the true bound lies no closer; that none lies farther is what the search makes
-  likely, not what it proves. Correlations play no part here: a corner stays possible.
+  are searched (`uncertainty.extremes`), for each sign that line 400 can give MU apart, and along
+  the surface gt = 0 between them. Every bound is a value the equations do give for the inputs kept
+  beside it, so the true bound lies no closer; that none lies farther is what the search makes
+  likely, not what it proves. Where the equations become singular inside, a bound is infinite.
+  Correlations play no part here: a corner stays possible.
 - How likely is what? `Spread`: Monte Carlo, seeded; mean, deviation and quantiles.
 - Which input matters? `Drive`: Spearman's rank correlation over the draws, and how far each result
   goes when one input runs through its range with the others at their nominal values.
@@ -19,21 +21,25 @@ the six final velocities back, with MUP, the signed ratio P_t/P_n, for MU, becau
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import status
+from ..closedform.solve import quantities
 from ..errors import UserError
 from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
 from ..reconstruction.model import (
+    DividedModel,
     Model,
     forward_model,
+    forward_with_denominators,
     reconstruction_model,
+    reconstruction_with_denominators,
 )
 from .draws import Drive, Spread, drive_of, ranks, spread_of
-from .extremes import CORNERS_IN_FULL, extremes
+from .extremes import CORNERS_IN_FULL, Extremes, Piece, extremes, merged
 from .uncertain import Uncertain, correlation_root, fixed
 
 Array = NDArray[np.float64]
@@ -53,6 +59,8 @@ CHUNK = 1 << 15
 """Draws evaluated at a time: what the processor's cache holds. Part of what a seed means."""
 RANKED = 20_000
 """Draws the rank correlations are taken over at most (standard error 0.007)."""
+SLIP_APART = 1e-12
+"""How far from gt = 0 the changed sign of MU is met, of gt's range: on it the sign is kept."""
 SWEEP_POINTS = 41
 """Points of a one-at-a-time sweep."""
 
@@ -63,7 +71,9 @@ class Bound:
 
     ``nominal``: with every input at its nominal value; ``corner_lower`` and ``corner_upper``: the
     extremes over the corners evaluated, which are the bounds themselves unless the result turns
-    around inside; ``lower_warnings`` and ``upper_warnings``: names of what is unphysical there.
+    around inside; a bound is infinite where the range holds a scene without solution, and the
+    inputs beside it then are close to that scene's; ``lower_warnings`` and ``upper_warnings``:
+    names of what is unphysical there.
     """
 
     nominal: float
@@ -147,7 +157,7 @@ def bounds(
     correlated = correlation_root(pairs, box.inputs)
     nominal = box.nominal()
     sweeps = box.sweeps()
-    found = extremes(box.at, len(box.inputs), np.random.default_rng([seed, 0]))
+    found = box.extremes(np.random.default_rng([seed, 0]))
     rng = np.random.default_rng([seed, 1])
     draws, ranked, flags = _monte_carlo(box, rng, samples, correlated, progress)
     usable = np.all([np.isfinite(column) for column in draws.values()], axis=0)
@@ -225,6 +235,7 @@ class _Box:
     """The problem over the box of its inputs' limits, k inputs that vary and m outputs."""
 
     model: Model
+    divided: DividedModel
     known: dict[str, float]
     inputs: dict[str, Uncertain]
     outputs: tuple[str, ...]
@@ -258,12 +269,14 @@ class _Box:
         if not wanted:
             raise UserError(f"no result is asked for; expected some of {' '.join(allowed)}")
         limits = {name: item.limits(sigmas) for name, item in inputs.items()}
-        model = forward_model if problem == "forward" else reconstruction_model
+        forward = problem == "forward"
+        model = forward_model if forward else reconstruction_model
+        divided = forward_with_denominators if forward else reconstruction_with_denominators
         for name in exclude:
             if name not in WARNINGS:
                 raise UserError(f"{name!r} is no warning; expected some of {' '.join(WARNINGS)}")
         excluded = sum({WARNINGS[name] for name in exclude})
-        return cls(model, known, inputs, wanted, limits, excluded)
+        return cls(model, divided, known, inputs, wanted, limits, excluded)
 
     def columns(self, point: Array) -> dict[str, Array]:
         """Points of the unit cube, n x k -> the inputs that vary, n each; exact at the limits."""
@@ -281,16 +294,47 @@ class _Box:
         with np.errstate(all="ignore"):
             return self.model({**self.known, **columns}, outputs)
 
-    def at(self, points: Array) -> Array:
-        """Points of the unit cube, n x k -> outputs, n x m."""
+    def extremes(self, rng: np.random.Generator) -> Extremes:
+        """The extremes of the outputs over the box."""
+        count = len(self.inputs)
+        friction = self.known.get("MU")
+        if self.model is not forward_model or friction in (0.0, -10.0):
+            return extremes(self.piece(None), count, rng)
+        slip = extremes(Piece(lambda points: self.slip(points)[:, None], 1), count, rng)
+        ends = np.concatenate([slip.at_lower, slip.at_upper])
+        pieces = []
+        for sign in (1.0, -1.0):
+            # kept where gt <= 0, changed where gt > 0
+            if slip.lower[0] <= 0 if sign > 0 else slip.upper[0] > 0:
+                apart = 0.0 if sign > 0 else SLIP_APART * float(slip.upper[0] - slip.lower[0])
+                pieces.append(extremes(self.piece(sign, apart), count, rng, ends))
+        found = merged(pieces)
+        return replace(found, evaluations=found.evaluations + slip.evaluations)
+
+    def piece(self, sign: float | None, apart: float = 0.0) -> Piece:
+        """The outputs with MU's sign kept (+1) or changed (-1) throughout, and where line 400 does
+        that: at least ``apart`` from gt = 0. None: with the sign the scene gives it."""
         names = (*self.outputs, "STATUS") if self.excluded else self.outputs
-        solved = self.solved(self.columns(points), names)
-        values = np.stack(
-            [np.broadcast_to(solved[name], len(points)) for name in self.outputs], axis=1
-        )
-        if self.excluded:
-            values[np.broadcast_to(self.left_out(solved), len(points))] = np.nan
-        return values
+
+        def values(points: Array) -> Array:
+            columns = {**self.known, **self.columns(points)}
+            with np.errstate(all="ignore"):
+                solved, denominators = self.divided(columns, names, sign)
+            found = [np.array(solved[name]) for name in self.outputs]
+            if self.excluded:
+                left_out = self.left_out(solved)
+                found = [np.where(left_out, np.nan, column) for column in found]
+            return _stacked([*found, *denominators], len(points))
+
+        def margin(points: Array) -> Array:
+            return -(sign or 1.0) * self.slip(points) - apart
+
+        return Piece(values, len(self.outputs), None if sign is None else margin)
+
+    def slip(self, points: Array) -> Array:
+        """gt at points of the unit cube, n."""
+        values = quantities({**self.known, **self.columns(points)}, ["gt"])["gt"]
+        return np.broadcast_to(values, len(points))
 
     def left_out(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
         """Which of the scenes solved carry a warning that excludes them."""
@@ -322,6 +366,11 @@ class _Box:
                 output: np.broadcast_to(solved[output], SWEEP_POINTS) for output in self.outputs
             }
         return result
+
+
+def _stacked(columns: Sequence[Array], count: int) -> Array:
+    """Columns (or lone numbers) side by side, n x m."""
+    return np.stack([np.broadcast_to(column, count) for column in columns], axis=1)
 
 
 def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from ..names import quantity
 from ..plaintable import number
 from ..plaintable import table as columns
-from .bounds import Bounds
+from .bounds import Bound, Bounds
 
 DRIVERS_SHOWN = 4
 
@@ -50,6 +50,7 @@ def as_json(found: Bounds) -> dict[str, Any]:
                 "nominal": bound.nominal,
                 "lower": _plain(bound.lower),
                 "upper": _plain(bound.upper),
+                "unbounded": [side for side, value in _sides(bound) if math.isinf(value)],
                 "corner_lower": _plain(bound.corner_lower),
                 "corner_upper": _plain(bound.corner_upper),
                 "lower_warnings": list(bound.lower_warnings),
@@ -78,6 +79,16 @@ def as_json(found: Bounds) -> dict[str, Any]:
     }
 
 
+def _sides(bound: Bound) -> tuple[tuple[str, float], tuple[str, float]]:
+    return ("lower", bound.lower), ("upper", bound.upper)
+
+
+def _width(bound: Bound) -> float:
+    """From bound to bound; 0 where there is no end."""
+    width = bound.upper - bound.lower
+    return width if math.isfinite(width) else 0.0
+
+
 def table(found: Bounds) -> str:
     """What a reader wants to see, at most 100 characters wide."""
     lines = [f"Inputs that vary ({found.problem} problem)", ""]
@@ -93,7 +104,7 @@ def table(found: Bounds) -> str:
     heading += [*(f"{100 * share:g} %" for share in spreads), "unit"]
     rows, inside = [], False
     for name, bound in found.bounds.items():
-        width = bound.upper - bound.lower
+        width = _width(bound)
         marks = [
             "*" if abs(value - corner) > 1e-6 * width else ""
             for value, corner in (
@@ -117,12 +128,14 @@ def table(found: Bounds) -> str:
         drivers = "".join(
             f"  {source:<4}{drive.rank_correlation:>+6.2f} ({drive.swing:.3g})".ljust(23)
             for source, drive in ranked[:DRIVERS_SHOWN]
-            if drive.swing > 1e-9 * abs(found.bounds[name].upper - found.bounds[name].lower)
+            if drive.swing > 1e-9 * _width(found.bounds[name])
         )
         lines.append(f"{name:6}{drivers}".rstrip())
     lines.append("")
     if inside:
         lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
+    if any(math.isinf(value) for bound in found.bounds.values() for _, value in _sides(bound)):
+        lines.append("inf: unbounded; somewhere in the ranges the equations have no solution")
     lines += _warnings_at_bounds(found)
     corners = "all corners" if found.corners_in_full else "corners at random"
     lines += [
