@@ -298,7 +298,7 @@ class _Box:
         """The extremes of the outputs over the box."""
         count = len(self.inputs)
         friction = self.known.get("MU")
-        if self.model is not forward_model or friction in (0.0, -10.0):
+        if self.model is not forward_model or friction in (0.0, PIVOT):
             return extremes(self.piece(None), count, rng)
         slip = extremes(Piece(lambda points: self.slip(points)[:, None], 1), count, rng)
         ends = np.concatenate([slip.at_lower, slip.at_upper])

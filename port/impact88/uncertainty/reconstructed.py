@@ -25,7 +25,7 @@ from ..reconstruction.adjustment import (
 from ..reconstruction.geometry import NAMES as GEOMETRY
 from ..reconstruction.geometry import Geometry
 from ..reconstruction.state import State
-from .extremes import extremes
+from .extremes import Piece, extremes
 from .uncertain import Uncertain
 
 Floats = NDArray[np.float64]
@@ -108,7 +108,8 @@ def ranges(
         broad = [np.broadcast_to(column, usable.shape) for column in columns]
         return np.where(usable[:, None], np.stack(broad, axis=1), np.nan)
 
-    found = extremes(outputs, len(kept), np.random.default_rng([seed, 0]))
+    piece = Piece(outputs, len(names))
+    found = extremes(piece, len(kept), np.random.default_rng([seed, 0]))
 
     def inputs(point: Floats) -> dict[str, float]:
         return {name: float(column[0]) for name, column in data_at(point[None]).items()}
