@@ -420,8 +420,8 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("setting", "message"),
         [
-            ("VAX=about 3", "'about 3' is no value or range"),
-            ("UX=-20 +- 1%x", "is no value or range"),
+            ("VAX=about 3", "VAX = 'about 3' is no number"),
+            ("UX=-20 +- 1%x", "'-20 +- 1%x' is no value or range"),
             ("FOO=1", "'FOO' is no value here"),
         ],
     )

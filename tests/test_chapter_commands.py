@@ -121,7 +121,7 @@ def test_reconstruct_flags_what_errors_do(after: str, capsys: pytest.CaptureFixt
         (["AFTER", "--set", "E=0"], "after.toml: E = 0: Equation 15"),
         (["AFTER", "--set", "EM=0"], "EM = 0: Equation 18"),
         (["AFTER", "--set", "MU=-10"], "MU = -10 (pivot)"),
-        (["AFTER", "--set", "E=abc"], "--set E: 'abc' is no value or range; expected a number"),
+        (["AFTER", "--set", "E=abc"], "--set: E = 'abc' is no number; expected one such as 1.5"),
         (["AFTER", "--set", "e5"], "--set e5: expected NAME=VALUE"),
         (["AFTER", "--set", "FOO=1"], "'FOO' is no value here"),
         (["AFTER", "--set", "E=.1", "--set", "E=.2"], "E is given twice"),

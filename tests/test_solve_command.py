@@ -14,6 +14,7 @@ from impact88 import replay, solve
 from impact88.bench.populations import scenes, texts
 from impact88.cli import main
 from impact88.names import RESULTS, SCENE
+from impact88.scene import sample
 from impact88.tables import csvtable
 
 NAMES = list(SCENE)
@@ -238,3 +239,50 @@ def test_memory_does_not_grow_with_the_file(cases, tmp_path, monkeypatch):
         finally:
             tracemalloc.stop()
     assert peaks[2] < 1.1 * peaks[1]
+
+
+class TestSweep:
+    def rows(self, capsys, *arguments):
+        assert main(["solve", *arguments]) == 0
+        return list(csv.DictReader(capsys.readouterr().out.splitlines()))
+
+    def test_each_row_is_what_the_scene_gives_with_that_value(self, tmp_path, capsys):
+        path = tmp_path / "crash.toml"
+        path.write_text(sample(1).to_toml(), encoding="utf-8")
+        options = ["--sweep", "MU=0:1:3", "--sweep", "GA=-35:-25:2", "--outputs", "DVA,LOSS"]
+        rows = self.rows(capsys, str(path), *options)
+        assert [(r["MU"], r["GA"]) for r in rows][:3] == [
+            ("0", "-35"),
+            ("0", "-25"),
+            ("0.5", "-35"),
+        ]
+        assert len(rows) == 6
+        for row in rows:
+            changed = sample(1).replaced({"MU": row["MU"], "GA": row["GA"]})
+            alone = solve({n: float(t) for n, t in changed.items()}, ("DVA", "LOSS"))
+            assert float(row["DVA"]) == alone["DVA"]
+            assert float(row["LOSS"]) == alone["LOSS"]
+
+    def test_a_scene_file_is_a_table_of_one_row(self, tmp_path, capsys):
+        path = tmp_path / "crash.toml"
+        path.write_text(sample(1).to_toml(), encoding="utf-8")
+        (row,) = self.rows(capsys, str(path), "--outputs", "LOSS", "--results-only")
+        assert float(row["LOSS"]) == solve({n: float(t) for n, t in sample(1).items()})["LOSS"]
+
+    @pytest.mark.parametrize(
+        ("setting", "message"),
+        [
+            ("MU=0:1", "no LOW:HIGH:COUNT"),
+            ("MU=0:1:0", "out of range"),
+            ("MU=0:x:3", "no LOW:HIGH:COUNT"),
+            ("FOO=0:1:3", "'FOO' is no value of a scene"),
+            ("MU=0:1:100000000", "out of range"),
+        ],
+    )
+    def test_refuses_in_one_line(self, setting, message, tmp_path, capsys):
+        path = tmp_path / "crash.toml"
+        path.write_text(sample(1).to_toml(), encoding="utf-8")
+        assert main(["solve", str(path), "--sweep", setting]) == 2
+        err = capsys.readouterr().err
+        assert message in err
+        assert err.count("\n") == 1

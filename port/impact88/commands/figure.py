@@ -1,6 +1,7 @@
 """kinds:
   scene            the scene from above: vehicles, contact plane, velocities, impulse
   friction         energy loss and delta-V against MU, with the critical value
+  sweep            results of a scene as one value runs through a range (--sweep, --outputs)
   histogram        the draws of uncertain results; options as impact88 bounds
   tornado          how far each uncertain input takes each result
   staged           Figure 5: calculated against experimental delta-V of the staged collisions
@@ -16,6 +17,7 @@ examples:
   impact88 figure scene --sample 1 -o scene.svg
   impact88 figure scene crash.toml --set MU=-10 -o pivot.pdf
   impact88 figure friction --sample 3 -o friction.png
+  impact88 figure sweep --sample 1 --sweep GA=-50:-10:81 --outputs DVA,LOSS -o gamma.svg
   impact88 figure tornado --sample 1 --range GA="+- 10" --range MU=".7 .. 1" \\
       --outputs DVA LOSS -o tornado.pdf
   impact88 figure staged -o figure5.pdf
@@ -27,16 +29,24 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
+from ..names import RESULTS
 from ..scene import Scene, numbers_of
 from .bounds import add_scene_arguments, explored
-from .options import add_names_argument, add_set_argument, one_scene
+from .options import (
+    add_names_argument,
+    add_set_argument,
+    add_sweep_argument,
+    names_given,
+    one_scene,
+    sweeps,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..figures.drawing import Drawing
 
-OF_A_SCENE = ("scene", "friction")
+OF_A_SCENE = ("scene", "friction", "sweep")
 OF_RANGES = ("histogram", "tornado")
 OF_NOTHING = ("staged", "force", "colinear", "configurations")
 KINDS = (*OF_A_SCENE, *OF_RANGES, "planar", *OF_NOTHING)
@@ -50,6 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_scene_arguments(parser)
     add_set_argument(parser, "change a value of the scene")
+    add_sweep_argument(parser)
     add_names_argument(parser, "--outputs", "NAMES", "the results wanted")
 
 
@@ -76,6 +87,8 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
         if kind == "tornado" and not outputs:
             outputs = ["SA", "SB", "LOSS"] if args.reconstruct else ["DVA", "DVB", "LOSS"]
         return draw(explored(args, outputs, keep=kind == "histogram"))
+    if kind == "sweep":
+        return _swept(args)
     if args.ranges or args.outputs:
         raise UserError(
             f"{kind} shows one scene as it is; --range and --outputs are for histogram "
@@ -105,6 +118,21 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
     from ..figures import charts
 
     return charts.figure_5() if kind == "staged" else charts.force_and_impulse()
+
+
+def _swept(args: argparse.Namespace) -> Figure:
+    """One result a panel, along the one value swept."""
+    from ..figures import charts
+    from ..tables.sweep import read_ranges
+
+    if args.ranges:
+        raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")
+    ranges = read_ranges(sweeps(args.sweep))
+    if len(ranges) != 1:
+        raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
+    ((name, run),) = ranges.items()
+    outputs = names_given(args.outputs, tuple(RESULTS), "--outputs") or ["LOSS", "DVA", "DVB"]
+    return charts.swept(one_scene(args), name, run.values(), outputs)
 
 
 def solved(scene: Scene) -> dict[str, Any]:

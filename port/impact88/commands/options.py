@@ -111,24 +111,34 @@ def known_within_limits(
 ) -> dict[str, Uncertain]:
     """As `known_values`, but each value a number or known within limits (`uncertainty.uncertain`);
     a setting's ``+- D`` is around the file's value."""
-    from ..uncertainty import uncertain
-
     values: dict[str, Uncertain] = {}
     if path is not None:
         source = called(path)
         entries = toml_file(path)
         entries.pop("title", None)
         check_names(entries, allowed, "value here", source)
-        values = {n: uncertain.read(text, f"{source}, {n}") for n, text in entries.items() if text}
+        values = {n: _within_limits(n, text, source) for n, text in entries.items() if text}
     changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
     check_names(changes, allowed, "value here", "--set")
     for name, text in changes.items():
         center = values[name].nominal if name in values else None
         if text:
-            values[name] = uncertain.read(text, f"--set {name}", center)
+            values[name] = _within_limits(name, text, "--set", center)
         else:
             values.pop(name, None)
     return values
+
+
+_RANGES = ("..", "+-", "±", "uniform", "triangular", "normal")
+"""What tells a value known within limits from a number."""
+
+
+def _within_limits(name: str, text: str, source: str, center: float | None = None) -> Uncertain:
+    from ..uncertainty.uncertain import fixed, read
+
+    if any(mark in text for mark in _RANGES):
+        return read(text, f"{source}: {name}", center)
+    return fixed(_double(name, text, source))
 
 
 def _double(name: str, text: str, source: str) -> float:
@@ -147,6 +157,22 @@ def template(names: Sequence[str]) -> str:
         entry = f'{name} = "6"' if name == "M" else f'{name} = ""'
         lines.append(f"{entry:<12} # {what.symbol}: {meaning} [{what.unit}]")
     return "\n".join(lines)
+
+
+def add_sweep_argument(parser: argparse.ArgumentParser) -> None:
+    """The option ``--sweep NAME=LOW:HIGH:COUNT``."""
+    parser.add_argument(
+        "--sweep",
+        action="append",
+        default=[],
+        metavar="NAME=LOW:HIGH:COUNT",
+        help="let a value of a scene file run through COUNT values; repeatable",
+    )
+
+
+def sweeps(texts: Sequence[str]) -> dict[str, str]:
+    """Name -> text of ``--sweep`` (see `tables.sweep`). Raises UserError."""
+    return pairs(texts, "--sweep", "NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
 
 
 def add_known_arguments(parser: argparse.ArgumentParser) -> None:

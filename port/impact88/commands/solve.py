@@ -1,7 +1,8 @@
 """CASES is a CSV (.csv .tsv .txt), JSON Lines (.jsonl .ndjson) or .npz table with a column for each
 of the scene's names (impact88 scene lists them; M may be missing and is 6 then). All its columns
 are passed through, and the results follow. Rows are read and written in blocks: memory does not
-grow with the file (.npz excepted).
+grow with the file (.npz excepted). A scene file (.toml) is a table of one row, or with --sweep of
+as many as the ranges LOW:HIGH:COUNT have combinations.
 
 Results, all by default:
 {results}
@@ -18,6 +19,7 @@ examples:
   impact88 solve cases.csv -o results.jsonl --outputs VAX,VAY,VBX,VBY,WAF,WBF,STATUS
   impact88 solve cases.csv -o results.csv --set MU=-10 --errors bad-rows.csv
   impact88 solve cases.npz -o results.npz --results-only
+  impact88 solve crash.toml --sweep MU=0:1:51 --sweep GA=-35:-25:3 --outputs DVA,LOSS
   impact88 solve cases.csv -o results.csv --arithmetic applesoft
 
 exit status: 0 all rows solved; 1 some could not be, or ended with an Applesoft error; 2 bad input
@@ -37,16 +39,25 @@ from numpy.typing import NDArray
 from ..closedform.columns import UNUSED_BY_POINTS, refusals
 from ..closedform.solve import solve
 from ..doubles import is_number
-from ..errors import quoted
+from ..errors import UserError, quoted
 from ..files import replacing
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..progress import progress
-from ..scene import VALUE_LIMIT
+from ..scene import VALUE_LIMIT, Scene
 from ..status import Status
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
+from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from ..talk import tell
-from .options import FORMATS, add_names_argument, add_set_argument, names_given, settings
+from .options import (
+    FORMATS,
+    add_names_argument,
+    add_set_argument,
+    add_sweep_argument,
+    names_given,
+    settings,
+    sweeps,
+)
 
 Results = dict[str, NDArray[Any]]
 
@@ -80,6 +91,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the numbers to compute with (default: %(default)s)",
     )
     add_set_argument(parser, "a value for all rows, in place of a column")
+    add_sweep_argument(parser)
     parser.add_argument(
         "--results-only",
         action="store_true",
@@ -92,7 +104,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(arguments: argparse.Namespace) -> int:
     """Solve a table. Returns 1 when a row is bad or ended with an Applesoft error."""
-    source_format = format_of(arguments.cases, arguments.form)
+    swept = arguments.cases.lower().endswith(".toml")
+    if arguments.sweep and not swept:
+        raise UserError("--sweep is for one scene; expected CASES to be a scene file (.toml)")
+    source_format = "csv" if swept else format_of(arguments.cases, arguments.form)
     to = arguments.to or (source_format if arguments.output == "-" else None)
     result_format = format_of(arguments.output, to)
     given = settings(arguments.set, others=("inf",))
@@ -101,16 +116,22 @@ def main(arguments: argparse.Namespace) -> int:
     arithmetic = kinds[arguments.arithmetic](arguments.outputs)
     complaints = _Complaints(arguments.errors)
     with ExitStack() as stack:
-        source = stack.enter_context(open_reader(arguments.cases, source_format))
+        source = stack.enter_context(
+            read_sweep(Scene.from_toml(arguments.cases), read_ranges(sweeps(arguments.sweep)))
+            if swept
+            else open_reader(arguments.cases, source_format)
+        )
         optional = ["M", *(UNUSED_BY_POINTS if given.get("M") == "4" else ())]
         check_scene_columns(source.names, list(given), optional)
+        if arguments.sweep:
+            source.names = list(sweeps(arguments.sweep))  # the rest is the same in every row
         writer = stack.enter_context(
             open_writer(
                 arguments.output,
                 result_format,
                 source,
                 arithmetic.columns,
-                not arguments.results_only,
+                bool(arguments.sweep) or not arguments.results_only,
             )
         )
         stack.enter_context(complaints)

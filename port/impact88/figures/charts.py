@@ -240,6 +240,38 @@ def friction_sweep(scene: Any) -> Figure:
     return figure
 
 
+def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]) -> Figure:
+    """Results of a scene along one of its values, one panel each; shaded where a bit of STATUS says
+    that the impact is unphysical. Raises UserError for more results than fit a page."""
+    import numpy as np
+
+    from ..closedform.solve import solve
+
+    if len(outputs) > MOST_PANELS:
+        raise UserError(f"{len(outputs)} results do not fit a page; expected {MOST_PANELS} at most")
+    numbers: dict[str, Any] = numbers_of(scene)
+    axis = np.asarray(values)
+    results = solve({**numbers, name: axis}, [*outputs, "STATUS"])
+    faulty = results["STATUS"] != 0
+    with style():
+        figure = new_figure(COLUMN, 34 * len(outputs) + 12)
+        figure.set_layout_engine("constrained", h_pad=0.03)
+        panels = figure.subplots(len(outputs), 1, sharex=True, squeeze=False).ravel()
+        for output, axes in zip(outputs, panels, strict=True):
+            axes.plot(axis, results[output], color=BLUE)
+            axes.set_ylabel(_axis_label(output))
+            if min(values) <= numbers[name] <= max(values):
+                here = float(solve(numbers, [output])[output])
+                axes.plot(numbers[name], here, "o", color=BLACK, markersize=4, zorder=6)
+            _shade(axes, axis, faulty)
+        panels[-1].set_xlabel(_axis_label(name))
+        entries = [("mark", BLACK, "o", "this scene")]
+        if faulty.any():
+            entries.append(("bar", _GAINED, "....", "unphysical: see STATUS"))
+        figure.legend(handles=_keys(*entries), loc="outside lower center", ncols=2)
+    return figure
+
+
 _GAINED = "#f7dfae"
 
 

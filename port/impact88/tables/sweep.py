@@ -1,0 +1,82 @@
+"""A scene swept: a table whose rows are one scene with some values running through ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import islice, product
+from math import isfinite, prod
+from typing import NamedTuple
+
+from ..doubles import double, is_number
+from ..errors import UserError, quoted
+from ..names import SCENE, check_names
+from .rows import BLOCK_ROWS, Column, Reader, Rows
+
+MOST = 10_000_000
+"""Scenes of one sweep."""
+
+
+class Range(NamedTuple):
+    """``steps`` evenly spaced values from ``low`` to ``high``, both included."""
+
+    low: float
+    high: float
+    steps: int
+
+    def values(self) -> list[float]:
+        """The values, the ends as they were given."""
+        if self.steps == 1:
+            return [self.low]
+        step = (self.high - self.low) / (self.steps - 1)
+        return [*(self.low + i * step for i in range(self.steps - 1)), self.high]
+
+
+def read_ranges(texts: Mapping[str, str]) -> dict[str, Range]:
+    """Name -> range of texts LOW:HIGH:COUNT. Raises UserError naming the value and the form."""
+    check_names(texts, tuple(SCENE), "value of a scene", "--sweep")
+    ranges = {}
+    for name, text in texts.items():
+        parts = [part.strip() for part in text.split(":")]
+        if len(parts) != 3 or not all(map(is_number, parts[:2])) or not parts[2].isdigit():
+            raise UserError(f"--sweep {name}: {quoted(text)} is no LOW:HIGH:COUNT, such as 0:1:51")
+        low, high, count = double(parts[0]), double(parts[1]), int(parts[2])
+        if not (isfinite(low) and isfinite(high)) or not 1 <= count <= MOST:
+            raise UserError(f"--sweep {name}: {quoted(text)} is out of range")
+        ranges[name] = Range(low, high, count)
+    if prod(r.steps for r in ranges.values()) > MOST:
+        raise UserError(f"--sweep: more than {MOST:,} scenes; expected fewer")
+    return ranges
+
+
+class _Sweep:
+    """The reader of a swept scene."""
+
+    delimiter = ","
+
+    def __init__(self, scene: Mapping[str, str], ranges: Mapping[str, Range]) -> None:
+        self.names = list(scene)
+        self.total: int | None = prod(r.steps for r in ranges.values())
+        self._scene, self._ranges, self._done = scene, ranges, 0
+
+    def position(self) -> int:
+        return self._done
+
+    def __iter__(self) -> Iterator[Rows]:
+        grid = product(*(_texts(r.values()) for r in self._ranges.values()))
+        while block := list(islice(grid, BLOCK_ROWS)):
+            columns: dict[str, Column] = {n: [t] * len(block) for n, t in self._scene.items()}
+            columns |= dict(zip(self._ranges, zip(*block, strict=True), strict=True))
+            yield Rows(self._done + 1, len(block), columns, {})
+            self._done += len(block)
+
+
+def _texts(values: Sequence[float]) -> list[str]:
+    return [repr(value).removesuffix(".0").upper() for value in values]
+
+
+@contextmanager
+def read_sweep(scene: Mapping[str, str], ranges: Mapping[str, Range]) -> Iterator[Reader]:
+    """A reader of the scene's texts with every combination of the ranges' values, the last range
+    running fastest."""
+    yield _Sweep(scene, ranges)
