@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from impact88.chapter.staged import (
     COLUMNS_2,
     SPIN_WEIGHT,
     cells,
+    closure,
     collisions,
     comparison,
     emendations,
@@ -26,6 +28,7 @@ from impact88.chapter.staged import (
     undetermined_range,
     with_8a_reconstructed,
 )
+from impact88.cli import main
 
 ORDER = [1, 6, 7, 8, 9, 10, 11, 12, 3, 4, 5]
 SLIPS = {(3, "loss"), (6, "dVb_pred"), (8, "dVa_exp"), (11, "dVa_comp"), (12, "dVb_comp")}
@@ -202,3 +205,54 @@ def test_the_reconstruction_of_8a_is_never_among_the_data() -> None:
     assert np.isnan(
         next(c.value for c in comparison() if (c.collision, c.column) == (8, "dVa_exp"))
     )
+
+
+def test_measured_velocities_of_no_1_do_not_close():
+    """Energy and momentum straight from Table 1's cells."""
+    found = closure(collisions()[0])
+    ma, mb, ia, ib = 143.5, 95.8, 3728, 1961
+    before = ma * 29.04**2 + mb * (14.52**2 + 25.15**2)
+    after = ma * (12.33**2 + 7.91**2) + mb * (6.80**2 + 16.97**2) + ia * 1.57**2
+    assert found.loss == pytest.approx(100 * (1 - after / before), rel=1e-12)
+    assert round(found.loss, 1) == 64.3
+    assert round(float(forward(collisions()[0])["LOSS"]), 1) == 57.5
+    assert found.x_of_a == pytest.approx(ma * (29.04 - 12.33))
+    assert found.x_of_b == pytest.approx(mb * (14.52 + 6.80))
+    assert (round(found.x_of_a), round(found.x_of_b)) == (2398, 2042)
+
+
+def test_a_simulated_collision_closes():
+    """Velocities the equations give conserve momentum, and both spins call for one moment."""
+    first = collisions()[0]
+    solved = forward(first)
+    velocities = {name: float(solved[name]) for name in AFTER}
+    found = closure(replace(first, measured=velocities))
+    assert found.x_of_a == pytest.approx(found.x_of_b, rel=1e-12)
+    assert found.y_of_a == pytest.approx(found.y_of_b, rel=1e-12)
+    assert found.spin_of_a == pytest.approx(float(solved["PM"]), rel=1e-9)
+    assert found.spin_of_b == pytest.approx(float(solved["PM"]), rel=1e-9)
+    assert found.loss == pytest.approx(float(solved["LOSS"]), rel=1e-12)
+
+
+def test_a_collision_of_one_s_own(tmp_path, capsys):
+    """The twelve velocities from a file: with the chapter's weight, what its own fit gives."""
+    first = collisions()[0]
+    path = tmp_path / "mine.toml"
+    lines = [f"{n} = {v!r}" for n, v in {**first.scene, **first.measured}.items()]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    assert main(["staged", str(path), "--spin-weight", "25", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["fit"]["E"] == fit(first).E
+    assert found["fit"]["MUP"] == pytest.approx(fit(first).MUP, rel=1e-12)
+    assert main(["staged", str(path)]) == 0
+    assert "Least squares over the six velocities after" in capsys.readouterr().out
+    path.write_text("\n".join(lines[:-1]), encoding="utf-8")
+    assert main(["staged", str(path)]) == 2
+    assert "missing" in capsys.readouterr().err
+
+
+def test_the_measured_view_has_all_eleven(capsys):
+    assert main(["staged", "--measured"]) == 0
+    out = capsys.readouterr().out
+    assert "64.3        57.5  2398  2042" in out
+    assert "lost" in out

@@ -33,6 +33,7 @@ from ..closedform.solve import solve
 from ..files import packaged_text
 from ..names import FINAL_STATE, VELOCITIES
 from ..reconstruction.geometry import Geometry
+from ..reconstruction.outcome import energies
 from .deltav import delta_v
 
 Array = NDArray[np.float64]
@@ -229,6 +230,44 @@ def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
     return delta_v({**scene, **speeds, "LOSS": loss})
 
 
+@dataclass(frozen=True)
+class Closure:
+    """What the measured velocities of one collision say by themselves (NaN where one is lost).
+
+    ``loss``: the kinetic energy lost, percent. ``x_of_a`` ... ``spin_of_b``: the change of A's
+    momentum along x and y, and of angular momentum about the origin of Equation 17, and minus B's:
+    equal where momentum is conserved. Units slug·ft/s and slug·ft²/s.
+    """
+
+    number: int
+    loss: float
+    x_of_a: float
+    x_of_b: float
+    y_of_a: float
+    y_of_b: float
+    spin_of_a: float
+    spin_of_b: float
+
+
+def closure(collision: Collision) -> Closure:
+    """Equations 13, 14 and 17 and the energy of the velocities as measured, nothing fitted."""
+    values = {**collision.scene, **collision.measured}
+    given = {name: np.asarray(value) for name, value in values.items()}
+    here = Geometry.of(given)
+    ax, ay, wa, bx, by, wb = (
+        values[late] - values[early] for early, late in zip(VELOCITIES, FINAL_STATE, strict=True)
+    )
+    ma, mb, ia, ib = (values[name] for name in ("MA", "MB", "IA", "IB"))
+    # the impulse acts at (-d4, -d3) from A's center: M = I ΔΩ - r x m ΔV, and on B the opposite
+    moment_on_a = ia * wa - ma * (-here.d4 * ay + here.d3 * ax)
+    moment_on_b = ib * wb - mb * (here.d2 * by - here.d1 * bx)
+    return Closure(
+        collision.number,
+        float(energies(here, given)["LOSS"]),
+        *(float(x) for x in (ma * ax, -mb * bx, ma * ay, -mb * by, moment_on_a, -moment_on_b)),
+    )
+
+
 # -- least squares
 
 
@@ -243,12 +282,12 @@ class Fit:
     at_bound: tuple[str, ...]
 
 
-def fit(collision: Collision, em: float | None = None) -> Fit:
+def fit(collision: Collision, em: float | None = None, spin_weight: float = SPIN_WEIGHT) -> Fit:
     """The least-squares fit: E, MUP and EM, or E and MUP with EM held at ``em``.
 
     Velocities Table 1 lacks (8/A) are left out of the sum.
     """
-    model = _Linear.of(collision)
+    model = _Linear.of(collision, spin_weight)
     if em is not None:
         return model.at(em)
     grid = np.linspace(*EM_BOUNDS, 201)
@@ -270,10 +309,12 @@ def profile(collision: Collision, count: int = 11) -> list[Fit]:
     return [model.at(float(em)) for em in np.linspace(*EM_BOUNDS, count)]
 
 
-def undetermined_range(collision: Collision, tolerance: float = 0.1) -> tuple[float, float]:
+def undetermined_range(
+    collision: Collision, tolerance: float = 0.1, spin_weight: float = SPIN_WEIGHT
+) -> tuple[float, float]:
     """The values of EM whose best fit's root-mean-square misfit is within ``tolerance`` ft/s of
     the least: how little the data fix it."""
-    model = _Linear.of(collision)
+    model = _Linear.of(collision, spin_weight)
     grid = np.linspace(*EM_BOUNDS, 401)
     misfit = np.sqrt([model.at(float(em)).sum_of_squares / model.measured for em in grid])
     close = grid[misfit <= misfit.min() + tolerance]
@@ -294,14 +335,14 @@ class _Linear:
     measured: int
 
     @classmethod
-    def of(cls, collision: Collision) -> _Linear:
+    def of(cls, collision: Collision, spin_weight: float = SPIN_WEIGHT) -> _Linear:
         here = Geometry.of(collision.scene)
         jacobian = np.array([here.changes(*unit) for unit in np.eye(3)], float).T
         directions = np.array([[float(x) for x in row] for row in here.directions()])
         before = np.array([collision.scene[name] for name in VELOCITIES])
         after = np.array([collision.measured[name] for name in FINAL_STATE])
         known = np.isfinite(after)
-        weight = np.where(known, [1.0, 1.0, SPIN_WEIGHT] * 2, 0.0)
+        weight = np.where(known, [1.0, 1.0, spin_weight] * 2, 0.0)
         normal, _, spin = directions @ before
         return cls(
             jacobian=jacobian,

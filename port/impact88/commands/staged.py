@@ -4,10 +4,18 @@ cell by cell beside its recomputation, the differences explained. Units: ft, s, 
   --fit     e, e_m and mu by least squares (weights and bounds stated) beside Table 2's, and how
             little the data fix e_m
   --cells   every cell of both tables that is not as printed or is doubtful, with the evidence
+  --measured  energy and momentum of the measured velocities themselves, nothing fitted
   --table 1 or 2   the table itself, emended
+
+FILE.toml is a staged collision of one's own, with the listing's names: vehicles and geometry, the
+velocities before (UX UY WA VX VY WB) and after (VAX VAY WAF VBX VBY WBF), any consistent units. Its
+e, e_m and mu are fitted as Section V's are; --spin-weight says what a squared spin counts against a
+squared velocity (25 ft² for the chapter's; by default the square of the radius of gyration).
+impact88 reconstruct fits the same with a tolerance for each velocity.
 
 examples:
   impact88 staged
+  impact88 staged mine.toml
   impact88 staged --fit
   impact88 staged --cells
   impact88 staged --table 1
@@ -23,14 +31,23 @@ import json
 from math import sqrt
 from typing import Any
 
-from .options import add_json_argument, add_output_argument
+from ..errors import UserError
+from ..names import FINAL_STATE, VELOCITIES, missing
+from .options import add_json_argument, add_output_argument, known_values
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 staged`."""
+    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="a collision of one's own")
+    parser.add_argument(
+        "--spin-weight", type=float, metavar="W", help="weight of a squared spin (own collision)"
+    )
     views = parser.add_mutually_exclusive_group()
     views.add_argument("--fit", action="store_true", help="least-squares fits beside Table 2")
     views.add_argument("--cells", action="store_true", help="emended and doubtful cells, evidence")
+    views.add_argument(
+        "--measured", action="store_true", help="energy and momentum as measured, beside Table 2"
+    )
     views.add_argument("--table", type=int, choices=(1, 2), help="print a table, emended")
     add_json_argument(parser, "everything as one JSON object")
     add_output_argument(parser)
@@ -40,6 +57,10 @@ def main(args: argparse.Namespace) -> int:
     """Print the view asked for."""
     from ..chapter.staged import comparison
 
+    if args.file is not None:
+        return _own(args)
+    if args.spin_weight is not None:
+        raise UserError("--spin-weight is for a collision of one's own; expected FILE.toml")
     unexplained = [c for c in comparison() if not c.agrees and c.explanation == "not explained"]
     if args.json:
         from ..plaintable import plain
@@ -47,6 +68,8 @@ def main(args: argparse.Namespace) -> int:
         print(json.dumps(plain(_everything()), allow_nan=False))
     elif args.fit:
         print(_fits())
+    elif args.measured:
+        print(_measured())
     elif args.cells:
         print(_cells())
     elif args.table:
@@ -54,6 +77,85 @@ def main(args: argparse.Namespace) -> int:
     else:
         print(_comparison())
     return 1 if unexplained else 0
+
+
+def _own(args: argparse.Namespace) -> int:
+    """Fit a collision of the user's."""
+    from dataclasses import asdict
+
+    from ..chapter.staged import Collision, closure, fit, undetermined_range
+    from ..plaintable import fixed, paragraph, plain, table
+    from ..reconstruction.geometry import NAMES, Geometry
+
+    if args.fit or args.cells or args.measured or args.table:
+        raise UserError("a collision of one's own is fitted; --fit and the like are the chapter's")
+    known = known_values(args.file, [], (*NAMES, *VELOCITIES, *FINAL_STATE))
+    absent = [n for n in (*NAMES, *VELOCITIES, *FINAL_STATE) if n not in known]
+    if absent:
+        raise UserError(missing(absent), args.file)
+    scene = {name: value for name, value in known.items() if name not in FINAL_STATE}
+    measured = {name: known[name] for name in FINAL_STATE}
+    here = Geometry.of(scene)
+    weight = args.spin_weight
+    if weight is None:
+        weight = float(here.inverse_mass / here.inverse_spin_inertia)
+    if not 0 <= weight < float("inf"):
+        raise UserError(f"--spin-weight {weight:g}: expected a number from 0 on")
+    own = Collision(0, "own", scene, measured, {})
+    found, low_high = fit(own, spin_weight=weight), undetermined_range(own, spin_weight=weight)
+    as_measured = closure(own)
+    if args.json:
+        whole = {"fit": asdict(found), "closure": asdict(as_measured), "spin_weight": weight}
+        print(json.dumps(plain({**whole, "em_range": low_high}), allow_nan=False))
+        return 0
+    rows = [
+        ["E", fixed(found.E, 4), "e" + (", at its bound" if "E" in found.at_bound else "")],
+        ["MUP", fixed(found.MUP, 4), "mu, signed P_t/P_n"],
+        ["EM", fixed(found.EM, 4), f"e_m; about as good: {low_high[0]:.2f} ... {low_high[1]:.2f}"],
+    ]
+    print("\n".join(table(rows, left=(0, 2))))
+    text = (
+        f"Least squares over the six velocities after, a squared spin weighing {weight:.4g}: sum "
+        f"of squares {found.sum_of_squares:.4g}. 0 <= e <= 1, -1 <= e_m <= 0."
+    )
+    print("\n".join(["", *paragraph(text), "", *_closures([as_measured])]))
+    return 0
+
+
+def _measured() -> str:
+    from ..chapter.staged import closure, collisions, forward
+    from ..plaintable import paragraph
+
+    calculated = {c.number: float(forward(c)["LOSS"]) for c in collisions()}
+    lines = ["Energy and momentum of the measured velocities (Table 1), nothing fitted", ""]
+    lines += _closures([closure(c) for c in collisions()], calculated)
+    return "\n".join(
+        [
+            *lines,
+            "",
+            *paragraph(
+                "Momentum: what A gains and what B loses, equal where the measured velocities "
+                "conserve it; M: the moment impulse that either vehicle's spin calls for about "
+                "the contact point. Their differences are the measurement's."
+            ),
+        ]
+    )
+
+
+def _closures(closures: list[Any], calculated: dict[int, float] | None = None) -> list[str]:
+    from ..plaintable import fixed, table
+
+    rows = []
+    for c in closures:
+        pairs = ((c.x_of_a, c.x_of_b), (c.y_of_a, c.y_of_b), (c.spin_of_a, c.spin_of_b))
+        row = [str(c.number)] if calculated else []
+        row.append(fixed(c.loss, 1) or "lost")
+        if calculated:
+            row.append(fixed(calculated[c.number], 1))
+        rows.append([*row, *(fixed(x, 0) or "lost" for pair in pairs for x in pair)])
+    heading = ["no.", "loss %, measured", "calculated"] if calculated else ["loss %, measured"]
+    sides = [f"{what}, {vehicle}" for what in ("x", "y", "M") for vehicle in "AB"]
+    return table(rows, [*heading, *sides], left=())
 
 
 def _comparison() -> str:
