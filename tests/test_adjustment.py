@@ -17,6 +17,7 @@ from impact88.reconstruction.adjustment import reconstruct
 from impact88.reconstruction.unknowns import solve_for
 from impact88.scene import Scene, sample
 from impact88.uncertainty.reconstructed import draws, ranges
+from impact88.uncertainty.reconstructedtable import uncertainty
 from impact88.uncertainty.uncertain import read
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
@@ -430,3 +431,12 @@ class TestCommand:
         assert (status, out) == (2, "")
         assert message in err
         assert err.count("\n") == 1
+
+
+def test_a_value_known_more_than_needed_leaves_nothing_uncertain():
+    forward = {name: float(value) for name, value in solve(TABLE_3).items()}
+    known = VEHICLES | {name: forward[name] for name in FINAL} | {"UY": 0.0}
+    known |= {"E": TABLE_3["E"], "EM": TABLE_3["EM"], "MUP": forward["MUP"]}
+    (solution,) = reconstruct(known | {"VAX": read(f"{forward['VAX'] + 1!r} +- 2", "VAX")})
+    assert uncertainty(solution, 100).names == ()
+    assert solution.values["UX"] == pytest.approx(TABLE_3["UX"], abs=1e-9)

@@ -8,16 +8,17 @@ import socket
 import subprocess
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from http.client import HTTPConnection
 from importlib import resources
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
 
 from impact88.errors import UserError
-from impact88.names import SCENE
+from impact88.names import SCENE, VELOCITIES
 from impact88.program.run import run
 from impact88.scene import Scene, sample
 from installed import COMMAND
@@ -26,7 +27,7 @@ from installed import impact88 as command
 pytest.importorskip("flask", reason="the desk's extra is not installed")
 pytest.importorskip("waitress", reason="the desk's extra is not installed")
 
-from impact88.desk import app, bench, collision, guard, serving
+from impact88.desk import app, bench, collision, guard, reconstruction, serving
 
 PORT, TOKEN = 8088, "a-token"
 OWN = f"http://127.0.0.1:{PORT}"
@@ -211,9 +212,10 @@ def test_a_scene_saved_is_the_commands_own_file(client: Client, number: int) -> 
 
 def test_a_scene_file_with_ranges_is_read_again(client: Client) -> None:
     values = {**sample(1), "MU": "0.7 .. 0.9", "GA": ""}
-    saved = client.post("scene-file", {"values": values, "title": "box 7"})
+    title = "box 7, \"the\" \\ '''file''' # 3"
+    saved = client.post("scene-file", {"values": values, "title": title})
     again = client.post("scene?name=s", saved.data).json
-    assert again == {"values": values, "title": "box 7"}
+    assert again == {"values": values, "title": title}
 
 
 @pytest.mark.parametrize(
@@ -221,6 +223,7 @@ def test_a_scene_file_with_ranges_is_read_again(client: Client) -> None:
     [
         (b"MU = 1\nMU = 2", "s.toml, line 2: MU is given twice"),
         (b"QQ = 1", "s.toml: 'QQ' is no value of a scene"),
+        (b"#" + b" " * 1_000_000, "s.toml: is larger than 1,000,000 bytes"),
         (b"\xff\xfe\x00", "s.toml"),
     ],
 )
@@ -236,6 +239,76 @@ def test_the_figure_is_the_commands_own(client: Client, tmp_path: Any) -> None:
     drawn = client.post("figure", {"values": dict(sample(3)), "title": sample(3).title})
     _, _, element = path.read_text(encoding="utf-8").partition("?>\n")
     assert drawn.get_data(as_text=True) == element
+
+
+# --- the reconstruction -------------------------------------------------------------------------
+
+
+def toml(values: Mapping[str, str]) -> str:
+    return "".join(f'{name} = "{text}"\n' for name, text in values.items())
+
+
+@pytest.mark.parametrize("changes", [{}, {"VAX": "-13.26 +- 0.5", "UY": "0", "VBY": "20 +- 1"}])
+def test_a_reconstruction_is_the_commands_own(changes: dict[str, str], tmp_path: Path) -> None:
+    known = {**reconstruction.known_of_sample(1)["values"], "E": "0.3", **changes}
+    (tmp_path / "known.toml").write_text(toml(known), encoding="utf-8")
+    told = reconstruction.answer(known)
+    assert told["problems"] == {}
+    printed = command("reconstruct", "known.toml", cwd=tmp_path)
+    assert [one["printed"] for one in told["solutions"]] == [printed.stdout.rstrip("\n")]
+    theirs = json.loads(command("reconstruct", "--json", "known.toml", cwd=tmp_path).stdout)
+    whole = [one["object"] for one in told["solutions"]]
+    assert json.loads(json.dumps(whole)) == theirs["solutions"]
+    assert bool(told["solutions"][0]["adjusted"]) == bool(changes)
+
+
+def test_what_a_collision_gave_is_reconstructed_to_the_collision() -> None:
+    known = reconstruction.known_of_sample(3)["values"]
+    (solution,) = reconstruction.answer(known)["solutions"]
+    for name in VELOCITIES:
+        assert float(solution["scene"][name]) == pytest.approx(float(sample(3)[name]), abs=1e-9)
+    solved = [row["name"] for row in solution["rows"] if row["solved"]]
+    assert sorted(solved) == sorted(VELOCITIES)
+    assert solution["scene"]["MA"] == sample(3)["MA"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "problem"),
+    [
+        ("VAX", "-13.2", None),
+        ("VAX", "-13.2 +- .1", None),
+        ("VAX", "-13.2 +- x", "no value or range"),
+        ("SA", "29", None),
+        ("QQ", "1", "no value here"),
+    ],
+)
+def test_each_known_value_is_judged_alone(name: str, text: str, problem: str | None) -> None:
+    known = reconstruction.known_of_sample(3)["values"]
+    told = reconstruction.answer({**known, name: text})
+    assert list(told["problems"]) == ([name] if problem else [])
+    assert (problem or "") in told["problems"].get(name, "")
+    assert bool(told["solutions"]) == (problem is None)
+
+
+def test_what_is_known_is_saved_as_the_commands_file(client: Client, tmp_path: Path) -> None:
+    known = {**client.post("known/1").json["values"], "VAX": "-13.26 +- 0.5", "UY": "0"}
+    saved = client.post("known-file", {"values": known})
+    assert saved.status_code == 200
+    assert client.post("known?name=k.toml", saved.data).json == {"values": known, "title": ""}
+    (tmp_path / "known.toml").write_bytes(saved.data)
+    printed = command("reconstruct", "known.toml", cwd=tmp_path).stdout
+    assert printed.rstrip("\n") == reconstruction.answer(known)["solutions"][0]["printed"]
+    template = command("reconstruct", "--template").stdout
+    assert client.post("known-file", {"values": {"M": "6"}}).get_data(as_text=True) == template
+    refused = client.post("known?name=k.toml", b"QQ = 1")
+    assert refused.json["problem"].startswith("k.toml: 'QQ' is no value here")
+
+
+def test_why_there_is_no_solution_is_told() -> None:
+    known = reconstruction.known_of_sample(3)["values"]
+    told = reconstruction.answer({name: text for name, text in known.items() if name != "E"})
+    assert told["solutions"] == []
+    assert "give at least 1 more" in told["waiting"]
 
 
 # --- processes ---------------------------------------------------------------------------------
@@ -264,7 +337,7 @@ def in_thread(work: Any) -> tuple[threading.Thread, list[Any]]:
 
 
 def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
-    asking = bench.Bench()
+    asking = bench.Bench("collision")
     question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
         first, first_outcome = in_thread(lambda: asking.ask("page", question))
@@ -288,7 +361,7 @@ def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
 
 
 def test_stopping_ends_what_a_page_waits_for_and_no_other_pages() -> None:
-    asking = bench.Bench()
+    asking = bench.Bench("collision")
     question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
         thread, outcome = in_thread(lambda: asking.ask("page", question))

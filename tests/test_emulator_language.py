@@ -84,7 +84,7 @@ def test_line_numbers_end_at_63999():
         ("10 PRINT 1/(0*)", f"\n?SYNTAX ERROR{BEL} IN 10"),
         ("10 FOR I%=1 TO 2", f"\n?SYNTAX ERROR{BEL} IN 10"),
         ("10 A%=32768", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
-        ("10 A%=-32768:PRINT A%", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
+        ("10 A%=-32768:PRINT A%", "-32768\n"),
         ("10 PRINT CHR$(256)", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
         ("10 DIM A(5):DIM A(5)", f"\n?REDIM'D ARRAY ERROR{BEL} IN 10"),
         ("10 PRINT A(-1)", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
@@ -173,7 +173,7 @@ def test_a_bad_reply_under_onerr_is_code_254():
 
 
 def test_control_c_as_a_reply_breaks():
-    assert displayed("10 INPUT A", "\x03\nPRINT 5\n") == f"?\x03\n\nBREAK{BEL} IN 10\n]PRINT 5\n5\n"
+    assert displayed("10 INPUT A", "\x03\nPRINT 5\n") == f"?\nBREAK{BEL} IN 10\n]PRINT 5\n5\n"
 
 
 def test_input_into_an_integer_variable():

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from .doubles import double, is_number
 from .errors import UserError
@@ -232,7 +232,7 @@ def template(values: Mapping[str, str] | None = None, title: str | None = None) 
     lines = [
         "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per",
         '# unit of time. The digits are used as written. Write 0.911 or ".911": TOML takes no .911',
-        f'title = "{title or ""}"',
+        f"title = {_quoted(title or '')}",
     ]
     heading = None
     for row in SCENE.values():
@@ -240,10 +240,29 @@ def template(values: Mapping[str, str] | None = None, title: str | None = None) 
             heading = row.line
             lines += ["", f"# line {heading} of the listing"]
         text = values[row.name] if values else (DEFAULT_M if row.name == "M" else "")
-        value = text if _plain_toml(text) else f'"{text}"'
+        value = text if _plain_toml(text) else _quoted(text)
         entry = f"{row.name} = {value}"
         lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{row.unit}]")
     return "\n".join(lines) + "\n"
+
+
+def known_template(names: Sequence[str], values: Mapping[str, str] | None = None) -> str:
+    """A file to fill in with what is known of ``names``; ``values``: what is known already."""
+    known = {"M": DEFAULT_M} if values is None else values
+    lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
+    for name in names:
+        row = quantity(name)
+        meaning = "signed P_t/P_n, in place of MU" if name == "MUP" else row.meaning
+        entry = f"{name} = {_quoted(known.get(name, ''))}"
+        lines.append(f"{entry:<12} # {row.symbol}: {meaning} [{row.unit}]")
+    return "\n".join(lines)
+
+
+def _quoted(text: str) -> str:
+    """A text as TOML has it, on one line whatever it holds."""
+    shown = "".join(character if character.isprintable() else " " for character in text)
+    shown = shown.replace("\\", "\\\\").replace('"', '\\"')
+    return '"{}"'.format(shown.replace("'''", "\\u0027" * 3))  # which would begin several lines
 
 
 def _plain_toml(text: str) -> bool:

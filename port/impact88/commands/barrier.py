@@ -23,7 +23,8 @@ from __future__ import annotations
 import argparse
 
 from ..errors import UserError
-from .options import add_solution_arguments, known_values, template
+from ..scene import known_template
+from .options import add_solution_arguments, known_values
 from .reconstruct import source_of
 
 KNOWABLE = (
@@ -43,7 +44,7 @@ def main(args: argparse.Namespace) -> int:
     from ..reconstruction.solutiontable import show
 
     if args.template:
-        print(template(KNOWABLE))
+        print(known_template(KNOWABLE))
         return 0
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")

@@ -20,7 +20,8 @@ import json
 import math
 
 from ..errors import UserError
-from .options import add_solution_arguments, known_values, template
+from ..scene import known_template
+from .options import add_solution_arguments, known_values
 
 COMMON = ("MA", "MB", "E", "MUP")
 BEFORE = ("UN", "UT", "VN", "VT")
@@ -37,7 +38,7 @@ def main(args: argparse.Namespace) -> int:
     from ..chapter.colinear import colinear, colinear_inverse
 
     if args.template:
-        print(template((*COMMON, *BEFORE, *AFTER)))
+        print(known_template((*COMMON, *BEFORE, *AFTER)))
         return 0
     known = known_values(args.file, args.set, (*COMMON, *BEFORE, *AFTER))
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))

@@ -1,6 +1,7 @@
-"""A page opens in your browser: a collision as a form, answered while you type. It is served
-Control-C, or closing this window, ends it. The address holds a random word: whoever does not have
-it gets nothing.
+"""A page opens in your browser, served by this machine to itself; nothing leaves it, and nothing is
+kept when it ends. Collision: a scene as a form, answered while you type. Reconstruction: what is
+known, ticked. Control-C ends it. The address holds a random word: who does not have it gets
+nothing.
 
 Needs pip install 'impact88[desk]'.
 

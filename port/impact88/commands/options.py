@@ -14,7 +14,7 @@ from math import isfinite
 from ..doubles import double
 from ..errors import UserError, quoted
 from ..files import called, check_apart
-from ..names import SCENE, check_names, quantity
+from ..names import SCENE, check_names
 from ..scene import SAMPLES, Scene, check_value, sample, toml_file
 
 TYPE_CHECKING = False
@@ -146,17 +146,6 @@ def _double(name: str, text: str, source: str) -> float:
     if not isfinite(value):
         raise UserError(f"{name} = {text} is too large for a double", source)
     return value
-
-
-def template(names: Sequence[str]) -> str:
-    """A file to fill in with what is known of ``names``."""
-    lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
-    for name in names:
-        what = quantity(name)
-        meaning = "signed P_t/P_n, in place of MU" if name == "MUP" else what.meaning
-        entry = f'{name} = "6"' if name == "M" else f'{name} = ""'
-        lines.append(f"{entry:<12} # {what.symbol}: {meaning} [{what.unit}]")
-    return "\n".join(lines)
 
 
 def add_sweep_argument(parser: argparse.ArgumentParser) -> None:

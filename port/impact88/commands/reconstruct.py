@@ -42,13 +42,13 @@ from typing import TYPE_CHECKING
 
 from ..errors import UserError
 from ..files import called, replacing
-from ..names import SCENE
+from ..reconstruction.knowable import KNOWABLE
+from ..scene import known_template
 from ..scene import template as scene_template
 from .options import (
     add_solution_arguments,
     known_within_limits,
     names_given,
-    template,
     whole_number,
 )
 
@@ -56,13 +56,6 @@ if TYPE_CHECKING:
     from ..reconstruction.adjustment import Reconstruction
     from ..uncertainty.uncertain import Uncertain
 
-PLAIN = (*SCENE, "MUP", "VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
-"""What `solve_for` knows; the other names need the adjustment."""
-OTHERS = (
-    *("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF"),
-    *("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR", "KI", "KF", "EL", "LOSS", "DT"),
-)
-KNOWABLE = (*PLAIN, *OTHERS)
 SAMPLES = 20_000
 
 
@@ -92,13 +85,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
     if args.template:
-        print(template(KNOWABLE))
+        print(known_template(KNOWABLE))
         return 0
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     known = known_within_limits(args.file, args.set, KNOWABLE)
-    plain = not any(item.varies or name in OTHERS for name, item in known.items())
-    if plain and not args.scene and not _contradictory(known, args):
+    from ..reconstruction.adjustment import needs_adjustment
+
+    if not args.scene and not needs_adjustment(known, _wanted(args)):
         from ..reconstruction.solutiontable import show
 
         numbers = {name: item.nominal for name, item in known.items()}
@@ -115,17 +109,6 @@ def source_of(path: str | None) -> str | None:
 
 def _wanted(args: argparse.Namespace) -> list[str] | None:
     return args.wanted.upper().replace(",", " ").split() if args.wanted else None
-
-
-def _contradictory(known: dict[str, Uncertain], args: argparse.Namespace) -> bool:
-    """Whether exact values alone leave over equations that do not hold."""
-    from ..reconstruction.unknowns import solve_for
-
-    try:
-        solutions = solve_for({n: item.nominal for n, item in known.items()}, _wanted(args))
-    except UserError:
-        return False  # told by the one who shows it
-    return any(bool(solution.contradictory) for solution in solutions)
 
 
 def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace) -> None:

@@ -9,6 +9,7 @@ a newer one has replaced is 409.
 from __future__ import annotations
 
 import json
+import threading
 from typing import Any
 
 from flask import Blueprint, Flask, Response, abort, render_template, request
@@ -16,22 +17,33 @@ from werkzeug.exceptions import HTTPException
 
 from .. import __version__
 from ..errors import UserError
-from . import collision, page
+from . import collision, page, reconstruction
 from .bench import Bench, BrokenError, SupersededError
 from .guard import HEADERS, LARGEST_BODY, refusal
+
+BENCHES = {
+    "bounds": "collision",
+    "reconstruction": "reconstruction",
+}
+"""What takes long, and the module that does it."""
 
 
 class Desk:
     """What outlives a request: a bench for each kind of work that takes long."""
 
     def __init__(self) -> None:
-        self.benches = {name: Bench() for name in ("bounds",)}
+        self.benches = {name: Bench(module) for name, module in BENCHES.items()}
+        self._warming = threading.Lock()
 
     def warm(self) -> None:
-        """Load and start what the first questions will need."""
-        collision.warm()
+        """Load and start, once and aside, what the first questions will need."""
+        if self._warming.acquire(blocking=False):
+            threading.Thread(target=self._warm, daemon=True).start()
+
+    def _warm(self) -> None:
         for bench in self.benches.values():
             bench.warm()
+        collision.warm()
 
     def close(self) -> None:
         """End all processes."""
@@ -88,6 +100,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.get("/")
     def whole_page() -> str:
+        desk.warm()  # the page is on its way meanwhile
         return render_template("desk.html", **page.contents())
 
     @routes.post("/collision")
@@ -109,12 +122,27 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/scene")
     def scene() -> Any:
-        name = request.args.get("name", "the file")
-        return collision.read_scene_file(request.get_data(), name)
+        return collision.read_scene_file(request.get_data(), _name())
 
     @routes.post("/sample/<int:number>")
     def sample(number: int) -> Any:
         return collision.sample_scene(number)
+
+    @routes.post("/reconstruct")
+    def reconstruct() -> Any:
+        return asked("reconstruction", "reconstruct", values=_texts("values"))
+
+    @routes.post("/known-file")
+    def known_file() -> Response:
+        return _saved(reconstruction.known_file(_texts("values")), "application/toml", "known.toml")
+
+    @routes.post("/known")
+    def read_known() -> Any:
+        return reconstruction.read_known_file(request.get_data(), _name())
+
+    @routes.post("/known/<int:number>")
+    def known(number: int) -> Any:
+        return reconstruction.known_of_sample(number)
 
     @routes.post("/stop/<bench>")
     def stop(bench: str) -> Any:
@@ -144,6 +172,11 @@ def _object() -> dict[str, Any]:
     if not isinstance(whole, dict):
         raise UserError("the request is no JSON object")
     return whole
+
+
+def _name() -> str:
+    """What a file that was sent is called."""
+    return request.args.get("name", "the file")[:200]
 
 
 def _title() -> str:

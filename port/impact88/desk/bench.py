@@ -27,10 +27,13 @@ class BrokenError(Exception):
 class Bench:
     """One process that answers one question at a time.
 
+    ``module``: the module of this room that answers, loaded before the first question.
+
     Questions of one ``page`` replace each other; those of different pages wait for their turn.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, module: str) -> None:
+        self._module = module
         self._turn = threading.Condition()
         self._process: subprocess.Popen[str] | None = None
         self._asking: str | None = None
@@ -102,7 +105,7 @@ class Bench:
         if self._process is None or self._process.poll() is not None:
             self._process = subprocess.Popen(
                 # -P: a file of the user's in the current folder is no module of ours
-                [sys.executable, "-P", "-m", f"{__package__}.bench_process"],
+                [sys.executable, "-P", "-m", f"{__package__}.bench_process", self._module],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 encoding="utf-8",

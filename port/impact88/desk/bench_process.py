@@ -1,5 +1,6 @@
 """What runs in a process of the bench: a line of JSON in, a line of JSON out, until the input ends.
 
+The process is given the name of the module it will work with, and warms it up.
 The question's ``task`` names a function of `TASKS`, the rest are its arguments. The reply is
 ``{"answer": ...}``, ``{"problem": text}`` for input that cannot be used, or ``{"fault": text}``.
 """
@@ -15,6 +16,7 @@ from typing import Any
 
 TASKS = {
     "bounds": ("collision", "bounds_answer"),
+    "reconstruct": ("reconstruction", "answer"),
 }
 """Task -> module of this room and function."""
 
@@ -40,8 +42,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # nothing else may come between the replies
-    for name in ("numpy",):
-        import_module(name)
+    import_module(f"{__package__}.{sys.argv[1]}").warm()
     for line in open(0, encoding="utf-8", closefd=False):  # noqa: SIM115
         reply = answer(json.loads(line))
         replies.write(json.dumps(reply) + "\n")

@@ -3,6 +3,8 @@
 The form sends 21 texts. A text that INPUT takes for a number goes into the program as it stands;
 one that says a range (`uncertainty.uncertain`) is kept for the bounds, and its nominal value goes
 into the program.
+
+What computes is imported on first use: the page is shown before numpy is there.
 """
 
 from __future__ import annotations
@@ -10,15 +12,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from ..casework import beside
-from ..checking.oracle import look_up
 from ..doubles import double, is_number
 from ..errors import UserError
-from ..files import decode
-from ..names import FINAL_VELOCITIES, RESULTS, SCENE
+from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names
 from ..plaintable import number
-from ..scene import Scene, check_value, sample, template, toml_texts
+from ..scene import Scene, check_value, sample, template
 from ..uncertainty import uncertain
+from .files import small_toml
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
@@ -27,7 +27,6 @@ _NOMINAL_DIGITS = 9
 _DIGITS = 12
 """Digits of an exact result, as many as double precision is sure of."""
 _NOT_SHOWN = ("STATUS",)
-LARGEST_FILE = 1_000_000
 
 
 class Form(NamedTuple):
@@ -85,6 +84,9 @@ def answer(values: Mapping[str, str]) -> dict[str, Any]:
     ``problems``, ``missing``, ``ranges``: see `Form`. Where there is a scene, ``oracle`` is what
     `impact88 oracle` answers for it, ``results`` the rows of a table and ``warnings`` sentences.
     """
+    from ..casework import beside
+    from ..checking.oracle import look_up
+
     form = read(values)
     told: dict[str, Any] = {
         "problems": form.problems,
@@ -126,6 +128,7 @@ def _rows(results: Mapping[str, Mapping[str, Any]]) -> list[dict[str, str]]:
 
 def figure(values: Mapping[str, str], title: str = "") -> str:
     """The scene from above as SVG, as `impact88 figure scene` draws it. Raises UserError."""
+    from ..casework import beside
     from ..figures.sceneview import scene_drawing
     from ..figures.svg import svg
 
@@ -169,15 +172,9 @@ def scene_file(values: Mapping[str, str], title: str) -> str:
 
 def read_scene_file(data: bytes, name: str) -> dict[str, Any]:
     """The ``values`` and the ``title`` of a scene file. Raises UserError naming file and line."""
-    if len(data) > LARGEST_FILE:
-        raise UserError(f"is larger than {LARGEST_FILE:,} bytes, the most that is read here", name)
-    texts = toml_texts(decode(data, name), name)
+    texts = small_toml(data, name)
     title = texts.pop("title", "")
-    unknown = [entry for entry in texts if entry not in SCENE]
-    if unknown:
-        raise UserError(
-            f"{unknown[0]!r} is no value of a scene; expected {' '.join(SCENE)}, or title", name
-        )
+    check_names(texts, SCENE, "value of a scene", name)
     return {"values": texts, "title": title}
 
 

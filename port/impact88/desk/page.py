@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup, escape
 
 from .. import __version__
-from ..names import DEFAULT_M, SCENE, Quantity
+from ..names import DEFAULT_M, Quantity, quantity
 from ..scene import SAMPLES, sample
 
 
@@ -20,7 +20,7 @@ class Group(NamedTuple):
 
 
 def _group(heading: str, names: str) -> Group:
-    return Group(heading, tuple(SCENE[name] for name in names.split()))
+    return Group(heading, tuple(map(quantity, names.split())))
 
 
 GROUPS = (
@@ -32,9 +32,29 @@ GROUPS = (
 )
 
 
+KNOWN_GROUPS = (
+    *GROUPS[:2],
+    _group("Before the impact, A", "UX UY WA"),
+    _group("Before the impact, B", "VX VY WB"),
+    _group("After the impact, A", "VAX VAY WAF"),
+    _group("After the impact, B", "VBX VBY WBF"),
+    _group("Contact", "GA M"),
+    _group("Coefficients", "E MU MUP EM"),
+)
+MORE_GROUPS = (
+    _group("Speed and course, A", "SA HA SAF HAF"),
+    _group("Speed and course, B", "SB HB SBF HBF"),
+    _group("Velocity change, A", "DVA DVAF DVAR"),
+    _group("Velocity change, B", "DVB DVBF DVBR"),
+    _group("Energy", "KI KF EL LOSS"),
+)
+ALWAYS_KNOWN = frozenset("MA IA DA PA TA MB IB DB PB TB GA M".split())
+"""What a reconstruction cannot do without."""
+
+
 def symbol(text: str) -> Markup:
     """A symbol of the chapter as HTML: what follows ``_`` is a subscript."""
-    pieces = re.split("_([A-Za-z]+)", text)
+    pieces = re.split("_([A-Za-z0-9]+)", text)
     marked = (
         Markup("<sub>{}</sub>").format(piece) if place % 2 else escape(piece)
         for place, piece in enumerate(pieces)
@@ -47,6 +67,9 @@ def contents() -> dict[str, Any]:
     return {
         "version": __version__,
         "groups": GROUPS,
+        "known_groups": KNOWN_GROUPS,
+        "more_groups": MORE_GROUPS,
+        "always_known": ALWAYS_KNOWN,
         "default_m": DEFAULT_M,
         "samples": [(number, sample(number).title) for number in SAMPLES],
     }

@@ -91,7 +91,6 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
         clear_untrusted_proxy_headers=True,
     )
     try:
-        threading.Thread(target=desk.warm, daemon=True).start()
         server.run()
     finally:
         desk.close()

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from typing import Any
 
 from ..applesoft import decimaltext
-from ..applesoft.console import CONTROL_C, Console
+from ..applesoft.console import Console
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import rounded
-from .programtext import START, ProgramText
-from .strings import StringArea
+from .program import START, Program
+from .strings import Literal, StringArea
 from .symbols import INTEGER, STRING
 from .tokens import DATA
 from .variables import whole
@@ -29,10 +29,6 @@ _DATA = chr(DATA)
 BAD_REPLY = 254
 DIRECT_AFTER_GET = 0xFF40
 """What a bad GET puts in place of the line number: the machine believes it is at the prompt."""
-
-
-class InputBreak(KeyboardInterrupt):
-    """Control-C as a reply: CONT will not find the beginning of a statement."""
 
 
 class BadReply(ApplesoftError):
@@ -53,36 +49,27 @@ def _blanks(text: str, at: int) -> int:
     return at
 
 
-def _string(text: str, at: int) -> tuple[int, int, int]:
-    """Where the string at ``at`` begins and ends, and where what follows it does."""
+def _string(text: str, at: int) -> tuple[str, int]:
+    """The string at ``at`` and where it ends."""
     if text[at : at + 1] == '"':
-        start = end = at + 1
-        while text[end : end + 1] not in ('"', "", "\0"):
-            end += 1
-        return start, end, end + 1 if text[end : end + 1] == '"' else end
-    end = at
-    while text[end : end + 1] not in (*_ENDS, ","):
-        end += 1
-    return at, end, end
+        start = at = at + 1
+        while text[at : at + 1] not in ('"', "", "\0"):
+            at += 1
+        return text[start:at], at + 1 if text[at : at + 1] == '"' else at
+    start = at
+    while text[at : at + 1] not in (*_ENDS, ","):
+        at += 1
+    return text[start:at], at
 
 
 class Inputs:
-    """DATA's pointer and the three statements.
-
-    ``put`` shows a message; ``onerr`` tells whether ONERR is on.
-    """
+    """DATA's pointer and the three statements. ``onerr`` tells whether ONERR is on."""
 
     def __init__(
-        self,
-        program: ProgramText,
-        console: Console,
-        put: Callable[[str], object],
-        strings: StringArea,
-        onerr: Callable[[], bool],
+        self, program: Program, console: Console, strings: StringArea, onerr: Callable[[], bool]
     ) -> None:
         self._program = program
         self._console = console
-        self._put = put
         self._strings = strings
         self._onerr = onerr
         self._image: bytes | None = None
@@ -98,13 +85,8 @@ class Inputs:
         """Read a value of a kind at ``at``, store it, and return where it ends, blanks passed."""
         values, index = place
         if kind == STRING:
-            start, end, at = _string(text, at)
-            strings = self._strings
-            if literal:
-                string = strings.temporary(end - start, START - 1 + start)
-            else:
-                string = strings.made(text[start:end])
-            values[index] = strings.kept(string)
+            string, at = _string(text, at)
+            values[index] = Literal(string) if literal else self._strings.made(string)
         else:
             number, at = decimaltext.read(text, at)
             values[index] = whole(number) if kind == INTEGER else rounded(number)
@@ -151,17 +133,12 @@ class Inputs:
     def input_(self, pc: int, items: Items) -> bool:
         """INPUT after its prompt; True if the statement has to be done again."""
         console = self._console
-        try:
-            text = console.read_line()
-        except KeyboardInterrupt:
-            raise InputBreak from None
-        if text.startswith(CONTROL_C):
-            raise InputBreak
+        text = console.read_line()
         at = -1
         for kind, where in items:
             place = where()
             if at >= 0 and text[at : at + 1] in _ENDS:
-                self._put("??")
+                console.put("??")
                 text = console.read_line()
                 at = -1
             refused = kind != STRING and not text
@@ -171,10 +148,10 @@ class Inputs:
             if refused:
                 if self._onerr():
                     raise BadReply
-                self._put("?REENTER\n")
+                console.put("?REENTER\n")
                 return True
         if at < len(text):
-            self._put("?EXTRA IGNORED\n")
+            console.put("?EXTRA IGNORED\n")
         return False
 
     # --- GET ----------------------------------------------------------------------------------
@@ -187,11 +164,11 @@ class Inputs:
             values, index = where()
             key = chr(ord(self._console.read_key()) & 0x7F).rstrip("\0")
             if kind == STRING:
-                values[index] = self._strings.kept(self._strings.made(key))
+                values[index] = self._strings.made(key)
                 at = len(key)
                 continue
             at = self._take(kind, (values, index), key, _blanks(key, 0))
             if key[at : at + 1] not in (*_ENDS, ","):
                 raise ApplesoftError("SYNTAX", DIRECT_AFTER_GET)
         if at < len(key):
-            self._put("?EXTRA IGNORED\n")
+            self._console.put("?EXTRA IGNORED\n")

@@ -11,23 +11,22 @@ from collections.abc import Callable
 
 from ..applesoft.real import from_stored, to_stored
 from . import layout
-from .hardware import Hardware
-from .programtext import START
-from .screen import BASE, END
+from .parts import Parts
+from .program import START
+from .screen import BASE
 
 WINDOW = {32: "left", 33: "width", 34: "top", 35: "bottom"}
 COLUMN, ROW, MASK = 36, 37, 50
 ERROR_FLAG, ERROR_CODE = 216, 222
 FLASH_BIT, SPEED, TRACE_FLAG = 243, 241, 242
-LOCK = 214
-SCREEN = range(BASE, END)
+SCREEN = range(BASE, 0x800)
 APPLE_II_PLUS = {0xFBB3: 0xEA}
 """The byte of the monitor by which programs tell the machines apart."""
 RTS = 0x60
 ROM = 0xC000
 
 
-def _words(machine: Hardware) -> dict[int, int]:
+def _words(machine: Parts) -> dict[int, int]:
     """The two-byte pointers on page 0."""
     variables, inputs = machine.variables, machine.inputs
     return {
@@ -38,8 +37,6 @@ def _words(machine: Hardware) -> dict[int, int]:
         111: variables.strings.bottom,
         115: variables.strings.top,
         117: machine.line,
-        121: machine.statement,
-        131: variables.found_address(),
         123: inputs.data_line,
         125: inputs.pointer,
         175: machine.program.end,
@@ -47,7 +44,7 @@ def _words(machine: Hardware) -> dict[int, int]:
     }
 
 
-def peek(machine: Hardware, address: int) -> int:
+def peek(machine: Parts, address: int) -> int:
     """The byte at an address."""
     if address < 256:
         words = _words(machine)
@@ -58,13 +55,26 @@ def peek(machine: Hardware, address: int) -> int:
         return _page_zero(machine, address)
     if address in SCREEN:
         return machine.screen.byte_at(address)
-    field = layout.field_at(machine.variables, address)
+    if START - 1 <= address < machine.program.end:
+        offset = address - START
+        image = machine.program.image
+        return image[offset] if 0 <= offset < len(image) else 0
+    field = layout.field_at(machine.variables, address, _locate(machine))
     if field is not None:
         return field.read(address)
-    return APPLE_II_PLUS.get(address, 0) if address >= ROM else machine.ram[address]
+    if machine.variables.strings.bottom <= address < machine.variables.strings.top:
+        for at, text in layout.strings_in_memory(machine.variables):
+            if at <= address < at + len(text):
+                return ord(text[address - at]) & 0xFF
+    return machine.ram.get(address, APPLE_II_PLUS.get(address, 0))
 
 
-def _page_zero(machine: Hardware, address: int) -> int:
+def _locate(machine: Parts) -> layout.Locate:
+    image = machine.program.image
+    return lambda text: layout.string_address(machine.variables, image, START, text)
+
+
+def _page_zero(machine: Parts, address: int) -> int:
     screen, errors = machine.screen, machine.errors
     if address in WINDOW:
         return int(getattr(screen, WINDOW[address])) & 0xFF
@@ -77,12 +87,12 @@ def _page_zero(machine: Hardware, address: int) -> int:
         ERROR_FLAG: lambda: errors.flag,
         ERROR_CODE: lambda: errors.code,
         FLASH_BIT: lambda: machine.output.flash_bit,
-        TRACE_FLAG: lambda: machine.trace_flag,
+        TRACE_FLAG: lambda: 0x80 if machine.tracing else 0,
     }
-    return known[address]() & 0xFF if address in known else machine.ram[address]
+    return known[address]() & 0xFF if address in known else machine.ram.get(address, 0)
 
 
-def poke(machine: Hardware, address: int, value: int) -> None:
+def poke(machine: Parts, address: int, value: int) -> None:
     """Put a byte at an address, other than in the program's text."""
     screen = machine.screen
     if address in SCREEN:
@@ -92,7 +102,7 @@ def poke(machine: Hardware, address: int, value: int) -> None:
     elif address == COLUMN:
         screen.move_to_column(value)
     elif address == ROW:
-        screen.put_row(value)
+        screen.move_to_row(min(value, 23))
     elif address == MASK:
         screen.set_mode(value)
     elif address == ERROR_FLAG:
@@ -106,14 +116,14 @@ def poke(machine: Hardware, address: int, value: int) -> None:
         stored[address - 201] = value
         machine.seed = from_stored(bytes(stored))
     else:
-        field = layout.field_at(machine.variables, address)
+        field = layout.field_at(machine.variables, address, _locate(machine))
         if field is not None:
             field.write(address, value)
         elif address < ROM:
             machine.ram[address] = value
 
 
-def call(machine: Hardware, address: int) -> bool:
+def call(machine: Parts, address: int) -> bool:
     """CALL: whether the routine is known."""
     screen = machine.screen
     routines: dict[int, Callable[[], object]] = {
@@ -124,7 +134,6 @@ def call(machine: Hardware, address: int) -> bool:
         0xFC66: screen.line_feed,
         0xFC1A: screen.step_up,
         0xFC10: screen.step_back,
-        0xFBF4: screen.advance,
         0xFC62: lambda: screen.write("\n"),
         0xFD8E: lambda: machine.output.put("\n"),
         0xFF3A: lambda: machine.output.put("\a"),
@@ -138,6 +147,6 @@ def call(machine: Hardware, address: int) -> bool:
     }
     if address in routines:
         routines[address]()
-    elif peek(machine, address) != RTS:
+    elif machine.ram.get(address) != RTS:
         return False
     return True

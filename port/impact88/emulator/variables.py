@@ -7,12 +7,12 @@ follow the variables in memory, strings grow down from HIMEM towards them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from ..applesoft.errors import ApplesoftError, illegal_quantity
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
-from .strings import EMPTY, Descriptor, StringArea
+from .strings import Literal, StringArea
 from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
 
 TOP_OF_MEMORY = 0xC000
@@ -22,8 +22,8 @@ ARRAY_HEADER = 5
 ELEMENT_SIZES = {REAL: 5, INTEGER: 2, STRING: 3}
 AUTOMATIC = 11
 """Elements per dimension of an array that no DIM made."""
-LOWEST = from_stored("9080000020")
-"""The one number below -32767.99 that the ROM lets through: a little less than -32768."""
+EMPTY = Literal("")
+MINUS_32768 = from_stored("9080000000")
 
 
 class Array(NamedTuple):
@@ -54,17 +54,16 @@ class Variables:
     says which simple variables exist, ``order`` and ``array_order`` since when.
     """
 
-    def __init__(self, ram: bytearray) -> None:
+    def __init__(self) -> None:
         self.values: list[Any] = []
         self.made = bytearray()
         self.arrays: list[Array | None] = []
         self.order: list[int] = []
         self.array_order: list[int] = []
         self.start = 0
-        self.found: int | None = None
         self._end = 0
         self._arrays_size = 0
-        self.strings = StringArea(ram, TOP_OF_MEMORY, self.end_of_arrays, self._held)
+        self.strings = StringArea(TOP_OF_MEMORY, self.end_of_arrays, self._live_characters)
         self.grow()
 
     def grow(self) -> None:
@@ -100,61 +99,23 @@ class Variables:
         """STREND."""
         return self._end + self._arrays_size
 
-    def free(self) -> Number:
-        """FRE: the room left, past 32767 as a negative number."""
+    def free(self, _: object) -> Number:
+        """FRE, whatever its argument: the room left, past 32767 as a negative number."""
         self.strings.collect()
         room = self.strings.bottom - self.end_of_arrays()
         return integer((room + 0x8000 & 0xFFFF) - 0x8000)
 
-    def _held(self) -> Iterator[Descriptor]:
-        """The descriptors that variables and arrays hold, in memory's order."""
+    def _live_characters(self) -> int:
+        total = 0
         for slot in self.order:
             value = self.values[slot]
-            if value.__class__ is Descriptor:
-                yield value
+            if value.__class__ is str:
+                total += len(value)
         for slot in self.array_order:
             array = self.arrays[slot]
             if array is not None and array.kind == STRING:
-                yield from array.data
-
-    def descriptor_address(self, string: Descriptor) -> int:
-        """Where the descriptor of a string variable or element lies; 0 for any other."""
-        for slot in self.order:
-            if self.values[slot] is string:
-                return self.address_of(slot)
-        start = self._end
-        for slot in self.array_order:
-            array = self.arrays[slot]
-            assert array is not None
-            start += ARRAY_HEADER + 2 * len(array.sizes)
-            size = ELEMENT_SIZES[array.kind]
-            if array.kind == STRING:
-                for n, element in enumerate(array.data):
-                    if element is string:
-                        return start + size * n
-            start += size * len(array.data)
-        return 0
-
-    def lies_at_page_end(self, slot: int) -> bool:
-        """Whether a simple variable's value begins at the last byte of a page."""
-        # variables take 7 bytes, and 183 * 7 is 1 modulo 256
-        n = (0xFD - self.start) * 183 & 0xFF
-        return n < len(self.order) and slot in self.order[n::0x100]
-
-    def find(self, slot: int) -> int:
-        """A simple variable is looked up; the ROM keeps its address."""
-        self.found = slot
-        return slot
-
-    def found_address(self) -> int:
-        """The address of the value of the variable found last."""
-        if self.found is None or not self.made[self.found]:
-            return EMPTY.address
-        return self.address_of(self.found)
-
-    def address_of(self, slot: int) -> int:
-        """Where a simple variable's value lies."""
-        return self.start + VARIABLE_SIZE * self.order.index(slot) + 2
+                total += sum(len(text) for text in array.data if text.__class__ is str)
+        return total
 
     def _room(self, size: int) -> None:
         """Raises OUT OF MEMORY unless so much more fits between arrays and strings."""
@@ -171,8 +132,6 @@ class Variables:
         self._room(VARIABLE_SIZE)
         self._end += VARIABLE_SIZE
         self.made[slot] = 1
-        if self.values[slot] is EMPTY:
-            self.values[slot] = Descriptor(0, 0)
         self.order.append(slot)
 
     def place(self, slot: int) -> tuple[list[Any], int]:
@@ -200,8 +159,7 @@ class Variables:
         self._room(size)
         self._arrays_size += size
         self.array_order.append(slot)
-        nothing = Descriptor(0, 0) if kind == STRING else ZERO
-        array = Array(tuple(sizes), [nothing] * elements, kind)
+        array = Array(tuple(sizes), [blank(kind)] * elements, kind)
         self.arrays[slot] = array
         return array
 
@@ -262,16 +220,12 @@ class Variables:
 
 
 def whole(x: Number) -> Number:
-    """What an integer variable stores: rounded to 32 bits, then down. Raises ILLEGAL QUANTITY from
-    32768 and -32768 on.
-
-    The ROM means to let -32768 through, but its constant has a bit too many: it lets through
-    -32768.0005 only, which is stored as 32767.
-    """
+    """What an integer variable stores: rounded to 32 bits, then down. Raises ILLEGAL QUANTITY
+    outside -32768 ... 32767."""
     x = rounded(x)
-    if x[0] >= 0x90 and compare(LOWEST, x):
+    if x[0] >= 0x90 and compare(MINUS_32768, x):
         raise illegal_quantity()
-    return integer((to_integer(x) + 0x8000 & 0xFFFF) - 0x8000)
+    return integer(to_integer(x))
 
 
 def subscript(x: Number) -> int:

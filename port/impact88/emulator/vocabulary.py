@@ -1,4 +1,4 @@
-"""The names that compiled steps use, and what each means for a machine.
+"""The names that compiled steps use, and what each means on a given parts.
 
 `expressions` and the statement compilers write these names; nothing else may depend on them.
 """
@@ -15,6 +15,7 @@ from ..applesoft.real import (
     add,
     compare,
     divide,
+    floor,
     integer,
     multiply,
     negate,
@@ -22,8 +23,8 @@ from ..applesoft.real import (
     subtract,
 )
 from . import memory
-from .accumulator import wrapped
-from .hardware import Hardware
+from .parts import Parts
+from .strings import code, value
 from .variables import Function, address, byte, subscript, whole
 
 
@@ -37,14 +38,18 @@ _NUMBERS: dict[str, Any] = {
     "subtract": subtract,
     "multiply": multiply,
     "divide": divide,
+    "power": functions.power,
     "negate": negate,
     "rounded": rounded,
     "compare": compare,
     "ONE": integer(1),
     "TRUTH": (ZERO, integer(1)),
     "SGN": functions.sign,
+    "INT": floor,
     "ABS": absolute,
+    "SQR": functions.square_root,
     "LOG": functions.logarithm,
+    "EXP": functions.exponential,
     "SIN": functions.sine,
     "COS": functions.cosine,
     "TAN": functions.tangent,
@@ -53,19 +58,22 @@ _NUMBERS: dict[str, Any] = {
     "address": address,
     "subscript": subscript,
     "whole": whole,
+    "LEN": lambda text: integer(len(text)),
+    "ASC": lambda text: integer(code(text)),
+    "VAL": lambda text: value(text, decimaltext.read),
+    "write": decimaltext.write,
     "Function": Function,
     "bad": bad,
 }
 
 
-def names(hardware: Hardware) -> dict[str, Any]:
-    """The names for a machine of these hardware, but for those of its own methods."""
-    return {**_NUMBERS, **_values(hardware), **_flow(hardware), **_outside(hardware)}
+def names(parts: Parts) -> dict[str, Any]:
+    """The names for a machine of these parts, but for those of its own methods."""
+    return {**_NUMBERS, **_values(parts), **_flow(parts), **_outside(parts)}
 
 
-def _values(hardware: Hardware) -> dict[str, Any]:
-    variables, strings = hardware.variables, hardware.variables.strings
-    accumulator = hardware.accumulator
+def _values(parts: Parts) -> dict[str, Any]:
+    variables, strings = parts.variables, parts.variables.strings
     return {
         "V": variables.values,
         "made_": variables.made,
@@ -79,56 +87,36 @@ def _values(hardware: Hardware) -> dict[str, Any]:
         "value": variables.value,
         "dimension": variables.dimension,
         "joined": strings.joined,
-        "joined_": accumulator.joined,
-        "byte_": accumulator.byte,
-        "CHR_": accumulator.character,
-        "literal_": accumulator.literal,
-        "left_operand": accumulator.left_operand,
-        "load": accumulator.load,
-        "keep": accumulator.keep,
-        "residue": accumulator.residue,
-        "left_over": accumulator.left_over,
-        "INT": accumulator.floor,
-        "EXP": accumulator.exponential,
-        "SQR": accumulator.square_root,
-        "power": accumulator.power,
         "left": strings.left,
         "right": strings.right,
         "mid": strings.mid,
         "made": strings.made,
-        "literal": lambda address, length: strings.temporary(length, address),
-        "copied": strings.copied,
-        "kept": strings.kept,
-        "strcmp": strings.compare,
-        "CHR": lambda x: strings.made(chr(byte(x))),
+        "copy": strings.copy,
+        "CHR": lambda x: strings.character(byte(x)),
         "STR": lambda x: strings.made(decimaltext.write(x)),
-        "LEN": lambda string: integer(strings.free(string).length),
-        "ASC": lambda string: integer(strings.code(string)),
-        "FRE": lambda number: variables.free(),
-        "FREE": lambda string: (strings.free(string), variables.free())[1],
+        "FRE": variables.free,
     }
 
 
-def _flow(hardware: Hardware) -> dict[str, Any]:
-    control, variables = hardware.control, hardware.variables
+def _flow(parts: Parts) -> dict[str, Any]:
+    control = parts.control
     return {
         "begin_for": control.begin_for,
         "push_for": control.push_for,
         "next_": control.next_,
+        "return_": control.return_,
         "pop": control.pop,
         "room": control.room,
-        "assign": control.assign,
-        "find": variables.find,
-        **wrapped(hardware.accumulator, control.enter),
+        "places": control.places,
+        "watch": control.watch,
+        "lose": control.lose,
     }
 
 
-def _outside(hardware: Hardware) -> dict[str, Any]:
-    output, inputs, strings = hardware.output, hardware.inputs, hardware.variables.strings
+def _outside(parts: Parts) -> dict[str, Any]:
+    output, inputs = parts.output, parts.inputs
     return {
         "out": output.out,
-        "out_string": lambda string: output.out(strings.used(string)),
-        "out_number": lambda x: output.out(hardware.accumulator.printed(x)),
         "newline": output.newline,
         "zone": output.zone,
         "tab": output.tab,
@@ -136,17 +124,17 @@ def _outside(hardware: Hardware) -> dict[str, Any]:
         "POS": output.position,
         "htab": output.htab,
         "vtab": output.vtab,
-        "home": hardware.screen.home,
-        "text": hardware.screen.full_window,
+        "home": parts.screen.home,
+        "text": parts.screen.full_window,
         "normal": output.normal,
         "inverse": output.inverse,
         "flash": output.flash,
-        "pr": hardware.console.select,
+        "pr": parts.console.select,
         "in_": lambda slot: None,  # nothing but the keyboard is plugged in
         "read": inputs.read,
         "restore": inputs.restore,
         "input_": inputs.input_,
         "get": inputs.get,
-        "PEEK": lambda x: integer(memory.peek(hardware, address(x))),
-        "WAIT": lambda place, mask, flip=0: bool((memory.peek(hardware, place) ^ flip) & mask),
+        "PEEK": lambda x: integer(memory.peek(parts, address(x))),
+        "WAIT": lambda place, mask, flip=0: bool((memory.peek(parts, place) ^ flip) & mask),
     }

@@ -27,8 +27,9 @@ from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 from ..uncertainty.uncertain import Uncertain, fixed
 from .geometry import NAMES as GEOMETRY
 from .geometry import Geometry
+from .knowable import OTHERS
 from .state import CHANGES, COURSES, ENERGIES, QUANTITIES, SPEEDS, State
-from .unknowns import TIE, UnsolvableError
+from .unknowns import TIE, UnsolvableError, solve_for
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
@@ -323,7 +324,8 @@ class Reconstruction:
         """What an error of each known value (column) by its standard deviation does to quantities
         (rows), to first order."""
         rows = np.array([self.system.gradient(self.x, name) for name in names])
-        product: Floats = rows.reshape(len(names), -1) @ self._responses
+        # not -1: where nothing is uncertain there are no rows to tell the columns from
+        product: Floats = rows.reshape(len(names), len(self._responses)) @ self._responses
         return product
 
     def covariance(self, names: Sequence[str]) -> Floats:
@@ -369,6 +371,18 @@ def typed_friction(state: State, signed: float) -> float:
     sliding = float(np.ravel(np.real(state.relative_before[1]))[0])
     speed = max(float(np.abs(np.real(v)).max()) for v in state.before)
     return -signed if sliding > TIE * speed and signed not in (0, PIVOT) else signed
+
+
+def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | None = None) -> bool:
+    """Whether `unknowns.solve_for` does not do: values with limits, quantities it does not know, or
+    exact values that leave over equations that do not hold."""
+    if any(item.varies or name in OTHERS for name, item in known.items()):
+        return True
+    try:
+        solutions = solve_for({name: item.nominal for name, item in known.items()}, wanted)
+    except UserError:
+        return False  # told by the one who shows it
+    return any(bool(solution.contradictory) for solution in solutions)
 
 
 def reconstruct(known: Mapping[str, Uncertain | float]) -> list[Reconstruction]:

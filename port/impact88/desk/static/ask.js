@@ -1,7 +1,7 @@
 // Asking the desk: questions to the program on this machine, and small helpers for its answers.
 
 const ID = crypto.randomUUID();
-const STOPPABLE = ["bounds"];
+const STOPPABLE = ["bounds", "reconstruction"];
 
 /** Input that cannot be used, or a fault; the message is the program's sentence. */
 export class Problem extends Error {}
@@ -116,7 +116,7 @@ export async function save(response) {
 
 /** A text with symbols as a piece of the page: what follows "_" is a subscript. */
 export function marked(text) {
-  const parts = text.split(/_([A-Za-z]+)/);
+  const parts = text.split(/_([A-Za-z0-9]+)/);
   return element("span", {}, ...parts.map((part, place) => (place % 2 ? element("sub", {}, part) : part)));
 }
 

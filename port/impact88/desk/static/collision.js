@@ -70,6 +70,8 @@ const draw = newest(async () => {
   drawn = address;
 });
 
+const SHARES = ["0.05", "0.5", "0.95"]; // of the quantiles, those there is room for
+
 function boundsRow([name, bound]) {
   const width = Math.abs((bound.upper ?? 0) - (bound.lower ?? 0));
   const drives = Object.entries(bound.drives)
@@ -78,15 +80,14 @@ function boundsRow([name, bound]) {
     .sort((one, other) => other[1] - one[1])
     .slice(0, 3)
     .map(([input, swing]) => `${input} ${shown(swing, 3)}`);
-  const quantiles = Object.values(bound.quantiles).map((value) => shown(value, 4));
+  const quantiles = SHARES.map((share) => shown(bound.quantiles[share], 4));
   return [
     name, what(bound), shown(bound.lower), shown(bound.nominal), shown(bound.upper), ...quantiles, drives.join(", "),
   ];
 }
 
 function showBounds(found) {
-  const [first] = Object.values(found.outputs);
-  const shares = Object.keys(first.quantiles).map((share) => `${shown(100 * share, 3)} %`);
+  const shares = SHARES.map((share) => `${shown(100 * share, 3)} %`);
   fill(page("collision-bounds-table"),
     ["", "", "lower", "nominal", "upper", ...shares, "driven by"],
     Object.entries(found.outputs).map(boundsRow));
@@ -189,6 +190,7 @@ export function collision() {
   page("collision-save").addEventListener("click", () => doing(async () =>
     save(await ask("scene-file", { values: values(), title: page("collision-title").value }))));
   page("collision-print").addEventListener("click", () => print());
+  addEventListener("desk-scene", (event) => load(event.detail));
   page("collision-bounds-stop").addEventListener("click", () => stop("bounds"));
   answer();
 }

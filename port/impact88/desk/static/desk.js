@@ -1,8 +1,9 @@
 // The page: which view is shown, and the views themselves.
 import { page, stopAll } from "./ask.js";
 import { collision } from "./collision.js";
+import { reconstruction } from "./reconstruction.js";
 
-const VIEWS = ["collision"];
+const VIEWS = ["collision", "reconstruction"];
 
 function show() {
   const wanted = location.hash.slice(1);
@@ -29,3 +30,4 @@ addEventListener("hashchange", () => {
 addEventListener("pagehide", stopAll);
 show();
 collision();
+reconstruction();

@@ -1,0 +1,195 @@
+"""What the Reconstruction view is answered: what `impact88 reconstruct` finds for what is known.
+
+What computes is imported on first use: the page is shown before numpy is there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..errors import UserError
+from ..names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
+from ..plaintable import number
+from ..reconstruction.knowable import KNOWABLE
+from ..scene import known_template, sample
+from ..uncertainty import uncertain
+from .files import small_toml
+
+if TYPE_CHECKING:
+    from ..uncertainty.uncertain import Uncertain
+
+DRAWS = 20_000
+"""Random draws for the quantiles."""
+_DIGITS = 6
+_DIGITS_OF_A_SPREAD = 3
+_DIGITS_TO_GO_ON = 12
+"""Digits of a value that goes on into another computation."""
+_AMPLIFIED = "error amplified"
+_DEVIATION = "±"
+_LOWER, _UPPER = "lower", "upper"
+
+
+def warm() -> None:
+    """Load what the first answer needs."""
+    answer(known_of_sample(1)["values"])
+
+
+def answer(values: dict[str, str]) -> dict[str, Any]:
+    """The solutions for what is known.
+
+    ``problems``: by name, what is wrong with a value; ``waiting``: why there is no solution;
+    ``solutions``: for each ``object``, what `impact88 reconstruct --json` prints of it, ``printed``
+    what it prints as text, and made of the object the ``rows`` and ``columns`` of a table,
+    ``adjusted`` values, ``warnings`` and the ``scene`` (texts by name, or None).
+    """
+    known: dict[str, Uncertain] = {}
+    problems: dict[str, str] = {}
+    for name, text in values.items():
+        try:
+            known[name] = _read(name, text)
+        except UserError as error:
+            problems[name] = str(error)
+    told: dict[str, Any] = {"problems": problems, "waiting": "", "solutions": []}
+    if problems:
+        told["waiting"] = f"To be corrected: {' '.join(problems)}."
+        return told
+    try:
+        solutions = _solved(known)
+    except UserError as error:
+        told["waiting"] = str(error)
+        return told
+    told["solutions"] = [_told(values, found, printed) for found, printed in solutions]
+    return told
+
+
+def _solved(known: Mapping[str, Uncertain]) -> list[tuple[dict[str, Any], str]]:
+    """Each solution as the command gives it, as an object and as text. Raises UserError."""
+    from ..reconstruction import adjustment, solutiontable, unknowns
+    from ..uncertainty import reconstructedtable
+
+    if adjustment.needs_adjustment(known):
+        found = []
+        for impact in adjustment.reconstruct(known):
+            spread = reconstructedtable.uncertainty(impact, DRAWS)
+            one = (impact, reconstructedtable.completed_values(impact, None), spread)
+            found.append((reconstructedtable.as_json(*one), reconstructedtable.as_text(*one)))
+        return found
+    numbers = {name: item.nominal for name, item in known.items()}
+    tables = []
+    for solution in unknowns.solve_for(numbers):
+        whole = (numbers, solution, solutiontable.complete(numbers, solution, None))
+        tables.append((solutiontable.as_json(*whole), solutiontable.as_text(*whole)))
+    return tables
+
+
+def _read(name: str, text: str) -> Uncertain:
+    check_names((name,), KNOWABLE, "value here", "")
+    return uncertain.read(text, name)
+
+
+def _told(texts: Mapping[str, str], found: Mapping[str, Any], printed: str) -> dict[str, Any]:
+    rows = [_row(name, value, found) for name, value in found["values"].items()]
+    named = (_DEVIATION, "5 %", "95 %", _LOWER, _UPPER, _AMPLIFIED)
+    return {
+        "object": found,
+        "printed": printed,
+        "rows": rows,
+        "columns": [name for name in named if any(row["columns"].get(name) for row in rows)],
+        "adjusted": [_adjusted(one) for one in found.get("adjusted", ()) if found["redundancy"]],
+        "warnings": found["warnings"],
+        "scene": _scene(texts, found["values"]),
+    }
+
+
+def _row(name: str, value: float | None, found: Mapping[str, Any]) -> dict[str, Any]:
+    spread = found.get("uncertainty", {}).get(name, {})
+    quantiles = spread.get("quantiles", {})
+    columns = {
+        _DEVIATION: spread.get("first_order"),
+        _AMPLIFIED: found.get("amplification", {}).get(name),
+    }
+    bounds = {
+        "5 %": quantiles.get("0.05"),
+        "95 %": quantiles.get("0.95"),
+        _LOWER: spread.get("lower"),
+        _UPPER: spread.get("upper"),
+    }
+    return {
+        **_what(name),
+        "text": _text(value, _DIGITS),
+        "known": name in found["known"],
+        "solved": name in found.get("solved_for", _SOUGHT) and name not in found["known"],
+        "columns": {
+            **{head: _text(one, _DIGITS_OF_A_SPREAD) for head, one in columns.items()},
+            **{head: _text(one, _DIGITS) for head, one in bounds.items()},
+        },
+    }
+
+
+_SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
+
+
+def _what(name: str) -> dict[str, str]:
+    what = quantity(name)
+    return {"name": name, "symbol": what.symbol, "meaning": what.meaning, "unit": what.unit}
+
+
+def _text(value: float | None, digits: int) -> str:
+    return "" if value is None else number(value, digits)
+
+
+def _adjusted(one: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        **_what(one["name"]),
+        "measured": _text(one["measured"], _DIGITS),
+        "tolerance": _text(one["tolerance"], _DIGITS_OF_A_SPREAD),
+        "adjusted": _text(one["adjusted"], _DIGITS),
+        "moved": f"{one['moved'] + 0.0:.2f}",
+    }
+
+
+def _scene(texts: Mapping[str, str], values: Mapping[str, float | None]) -> dict[str, str] | None:
+    """The impact found as the texts of a scene, exact values as they were typed."""
+    found: dict[str, str] = {}
+    for name in SCENE:
+        value = values.get(name)
+        if value is None or not math.isfinite(value):
+            return None
+        typed = texts.get(name, "").strip()
+        exact = typed and uncertain.read(typed, name) == uncertain.fixed(value)
+        found[name] = typed if exact else number(value, _DIGITS_TO_GO_ON)
+    return found
+
+
+def known_file(values: Mapping[str, str]) -> str:
+    """What is known as the file that `impact88 reconstruct` reads. Raises UserError."""
+    texts = {name: text.strip() for name, text in values.items()}
+    for name, text in texts.items():
+        _read(name, text)
+    return known_template(KNOWABLE, texts) + "\n"
+
+
+def read_known_file(data: bytes, name: str) -> dict[str, Any]:
+    """The ``values`` in such a file. Raises UserError naming file and line."""
+    texts = small_toml(data, name)
+    title = texts.pop("title", "")
+    check_names(texts, KNOWABLE, "value here", name)
+    return {"values": {entry: text for entry, text in texts.items() if text}, "title": title}
+
+
+def known_of_sample(which: int) -> dict[str, Any]:
+    """A published run with its results known and its initial velocities not. Raises UserError."""
+    from ..checking.oracle import look_up
+
+    scene = sample(which)
+    results = look_up([scene], reference=False)[0]["results"]
+    after = {
+        name: number(results[name]["double"], _DIGITS_TO_GO_ON)
+        for name in FINAL_STATE
+        if results[name]["double"] is not None
+    }
+    values = {name: text for name, text in scene.items() if name not in (*VELOCITIES, "MU")}
+    values["MUP"] = number(results["MUP"]["double"], _DIGITS_TO_GO_ON)
+    return {"values": {**values, **after}, "title": scene.title or ""}

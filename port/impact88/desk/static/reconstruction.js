@@ -1,0 +1,175 @@
+// The Reconstruction view: what is known is ticked, the rest is solved for while one types.
+import { ask, asked, element, fill, page, save, settled, tell, what } from "./ask.js";
+
+const form = () => page("reconstruction-form");
+const inputs = () => [...form().querySelectorAll("input[name]")];
+const ticks = () => [...form().querySelectorAll("input[data-for]")];
+const tickOf = (input) => page(`${input.id}-known`);
+const toleranceOf = (input) => page(`${input.id}-tolerance`);
+const WITHIN = /^(.*\S)\s*(?:\+-|±)\s*(\S.*)$/;
+const trouble = (error) => tell(page("reconstruction-trouble"), error);
+
+/** The values that count: those always known, and those ticked. */
+function values() {
+  const counted = inputs().filter((input) => input.value.trim() && tickOf(input)?.checked !== false);
+  return Object.fromEntries(counted.map((input) => [input.name, textOf(input)]));
+}
+
+/** A value with its tolerance, as a file has it. */
+function textOf(input) {
+  const tolerance = toleranceOf(input)?.value.trim();
+  return tolerance ? `${input.value.trim()} +- ${tolerance}` : input.value;
+}
+
+function put(input, text) {
+  const within = toleranceOf(input) && WITHIN.exec(text);
+  input.value = within ? within[1] : text;
+  if (toleranceOf(input)) toleranceOf(input).value = within ? within[2] : "";
+}
+
+function showTicks() {
+  for (const tick of ticks()) tick.closest(".knowable").classList.toggle("unknown", !tick.checked);
+}
+
+/** What is wrong with each value, at its field. */
+function showProblems(problems) {
+  for (const input of inputs()) {
+    const problem = problems[input.name];
+    tell(page(`${input.id}-problem`), problem && { message: problem });
+    if (problem) input.setAttribute("aria-invalid", "true");
+    else input.removeAttribute("aria-invalid");
+  }
+}
+
+/** The values solved for, at the fields they belong to. */
+function showAtFields(solutions) {
+  for (const input of inputs()) {
+    const place = page(`${input.id}-answer`);
+    const texts = solutions.map(({ rows }) => rows.find((row) => row.name === input.name && !row.known))
+      .filter(Boolean).map((row) => (row.columns["±"] ? `${row.text} ± ${row.columns["±"]}` : row.text));
+    place.hidden = !texts.length || tickOf(input)?.checked !== false;
+    place.textContent = texts.length ? `solved: ${[...new Set(texts)].join(" or ")}` : "";
+  }
+}
+
+function tableOf(name, heads, rows, classOf) {
+  const table = element("table", {});
+  fill(table, heads, rows, classOf);
+  return element("div", { className: "scroll", tabIndex: 0, role: "region", "aria-label": name }, table);
+}
+
+function solutionPart(solution, at, count) {
+  const parts = [];
+  if (count > 1) parts.push(element("h2", {}, `Solution ${at + 1} of ${count}`));
+  if (solution.warnings.length) {
+    parts.push(element("div", { className: "warnings" }, element("h3", {}, "Warnings"),
+      element("ul", {}, ...solution.warnings.map((text) => element("li", {}, text)))));
+  }
+  const columns = solution.columns;
+  const rows = [...solution.rows.filter((row) => row.solved), ...solution.rows.filter((row) => !row.solved && !row.known)];
+  parts.push(tableOf("What follows", ["", "", "value", ...columns], rows.map((row) =>
+    [row.name, what(row), row.text, ...columns.map((column) => row.columns[column] ?? "")]),
+  (place) => (rows[place].solved ? "solved" : "")));
+  if (solution.adjusted.length) {
+    parts.push(element("h3", {}, "What was measured, and how it was adjusted"),
+      tableOf("Adjusted", ["", "", "measured", "±", "adjusted", "moved, tolerances"], solution.adjusted.map((row) =>
+        [row.name, what(row), row.measured, row.tolerance, row.adjusted, row.moved])));
+  }
+  if (solution.scene) {
+    const button = element("button", { type: "button" }, "Open this collision");
+    button.addEventListener("click", () => {
+      dispatchEvent(new CustomEvent("desk-scene", { detail: { values: solution.scene, title: "Reconstructed" } }));
+      location.hash = "#collision";
+    });
+    parts.push(element("p", { className: "over" }, button));
+  }
+  parts.push(element("details", {}, element("summary", {}, "As impact88 reconstruct prints it"),
+    element("pre", { className: "plain", tabIndex: 0 }, solution.printed)));
+  return element("div", { className: "solution" }, ...parts);
+}
+
+let latest = [];
+const announce = settled(() => {
+  page("reconstruction-said").textContent = latest.map(({ rows }) => rows.filter((row) => row.solved)
+    .map((row) => `${row.meaning}: ${row.text}`).join(", ")).join("; or ");
+}, 1200);
+
+// a newer question ends the one before, so that each is asked at once
+const solve = settled(async () => {
+  page("reconstruction-waiting").textContent = "Computing …";
+  let told;
+  try {
+    told = await asked("reconstruct", { values: values() });
+  } catch (error) {
+    page("reconstruction-waiting").textContent = "";
+    trouble(error);
+    return;
+  }
+  if (!told) return;
+  trouble(null);
+  showProblems(told.problems);
+  latest = told.solutions;
+  const whole = told.solutions.length > 0;
+  page("reconstruction-waiting").textContent = told.waiting;
+  page("reconstruction-answer").classList.toggle("stale", !whole);
+  showAtFields(told.solutions);
+  if (!whole) return;
+  page("reconstruction-answer").hidden = false;
+  page("reconstruction-answer").replaceChildren(...told.solutions.map((solution, at) =>
+    solutionPart(solution, at, told.solutions.length)));
+  announce();
+}, 200);
+
+function answer() {
+  showTicks();
+  solve();
+}
+
+function load(given) {
+  for (const input of inputs()) {
+    put(input, given.values[input.name] ?? "");
+    const tick = tickOf(input);
+    if (tick) tick.checked = Boolean(input.value);
+  }
+  const more = page("reconstruction-more");
+  more.open ||= inputs().some((input) => more.contains(input) && input.value);
+  answer();
+}
+
+async function doing(work) {
+  try {
+    trouble(null);
+    await work();
+  } catch (error) {
+    trouble(error);
+  }
+}
+
+/** Start the view. */
+export function reconstruction() {
+  form().addEventListener("input", (event) => {
+    const { target } = event;
+    const tick = target.name ? tickOf(target) : null;
+    if (tick) tick.checked = Boolean(target.value.trim());
+    answer();
+  });
+  form().addEventListener("submit", (event) => event.preventDefault());
+  page("reconstruction-sample").addEventListener("change", (event) => {
+    const number = event.target.value;
+    event.target.value = "";
+    if (number) doing(async () => load(await asked(`known/${number}`)));
+  });
+  page("reconstruction-open").addEventListener("click", () => page("reconstruction-file").click());
+  page("reconstruction-file").addEventListener("change", (event) => {
+    const [file] = event.target.files;
+    if (!file) return;
+    doing(async () => {
+      load(await asked("known", file, { name: file.name }));
+      page("reconstruction-file").value = "";
+    });
+  });
+  page("reconstruction-save").addEventListener("click", () => doing(async () =>
+    save(await ask("known-file", { values: values() }))));
+  page("reconstruction-print").addEventListener("click", () => print());
+  showTicks();
+}

@@ -1,0 +1,61 @@
+"""From a line's tokens to Python functions, once for every different line.
+
+What is compiled depends on the tokens alone (variables have the same slot in every machine), so
+machines share it: loading a program that was run before costs next to nothing.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from types import CodeType, FunctionType
+from typing import Any, NamedTuple
+
+from .statements import Statements
+
+Namespace = dict[str, Any]
+_LOOK_AROUND = ("PEEK(", "POKE(", "CALL(")
+"""Code that may ask where the program is."""
+
+
+class Line(NamedTuple):
+    """A compiled line.
+
+    ``codes`` are the bodies of its steps; ``constants`` the names they use; ``begins`` and
+    ``needs`` tell of each step whether a statement begins there and how deep it goes into the
+    stack.
+    """
+
+    codes: tuple[CodeType, ...]
+    constants: dict[str, Any]
+    begins: tuple[bool, ...]
+    needs: tuple[int, ...]
+
+    def functions(self, names: Namespace) -> list[Any]:
+        """The steps as functions that find the machine in ``names``."""
+        names.update(self.constants)
+        return [FunctionType(code, names) for code in self.codes]
+
+
+@lru_cache(maxsize=8192)
+def compiled(tokens: bytes, *, careful: bool = False, direct: bool = False) -> Line:
+    """The compiled line; ``careful``: every step looks at the stack; ``direct``: typed without a
+    line number."""
+    line = Statements(tokens, careful=careful, direct=direct)
+    text = []
+    for number, step in enumerate(line.steps):
+        text.append(f"def step{number}(pc):")
+        if any(word in code for code in step.code for word in _LOOK_AROUND):
+            text.append("    here(pc)")
+        text += [f"    {code}" for code in step.code]
+        text.append("    return pc + 1")
+    try:
+        code = compile("\n".join(text), "<basic>", "exec")
+    except (RecursionError, MemoryError, SyntaxError):  # nested past what Python takes
+        text = [f"def step{n}(pc): bad('OUT OF MEMORY')" for n in range(len(line.steps))]
+        code = compile("\n".join(text), "<basic>", "exec")
+    return Line(
+        tuple(each for each in code.co_consts if isinstance(each, CodeType)),
+        line.formulas.constants,
+        tuple(step.begins for step in line.steps),
+        tuple(step.need for step in line.steps),
+    )

@@ -1,0 +1,93 @@
+"""Pieces of compiled formulas, and the tables of operators and functions they are made with.
+
+The 6502 stack has 192 bytes to spare; every formula takes some of them while it is worked out, and
+the numbers below are the ROM's pushes and calls.
+"""
+
+from __future__ import annotations
+
+from .tokens import TOKENS
+
+NUMBER = "n"
+TEXT = "s"
+OPEN, CLOSE, COMMA, POINT = map(ord, "(),.")
+PLUS, MINUS, NOT, FN = (TOKENS[word] for word in ("+", "-", "NOT", "FN"))
+GREATER, EQUAL, LESS = (TOKENS[word] for word in (">", "=", "<"))
+FIRST_FUNCTION = TOKENS["SGN"]
+RELATION_BITS = {GREATER: 1, EQUAL: 2, LESS: 4}
+RELATIONS = {1: ">", 2: "==", 3: ">=", 4: "<", 5: "!=", 6: "<="}
+COMPARED = {1: "< 0", 2: "== 0", 3: "<= 0", 4: "> 0", 5: "!= 0", 6: ">= 0"}
+"""The same by what `real.compare` says of the right operand."""
+RELATIONAL = 0x64
+HIGHEST = 0x7F
+"""Precedence of the unary minus and of NOT, above ^."""
+OPERATORS = {
+    TOKENS["+"]: (0x79, "add"),
+    TOKENS["-"]: (0x79, "subtract"),
+    TOKENS["*"]: (0x7B, "multiply"),
+    TOKENS["/"]: (0x7B, "divide"),
+    TOKENS["^"]: (0x7D, "power"),
+    TOKENS["AND"]: (0x50, "&"),
+    TOKENS["OR"]: (0x46, "|"),
+}
+NUMERIC = {
+    TOKENS[word]: word for word in "SGN INT ABS SQR RND LOG EXP COS SIN TAN ATN PEEK".split()
+}
+ANYTHING = {TOKENS["FRE"]: "FRE", TOKENS["POS"]: "POS"}
+OF_TEXT = {TOKENS["LEN"]: "LEN", TOKENS["VAL"]: "VAL", TOKENS["ASC"]: "ASC"}
+MAKING_TEXT = {TOKENS["STR$"]: "STR", TOKENS["CHR$"]: "CHR"}
+SLICES = {TOKENS["LEFT$"]: "left", TOKENS["RIGHT$"]: "right", TOKENS["MID$"]: "mid"}
+USR = TOKENS["USR"]
+REFUSED_FUNCTIONS = {TOKENS["PDL"]: "PDL", TOKENS["SCRN("]: "SCRN"}
+"""Paddles and graphics: listed, but not done."""
+
+PENDING = 12
+PARENTHESIS = 5
+TEMPORARIES = 3
+"""Strings that may be pending at once."""
+STACK = 248
+"""The stack pointer when nothing is on the stack."""
+ROOM = 59
+"""An expression needs the stack pointer to be at least here."""
+
+
+class Piece:
+    """Python text for a value.
+
+    ``rounded``: it has no extension. ``truth``: text for a bool, whether it is not zero.
+    ``temporary``: a string that holds one of the three places. ``variable``: the bare value of a
+    string variable. ``whole``: the number itself when it is a constant 0 ... 32767.
+    """
+
+    __slots__ = ("code", "dead", "kind", "rounded", "temporary", "truth", "variable", "whole")
+
+    def __init__(
+        self,
+        code: str,
+        kind: str = NUMBER,
+        *,
+        rounded: bool = False,
+        truth: str | None = None,
+        dead: bool = False,
+        temporary: bool = False,
+        variable: bool = False,
+        whole: int | None = None,
+    ) -> None:
+        self.code = code
+        self.kind = kind
+        self.rounded = rounded
+        self.truth = truth
+        self.dead = dead
+        self.temporary = temporary
+        self.variable = variable
+        self.whole = whole
+
+    @property
+    def condition(self) -> str:
+        """Text for whether the number is not zero."""
+        return self.truth or f"({self.code}[0] != 0)"
+
+    @property
+    def stored(self) -> str:
+        """Text for the value as a variable takes it."""
+        return self.code if self.rounded else f"rounded({self.code})"

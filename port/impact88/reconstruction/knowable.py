@@ -1,0 +1,13 @@
+"""What may be known of an impact."""
+
+from __future__ import annotations
+
+from ..names import FINAL_VELOCITIES, SCENE
+
+PLAIN = (*SCENE, "MUP", *FINAL_VELOCITIES)
+"""What `unknowns.solve_for` knows; the other names need the adjustment."""
+OTHERS = (
+    *("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF"),
+    *("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR", "KI", "KF", "EL", "LOSS", "DT"),
+)
+KNOWABLE = (*PLAIN, *OTHERS)

@@ -1,0 +1,233 @@
+"""The desk in a browser: what an engineer sees, and what a foreign page does not get."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import desk_browser
+from captures import ROOT
+from desk_browser import Page, until
+from impact88.program.run import run
+from impact88.scene import sample
+from installed import impact88 as command
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(bool(desk_browser.missing()), reason=desk_browser.missing()),
+]
+LEGACY = ROOT / "legacy"
+PUBLISHED = ("run1-as-printed.txt", "run2-as-printed.txt", "table3-as-printed.txt")
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    pytest.importorskip("flask", reason="the desk's extra is not installed")
+    with desk_browser.desk() as served:
+        yield served
+
+
+@pytest.fixture(scope="module")
+def one_browser() -> Iterator[Page]:
+    with desk_browser.browser() as started:
+        yield started
+
+
+@pytest.fixture
+def page(one_browser: Page, address: str) -> Iterator[Page]:
+    one_browser.open(address)
+    one_browser.complaints()
+    yield one_browser
+    assert one_browser.complaints() == []
+
+
+@pytest.fixture
+def collision(page: Page) -> Page:
+    page.run("location.hash = '#collision'")
+    page.choose("collision-sample", "1")
+    until(lambda: "VAX= -13.263" in page.text("collision-screen"), "the first answer")
+    return page
+
+
+# --- collision ---------------------------------------------------------------------------------
+
+
+def without_controls(text: str) -> str:
+    return re.sub(r"[\0-\x09\x0b-\x1f]", "", text).strip("\n")
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_published_run_shows_its_printout_and_the_figure(page: Page, number: int) -> None:
+    page.run("location.hash = '#collision'")
+    page.choose("collision-sample", str(number))
+    printed = without_controls(run(sample(number)).printout)
+    until(lambda: page.text("collision-screen").strip("\n") == printed, "the printout")
+    results = re.sub(r"[\s*]", "", printed[printed.index("MA=") :])
+    published = (LEGACY / PUBLISHED[number - 1]).read_text(encoding="utf-8")
+    assert results == re.sub(r"[\s*]", "", published[published.index("MA=") :])
+    picture = page.at("collision-figure")
+    until(lambda: page.run("return arguments[0].naturalWidth", picture) > 100, "the figure")
+    assert "Vehicle A: speed" in picture.get_attribute("alt")
+
+
+def test_typing_is_answered_and_a_bad_number_is_told_at_its_field(collision: Page) -> None:
+    field = collision.at("collision-MU")
+    before = collision.text("collision-screen")
+    field.send_keys("x")
+    problem = collision.at("collision-MU-problem")
+    until(lambda: "no value or range" in problem.text, "the message")
+    assert field.get_attribute("aria-invalid") == "true"
+    assert "collision-MU-problem" in field.get_attribute("aria-describedby")
+    assert field.get_attribute("value") == "0.911x"
+    assert collision.at("collision-UX").get_attribute("value") == "-29.04"
+    assert "MU" in collision.text("collision-waiting")
+    assert collision.text("collision-screen") == before
+    field.send_keys("\b")
+    until(lambda: not problem.is_displayed(), "the message's end")
+    assert field.get_attribute("aria-invalid") is None
+    field.send_keys("\b\b\b5")
+    again = without_controls(run(sample(1).replaced({"MU": "0.5"})).printout)
+    until(lambda: collision.text("collision-screen").strip("\n") == again, "the new answer")
+
+
+def test_a_range_shows_bounds_around_the_result(collision: Page) -> None:
+    assert not collision.at("collision-bounds").is_displayed()
+    collision.put("collision-MU", "0.7 .. 0.9")
+    rows = until(
+        lambda: collision.run(
+            "return [...document.querySelectorAll('#collision-bounds-table tbody tr')]"
+            ".map((row) => [...row.cells].map((cell) => cell.textContent))"
+        ),
+        "the bounds",
+    )
+    bounds = {row[0]: list(map(float, row[2:5])) for row in rows}
+    for lower, nominal, upper in bounds.values():
+        assert lower <= nominal <= upper
+    assert bounds["LOSS"][0] < bounds["LOSS"][2]
+    collision.put("collision-MU", ".911")
+    until(lambda: not collision.at("collision-bounds").is_displayed(), "the bounds' end")
+
+
+def test_warnings_stand_in_words(collision: Page) -> None:
+    assert not collision.at("collision-warnings").is_displayed()
+    collision.put("collision-E", "1.5")
+    until(lambda: "E" in collision.at("collision-warnings").text, "the warning")
+    told = command("solve", "--help").stdout + collision.at("collision-warnings").text
+    assert "outside 0 ... 1" in told
+
+
+def test_the_scene_saved_is_the_commands_own_and_opens_again(
+    collision: Page, tmp_path: Path
+) -> None:
+    collision.at("collision-save").click()
+    saved = collision.saved("scene.toml")
+    assert saved == command("scene", "--sample", "1").stdout.encode()
+    other = tmp_path / "other.toml"
+    other.write_bytes(saved.replace(b"UX = -29.04", b"UX = -31.5"))
+    collision.at("collision-file").send_keys(str(other))
+    until(lambda: "UX= -31.5 " in collision.text("collision-screen"), "the other scene")
+    other.write_bytes(b"UX = ")
+    collision.at("collision-file").send_keys(str(other))
+    until(lambda: "line 1" in collision.at("collision-trouble").text, "the trouble")
+    assert collision.at("collision-UX").get_attribute("value") == "-31.5"
+
+
+# --- reconstruction -----------------------------------------------------------------------------
+
+
+def test_what_is_unticked_is_solved_for_with_its_uncertainty(page: Page) -> None:
+    page.run("location.hash = '#reconstruction'")
+    page.choose("reconstruction-sample", "3")
+    solved = page.at("reconstruction-UX-answer")
+    until(lambda: solved.text == "solved: -36.667", "the initial velocity")
+    tick = page.at("reconstruction-E-known")
+    assert tick.is_selected()
+    tick.click()
+    until(lambda: "give at least 1 more" in page.text("reconstruction-waiting"), "the reason")
+    page.put("reconstruction-UY", "0")
+    assert page.at("reconstruction-UY-known").is_selected()
+    until(lambda: page.text("reconstruction-E-answer") == "solved: 0.25", "the coefficient")
+    page.put("reconstruction-VBY-tolerance", "2")
+    until(lambda: "±" in page.text("reconstruction-VY-answer"), "the uncertainty")
+    page.driver.find_element("css selector", "#reconstruction-answer .over button").click()
+    until(lambda: "VAX= -7.46 " in page.text("collision-screen"), "the collision")
+
+
+# --- the page as a whole -----------------------------------------------------------------------
+
+
+def test_every_field_has_a_label_and_every_view_is_reached_by_keys(page: Page) -> None:
+    unlabelled = page.run(
+        "return [...document.querySelectorAll('input, textarea, select')]"
+        ".filter((field) => !field.labels.length && !field.getAttribute('aria-label'))"
+        ".map((field) => field.id)"
+    )
+    assert unlabelled == []
+    page.run("document.querySelector('nav a[href=\"#reconstruction\"]').focus()")
+    page.driver.switch_to.active_element.send_keys("\ue007")
+    until(lambda: page.at("reconstruction").is_displayed(), "the view")
+    assert page.driver.title == "Reconstruction · impact88 desk"
+    assert page.run("return document.activeElement.id") == "main"
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_nothing_is_wider_than_the_window(collision: Page, width: int) -> None:
+    driver = collision.driver
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        for view in ("collision", "reconstruction"):
+            collision.run("location.hash = arguments[0]", f"#{view}")
+            until(lambda view=view: collision.at(view).is_displayed(), view)
+            assert collision.run("return document.documentElement.scrollWidth") <= width
+    finally:
+        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+class Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, format: str, *arguments: Any) -> None:
+        pass
+
+
+def test_a_page_from_elsewhere_gets_nothing(
+    one_browser: Page, address: str, tmp_path: Path
+) -> None:
+    (tmp_path / "index.html").write_text("<!DOCTYPE html><title>elsewhere</title>")
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(tmp_path)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        one_browser.open(f"http://127.0.0.1:{server.server_port}/")
+        ask = """
+            const [address, options, done] = [arguments[0], arguments[1], arguments[2]];
+            fetch(address, options).then(
+              (answer) => answer.text().then((text) => done([answer.status, text])),
+              (error) => done(['refused', String(error)]));
+        """
+        for path, options in (
+            ("", {}),
+            ("", {"mode": "no-cors"}),
+            ("static/desk.js", {}),
+            ("collision", {"method": "POST", "body": '{"values": {}}'}),
+            ("collision", {"method": "POST", "body": "{}", "mode": "no-cors"}),
+        ):
+            told = one_browser.driver.execute_async_script(ask, address + path, options)
+            assert told[0] == "refused" or told == [0, ""], (path, options, told)
+        framed = one_browser.driver.execute_async_script(
+            "const frame = document.createElement('iframe'); frame.src = arguments[0];"
+            "frame.onload = () => { let text = ''; try { text = frame.contentDocument.body"
+            ".textContent } catch { text = '' } arguments[1](text) }; document.body.append(frame)",
+            address,
+        )
+        assert framed == ""
+    finally:
+        server.shutdown()
+        server.server_close()
+        one_browser.open("about:blank")
+        one_browser.complaints()
