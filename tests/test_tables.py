@@ -10,11 +10,14 @@ import struct
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from impact88.cli import main
 from impact88.errors import UserError
 from impact88.names import SCENE
+from impact88.tables import arrow, plainblocks
+from impact88.tables.arrow import texts_of
 from impact88.tables.rows import BLOCK_ROWS, BadCell, check_scene_columns, numbers, shortest
 from impact88.tables.table import format_of, open_reader, open_writer
 
@@ -51,14 +54,21 @@ def test_floats_read_back_to_the_same_bits(value):
     assert struct.pack("<d", float(text)) == struct.pack("<d", value)
 
 
+@settings(deadline=None)
+@given(st.lists(st.floats(allow_nan=True), min_size=1))
+def test_pyarrow_writes_the_same_texts(values):
+    array = np.array(values)
+    assert texts_of(array).to_pylist() == shortest(array)
+
+
 class TestCsv:
     def test_texts_stay_texts(self, tmp_path):
         path = tmp_path / "a.csv"
         path.write_text(csv_text([{**TEXTS, "MA": "090.50", "note": 'say "x, y"\nand z'}]))
         names, (rows,) = read(path)
         assert names == [*SCENE, "note"]
-        assert rows.columns["MA"] == ("090.50",)
-        assert rows.others["note"] == ('say "x, y"\nand z',)
+        assert tuple(rows.columns["MA"]) == ("090.50",)
+        assert tuple(rows.others["note"]) == ('say "x, y"\nand z',)
         assert numbers(rows)["MA"].tolist() == [90.5]
 
     @pytest.mark.parametrize("delimiter", [",", ";", "\t"])
@@ -68,8 +78,8 @@ class TestCsv:
         text = csv_text([{**TEXTS, "note": "é"}], delimiter=delimiter)
         path.write_bytes(text.encode(encoding))
         _, (rows,) = read(path)
-        assert rows.others["note"] == ("é",)
-        assert rows.columns["E"] == (TEXTS["E"],)
+        assert tuple(rows.others["note"]) == ("é",)
+        assert tuple(rows.columns["E"]) == (TEXTS["E"],)
 
     def test_blocks_rows_and_lines(self, tmp_path):
         path = tmp_path / "a.csv"
@@ -202,6 +212,119 @@ def test_nothing_half_written(tmp_path):
         copy(path, out, "csv", "csv", ["VAX"], lambda rows: {})
     assert out.read_text() == "before"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.csv", "b.csv"]
+
+
+ODD_TABLES = {
+    "plain": csv_text([TEXTS, {**TEXTS, "MA": ".5"}]),
+    "no end of line": csv_text([TEXTS, TEXTS]).rstrip("\r\n"),
+    "unix": csv_text([TEXTS] * 3).replace("\r\n", "\n"),
+    "quoted later": csv_text([TEXTS] * 3 + [{**TEXTS, "note": 'a "b", c\nd'}] + [TEXTS] * 2),
+    "short row": csv_text([TEXTS] * 3) + "1,2\r\n" + csv_text([TEXTS]).partition("\n")[2],
+    "blank lines": "\n\n" + csv_text([TEXTS] * 2).replace("\r\n", "\n\n"),
+    "old ends of lines": csv_text([TEXTS] * 2).replace("\r\n", "\r"),
+    "no numbers": csv_text([{**TEXTS, "MA": "x"}, {**TEXTS, "MA": ""}, {**TEXTS, "M": ""}]),
+    "numbers INPUT takes": csv_text([{**TEXTS, "MA": "1 E 2", "E": "+.5"}, {**TEXTS, "E": "-"}]),
+    "decimal commas": csv_text([TEXTS] * 2, delimiter=";").replace(".", ","),
+    "sep": "sep=;\r\n" + csv_text([TEXTS] * 2, delimiter=";"),
+    "units and small letters": csv_text([TEXTS])
+    .replace("MA,", "ma [slug],")
+    .replace("GA,", "Ga (deg),"),
+    "unnamed columns": csv_text([TEXTS]).replace("note\r\n", "note,,\r\n").rstrip() + ",,\r\n",
+    "unnamed but filled": csv_text([TEXTS]).replace("note\r\n", "note,\r\n").rstrip() + ",7\r\n",
+}
+
+
+@pytest.mark.parametrize("text", ODD_TABLES.values(), ids=ODD_TABLES)
+@pytest.mark.parametrize("block", [1 << 22, 300])
+def test_with_and_without_pyarrow_the_same_bytes(tmp_path, monkeypatch, capsys, text, block):
+    path = tmp_path / "a.csv"
+    path.write_bytes(text.encode())
+    said = []
+    for there in (True, False):
+        monkeypatch.setattr(arrow, "available", lambda there=there: there)
+        monkeypatch.setattr(plainblocks, "BLOCK_BYTES", block)
+        status = main(["solve", str(path)])
+        said.append((status, *capsys.readouterr()))
+    assert said[0] == said[1]
+    unusable = {"short row", "no numbers", "unnamed but filled"}
+    names = {text: name for name, text in ODD_TABLES.items()}
+    assert (said[0][0] == 0) == (names[text] not in unusable)
+
+
+@pytest.mark.parametrize("form", ["csv.gz", "parquet", "feather", "xlsx", "npz", "jsonl"])
+def test_every_format_gives_the_same_bits(tmp_path, form):
+    rng = np.random.default_rng(3)
+    rows = [
+        {**TEXTS, **{name: repr(rng.normal(50, 20)) for name in SCENE if name != "M"}, "note": "é"}
+        for _ in range(50)
+    ]
+    first = tmp_path / "a.csv"
+    first.write_text(csv_text(rows), "utf-8")
+    outputs = ["--outputs", "VAX,WBF,STATUS"]
+    there = tmp_path / f"b.{form}"
+    back = tmp_path / "c.csv"
+    assert main(["solve", str(first), "-o", str(tmp_path / "d.csv"), *outputs]) == 0
+    assert main(["solve", str(first), "-o", str(there), *outputs]) == 0
+    assert main(["solve", str(there), "-o", str(back), *outputs]) == 0
+    tables = []
+    for path in (tmp_path / "d.csv", back):
+        _, blocks = read(path)
+        tables.append([{n: list(rows.kept(n)) for n in [*SCENE, "note", "VAX"]} for rows in blocks])
+    for name in (*SCENE, "VAX"):
+        one, two = (list(map(float, table[0][name])) for table in tables)
+        # openpyxl writes 16 digits
+        rounding = 0 if form != "xlsx" else 1e-15 if name in SCENE else 1e-11
+        assert two == pytest.approx(one, rel=rounding, abs=0)
+    assert tables[0][0]["note"] == tables[1][0]["note"]
+
+
+def test_parquet_takes_types_as_they_are(tmp_path, capsys):
+    pa = pytest.importorskip("pyarrow")
+    from decimal import Decimal
+
+    from pyarrow import parquet
+
+    columns = {name: pa.array([float(text)] * 3) for name, text in TEXTS.items()}
+    columns["MA"] = pa.array(["1E2", "x", None])
+    columns["MB"] = pa.array([100, None, 100], pa.int32())
+    columns["M"] = pa.array([6, None, 6])
+    columns["IA"] = pa.array([Decimal("123.450")] * 3)
+    columns["when"] = pa.array([0, 1, 2], pa.date32())
+    parquet.write_table(pa.table(columns), tmp_path / "a.parquet")
+    assert main(["solve", str(tmp_path / "a.parquet"), "--to", "csv", "--outputs", "VAX"]) == 1
+    out, err = capsys.readouterr()
+    rows = list(csv.DictReader(io.StringIO(out)))
+    assert [row["when"] for row in rows] == ["1970-01-01", "1970-01-02", "1970-01-03"]
+    assert rows[0]["IA"] == "123.450"
+    assert rows[0]["VAX"] != "nan"
+    assert "row 2, MB: is empty" in err
+    assert "row 3, MA: is empty" in err
+    parquet.write_table(pa.table({**columns, "MA": [True] * 3}), tmp_path / "b.parquet")
+    assert main(["solve", str(tmp_path / "b.parquet"), "--to", "csv"]) == 2
+    assert "MA holds bool; expected numbers" in capsys.readouterr().err
+
+
+def test_older_excel_is_read_when_told(tmp_path, capsys):
+    path = tmp_path / "a.csv"
+    path.write_bytes(csv_text([{**TEXTS, "note": "Straße"}]).encode("cp1252"))
+    assert main(["solve", str(path)]) == 2
+    assert "--encoding cp1252" in capsys.readouterr().err
+    assert main(["solve", str(path), "--encoding", "cp1252"]) == 0
+    assert "Straße" in capsys.readouterr().out
+    assert main(["solve", str(path), "--encoding", "rot13"]) == 2
+
+
+def test_a_scene_file_fills_the_columns_a_table_lacks(tmp_path, capsys):
+    scene = "".join(f'{name} = "{text}"\n' for name, text in TEXTS.items())
+    (tmp_path / "s.toml").write_text(f'title = "x"\n{scene}')
+    whole, short = tmp_path / "a.csv", tmp_path / "b.csv"
+    whole.write_text(csv_text([{**TEXTS, "MU": x, "MA": "70"} for x in ".1 .2".split()]))
+    short.write_text("MU\n.1\n.2\n")
+    assert main(["solve", str(whole), "--outputs", "VAX,DVA", "--results-only"]) == 0
+    expected = [row.split(",")[1:] for row in capsys.readouterr().out.splitlines()]
+    more = ["--scene", str(tmp_path / "s.toml"), "--set", "MA=70", "--results-only"]
+    assert main(["solve", str(short), "--outputs", "VAX,DVA", *more]) == 0
+    assert [row.split(",") for row in capsys.readouterr().out.splitlines()] == expected
 
 
 def test_formats_are_told_by_name():

@@ -175,6 +175,7 @@ def compare_file(
     form: str,
     values: Mapping[str, str] | None = None,
     rtol: float | None = None,
+    encoding: str | None = None,
 ) -> Comparison:
     """Compare a table of scenes and results, block by block.
 
@@ -184,7 +185,7 @@ def compare_file(
     values = values or {}
     done = Comparison()
     waiting: list[_Waiting] = []
-    with open_reader(path, form) as reader:
+    with open_reader(path, form, encoding) as reader:
         wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
         where = called(path)
         known = {*SCENE, *RESULTS, *CARRIED}

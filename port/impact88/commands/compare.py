@@ -29,7 +29,14 @@ from ..checking.slipsfilling import EQUATIONS
 from ..errors import UserError, shown
 from ..tables.table import format_of
 from ..talk import tell
-from .options import FORMATS, add_json_argument, add_output_argument, add_set_argument, settings
+from .options import (
+    FORMATS,
+    add_encoding_argument,
+    add_json_argument,
+    add_output_argument,
+    add_set_argument,
+    settings,
+)
 
 SHOWN = 20
 """Unreadable rows told on stderr."""
@@ -60,6 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="rows, cells and columns that were not compared are failures",
     )
     parser.add_argument("--junit", metavar="FILE", help="write a JUnit report, a test a row")
+    add_encoding_argument(parser)
     add_json_argument(parser)
     add_output_argument(parser)
 
@@ -69,7 +77,9 @@ def main(args: argparse.Namespace) -> int:
     given = settings(args.set)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
-    done = compare_file(args.theirs, format_of(args.theirs, args.form), given, args.rtol)
+    done = compare_file(
+        args.theirs, format_of(args.theirs, args.form), given, args.rtol, args.encoding
+    )
     if args.junit:
         from ..checking.junit import write_junit
 

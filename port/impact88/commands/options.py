@@ -21,13 +21,19 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from ..uncertainty.uncertain import Uncertain
 
-FORMATS = ("csv", "jsonl", "npz")
+FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
 """What ``--from`` and ``--to`` take."""
 
 
 _READ = ("scene", "file", "cases", "theirs", "printouts", "scenes", "program", "rom")
 """Where the commands keep the files they read,"""
-_WRITTEN = {"output": "-o", "errors": "--errors", "printer": "--printer", "report": "--report"}
+_WRITTEN = {
+    "output": "-o",
+    "errors": "--errors",
+    "printer": "--printer",
+    "report": "--report",
+    "junit": "--junit",
+}
 """and those they write: attribute -> option."""
 
 
@@ -182,6 +188,13 @@ def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--template", action="store_true", help="print a file to fill in")
     add_json_argument(parser)
     add_output_argument(parser)
+
+
+def add_encoding_argument(parser: argparse.ArgumentParser) -> None:
+    """The option ``--encoding``."""
+    parser.add_argument(
+        "--encoding", metavar="NAME", help="of a text that is not UTF-8, such as cp1252"
+    )
 
 
 def add_sample_argument(

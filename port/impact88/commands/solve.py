@@ -41,16 +41,18 @@ from ..closedform.solve import solve
 from ..doubles import is_number
 from ..errors import UserError, quoted
 from ..files import replacing
-from ..names import DEFAULT_M, RESULTS, SCENE
+from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..progress import progress
-from ..scene import VALUE_LIMIT, Scene
+from ..scene import VALUE_LIMIT, Scene, toml_file
 from ..status import Status
-from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
+from ..tables.overlap import ahead, behind
+from ..tables.rows import BadCell, Rows, check_scene_columns, filled, numbers
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from ..talk import tell
 from .options import (
     FORMATS,
+    add_encoding_argument,
     add_names_argument,
     add_set_argument,
     add_sweep_argument,
@@ -97,6 +99,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="leave the scene's own columns out of the results; others are passed through",
     )
+    parser.add_argument(
+        "--scene", metavar="FILE.toml", help="a scene file for the columns the table lacks"
+    )
+    add_encoding_argument(parser)
     parser.add_argument("--errors", metavar="FILE", help="write the bad rows here (CSV)")
     parser.add_argument("--from", dest="form", choices=FORMATS, help="the format of CASES")
     parser.add_argument("--to", choices=FORMATS, help="the format of RESULTS")
@@ -115,12 +121,16 @@ def main(arguments: argparse.Namespace) -> int:
     kinds = {"float64": _Float64, "applesoft": _Applesoft}
     arithmetic = kinds[arguments.arithmetic](arguments.outputs)
     complaints = _Complaints(arguments.errors)
+    filling = toml_file(arguments.scene) if arguments.scene else {}
+    filling.pop("title", None)
+    check_names(filling, SCENE, "value of a scene", arguments.scene or "")
     with ExitStack() as stack:
         source = stack.enter_context(
             read_sweep(Scene.from_toml(arguments.cases), read_ranges(sweeps(arguments.sweep)))
             if swept
-            else open_reader(arguments.cases, source_format)
+            else open_reader(arguments.cases, source_format, arguments.encoding)
         )
+        given = {n: t for n, t in filling.items() if t and n not in source.names} | given
         optional = ["M", *(UNUSED_BY_POINTS if given.get("M") == "4" else ())]
         check_scene_columns(source.names, list(given), optional)
         if arguments.sweep:
@@ -136,13 +146,14 @@ def main(arguments: argparse.Namespace) -> int:
         )
         stack.enter_context(complaints)
         meter = stack.enter_context(progress(source.total, "solve", "B"))
+        write = stack.enter_context(behind(writer.write))
         at = 0
-        for rows in source:
+        for rows in stack.enter_context(ahead(source)):
             for name, text in given.items():
                 rows.columns[name] = [text] * rows.count
                 rows.others.pop(name, None)
             results = arithmetic(rows, optional)
-            writer.write(rows, results)
+            write(rows, results)
             complaints.take(rows.bad)
             now = source.position()
             meter.update(now - at)
@@ -186,9 +197,8 @@ def _complete(rows: Rows, optional: Sequence[str]) -> Rows:
     that only some JSON objects have is a complaint where it is missing."""
     for name in SCENE:
         if name in rows.columns:
-            column = rows.columns[name]
-            if name == "M" and not isinstance(column, np.ndarray):
-                rows.columns[name] = [DEFAULT_M if cell in (None, "") else cell for cell in column]
+            if name == "M":
+                rows.columns[name] = filled(rows.columns[name], DEFAULT_M)
         elif name in optional:
             rows.columns[name] = [DEFAULT_M if name == "M" else "0"] * rows.count
         else:

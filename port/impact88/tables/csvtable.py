@@ -7,7 +7,11 @@ to the same double.
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import gzip
+import io
+import re
 import sys
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -19,10 +23,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError, quoted
-from ..files import replacing
-from ..names import SCENE
-from .jsontext import written
-from .lines import Lines, open_lines
+from ..files import ESCAPED, replacing
+from ..names import RESULTS, SCENE
+from . import arrow
+from .jsontext import plain
+from .lines import TextFile, open_text
+from .plainblocks import PlainBlocks
 from .rows import (
     BLOCK_CHARACTERS,
     BLOCK_ROWS,
@@ -33,32 +39,73 @@ from .rows import (
     Writer,
     one_per_row,
     refuse_late,
+    scene_names,
     shortest,
 )
 
 
 class _CsvReader:
-    def __init__(self, lines: Lines) -> None:
-        self.total = lines.size
-        self._lines = lines
-        header = next((line for line in lines if line.strip()), "")
+    def __init__(self, file: TextFile) -> None:
+        self.total = file.source.size
+        self._file = file
+        self._blocks: PlainBlocks | None = None
+        header = _plain_header(file) if arrow.available() else None
+        head = file if header is None else file._replace(binary=header)
+        self._lines = head.lines()
+        self._start()
+        if header is not None:
+            width = len(self.names) + self._unnamed
+            self._blocks = PlainBlocks(file.binary, self.delimiter, width, self._lines.number)
+
+    def _start(self) -> None:
+        """Read the header."""
+        lines = self._lines
+        filled = (line for line in lines if line.strip())
+        header = next(filled, "")
+        separator = re.fullmatch(r"sep=([,;|\t])", header.strip("\r\n \ufeff"), re.IGNORECASE)
+        if separator:  # how Excel is told, and tells
+            header = next(filled, "")
         if not header:
             raise UserError(
                 "is empty; expected a header with the names of the columns", lines.where
             )
         self.delimiter = max(",;\t", key=header.count) if header.count(",") == 0 else ","
+        if separator:
+            self.delimiter = separator.group(1)
         # a header may span lines inside quotes: give the reader the line back
-        self._rows = csv.reader(chain([header], lines), delimiter=self.delimiter, strict=True)
-        self.names = [name.strip() for name in self._next() or ()]
-        name, count = Counter(self.names).most_common(1)[0]
+        self._rows = self._reader(chain([header], lines))
+        names = [name.strip() for name in self._next() or ()]
+        named = names
+        while named and not named[-1]:
+            named = named[:-1]
+        self._unnamed = len(names) - len(named)
+        self.names = scene_names(named)
+        name, count = Counter(self.names or [""]).most_common(1)[0]
         if count > 1:
             raise UserError(f"has two columns named {quoted(name)}", lines.where)
+
+    def _reader(self, lines: Iterator[str]) -> Any:
+        return csv.reader(lines, delimiter=self.delimiter, strict=True)
 
     def position(self) -> int:
         return 0 if self.total is None else self._lines.position()
 
     def __iter__(self) -> Iterator[Rows]:
-        first, width = 1, len(self.names)
+        first = 1
+        while self._blocks is not None and (table := self._blocks.next()) is not None:
+            last = self._blocks.number
+            lines = range(last - table.num_rows + 1, last + 1)
+            columns = [arrow.ArrowTexts(column.chunk(0)) for column in table.columns]
+            yield self._rows_of(first, columns, lines, [])
+            first += table.num_rows
+        if self._blocks is not None:
+            rest = self._file._replace(binary=self._blocks.rest(), encoding="utf-8")
+            self._lines = rest.lines(self._blocks.number)
+            self._rows = self._reader(self._lines)
+        yield from self._line_by_line(first)
+
+    def _line_by_line(self, first: int) -> Iterator[Rows]:
+        width = len(self.names) + self._unnamed
         while True:
             rows, lines = self._block()
             if not rows:
@@ -69,12 +116,27 @@ class _CsvReader:
                     reason = f"has {len(row)} fields; expected {width}, as in the header"
                     bad.append(BadCell(first + index, lines[index], "", reason))
                     rows[index] = (row + [""] * width)[:width]
-            columns: dict[str, Column] = {}
-            others: dict[str, Column] = {}
-            for name, fields in zip(self.names, zip(*rows, strict=True), strict=True):
-                (columns if name in SCENE else others)[name] = fields
-            yield Rows(first, len(rows), columns, others, lines, bad)
+            yield self._rows_of(first, list(zip(*rows, strict=True)), lines, bad)
             first += len(rows)
+
+    def _rows_of(
+        self, first: int, fields: list[Any], lines: Sequence[int], bad: list[BadCell]
+    ) -> Rows:
+        columns: dict[str, Column] = {}
+        others: dict[str, Column] = {}
+        for name, column in zip(self.names, fields, strict=False):
+            if self.delimiter != "," and (name in SCENE or name in RESULTS):
+                column = _with_points(column)
+            (columns if name in SCENE else others)[name] = column
+        for column in fields[len(self.names) :]:
+            index = next((i for i, text in enumerate(column) if text), None)
+            if index is not None:
+                raise UserError(
+                    f"line {lines[index]}: {quoted(column[index])} stands in a column that has no "
+                    "name",
+                    self._lines.where,
+                )
+        return Rows(first, len(lines), columns, others, lines, bad)
 
     def _block(self) -> tuple[list[list[str]], list[int]]:
         rows: list[list[str]] = []
@@ -97,11 +159,37 @@ class _CsvReader:
             raise UserError(f"line {self._lines.number}: {error}", self._lines.where) from None
 
 
+def _plain_header(file: TextFile) -> Any:
+    """The bytes up to the end of the header, taken off the file, when they can be told without
+    reading on: UTF-8 and nothing quoted. Else nothing is taken, and there is None."""
+    if not file.encoding.startswith("utf-8"):
+        return None
+    start = file.binary.peek(1)
+    end = 0
+    for line in start.split(b"\n")[:-1]:
+        end += len(line) + 1
+        bare = line.strip(b"\xef\xbb\xbf \r\t;,")
+        if bare and not bare.lower().startswith(b"sep="):
+            plain = b'"' not in start[:end] and start.count(b"\r", 0, end) == start.count(
+                b"\r\n", 0, end
+            )
+            return io.BufferedReader(io.BytesIO(file.binary.read(end))) if plain else None
+    return None
+
+
+def _with_points(column: Column) -> Column:
+    """Numbers with decimal commas as numbers with points; a comma cannot mean anything else where
+    it does not separate fields."""
+    if isinstance(column, arrow.ArrowTexts):
+        return column.replaced(",", ".")
+    return [text.replace(",", ".") for text in column]
+
+
 @contextmanager
-def read_csv(path: str) -> Iterator[Reader]:
+def read_csv(path: str, encoding: str | None = None) -> Iterator[Reader]:
     """Open a CSV table. Raises UserError if it cannot be read as one."""
-    with open_lines(path) as lines:
-        yield _CsvReader(lines)
+    with open_text(path, encoding) as file:
+        yield _CsvReader(file)
 
 
 class _CsvWriter:
@@ -129,8 +217,45 @@ class _CsvWriter:
 def _fields(column: Column) -> Sequence[Any]:
     if isinstance(column, np.ndarray):
         return shortest(column)
-    # csv writes None as an empty field
-    return [x if x is None or isinstance(x, str) else written(x) for x in column]
+    return list(map(plain, column))
+
+
+class _ArrowCsvWriter:
+    """Blocks that came as pyarrow's texts, none of them quoted, go out the same way."""
+
+    def __init__(
+        self,
+        file: IO[str],
+        plain: _CsvWriter,
+        kept: Sequence[str],
+        results: Sequence[str],
+        delimiter: str,
+    ) -> None:
+        self._text = file
+        self._plain = plain
+        self._kept = kept
+        self._results = results
+        self._delimiter = delimiter
+
+    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+        import pyarrow as pa
+        from pyarrow import csv as arrow_csv
+
+        columns = [rows.kept(name) for name in self._kept if name in rows.columns | rows.others]
+        if len(columns) < len(self._kept) or not all(
+            isinstance(column, arrow.ArrowTexts) for column in columns
+        ):
+            self._plain.write(rows, results)
+            return
+        arrays = [column.array for column in columns]  # type: ignore[union-attr]
+        arrays += [arrow.texts_of(results[name]) for name in self._results]
+        options = arrow_csv.WriteOptions(
+            include_header=False, delimiter=self._delimiter, quoting_style="none"
+        )
+        out = pa.BufferOutputStream()
+        arrow_csv.write_csv(pa.table(arrays, list(map(str, range(len(arrays))))), out, options)
+        self._text.flush()
+        self._text.buffer.write(out.getvalue())  # type: ignore[attr-defined]
 
 
 @contextmanager
@@ -142,8 +267,22 @@ def write_csv(
     delimiter: str,
 ) -> Iterator[Writer]:
     """Write a CSV table, see `tables.table.open_writer`."""
-    if path == "-":
-        yield _CsvWriter(sys.stdout, kept, results, dropped, delimiter)
-        return
-    with replacing(path) as file:
-        yield _CsvWriter(file, kept, results, dropped, delimiter)
+    with contextlib.ExitStack() as stack:
+        file: IO[str]
+        if path == "-":
+            file = sys.stdout
+        elif path.lower().endswith(".gz"):
+            file = stack.enter_context(_packed(stack.enter_context(replacing(path, "wb"))))
+        else:
+            file = stack.enter_context(replacing(path))
+        writer = _CsvWriter(file, kept, results, dropped, delimiter)
+        if arrow.available() and hasattr(file, "buffer"):
+            yield _ArrowCsvWriter(file, writer, kept, results, delimiter)
+        else:
+            yield writer
+
+
+def _packed(file: IO[bytes]) -> IO[str]:
+    """A text file that is packed into another one; the same text gives the same bytes."""
+    packed: Any = gzip.GzipFile(filename="", mode="wb", fileobj=file, compresslevel=6, mtime=0)
+    return io.TextIOWrapper(packed, encoding="utf-8", errors=ESCAPED, newline="\n")

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..files import replacing
 from ..names import SCENE
 from . import jsontext
-from .lines import Lines, open_lines
+from .lines import Lines, open_text
 from .rows import (
     ABSENT,
     BLOCK_CELLS,
@@ -102,10 +102,10 @@ class _JsonReader:
 
 
 @contextmanager
-def read_json_lines(path: str) -> Iterator[Reader]:
+def read_json_lines(path: str, encoding: str | None = None) -> Iterator[Reader]:
     """Open a JSON Lines table. Raises UserError if it cannot be read."""
-    with open_lines(path) as lines:
-        yield _JsonReader(lines)
+    with open_text(path, encoding) as file:
+        yield _JsonReader(file.lines())
 
 
 _JSON_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")

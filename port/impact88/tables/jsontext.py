@@ -59,7 +59,14 @@ def written(value: Any) -> str:
         return "{" + ", ".join(f"{json.dumps(k)}: {written(v)}" for k, v in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(written, value)) + "]"
-    return json.dumps(value, ensure_ascii=False)
+    return json.dumps(value, ensure_ascii=False, default=str)
+
+
+def plain(value: Any) -> str:
+    """A cell of any kind as a table of texts has it: nothing for None, else text or JSON."""
+    if value is None:
+        return ""
+    return written(value) if isinstance(value, dict | list | bool) else str(value)
 
 
 def number(value: float) -> str:

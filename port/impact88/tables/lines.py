@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import codecs
 import io
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
-from ..errors import UserError
+from ..errors import UserError, quoted
 from ..files import LONGEST_LINE, Source, called, encoding_of
+
+PEEK = 1 << 17
+"""Bytes that can be looked at before they are read."""
 
 
 class Lines:
@@ -20,10 +24,10 @@ class Lines:
     since `begin_record`, longer than `LONGEST_LINE` characters.
     """
 
-    def __init__(self, text: io.TextIOWrapper, source: Source) -> None:
+    def __init__(self, text: io.TextIOWrapper, source: Source, before: int = 0) -> None:
         self.where = source.name
         self.size = source.size
-        self.number = 0
+        self.number = before
         self.taken = 0
         self._record_start = 0
         self._source = source
@@ -37,8 +41,12 @@ class Lines:
         try:
             line = self._readline(LONGEST_LINE)
         except UnicodeDecodeError:
-            what = f"holds bytes that are no {self._encoding[:6].rstrip('-').upper()} text"
-            raise UserError(f"{what}, in line {self.number + 1} or after it", self.where) from None
+            what = f"holds bytes that are no {self._encoding.removesuffix('-sig').upper()} text"
+            raise UserError(
+                f"{what}, in line {self.number + 1} or after it; expected UTF-8, or the encoding "
+                "named, such as --encoding cp1252 for older Excel",
+                self.where,
+            ) from None
         except (EOFError, zlib.error, OSError) as error:
             raise self.error(f"cannot be unpacked: {error}") from None
         if not line:
@@ -66,21 +74,47 @@ class Lines:
         return self._source.count
 
 
+class TextFile(NamedTuple):
+    """A text file open for reading: its bytes, unpacked; what they encode; where they come from."""
+
+    binary: Any
+    encoding: str
+    source: Source
+
+    def lines(self, before: int = 0) -> Lines:
+        """The lines of what is left of it, after so many that have been read."""
+        return Lines(
+            io.TextIOWrapper(self.binary, encoding=self.encoding, newline=""), self.source, before
+        )
+
+
 @contextmanager
-def open_lines(path: str) -> Iterator[Lines]:
-    """A text file: UTF-8, or UTF-16 with its mark, unpacked when its name ends in ``.gz``; ``-`` is
-    standard input. Raises UserError if it cannot be opened."""
+def open_text(path: str, encoding: str | None = None) -> Iterator[TextFile]:
+    """A text file: UTF-8, or UTF-16 with its mark, or of the ``encoding`` given; unpacked when its
+    name ends in ``.gz``; ``-`` is standard input. Raises UserError if it cannot be opened."""
+    if encoding is not None:
+        _check_encoding(encoding)
     with Source(path) as source:
-        binary: Any = io.BufferedReader(source, 1 << 17)
+        binary: Any = io.BufferedReader(source, PEEK)
         if path.lower().endswith(".gz"):
             import gzip
 
-            binary = io.BufferedReader(gzip.GzipFile(fileobj=binary))
+            packed: Any = gzip.GzipFile(fileobj=binary)
+            binary = io.BufferedReader(packed, PEEK)
         try:
             start = binary.peek(3)[:3]
         except (EOFError, zlib.error, OSError) as error:
             raise UserError(f"cannot be unpacked: {error}", called(path)) from None
-        encoding = encoding_of(start)
-        if encoding == "utf-8-sig" or not start:
-            encoding = "utf-8-sig"
-        yield Lines(io.TextIOWrapper(binary, encoding=encoding, newline=""), source)
+        found = encoding or encoding_of(start)
+        yield TextFile(binary, "utf-8-sig" if found == "utf-8" else found, source)
+
+
+def _check_encoding(name: str) -> None:
+    try:
+        codec = codecs.lookup(name)
+        "".encode(codec.name)
+    except (LookupError, ValueError):
+        raise UserError(
+            f"--encoding: {quoted(name)} is no encoding of text known here; expected one such as "
+            "cp1252"
+        ) from None

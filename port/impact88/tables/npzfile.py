@@ -61,6 +61,11 @@ def _check(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
         if one.filename in seen:
             raise UserError(f"holds {quoted(one.filename)} twice", path)
         seen.add(one.filename)
+    check_unpacked(members, size, path)
+
+
+def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
+    """Raise UserError when an archive of ``size`` bytes unpacks to more than is read."""
     unpacked = sum(one.file_size for one in members)
     limit = max(UNPACKED, RATIO * size)
     if unpacked > limit:

@@ -13,12 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import doubles
 from ..errors import UserError, quoted
 from ..files import replacing
 from ..names import SCENE
 from .npzfile import read_arrays, write_arrays
-from .rows import Column, Reader, Rows, Writer, refuse_late
+from .rows import Column, Reader, Rows, Writer, refuse_late, typed
 
 _NUMBERS = "fiu"
 _TEXT = "U"
@@ -91,23 +90,16 @@ class _NpzWriter:
 
 
 def _array(name: str, column: Column) -> NDArray[Any]:
-    """A column of texts: doubles for a scene's name (NaN where it is no number), else text."""
-    if name not in SCENE:
-        texts = ["" if cell is None else str(cell) for cell in column]
-        longest = max(map(len, texts), default=0)
-        if 4 * longest * len(texts) > LARGEST_TEXTS:
-            raise UserError(
-                f"column {quoted(name)} has texts of up to {longest:,} characters, too long for "
-                ".npz; expected to write CSV or JSON Lines"
-            )
-        return np.array(texts, dtype=np.str_)
-    values = np.full(len(column), np.nan)
-    for i, cell in enumerate(column):
-        try:
-            values[i] = doubles.double(cell)
-        except (TypeError, AttributeError, ValueError):
-            continue
-    return values
+    cells = typed(name, column)
+    if isinstance(cells, np.ndarray):
+        return cells
+    longest = max(map(len, cells), default=0)
+    if 4 * longest * len(cells) > LARGEST_TEXTS:
+        raise UserError(
+            f"column {quoted(name)} has texts of up to {longest:,} characters, too long for "
+            ".npz; expected to write CSV or JSON Lines"
+        )
+    return np.array(cells, dtype=np.str_)
 
 
 @contextmanager

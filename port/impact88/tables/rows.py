@@ -6,6 +6,7 @@ Numbers stay the decimal text they are written as until an arithmetic reads them
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from .. import doubles
 from ..errors import UserError, quoted
 from ..names import SCENE
+from . import arrow, jsontext
 
 Column = Sequence[Any] | NDArray[Any]
 
@@ -100,6 +102,30 @@ class Writer(Protocol):
     def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None: ...
 
 
+_UNIT = re.compile(r"\s*(\[[^]]*\]|\([^)]*\))\s*")
+
+
+def scene_names(names: Sequence[str]) -> list[str]:
+    """The names of a table's columns: those in small letters, or with a unit behind them
+    (``Mu [1]``), are the scene's names where the table has no such column otherwise."""
+    known = set(names)
+    found = []
+    for name in names:
+        bare = _UNIT.sub("", name).strip().upper()
+        taken = name in SCENE or bare not in SCENE or bare in known
+        found.append(name if taken else bare)
+    return found
+
+
+def filled(column: Column, text: str) -> Column:
+    """A column with ``text`` where it has nothing."""
+    if isinstance(column, np.ndarray):
+        return column
+    if isinstance(column, arrow.ArrowTexts):
+        return column.filled(text)
+    return [text if cell in (None, "") else cell for cell in column]
+
+
 def one_per_row(rows: Rows, name: str) -> Column:
     """A column with a cell for each row. Raises UserError for an array that has not as many."""
     if name not in rows.columns and name not in rows.others:
@@ -116,6 +142,24 @@ def one_per_row(rows: Rows, name: str) -> Column:
             "to write .npz, or a table without it"
         )
     return column
+
+
+def typed(name: str, column: Column) -> NDArray[Any] | list[str]:
+    """A column as a typed table holds it: doubles for a scene's name, NaN where a cell is no
+    number; otherwise what the array has, or texts."""
+    if isinstance(column, np.ndarray):
+        return column
+    if name not in SCENE:
+        return [jsontext.plain(cell) for cell in column]
+    if isinstance(column, arrow.ArrowTexts) and (found := column.doubles()) is not None:
+        return found
+    values = np.full(len(column), np.nan)
+    for i, cell in enumerate(column):
+        try:
+            values[i] = doubles.double(cell)
+        except (TypeError, AttributeError, ValueError):
+            continue
+    return values
 
 
 def refuse_late(rows: Rows, dropped: Collection[str], what: str) -> None:
@@ -144,6 +188,8 @@ def numbers(rows: Rows) -> dict[str, NDArray[np.float64]]:
 def _numbers(rows: Rows, name: str, column: Column) -> NDArray[np.float64]:
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiub":
         return column.astype(np.float64, copy=False)
+    if isinstance(column, arrow.ArrowTexts) and (values := column.doubles()) is not None:
+        return values
     try:
         return np.array(doubles.doubles(list(column)))
     except (TypeError, ValueError):  # some cell is no number: look at each

@@ -21,35 +21,56 @@ FORMATS = {
     ".jsonl": "jsonl",
     ".ndjson": "jsonl",
     ".npz": "npz",
+    ".parquet": "parquet",
+    ".feather": "feather",
+    ".arrow": "feather",
+    ".xlsx": "xlsx",
 }
 """File name ending -> format."""
 
 
 def format_of(path: str, given: str | None) -> str:
-    """csv, jsonl or npz. Raises UserError if neither ``given`` nor the file's name tells."""
+    """The format, csv or another. Raises UserError if neither name nor ``given`` tells."""
     if given:
         return given
     if path == "-":
         return "csv"
+    if path.lower().endswith(".gz"):
+        path = path[:-3]
     ending = "." + path.lower().rpartition(".")[2] if "." in path else ""
     if ending not in FORMATS:
         raise UserError(f"cannot tell its format; expected a name in {' '.join(FORMATS)}", path)
     return FORMATS[ending]
 
 
-def open_reader(path: str, form: str) -> AbstractContextManager[Reader]:
-    """Open a table for reading (``-``: standard input). Raises UserError if it is none."""
+def open_reader(
+    path: str, form: str, encoding: str | None = None
+) -> AbstractContextManager[Reader]:
+    """Open a table for reading (``-``: standard input). Raises UserError if it is none.
+
+    ``encoding``: of a CSV or of JSON Lines that are not UTF-8.
+    """
+    if encoding is not None and form not in ("csv", "jsonl"):
+        raise UserError(f"--encoding is for text; {form} has its own")
     if form == "csv":
         from .csvtable import read_csv
 
-        return read_csv(path)
+        return read_csv(path, encoding)
     if form == "jsonl":
         from .jsontable import read_json_lines
 
-        return read_json_lines(path)
-    from .npztable import read_npz
+        return read_json_lines(path, encoding)
+    if form == "npz":
+        from .npztable import read_npz
 
-    return read_npz(path)
+        return read_npz(path)
+    if form == "xlsx":
+        from .excel import read_excel
+
+        return read_excel(path)
+    from .arrowtable import read_feather, read_parquet
+
+    return (read_parquet if form == "parquet" else read_feather)(path)
 
 
 def open_writer(
@@ -68,6 +89,14 @@ def open_writer(
         from .jsontable import write_json_lines
 
         return write_json_lines(path, kept, results, dropped)
-    from .npztable import write_npz
+    if form == "npz":
+        from .npztable import write_npz
 
-    return write_npz(path, kept, results, dropped)
+        return write_npz(path, kept, results, dropped)
+    if form == "xlsx":
+        from .excel import write_excel
+
+        return write_excel(path, kept, results, dropped)
+    from .arrowtable import write_arrow
+
+    return write_arrow(path, form, kept, results, dropped)

@@ -1,0 +1,116 @@
+"""Where pyarrow is met (extra ``arrow``): columns that stay in its memory, and its readers' errors.
+
+A column of texts is never made a Python string a cell unless somebody looks at the cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import UserError
+
+_PLAIN = np.zeros(256, bool)
+_PLAIN[np.frombuffer(b"0123456789+-.eE", np.uint8)] = True
+"""Characters of which pyarrow makes a number only where INPUT makes the same one."""
+
+
+def available() -> bool:
+    """Whether pyarrow is installed."""
+    from importlib.util import find_spec
+
+    return find_spec("pyarrow") is not None
+
+
+def library(what: str) -> Any:
+    """The module pyarrow. Raises UserError, naming the extra, when it is not installed."""
+    try:
+        import pyarrow
+    except ImportError:
+        raise UserError(f"{what} needs pyarrow; pip install 'impact88[arrow]'") from None
+    return pyarrow
+
+
+class ArrowColumn(Sequence[Any]):
+    """A column in pyarrow's memory; its cells are what Python makes of them."""
+
+    def __init__(self, array: Any) -> None:
+        self.array = array
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.array[index].as_py()
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self.array.to_pylist())
+
+
+class ArrowTexts(ArrowColumn):
+    """A column of texts without nulls."""
+
+    def doubles(self) -> NDArray[np.float64] | None:
+        """The doubles that the texts are, by the rule of `impact88.doubles`; None where a cell
+        needs a closer look."""
+        import pyarrow as pa
+
+        _, offsets, data = self.array.buffers()
+        if data is None:
+            return None
+        ends = np.frombuffer(offsets, np.int32, len(self.array) + 1, 4 * self.array.offset)
+        characters = np.frombuffer(data, np.uint8)[ends[0] : ends[-1]]
+        if not _PLAIN[characters].all():
+            return None
+        try:
+            values: NDArray[np.float64] = self.array.cast(pa.float64()).to_numpy()
+        except pa.ArrowInvalid:
+            return None
+        return values
+
+    def replaced(self, old: str, new: str) -> ArrowTexts:
+        """The column with every ``old`` a ``new``."""
+        import pyarrow.compute as compute
+
+        return ArrowTexts(compute.replace_substring(self.array, old, new))
+
+    def filled(self, text: str) -> ArrowTexts:
+        """The column with ``text`` where there is none."""
+        import pyarrow.compute as compute
+
+        empty = compute.equal(self.array, "")
+        if not compute.any(empty).as_py():
+            return self
+        return ArrowTexts(compute.if_else(empty, text, self.array))
+
+
+def texts_of(values: NDArray[Any]) -> Any:
+    """A pyarrow array of the texts `tables.rows.shortest` makes of an array."""
+    import pyarrow as pa
+    import pyarrow.compute as compute
+
+    array = pa.array(values)
+    if values.dtype.kind != "f":
+        return array.cast(pa.string())
+    texts = array.cast(pa.string())
+    size = np.abs(values)
+    # pyarrow has the same digits, but another idea of when to use an exponent, and writes 1 for 1.0
+    other = (size < _POINT_FROM) | (size >= _POINT_TO) | (values == np.rint(values))
+    if other.any():
+        different, where = np.unique(values[other], return_inverse=True)
+        # -0.0 equals 0.0 and is written another way
+        signed = pa.array(list(map(repr, different.tolist()))).take(pa.array(where))
+        minus = (values[other] == 0) & np.signbit(values[other])
+        if minus.any():
+            signed = compute.if_else(
+                pa.array(minus), "-0.0", compute.replace_substring_regex(signed, "^-0.0$", "0.0")
+            )
+        texts = compute.replace_with_mask(texts, pa.array(other), signed)
+    return texts
+
+
+_POINT_FROM, _POINT_TO = 1e-3, 1e15
+"""Between these both write a number without an exponent."""

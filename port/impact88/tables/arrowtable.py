@@ -1,0 +1,195 @@
+"""Parquet and Arrow's own files (Feather): typed columns, read and written a block at a time.
+
+Needs pyarrow (extra ``arrow``). Numbers are taken as they are stored, texts and decimals by their
+digits. What was text in a CSV becomes doubles where it is a scene's, and stays text elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import UserError, quoted
+from ..files import replacing
+from ..names import SCENE
+from .arrow import ArrowColumn, ArrowTexts, library
+from .rows import Column, Reader, Rows, Writer, refuse_late, scene_names, typed
+
+BLOCK = 1 << 15
+"""Rows of a block."""
+
+
+class _ArrowReader:
+    delimiter = ","
+
+    def __init__(self, names: Sequence[str], rows: int, batches: Iterator[Any], where: str) -> None:
+        self.total: int | None = rows
+        self.names = scene_names(names)
+        self._batches = batches
+        self._where = where
+        self._given = 0
+        twice = {name for name in self.names if self.names.count(name) > 1}
+        if twice:
+            raise UserError(f"has two columns named {quoted(min(twice))}", where)
+
+    def position(self) -> int:
+        return self._given
+
+    def __iter__(self) -> Iterator[Rows]:
+        for batch in self._batches:
+            if not batch.num_rows:
+                continue
+            rows = Rows(self._given + 1, batch.num_rows, {}, {})
+            for name, array in zip(self.names, batch.columns, strict=True):
+                if name in SCENE:
+                    rows.columns[name] = self._scene_column(rows, name, array)
+                else:
+                    rows.others[name] = ArrowColumn(array)
+            self._given += batch.num_rows
+            yield rows
+
+    def _scene_column(self, rows: Rows, name: str, array: Any) -> Column:
+        pa = library("this table")
+        kind = array.type
+        if pa.types.is_integer(kind) or pa.types.is_floating(kind):
+            if array.null_count and name != "M":
+                for index in np.flatnonzero(array.is_null().to_numpy(zero_copy_only=False)):
+                    rows.bad.append(rows.cell(int(index), name, "is empty; expected a number"))
+            if array.null_count:
+                array = array.cast(pa.float64()).fill_null(6.0 if name == "M" else np.nan)
+            values: NDArray[Any] = array.to_numpy(zero_copy_only=False)
+            return values
+        if pa.types.is_dictionary(kind):
+            array = array.dictionary_decode()
+            kind = array.type
+        if not (
+            pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_decimal(kind)
+        ):
+            raise UserError(f"{name} holds {kind}; expected numbers or their texts", self._where)
+        return ArrowTexts(array.cast(pa.string()).fill_null(""))
+
+
+@contextmanager
+def read_parquet(path: str) -> Iterator[Reader]:
+    """Open a Parquet file. Raises UserError if it is none."""
+    pa = library("Parquet")
+    from pyarrow import parquet
+
+    with _arrows_errors(path), parquet.ParquetFile(_named(path), memory_map=True) as file:
+        yield _ArrowReader(
+            file.schema_arrow.names,
+            file.metadata.num_rows,
+            file.iter_batches(BLOCK, use_threads=pa.cpu_count() > 1),
+            path,
+        )
+
+
+@contextmanager
+def read_feather(path: str) -> Iterator[Reader]:
+    """Open an Arrow file. Raises UserError if it is none."""
+    pa = library("an Arrow file")
+    with _arrows_errors(path), pa.memory_map(_named(path)) as source:
+        file = pa.ipc.open_file(source)
+
+        def batches() -> Iterator[Any]:
+            for number in range(file.num_record_batches):
+                batch = file.get_batch(number)
+                for first in range(0, batch.num_rows, BLOCK):
+                    yield batch.slice(first, BLOCK)
+
+        rows = sum(file.get_batch(n).num_rows for n in range(file.num_record_batches))
+        yield _ArrowReader(file.schema.names, rows, batches(), path)
+
+
+def _named(path: str) -> str:
+    if path == "-":
+        raise UserError("this format cannot be read from standard input; expected a file")
+    return path
+
+
+@contextmanager
+def _arrows_errors(path: str) -> Iterator[None]:
+    pa = library("this table")
+    try:
+        yield
+    except pa.ArrowException as error:
+        raise UserError(f"cannot be read: {str(error).partition(chr(10))[0]}", path) from None
+    except FileNotFoundError:
+        raise UserError("cannot be read: No such file or directory", path) from None
+
+
+class _ArrowWriter:
+    """Blocks into a file whose schema is the first one's."""
+
+    def __init__(
+        self, file: IO[bytes], kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
+    ) -> None:
+        self._file = file
+        self._kept = kept
+        self._results = results
+        self._dropped = dropped
+        self._writer: Any = None
+
+    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+        import pyarrow as pa
+
+        refuse_late(rows, self._dropped, "a table of typed columns")
+        arrays = {name: _array(name, rows, pa) for name in self._kept}
+        arrays |= {name: pa.array(results[name]) for name in self._results}
+        table = pa.table(arrays)
+        if self._writer is None:
+            self._writer = self.open(table.schema)
+        self._writer.write_table(table.cast(self._writer.schema))
+
+    def open(self, schema: Any) -> Any:
+        raise NotImplementedError
+
+    def close(self) -> None:
+        if self._writer is None:  # no row at all
+            import pyarrow as pa
+
+            names = (*self._kept, *self._results)
+            self._writer = self.open(pa.schema([(name, pa.float64()) for name in names]))
+        self._writer.close()
+
+
+def _array(name: str, rows: Rows, pa: Any) -> Any:
+    column = rows.kept(name) if name in rows.columns or name in rows.others else [""] * rows.count
+    if isinstance(column, ArrowColumn) and not (isinstance(column, ArrowTexts) and name in SCENE):
+        return column.array
+    return pa.array(typed(name, column))
+
+
+class _ParquetWriter(_ArrowWriter):
+    def open(self, schema: Any) -> Any:
+        from pyarrow import parquet
+
+        return parquet.ParquetWriter(self._file, schema)
+
+
+class _FeatherWriter(_ArrowWriter):
+    def open(self, schema: Any) -> Any:
+        import pyarrow as pa
+
+        writer = pa.ipc.new_file(self._file, schema)
+        writer.schema = schema
+        return writer
+
+
+@contextmanager
+def write_arrow(
+    path: str, form: str, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
+) -> Iterator[Writer]:
+    """Write a Parquet or Arrow file, see `tables.table.open_writer`."""
+    library("this format")
+    if path == "-":
+        raise UserError(f"{form} is not for standard output; expected -o FILE.{form}")
+    kind = _ParquetWriter if form == "parquet" else _FeatherWriter
+    with replacing(path, "wb") as file:
+        writer = kind(file, kept, results, dropped)
+        yield writer
+        writer.close()
