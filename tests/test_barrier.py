@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from impact88 import barrier, sample, solve, solve_for
@@ -70,14 +72,28 @@ vehicles = st.fixed_dictionaries(
 @settings(deadline=None, max_examples=60)
 @given(vehicles)
 def test_the_barrier_is_the_limit_of_a_growing_mass(car: dict[str, float]) -> None:
-    limit = barrier(car, AFTER)
-    off = []
+    """With B's mass and inertia every term of the solution changes by what it has of them, and the
+    impulse by the change of its denominator, D (closedform.impact): the bound below is that."""
+    limit = barrier(car, (*AFTER, "PN", "XA", "YA"))
+    found = {name: float(value) for name, value in limit.items()}
+    e, em, mu, arm, ia = (car[name] for name in ("E", "EM", "MU", "DA", "IA"))
+    ga = math.radians(car["GA"])
+    approach = (1 + e) * (found["XA"] * math.cos(ga) + found["YA"] * math.sin(ga))
+    assume(abs(approach) > 1e-3)
+    turned = arm * arm * (1 + mu)
     for exponent in (8, 10):
-        body = {**car, **BARRIER, "MB": 10.0**exponent, "IB": 10.0 ** (exponent + 1)}
-        found = solve(body, AFTER)
-        off.append(max(abs(float(found[name] - limit[name])) for name in AFTER))
-    assert off[0] < 1e-3
-    assert off[1] <= 0.02 * off[0] + 1e-9
+        mb, ib = 10.0**exponent, 10.0 ** (exponent + 1)
+        change = (1 - 2 * em) * (1 / mb + turned / (ia + ib)) - em * turned / (ia + ib)
+        share = change * abs(found["PN"] / ((1 - 2 * em) * approach))
+        assume(share < 0.5)
+        heavy = solve({**car, **BARRIER, "MB": mb, "IB": ib}, AFTER)
+        off = {name: abs(float(heavy[name]) - found[name]) for name in AFTER}
+        rounding = 1e-9 * (100 + abs(found["PN"]))
+        for name, before in (("VAX", "UX"), ("VAY", "UY")):
+            assert off[name] <= 2 * share * abs(found[name] - car[before]) + rounding
+        common = 2 * arm * (1 + mu) * abs(found["PN"]) / (ia + ib)
+        spin = abs(found["WAF"]) * (2 * share + 2 * ia / (ia + ib)) + common
+        assert off["WAF"] <= spin + rounding
 
 
 @settings(deadline=None, max_examples=60)
