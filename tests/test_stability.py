@@ -2,7 +2,7 @@
 
 The bound is that of a backward stable method: the error of the final velocities is at most a small
 multiple of the unit roundoff times what the same relative change of the scene's numbers would do
-(`impact88.bench.sensitivity`). The true values come from 50-digit arithmetic.
+(`impact88.accuracy.sensitivity`). The true values come from 50-digit arithmetic.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from impact88.accuracy.elimination import (
     lapack,
 )
 from impact88.accuracy.reference import exact, listing_elimination, relative_error, split
+from impact88.accuracy.sensitivity import sensitivity
 from impact88.applesoft.operators import Real
 from impact88.bench.populations import POPULATIONS, scenes
-from impact88.bench.sensitivity import sensitivity
 from impact88.closedform.columns import ANGLES
 from impact88.closedform.degrees import STEP, sin_cos
 from impact88.names import FINAL_VELOCITIES

@@ -69,6 +69,38 @@ def fill(columns: Mapping[str, Any], pi: float = np.pi) -> tuple[Array, Array]:
     return A, b
 
 
+def listing_rows(t: Any, zero: Any) -> list[list[Any]]:
+    """The rows of lines 370 to 560 (6 of 7 numbers, or 4 of 5 for a point mass) in the arithmetic
+    of a scene's numbers ``t`` (see `reference._Terms`), whose zero is ``zero``."""
+    g, s, c = t.g, t.s, t.c
+    MA, MB = g["MA"], g["MB"]
+    D1, D2, D3, D4 = t.D1, t.D2, t.D3, t.D4
+    UX, UY, VX, VY, WA, WB = g["UX"], g["UY"], g["VX"], g["VY"], t.WA, t.WB
+    if t.pivot:
+        # DA*COS(PA+TA-GA) = D4 cos GA + D3 sin GA, and B likewise
+        slip = [s, -c, -s, c, D4 * c + D3 * s, D2 * c + D1 * s, zero]
+    else:
+        fa, fb = MA * (c - t.mu * s), MB * (s + t.mu * c)
+        slip = [zero, fa, fb, zero, zero, zero, fa * UY + fb * VX]
+    rebound = [c, s, -c, -s, D3 * c - D4 * s, D1 * c - D2 * s, -g["E"] * t.gn]
+    matrix = [
+        [MA, zero, MB, zero, zero, zero, MA * UX + MB * VX],
+        [zero, MA, zero, MB, zero, zero, MA * UY + MB * VY],
+        slip,
+        rebound,
+    ]
+    if t.point:
+        return [row[:4] + row[6:] for row in matrix]
+    IA, IB, EM = g["IA"], g["IB"], g["EM"]
+    turn_a, turn_b = MA * (D2 + D4), MB * (D1 + D3)
+    angular = turn_a * UY + turn_b * VX + IA * WA + IB * WB
+    matrix.append([zero, turn_a, turn_b, zero, IA, IB, angular])
+    moment = [-EM * MA * D3 / IA, EM * MA * D4 / IA, -EM * MB * D1 / IB, EM * MB * D2 / IB]
+    before = moment[0] * UX + moment[1] * UY + moment[2] * VX + moment[3] * VY
+    matrix.append([*moment, 2 * EM - 1, 1 - 2 * EM, before + EM * (WA - WB)])
+    return matrix
+
+
 def lapack(A: Array, b: Array) -> Array:
     """The solutions (n, 6) by ``numpy.linalg.solve``; NaN throughout if LAPACK finds an exact zero
     pivot in any of the matrices (it then solves none)."""

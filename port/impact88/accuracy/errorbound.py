@@ -8,16 +8,20 @@ against the larger of the spins and of that velocity over the longer lever arm.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import RESULTS
+from ..closedform.solve import solve
+from ..names import FINAL_VELOCITIES, PIVOT, RESULTS
 
 Floats = NDArray[np.float64]
 
+CLOSED_FORM = 32.0
+"""How many roundings of each number of a scene, at their worst, the closed form's error is worth:
+11 at most over 10^5 scenes of each of the benchmark's populations, and harder ones."""
 DOUBLE = 2.0**-53
 APPLESOFT = 2.0**-32
 FACTOR = 16.0
@@ -27,15 +31,42 @@ _SPEEDS = ("UX", "UY", "VX", "VY", "VAX", "VAY", "VBX", "VBY")
 _SPINS = ("WA", "WB", "WAF", "WBF")
 
 
-def relative_bound(condition: float, unit: float = DOUBLE) -> float:
-    """The bound for one scene, relative to its largest velocity."""
-    return FACTOR * condition * unit
-
-
 def relative_bounds(condition: Any, unit: float = DOUBLE) -> Floats:
     """The bound for scenes of an array of conditions."""
     condition = np.asarray(condition, float)
     return FACTOR * unit * np.maximum(np.nan_to_num(condition, nan=np.inf), 1.0)
+
+
+def oracle_bounds(
+    scenes: Sequence[Mapping[str, str]], columns: Mapping[str, Any], solved: Mapping[str, Any]
+) -> tuple[list[float], list[float]]:
+    """For each scene, what the final velocities and spins may be off, by the closed form in double
+    precision and by the listing, relative to their `scales`; infinite where nothing can be said.
+
+    The first is `CLOSED_FORM` times what rounding every number of the scene to a double does
+    (`accuracy.sensitivity`); the second a running error bound (`accuracy.runningerror`).
+    ``scenes``: the texts; ``columns``: their numbers, arrays of n; ``solved``: `impact88.solve`'s.
+    """
+    from .runningerror import listing_errors
+    from .sensitivity import movements
+
+    sizes = scales(columns, solved)
+    with np.errstate(all="ignore"):
+        moved = movements(columns)
+        shares = [
+            DOUBLE * (CLOSED_FORM * moved[name] + np.abs(solved[name])) / sizes[name]
+            for name in FINAL_VELOCITIES
+        ]
+    double = np.nan_to_num(np.max(shares, axis=0), nan=np.inf)
+    applesoft = []
+    for i, scene in enumerate(scenes):
+        errors = listing_errors(scene, {name: float(solved[name][i]) for name in FINAL_VELOCITIES})
+        share = np.inf
+        if errors is not None:
+            with np.errstate(all="ignore"):
+                share = max(np.float64(errors[name]) / sizes[name][i] for name in errors)
+        applesoft.append(float(share) if share == share else np.inf)
+    return double.tolist(), applesoft
 
 
 def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Floats]:
@@ -61,9 +92,16 @@ def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Flo
             "LOSS": 200 * energy / np.abs(solved["KI"]),
             **dict.fromkeys(("PN", "PT"), 2 * mass * speed),
             "PM": 2 * np.fmax(inertia * spin, mass * speed * arm),
-            **{name: np.abs(solved[name]) for name in ("MUP", "MUC", "COND")},
+            "MUC": _critical_scale(scene, 2 * mass * speed, solved["MUC"]),
+            **{name: np.abs(solved[name]) for name in ("MUP", "COND")},
         }
         return {name: np.nan_to_num(column) for name, column in size.items()}
+
+
+def _critical_scale(scene: Mapping[str, Any], impulse: Floats, ratio: Any) -> Floats:
+    """MUC is a ratio of two impulses; its errors are theirs, divided by the pivot's normal one."""
+    normal = solve({**scene, "MU": PIVOT}, ["PN"])["PN"]
+    return np.asarray(impulse * (1 + np.abs(ratio)) / np.abs(normal), np.float64)
 
 
 def _largest(value: Mapping[str, Any], names: tuple[str, ...]) -> Floats:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..errors import UserError
 from ..names import DEFAULT_M, PIVOT
-from .elimination import ORDER, eliminate
+from .elimination import ORDER, eliminate, listing_rows
 
 if TYPE_CHECKING:
     import mpmath  # type: ignore[import-untyped]
@@ -112,37 +112,7 @@ def equations(scene: Mapping[str, Any], pi: Number | None = None) -> list[list[N
     """The rows of lines 370 to 560 (6 of 7 numbers, or 4 of 5 for M = 4) for a scene of texts or
     numbers, with ``pi`` for pi. Line 510's misreading of MU below -10 is not followed."""
     with working(scene):
-        return _rows(_Terms(scene, pi))
-
-
-def _rows(t: _Terms) -> list[list[Number]]:
-    g, s, c = t.g, t.s, t.c
-    MA, MB = g["MA"], g["MB"]
-    D1, D2, D3, D4 = t.D1, t.D2, t.D3, t.D4
-    UX, UY, VX, VY, WA, WB = g["UX"], g["UY"], g["VX"], g["VY"], t.WA, t.WB
-    zero = mpmath.mpf(0)
-    if t.pivot:
-        # DA*COS(PA+TA-GA) = D4 cos GA + D3 sin GA, and B likewise
-        slip = [s, -c, -s, c, D4 * c + D3 * s, D2 * c + D1 * s, zero]
-    else:
-        fa, fb = MA * (c - t.mu * s), MB * (s + t.mu * c)
-        slip = [zero, fa, fb, zero, zero, zero, fa * UY + fb * VX]
-    rebound = [c, s, -c, -s, D3 * c - D4 * s, D1 * c - D2 * s, -g["E"] * t.gn]
-    rows = [
-        [MA, zero, MB, zero, zero, zero, MA * UX + MB * VX],
-        [zero, MA, zero, MB, zero, zero, MA * UY + MB * VY],
-        slip,
-        rebound,
-    ]
-    if t.point:
-        return [row[:4] + row[6:] for row in rows]
-    IA, IB, EM = g["IA"], g["IB"], g["EM"]
-    turn_a, turn_b = MA * (D2 + D4), MB * (D1 + D3)
-    rows.append([zero, turn_a, turn_b, zero, IA, IB, turn_a * UY + turn_b * VX + IA * WA + IB * WB])
-    moment = [-EM * MA * D3 / IA, EM * MA * D4 / IA, -EM * MB * D1 / IB, EM * MB * D2 / IB]
-    before = moment[0] * UX + moment[1] * UY + moment[2] * VX + moment[3] * VY
-    rows.append([*moment, 2 * EM - 1, 1 - 2 * EM, before + EM * (WA - WB)])
-    return rows
+        return listing_rows(_Terms(scene, pi), mpmath.mpf(0))
 
 
 def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Number] | None:
@@ -157,8 +127,8 @@ def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Numbe
             solution = impulse(t)
             values = None if solution is None else velocities(t, solution)
         else:
-            rows = _rows(t)
-            values = _solve([row[:-1] for row in rows], [row[-1] for row in rows])
+            matrix = listing_rows(t, mpmath.mpf(0))
+            values = _solve([row[:-1] for row in matrix], [row[-1] for row in matrix])
         if values is None:
             return None
         if t.point:
@@ -285,7 +255,7 @@ def listing_elimination(
     """
     with working(scene):
         t = _Terms(scene, listing_pi() if pi is None else pi)
-        found = eliminate(_rows(t), mpmath.mpf("1e-9"))
+        found = eliminate(listing_rows(t, mpmath.mpf(0)), mpmath.mpf("1e-9"))
         if found is None:
             return None
         if t.point:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from ..accuracy.elimination import equilibrated_condition, fill
+from ..accuracy.sensitivity import sensitivity
 from ..processors import processors
 from ..progress import Meter
 from .methods import (
@@ -27,7 +28,6 @@ from .methods import (
     relative_errors,
 )
 from .populations import POPULATIONS, Columns, scenes
-from .sensitivity import sensitivity
 
 Floats = NDArray[np.float64]
 

@@ -2,8 +2,10 @@
 
 For each scene: what the 1988 program prints; each result as Applesoft has it (printed text, the
 five bytes stored, their exact decimal value), in double precision by the closed form, and to 30
-digits where mpmath (extra ``bench``) is installed; how well the scene is conditioned; what is
-unphysical about it.
+digits where mpmath (extra ``bench``) is installed; how well the scene is conditioned; how far
+rounding may take the final velocities and spins, in doubles and on the Apple (a bound; relative to
+`errorbound.scales`: the largest velocity about, spins to the largest spin or that velocity over the
+longer arm); what is unphysical about it.
 """
 
 from __future__ import annotations
@@ -107,7 +109,8 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
 
     texts = {name: [scene[name] for scene in scenes] for name in SCENE}
     numbers = {name: doubles.doubles(column) for name, column in texts.items()}
-    solved = {name: column.tolist() for name, column in solve(numbers).items()}
+    found = solve(numbers)
+    solved = {name: column.tolist() for name, column in found.items()}
     replayed = replay(texts)
     applesoft = {}
     for name in RESULTS:
@@ -116,6 +119,7 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
             printed = replayed.printed(name).tolist() if name != "KF" else [""] * len(scenes)
             applesoft[name] = (present, printed, stored)
     exact = _references(reference)
+    double, listing = errorbound.oracle_bounds(scenes, numbers, found)
     out = []
     for index, scene in enumerate(scenes):
         done = run(scene)
@@ -142,10 +146,8 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
                 "results": results,
                 "condition": _json_number(condition),
                 "error_bound": {
-                    "double": _json_number(errorbound.relative_bound(condition)),
-                    "applesoft": _json_number(
-                        errorbound.relative_bound(condition, errorbound.APPLESOFT)
-                    ),
+                    "double": _json_number(double[index]),
+                    "applesoft": _json_number(listing[index]),
                 },
                 "status": status.names(int(solved["STATUS"][index])),
             }

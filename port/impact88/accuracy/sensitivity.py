@@ -9,12 +9,13 @@ large velocities, and no arithmetic can know it better than they are known.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..closedform.solve import solve
-from ..names import FINAL_VELOCITIES
+from ..names import FINAL_VELOCITIES, PIVOT
 
 Floats = NDArray[np.float64]
 
@@ -23,19 +24,28 @@ STEP = 2.0**-36
 GROUPS = (FINAL_VELOCITIES[:4], FINAL_VELOCITIES[4:])
 
 
-def sensitivity(columns: Mapping[str, Floats]) -> Floats:
-    """For every scene, the largest change of a final velocity, relative to the largest of its group
-    (the four velocities, the two spins), per relative change of all numbers of the scene at their
-    worst: the sum over the numbers of the central differences' sizes. At least 1."""
-    present = solve(columns, FINAL_VELOCITIES)
-    moved = {name: np.zeros_like(present[name]) for name in FINAL_VELOCITIES}
+def movements(columns: Mapping[str, Any]) -> dict[str, Floats]:
+    """For every scene and each final velocity, what it changes per relative change of all numbers
+    of the scene at their worst: the sum over the numbers of the central differences' sizes.
+    """
+    moved = {name: np.zeros(()) for name in FINAL_VELOCITIES}
     for name, values in columns.items():
-        if name == "M" or (name == "MU" and np.all(np.asarray(values) == -10)):
+        values = np.asarray(values, np.float64)
+        if name == "M" or (name == "MU" and np.all(values == PIVOT)):
             continue
         upper = solve({**columns, name: values * (1 + STEP)}, FINAL_VELOCITIES)
         lower = solve({**columns, name: values * (1 - STEP)}, FINAL_VELOCITIES)
         for result in FINAL_VELOCITIES:
-            moved[result] += np.abs(upper[result] - lower[result]) / (2 * STEP)
+            change = np.abs(upper[result] - lower[result]) / (2 * STEP)
+            moved[result] = moved[result] + change
+    return moved
+
+
+def sensitivity(columns: Mapping[str, Any]) -> Floats:
+    """For every scene, the largest of its `movements`, relative to the largest of its group (the
+    four velocities, the two spins); at least 1."""
+    present = solve(columns, FINAL_VELOCITIES)
+    moved = movements(columns)
     worst = np.ones_like(present["VAX"])
     for group in GROUPS:
         scale = np.max([np.abs(present[name]) for name in group], axis=0)
