@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import ZERO, Number, add, compare, rounded
-from .pieces import ROOM, STACK, TEMPORARIES
+from .operand import ROOM, STACK, TEMPORARIES
 from .variables import Variables
 
 FOR_SIZE = 18

@@ -14,7 +14,7 @@ from ..applesoft import decimaltext
 from ..applesoft.console import Console
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import rounded
-from .program import START, Program
+from .programtext import START, ProgramText
 from .strings import Literal, StringArea
 from .symbols import INTEGER, STRING
 from .tokens import DATA
@@ -66,7 +66,7 @@ class Inputs:
     """DATA's pointer and the three statements. ``onerr`` tells whether ONERR is on."""
 
     def __init__(
-        self, program: Program, console: Console, strings: StringArea, onerr: Callable[[], bool]
+        self, program: ProgramText, console: Console, strings: StringArea, onerr: Callable[[], bool]
     ) -> None:
         self._program = program
         self._console = console

@@ -10,10 +10,10 @@ from collections.abc import MutableSequence
 from typing import Any
 
 from ..applesoft.errors import ApplesoftError
-from .compiler import Namespace, compiled
+from .compiledline import Namespace, compiled
 from .control import Control
-from .pieces import ROOM
-from .program import Program
+from .operand import ROOM
+from .programtext import ProgramText
 
 DIRECT = 0xFF00
 """Line numbers from here on mean: typed without a line number."""
@@ -40,7 +40,7 @@ class Steps:
     where the next line begins (``after``), and where its statement does (``start``). ``first``
     finds a line's first step; ``end`` is the step after the program's last."""
 
-    def __init__(self, program: Program, control: Control, names: Namespace) -> None:
+    def __init__(self, program: ProgramText, control: Control, names: Namespace) -> None:
         self._program = program
         self._control = control
         self._names = names

@@ -15,10 +15,10 @@ from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import Number, rounded
 from . import memory
 from .control import Elsewhere
+from .hardware import Hardware
 from .linking import DIRECT, Halt, Steps
-from .parts import Parts
-from .pieces import ROOM
-from .program import START
+from .operand import ROOM
+from .programtext import START
 from .vocabulary import names
 
 CHUNK = 512
@@ -36,7 +36,7 @@ class TooManyStatements(Exception):
     """The program has done as many statements as it was allowed."""
 
 
-class Machine(Parts):
+class Machine(Hardware):
     """An Apple II Plus with 48K as far as a BASIC program can tell.
 
     ``after_line(number)`` is called each time the program leaves a line; ``statements_left`` limits

@@ -11,8 +11,8 @@ from collections.abc import Callable
 
 from ..applesoft.real import from_stored, to_stored
 from . import layout
-from .parts import Parts
-from .program import START
+from .hardware import Hardware
+from .programtext import START
 from .screen import BASE
 
 WINDOW = {32: "left", 33: "width", 34: "top", 35: "bottom"}
@@ -26,7 +26,7 @@ RTS = 0x60
 ROM = 0xC000
 
 
-def _words(machine: Parts) -> dict[int, int]:
+def _words(machine: Hardware) -> dict[int, int]:
     """The two-byte pointers on page 0."""
     variables, inputs = machine.variables, machine.inputs
     return {
@@ -44,7 +44,7 @@ def _words(machine: Parts) -> dict[int, int]:
     }
 
 
-def peek(machine: Parts, address: int) -> int:
+def peek(machine: Hardware, address: int) -> int:
     """The byte at an address."""
     if address < 256:
         words = _words(machine)
@@ -69,12 +69,12 @@ def peek(machine: Parts, address: int) -> int:
     return machine.ram.get(address, APPLE_II_PLUS.get(address, 0))
 
 
-def _locate(machine: Parts) -> layout.Locate:
+def _locate(machine: Hardware) -> layout.Locate:
     image = machine.program.image
     return lambda text: layout.string_address(machine.variables, image, START, text)
 
 
-def _page_zero(machine: Parts, address: int) -> int:
+def _page_zero(machine: Hardware, address: int) -> int:
     screen, errors = machine.screen, machine.errors
     if address in WINDOW:
         return int(getattr(screen, WINDOW[address])) & 0xFF
@@ -92,7 +92,7 @@ def _page_zero(machine: Parts, address: int) -> int:
     return known[address]() & 0xFF if address in known else machine.ram.get(address, 0)
 
 
-def poke(machine: Parts, address: int, value: int) -> None:
+def poke(machine: Hardware, address: int, value: int) -> None:
     """Put a byte at an address, other than in the program's text."""
     screen = machine.screen
     if address in SCREEN:
@@ -123,7 +123,7 @@ def poke(machine: Parts, address: int, value: int) -> None:
             machine.ram[address] = value
 
 
-def call(machine: Parts, address: int) -> bool:
+def call(machine: Hardware, address: int) -> bool:
     """CALL: whether the routine is known."""
     screen = machine.screen
     routines: dict[int, Callable[[], object]] = {

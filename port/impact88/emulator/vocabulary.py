@@ -1,4 +1,4 @@
-"""The names that compiled steps use, and what each means on a given parts.
+"""The names that compiled steps use, and what each means on a given hardware.
 
 `expressions` and the statement compilers write these names; nothing else may depend on them.
 """
@@ -23,7 +23,7 @@ from ..applesoft.real import (
     subtract,
 )
 from . import memory
-from .parts import Parts
+from .hardware import Hardware
 from .strings import code, value
 from .variables import Function, address, byte, subscript, whole
 
@@ -67,13 +67,13 @@ _NUMBERS: dict[str, Any] = {
 }
 
 
-def names(parts: Parts) -> dict[str, Any]:
-    """The names for a machine of these parts, but for those of its own methods."""
-    return {**_NUMBERS, **_values(parts), **_flow(parts), **_outside(parts)}
+def names(hardware: Hardware) -> dict[str, Any]:
+    """The names for a machine of these hardware, but for those of its own methods."""
+    return {**_NUMBERS, **_values(hardware), **_flow(hardware), **_outside(hardware)}
 
 
-def _values(parts: Parts) -> dict[str, Any]:
-    variables, strings = parts.variables, parts.variables.strings
+def _values(hardware: Hardware) -> dict[str, Any]:
+    variables, strings = hardware.variables, hardware.variables.strings
     return {
         "V": variables.values,
         "made_": variables.made,
@@ -98,8 +98,8 @@ def _values(parts: Parts) -> dict[str, Any]:
     }
 
 
-def _flow(parts: Parts) -> dict[str, Any]:
-    control = parts.control
+def _flow(hardware: Hardware) -> dict[str, Any]:
+    control = hardware.control
     return {
         "begin_for": control.begin_for,
         "push_for": control.push_for,
@@ -113,8 +113,8 @@ def _flow(parts: Parts) -> dict[str, Any]:
     }
 
 
-def _outside(parts: Parts) -> dict[str, Any]:
-    output, inputs = parts.output, parts.inputs
+def _outside(hardware: Hardware) -> dict[str, Any]:
+    output, inputs = hardware.output, hardware.inputs
     return {
         "out": output.out,
         "newline": output.newline,
@@ -124,17 +124,17 @@ def _outside(parts: Parts) -> dict[str, Any]:
         "POS": output.position,
         "htab": output.htab,
         "vtab": output.vtab,
-        "home": parts.screen.home,
-        "text": parts.screen.full_window,
+        "home": hardware.screen.home,
+        "text": hardware.screen.full_window,
         "normal": output.normal,
         "inverse": output.inverse,
         "flash": output.flash,
-        "pr": parts.console.select,
+        "pr": hardware.console.select,
         "in_": lambda slot: None,  # nothing but the keyboard is plugged in
         "read": inputs.read,
         "restore": inputs.restore,
         "input_": inputs.input_,
         "get": inputs.get,
-        "PEEK": lambda x: integer(memory.peek(parts, address(x))),
-        "WAIT": lambda place, mask, flip=0: bool((memory.peek(parts, place) ^ flip) & mask),
+        "PEEK": lambda x: integer(memory.peek(hardware, address(x))),
+        "WAIT": lambda place, mask, flip=0: bool((memory.peek(hardware, place) ^ flip) & mask),
     }

@@ -13,7 +13,7 @@ START = 0x801
 HEADER = 4
 
 
-class Program:
+class ProgramText:
     """Lines by number, in order."""
 
     def __init__(self) -> None:

@@ -51,7 +51,7 @@ ROOM = 59
 """An expression needs the stack pointer to be at least here."""
 
 
-class Piece:
+class Operand:
     """Python text for a value.
 
     ``rounded``: it has no extension. ``truth``: text for a bool, whether it is not zero.

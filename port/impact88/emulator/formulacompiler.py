@@ -16,7 +16,7 @@ from __future__ import annotations
 from ..applesoft import decimaltext
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import Number
-from .pieces import (
+from .operand import (
     ANYTHING,
     CLOSE,
     COMMA,
@@ -46,7 +46,7 @@ from .pieces import (
     TEMPORARIES,
     TEXT,
     USR,
-    Piece,
+    Operand,
 )
 from .reader import QUOTE, Reader, is_digit, is_letter
 from .strings import Literal
@@ -54,7 +54,7 @@ from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
 from .tokens import TOKENS
 
 
-class Expressions:
+class FormulaCompiler:
     """The expression compiler for one line."""
 
     def __init__(self, reader: Reader, *, careful: bool, direct: bool) -> None:
@@ -67,18 +67,18 @@ class Expressions:
 
     # --- errors -------------------------------------------------------------------------------
 
-    def fails(self, kind: str, *before: Piece) -> Piece:
+    def fails(self, kind: str, *before: Operand) -> Operand:
         """A piece that computes ``before`` and then raises."""
         code = f"bad({kind!r})"
         if before:
             code = f"({', '.join(piece.code for piece in before)}, {code})"
-        return Piece(code, dead=True)
+        return Operand(code, dead=True)
 
-    def then(self, *pieces: Piece) -> Piece:
+    def then(self, *pieces: Operand) -> Operand:
         """Pieces of which the last is dead."""
         if len(pieces) == 1:
             return pieces[0]
-        return Piece(f"({', '.join(piece.code for piece in pieces)})", dead=True)
+        return Operand(f"({', '.join(piece.code for piece in pieces)})", dead=True)
 
     # --- constants ----------------------------------------------------------------------------
 
@@ -89,7 +89,7 @@ class Expressions:
         self.constants[name] = value
         return name
 
-    def literal(self, text: str) -> Piece:
+    def literal(self, text: str) -> Operand:
         """A string in the program; typed without a line number, it has to be copied."""
         if self.temporaries == TEMPORARIES:
             return self.fails("FORMULA TOO COMPLEX")
@@ -99,33 +99,33 @@ class Expressions:
         code = f"made(str({name}))" if self.direct else name
         return self._placed(code)
 
-    def _placed(self, code: str) -> Piece:
+    def _placed(self, code: str) -> Operand:
         if self.careful:
             code = f"(places({self.temporaries}), {code})[1]"
-        return Piece(code, TEXT, temporary=True)
+        return Operand(code, TEXT, temporary=True)
 
-    def free(self, piece: Piece) -> None:
+    def free(self, piece: Operand) -> None:
         """A string has been used."""
         if piece.temporary:
             self.temporaries -= 1
 
-    def made(self, code: str) -> Piece:
+    def made(self, code: str) -> Operand:
         """A string that was made; it holds a place."""
         if self.temporaries == TEMPORARIES:
-            return Piece(f"({code}, bad('FORMULA TOO COMPLEX'))", dead=True)
+            return Operand(f"({code}, bad('FORMULA TOO COMPLEX'))", dead=True)
         self.temporaries += 1
         return self._placed(code)
 
     # --- formulas -----------------------------------------------------------------------------
 
-    def number(self, at: int) -> Piece:
+    def number(self, at: int) -> Operand:
         """FRMNUM: a formula that must be a number."""
         piece = self.formula(at)
         if not piece.dead and piece.kind == TEXT:
             return self.fails("TYPE MISMATCH", piece)
         return piece
 
-    def formula(self, at: int, last: int = 0) -> Piece:
+    def formula(self, at: int, last: int = 0) -> Operand:
         """FRMEVL: a formula, up to an operator that does not bind closer than ``last``."""
         self.deepest = max(self.deepest, at)
         if at > STACK - ROOM:
@@ -179,7 +179,7 @@ class Expressions:
             self.reader.skip()
         return bits
 
-    def _compared(self, left: Piece, relation: int, right: Piece) -> Piece:
+    def _compared(self, left: Operand, relation: int, right: Operand) -> Operand:
         if left.kind != right.kind:
             return self.fails("TYPE MISMATCH", left, right)
         self.free(right)
@@ -190,15 +190,15 @@ class Expressions:
             truth = f"({left.code} {RELATIONS[relation]} {right.code})"
         else:
             truth = f"(compare({left.stored}, {right.code}) {COMPARED[relation]})"
-        return Piece(f"TRUTH[{truth}]", rounded=True, truth=truth)
+        return Operand(f"TRUTH[{truth}]", rounded=True, truth=truth)
 
-    def _operated(self, left: Piece, operator: str, right: Piece) -> Piece:
+    def _operated(self, left: Operand, operator: str, right: Operand) -> Operand:
         if operator in "&|":
             truth = f"({left.condition} {operator} {right.condition})"
-            return Piece(f"TRUTH[{truth}]", rounded=True, truth=truth)
-        return Piece(f"{operator}({left.code}, {right.code})")
+            return Operand(f"TRUTH[{truth}]", rounded=True, truth=truth)
+        return Operand(f"{operator}({left.code}, {right.code})")
 
-    def _join(self, left: Piece, at: int) -> Piece:
+    def _join(self, left: Operand, at: int) -> Operand:
         """left + the next element, whatever operator stands before."""
         right = self.element(at + 2)
         if right.dead:
@@ -211,7 +211,7 @@ class Expressions:
 
     # --- elements -----------------------------------------------------------------------------
 
-    def element(self, at: int) -> Piece:
+    def element(self, at: int) -> Operand:
         """FRM_ELEMENT: a constant, a variable, a function, a sign or a parenthesis."""
         reader = self.reader
         while reader.take(PLUS):
@@ -232,9 +232,9 @@ class Expressions:
             if operand.kind == TEXT:
                 return self.fails("TYPE MISMATCH", operand)
             if byte == MINUS:
-                return Piece(f"negate({operand.code})", rounded=operand.rounded)
+                return Operand(f"negate({operand.code})", rounded=operand.rounded)
             truth = f"(not {operand.condition})"
-            return Piece(f"TRUTH[{truth}]", rounded=True, truth=truth)
+            return Operand(f"TRUTH[{truth}]", rounded=True, truth=truth)
         if byte == FN:
             return self._call(at)
         if byte >= FIRST_FUNCTION:
@@ -242,7 +242,7 @@ class Expressions:
             return self._function(byte, at)
         return self._parenthesis(at + PARENTHESIS)
 
-    def _constant(self) -> Piece:
+    def _constant(self) -> Operand:
         reader = self.reader
         try:
             value, reader.at = decimaltext.read(reader.number_text, reader.at)
@@ -252,9 +252,9 @@ class Expressions:
         e, m, s = value
         if not s and e <= 143 and not m & (1 << 168 - e) - 1:
             whole = m >> 168 - e
-        return Piece(self.real(value), rounded=not m & 0xFF, whole=whole)
+        return Operand(self.real(value), rounded=not m & 0xFF, whole=whole)
 
-    def _parenthesis(self, at: int) -> Piece:
+    def _parenthesis(self, at: int) -> Operand:
         """PARCHK: a formula in parentheses."""
         if not self.reader.take(OPEN):
             return self.fails("SYNTAX")
@@ -277,33 +277,33 @@ class Expressions:
                 return name, kind
         return name, REAL
 
-    def _variable(self, at: int) -> Piece:
+    def _variable(self, at: int) -> Operand:
         found = self.variable_name()
         assert found is not None
         name, kind = found
         value_kind = TEXT if kind == STRING else NUMBER
         if self.reader.peek() == OPEN:
             subscripts = self.subscripts(at + 16)
-            if isinstance(subscripts, Piece):
+            if isinstance(subscripts, Operand):
                 return subscripts
             function = f"value{len(subscripts)}" if len(subscripts) < 3 else "value"
             code = f"{function}({ARRAYS.slot(name, kind)}, {', '.join(subscripts)})"
         else:
             code = f"V[{SIMPLE.slot(name, kind)}]"
-        return Piece(code, value_kind, rounded=True, variable=kind == STRING)
+        return Operand(code, value_kind, rounded=True, variable=kind == STRING)
 
-    def subscripts(self, at: int) -> list[str] | Piece:
+    def subscripts(self, at: int) -> list[str] | Operand:
         """Text for each subscript, from the parenthesis on; a dead piece if one fails."""
         self.reader.skip()
-        subscripts: list[Piece] = []
+        subscripts: list[Operand] = []
         while True:
             piece = self.number(at + 2 * len(subscripts))
             if piece.dead:
                 return self.then(*subscripts, piece)
             if piece.whole is not None:
-                subscripts.append(Piece(str(piece.whole)))
+                subscripts.append(Operand(str(piece.whole)))
             else:
-                subscripts.append(Piece(f"subscript({piece.code})"))
+                subscripts.append(Operand(f"subscript({piece.code})"))
             if not self.reader.take(COMMA):
                 break
         if not self.reader.take(CLOSE):
@@ -312,7 +312,7 @@ class Expressions:
 
     # --- functions ----------------------------------------------------------------------------
 
-    def function_name(self) -> int | Piece:
+    def function_name(self) -> int | Operand:
         """The slot of the function that is named after FN."""
         found = self.variable_name()
         if found is None or found[1] == INTEGER:
@@ -321,20 +321,20 @@ class Expressions:
             return self.fails("TYPE MISMATCH")
         return SIMPLE.slot(found[0], FUNCTION)
 
-    def _call(self, at: int) -> Piece:
+    def _call(self, at: int) -> Operand:
         self.reader.skip()
         slot = self.function_name()
-        if isinstance(slot, Piece):
+        if isinstance(slot, Operand):
             return slot
-        named = Piece(f"place({slot})")
+        named = Operand(f"place({slot})")
         argument = self._parenthesis(at + 9)
         if argument.dead:
             return self.then(named, argument)
         if argument.kind == TEXT:
             return self.fails("TYPE MISMATCH", named, argument)
-        return Piece(f"call({slot}, {argument.code}, {at + 16})")
+        return Operand(f"call({slot}, {argument.code}, {at + 16})")
 
-    def _function(self, token: int, at: int) -> Piece:
+    def _function(self, token: int, at: int) -> Operand:
         if token in SLICES:
             return self._slice(SLICES[token], at)
         argument = self._parenthesis(at + 8)
@@ -342,12 +342,12 @@ class Expressions:
             return argument
         if token in ANYTHING:
             self.free(argument)
-            return Piece(f"{ANYTHING[token]}({argument.code})", rounded=True)
+            return Operand(f"{ANYTHING[token]}({argument.code})", rounded=True)
         if token in OF_TEXT:
             if argument.kind == NUMBER:
                 return self.fails("TYPE MISMATCH", argument)
             self.free(argument)
-            return Piece(f"{OF_TEXT[token]}({argument.code})", rounded=token != TOKENS["VAL"])
+            return Operand(f"{OF_TEXT[token]}({argument.code})", rounded=token != TOKENS["VAL"])
         if token == USR:
             return self.fails("ILLEGAL QUANTITY", argument)
         if argument.kind == TEXT:
@@ -355,12 +355,12 @@ class Expressions:
         if token in MAKING_TEXT:
             return self.made(f"{MAKING_TEXT[token]}({argument.code})")
         if token in REFUSED_FUNCTIONS:
-            return Piece(f"({argument.code}, refuse({REFUSED_FUNCTIONS[token]!r}))", dead=True)
+            return Operand(f"({argument.code}, refuse({REFUSED_FUNCTIONS[token]!r}))", dead=True)
         if token in NUMERIC:
-            return Piece(f"{NUMERIC[token]}({argument.code})", rounded=token == TOKENS["PEEK"])
+            return Operand(f"{NUMERIC[token]}({argument.code})", rounded=token == TOKENS["PEEK"])
         return self.fails("SYNTAX", argument)
 
-    def _slice(self, function: str, at: int) -> Piece:
+    def _slice(self, function: str, at: int) -> Operand:
         """LEFT$, RIGHT$ and MID$."""
         reader = self.reader
         if not reader.take(OPEN):
@@ -385,18 +385,18 @@ class Expressions:
         self.free(text)
         return self.made(f"{function}({', '.join(piece.code for piece in arguments)})")
 
-    def byte(self, at: int) -> Piece:
+    def byte(self, at: int) -> Operand:
         """GETBYT: a number from 0 to 255, as text for an int."""
         return self._as_int("byte", 255, self.number(at))
 
-    def address(self, at: int) -> Piece:
+    def address(self, at: int) -> Operand:
         """GETADR: a 16-bit address, as text for an int."""
         return self._as_int("address", 32767, self.number(at))
 
     @staticmethod
-    def _as_int(function: str, limit: int, piece: Piece) -> Piece:
+    def _as_int(function: str, limit: int, piece: Operand) -> Operand:
         if piece.dead:
             return piece
         if piece.whole is not None and piece.whole <= limit:
-            return Piece(str(piece.whole))
-        return Piece(f"{function}({piece.code})")
+            return Operand(str(piece.whole))
+        return Operand(f"{function}({piece.code})")

@@ -10,7 +10,7 @@ from functools import lru_cache
 from types import CodeType, FunctionType
 from typing import Any, NamedTuple
 
-from .statements import Statements
+from .statementcompiler import StatementCompiler
 
 Namespace = dict[str, Any]
 _LOOK_AROUND = ("PEEK(", "POKE(", "CALL(")
@@ -40,7 +40,7 @@ class Line(NamedTuple):
 def compiled(tokens: bytes, *, careful: bool = False, direct: bool = False) -> Line:
     """The compiled line; ``careful``: every step looks at the stack; ``direct``: typed without a
     line number."""
-    line = Statements(tokens, careful=careful, direct=direct)
+    line = StatementCompiler(tokens, careful=careful, direct=direct)
     text = []
     for number, step in enumerate(line.steps):
         text.append(f"def step{number}(pc):")

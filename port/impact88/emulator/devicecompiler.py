@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .pieces import COMMA, TEXT
+from .linecompiler import LineCompiler
+from .operand import COMMA, TEXT
 from .reader import QUOTE, is_digit
-from .steps import StepCompiler
 from .tokens import TOKENS
 
 PRINT_AT = 4
@@ -16,7 +16,7 @@ SEMICOLON = ord(";")
 TAB, SPC, MINUS = (TOKENS[word] for word in ("TAB(", "SPC(", "-"))
 
 
-class Devices(StepCompiler):
+class DeviceCompiler(LineCompiler):
     """A method for each keyword, called when the keyword has been read."""
 
     def _with_byte(self, function: str) -> None:

@@ -9,8 +9,8 @@ has been done.
 
 from __future__ import annotations
 
-from .expressions import Expressions
-from .pieces import COMMA, OPEN, TEXT, Piece
+from .formulacompiler import FormulaCompiler
+from .operand import COMMA, OPEN, TEXT, Operand
 from .reader import Reader
 from .symbols import ARRAYS, INTEGER, SIMPLE, STRING
 from .tokens import TOKENS
@@ -34,12 +34,12 @@ class Step:
         self.need = 0
 
 
-class StepCompiler:
+class LineCompiler:
     """The steps of one line as they are made."""
 
     def __init__(self, tokens: bytes, *, careful: bool = False, direct: bool = False) -> None:
         self.reader = Reader(tokens)
-        self.formulas = Expressions(self.reader, careful=careful, direct=direct)
+        self.formulas = FormulaCompiler(self.reader, careful=careful, direct=direct)
         self.direct = direct
         self.steps: list[Step] = []
         self._over = False
@@ -57,10 +57,10 @@ class StepCompiler:
     def _emit(self, code: str) -> None:
         self.steps[-1].code.append(code)
 
-    def _fail(self, kind: str, *before: Piece) -> None:
+    def _fail(self, kind: str, *before: Operand) -> None:
         self._stop(self.formulas.fails(kind, *before))
 
-    def _stop(self, dead: Piece) -> None:
+    def _stop(self, dead: Operand) -> None:
         """The statement ends in an error; nothing after it on the line can be reached."""
         self._emit(dead.code)
         self._over = True
@@ -79,7 +79,7 @@ class StepCompiler:
 
     # --- LET and variables --------------------------------------------------------------------
 
-    def _target(self, at: int = TARGET_AT, *, simple: bool = False) -> tuple[str, str] | Piece:
+    def _target(self, at: int = TARGET_AT, *, simple: bool = False) -> tuple[str, str] | Operand:
         """PTRGET: kind of the variable that comes next, and text for its place (list and index)."""
         found = self.formulas.variable_name()
         if found is None:
@@ -90,7 +90,7 @@ class StepCompiler:
         if simple or self.reader.peek() != OPEN:
             return kind, f"place({SIMPLE.slot(name, kind)})"
         subscripts = self.formulas.subscripts(at)
-        if isinstance(subscripts, Piece):
+        if isinstance(subscripts, Operand):
             return subscripts
         function = f"element{len(subscripts)}" if len(subscripts) < 3 else "element"
         return kind, f"{function}({ARRAYS.slot(name, kind)}, {', '.join(subscripts)})"
@@ -99,7 +99,7 @@ class StepCompiler:
         """LET. Returns kind and slot of a simple variable, None when the statement has ended in an
         error (or the variable is an element)."""
         target = self._target(simple=simple)
-        if isinstance(target, Piece):
+        if isinstance(target, Operand):
             self._stop(target)
             return None
         kind, place = target
@@ -122,7 +122,7 @@ class StepCompiler:
         self._emit(f"{to} = {self._stored(kind, value)}")
         return (kind, slot) if slot is not None else None
 
-    def _stored(self, kind: str, value: Piece) -> str:
+    def _stored(self, kind: str, value: Operand) -> str:
         """Text for what a variable of a kind takes of a value."""
         if kind == STRING:
             self.formulas.free(value)
@@ -140,7 +140,7 @@ class StepCompiler:
         items = []
         while True:
             target = self._target()
-            if isinstance(target, Piece):
+            if isinstance(target, Operand):
                 items.append(f"('', lambda: {target.code})")
                 self._over = True
                 break

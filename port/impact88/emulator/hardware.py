@@ -8,12 +8,12 @@ from .control import Control
 from .inputs import Inputs
 from .onerr import Errors
 from .output import Output
-from .program import Program
+from .programtext import ProgramText
 from .screen import Screen
 from .variables import Variables
 
 
-class Parts:
+class Hardware:
     """Screen, keyboard, program, variables, stack, ONERR, RAM that nothing else explains (``ram``),
     RND's ``seed``, whether TRACE is on (``tracing``), and the ``line`` being executed as far as a
     program can ask for it."""
@@ -32,7 +32,7 @@ class Parts:
         self.console = Console(keyboard, self.screen.write, printer, dos=dos, echo=echo)
         self.console.typed = self.screen.typed
         self.output = Output(self.console, self.screen)
-        self.program = Program()
+        self.program = ProgramText()
         self.variables = Variables()
         self.control = Control(self.variables)
         self.errors = Errors()

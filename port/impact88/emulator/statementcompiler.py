@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .devices import Devices
-from .flow import Flow
-from .pieces import COMMA, FN, OPEN, Piece
-from .steps import EQUAL, TARGET_AT
+from .devicecompiler import DeviceCompiler
+from .flowcompiler import FlowCompiler
+from .linecompiler import EQUAL, TARGET_AT
+from .operand import COMMA, FN, OPEN, Operand
 from .symbols import ARRAYS, SIMPLE, STRING
 from .tokens import KEYWORDS, LAST_STATEMENT
 
@@ -21,7 +21,7 @@ REFUSED = (
 """Graphics, shapes, tape and machine-code hooks: tokenised and listed, but not done."""
 
 
-class Statements(Flow, Devices):
+class StatementCompiler(FlowCompiler, DeviceCompiler):
     """The statement compiler for one line: `steps` holds what it made."""
 
     def __init__(self, tokens: bytes, *, careful: bool = False, direct: bool = False) -> None:
@@ -79,7 +79,7 @@ class Statements(Flow, Devices):
             name, kind = found
             if reader.peek() == OPEN:
                 sizes = self.formulas.subscripts(TARGET_AT)
-                if isinstance(sizes, Piece):
+                if isinstance(sizes, Operand):
                     self._stop(sizes)
                     return
                 self._emit(f"dimension({ARRAYS.slot(name, kind)}, ({', '.join(sizes)},))")
@@ -97,7 +97,7 @@ class Statements(Flow, Devices):
             self._fail("SYNTAX")
             return
         slot = formulas.function_name()
-        if isinstance(slot, Piece):
+        if isinstance(slot, Operand):
             self._stop(slot)
             return
         self._emit(f"place({slot})")
@@ -108,7 +108,7 @@ class Statements(Flow, Devices):
             self._fail("SYNTAX")
             return
         target = self._target(simple=True)
-        if isinstance(target, Piece):
+        if isinstance(target, Operand):
             self._stop(target)
             return
         kind, place = target
@@ -153,7 +153,7 @@ _SIMPLE_CALLS = {
     "RESTORE": "restore()",
     "RESUME": "return resume()",
 }
-"""Statements that look at nothing after them."""
+"""StatementCompiler that look at nothing after them."""
 _WITH_BYTE = {
     "PR#": "pr",
     "IN#": "in_",
@@ -169,31 +169,31 @@ _ALONE = {
     "POP": "pop()",
     "CONT": "return cont(pc)",
 }
-"""Statements that do nothing unless they stand alone."""
-_STATEMENTS: dict[str, Callable[[Statements], None]] = {
-    "FOR": Statements._for,
-    "NEXT": Statements._next,
-    "DATA": Statements._data,
-    "INPUT": Statements._input,
-    "DEL": Statements._del,
-    "DIM": Statements._dim,
-    "READ": Statements._read,
-    "CALL": Statements._call,
-    "HIMEM:": Statements._himem,
-    "LOMEM:": Statements._lomem,
-    "ONERR": Statements._onerr,
-    "LET": Statements._let_keyword,
-    "GOTO": Statements._goto,
-    "RUN": Statements._run,
-    "IF": Statements._if,
-    "GOSUB": Statements._gosub,
-    "RETURN": Statements._return,
-    "REM": Statements._rem,
-    "ON": Statements._on,
-    "WAIT": Statements._wait,
-    "DEF": Statements._def,
-    "POKE": Statements._poke,
-    "PRINT": Statements._print,
-    "LIST": Statements._list,
-    "GET": Statements._get,
+"""StatementCompiler that do nothing unless they stand alone."""
+_STATEMENTS: dict[str, Callable[[StatementCompiler], None]] = {
+    "FOR": StatementCompiler._for,
+    "NEXT": StatementCompiler._next,
+    "DATA": StatementCompiler._data,
+    "INPUT": StatementCompiler._input,
+    "DEL": StatementCompiler._del,
+    "DIM": StatementCompiler._dim,
+    "READ": StatementCompiler._read,
+    "CALL": StatementCompiler._call,
+    "HIMEM:": StatementCompiler._himem,
+    "LOMEM:": StatementCompiler._lomem,
+    "ONERR": StatementCompiler._onerr,
+    "LET": StatementCompiler._let_keyword,
+    "GOTO": StatementCompiler._goto,
+    "RUN": StatementCompiler._run,
+    "IF": StatementCompiler._if,
+    "GOSUB": StatementCompiler._gosub,
+    "RETURN": StatementCompiler._return,
+    "REM": StatementCompiler._rem,
+    "ON": StatementCompiler._on,
+    "WAIT": StatementCompiler._wait,
+    "DEF": StatementCompiler._def,
+    "POKE": StatementCompiler._poke,
+    "PRINT": StatementCompiler._print,
+    "LIST": StatementCompiler._list,
+    "GET": StatementCompiler._get,
 }

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .pieces import COMMA, NUMBER, Piece
+from .linecompiler import LineCompiler
+from .operand import COMMA, NUMBER, Operand
 from .reader import is_digit
-from .steps import StepCompiler
 from .symbols import STRING
 from .tokens import TOKENS
 
@@ -16,7 +16,7 @@ STEP_AT = 13
 TO, THEN, STEP, GOTO, GOSUB = (TOKENS[word] for word in ("TO", "THEN", "STEP", "GOTO", "GOSUB"))
 
 
-class Flow(StepCompiler):
+class FlowCompiler(LineCompiler):
     """A method for each keyword, called when the keyword has been read."""
 
     def _statement(self) -> None:
@@ -120,12 +120,12 @@ class Flow(StepCompiler):
             return
         while True:
             target = self._target()
-            if isinstance(target, Piece):
+            if isinstance(target, Operand):
                 self._stop(target)
                 return
             place = target[1]
             if not place.startswith("place("):
-                self._fail("NEXT WITHOUT FOR", Piece(place))
+                self._fail("NEXT WITHOUT FOR", Operand(place))
                 return
             self._emit(f"return next_(pc, {place[6:-1]})")
             if not self.reader.take(COMMA):
