@@ -20,15 +20,18 @@ _LOOK_AROUND = ("PEEK(", "POKE(", "CALL(")
 class Line(NamedTuple):
     """A compiled line.
 
-    ``codes`` are the bodies of its steps; ``constants`` the names they use; ``begins`` and
-    ``needs`` tell of each step whether a statement begins there and how deep it goes into the
-    stack.
+    ``codes`` are the bodies of its steps; ``constants`` the names they use; ``begins``, ``traced``,
+    ``positions`` and ``needs`` are what `linecompiler.Step` tells of each. ``leftovers``: whether a
+    formula may ask what an earlier one left in the accumulator.
     """
 
     codes: tuple[CodeType, ...]
     constants: dict[str, Any]
     begins: tuple[bool, ...]
+    traced: tuple[bool, ...]
+    positions: tuple[int, ...]
     needs: tuple[int, ...]
+    leftovers: bool
 
     def functions(self, names: Namespace) -> list[Any]:
         """The steps as functions that find the machine in ``names``."""
@@ -45,7 +48,7 @@ def compiled(tokens: bytes, *, careful: bool = False, direct: bool = False) -> L
     for number, step in enumerate(line.steps):
         text.append(f"def step{number}(pc):")
         if any(word in code for code in step.code for word in _LOOK_AROUND):
-            text.append("    here(pc)")
+            text.append("    look(pc)")
         text += [f"    {code}" for code in step.code]
         text.append("    return pc + 1")
     try:
@@ -57,5 +60,8 @@ def compiled(tokens: bytes, *, careful: bool = False, direct: bool = False) -> L
         tuple(each for each in code.co_consts if isinstance(each, CodeType)),
         line.formulas.constants,
         tuple(step.begins for step in line.steps),
+        tuple(step.traced for step in line.steps),
+        tuple(step.position for step in line.steps),
         tuple(step.need for step in line.steps),
+        line.formulas.leftovers,
     )

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import ZERO, Number, add, compare, rounded
-from .operand import ROOM, STACK, TEMPORARIES
+from .operand import ROOM, STACK
 from .variables import Variables
 
 FOR_SIZE = 18
@@ -64,7 +64,6 @@ class Control:
         self.safe = 0
         self.careful = False
         self.depth = 0
-        self.lost = 0
         self._values = variables.values
         self._variables = variables
 
@@ -74,10 +73,9 @@ class Control:
         self.pointer = STACK
         self.careful = False
         self.depth = 0
-        self.lost = 0
 
     def _look(self, pc: int) -> None:
-        careful = self.pointer < self.safe or self.lost > 0
+        careful = self.pointer < self.safe
         if careful != self.careful:
             self.careful = careful
             raise Elsewhere(pc)
@@ -92,22 +90,6 @@ class Control:
         """Raises OUT OF MEMORY if a formula cannot begin ``at`` bytes down."""
         if self.pointer - self.depth - at < ROOM:
             raise ApplesoftError("OUT OF MEMORY")
-
-    def places(self, n: int) -> None:
-        """Raises FORMULA TOO COMPLEX if there is no place for an n-th pending string."""
-        if n + self.lost > TEMPORARIES:
-            raise ApplesoftError("FORMULA TOO COMPLEX")
-
-    def watch(self, pc: int) -> None:
-        """Before a step that may lose a place: go on carefully."""
-        if not self.careful:
-            self.careful = True
-            raise Elsewhere(pc)
-
-    def lose(self, condition: bool) -> bool:
-        """IF with a string: one of the places stays taken."""
-        self.lost += 1
-        return condition
 
     # --- FOR and NEXT -------------------------------------------------------------------------
 
@@ -216,9 +198,9 @@ class Control:
         if size:
             self.frames.append(Frame(LEFTOVER, 0, sign=size))
             self.pointer -= size
-        self.careful = self.pointer < self.safe or self.lost > 0
+        self.careful = self.pointer < self.safe
 
     def cut(self, frames: int) -> None:
         """Back to as many frames as there were."""
         self._drop(frames)
-        self.careful = self.pointer < self.safe or self.lost > 0
+        self.careful = self.pointer < self.safe

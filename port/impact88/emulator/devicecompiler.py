@@ -53,8 +53,7 @@ class DeviceCompiler(LineCompiler):
                 if value.dead:
                     self._stop(value)
                     return
-                formulas.free(value)
-                self._emit(f"out({value.code if value.kind == TEXT else f'write({value.code})'})")
+                self._emit(f"{'out_string' if value.kind == TEXT else 'out_number'}({value.code})")
                 newline = True
         if newline:
             self._emit("newline()")
@@ -71,7 +70,7 @@ class DeviceCompiler(LineCompiler):
         if self.direct:
             self._fail("ILLEGAL DIRECT")
             return
-        self._emit(f"if input_(pc, {self._items()}): return start[pc]")
+        self._emit(f"if input_(pc, {self._items()}): return reenter(pc)")
 
     def _get(self) -> None:
         if self.direct:
@@ -154,4 +153,4 @@ class DeviceCompiler(LineCompiler):
             return
         last = self._line_number()
         if last is not None:
-            self._emit(f"delete({first}, {last})")
+            self._emit(f"delete(pc, {first}, {last})")

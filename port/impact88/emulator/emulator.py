@@ -19,10 +19,12 @@ from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import to_stored
 from .lister import source
 from .machine import Machine
+from .strings import Descriptor
 from .symbols import ARRAYS, REAL, SIMPLE, Name
-from .tokens import LINE_LIMIT, split_number, tokenise
+from .tokens import LINE_LIMIT, TOKENS, split_number, tokenise
 
 PROMPT = "]"
+RUN = bytes((TOKENS["RUN"],))
 
 
 class Applesoft:
@@ -130,11 +132,14 @@ class Applesoft:
         machine = self.machine
         machine.errors.flag >>= 1
         machine.error = None
+        typed = bytes(ord(character) & 0x7F for character in text)
         try:
             numbered = split_number(text)
         except ValueError:
             return self._complain(ApplesoftError("SYNTAX"))
-        if numbered is not None:
+        if machine.locked and text.strip(" "):
+            machine.execute(RUN, typed)
+        elif numbered is not None:
             number, rest = numbered
             machine.program.store(number, tokenise(rest))
             try:
@@ -143,11 +148,12 @@ class Applesoft:
                 return self._complain(error)
             machine.changed()
         elif text.strip(" "):
-            machine.execute(tokenise(text))
+            machine.execute(tokenise(text), typed)
         return machine.error
 
     def _complain(self, error: ApplesoftError) -> ApplesoftError:
         self.machine.output.put(f"\n?{error.kind} ERROR\a")
+        self.machine.forget()
         self.machine.error = error
         return error
 
@@ -190,13 +196,13 @@ class Applesoft:
             return None
         if not self.machine.variables.made[slot]:
             return None
-        return _shown(self.machine.variables.values[slot])
+        return self._shown(self.machine.variables.values[slot])
 
     def reals(self) -> dict[str, str]:
         """Every real variable that exists, oldest first: five stored bytes in hexadecimal."""
         variables = self.machine.variables
         return {
-            SIMPLE.names[slot].text: _shown(variables.values[slot])
+            SIMPLE.names[slot].text: self._shown(variables.values[slot])
             for slot in variables.order
             if SIMPLE.names[slot].kind == REAL
         }
@@ -209,8 +215,10 @@ class Applesoft:
         array = arrays[slot] if slot is not None and slot < len(arrays) else None
         if array is None:
             return None
-        return {"dims": list(array.sizes), "data": [_shown(element) for element in array.data]}
+        return {"dims": list(array.sizes), "data": [self._shown(element) for element in array.data]}
 
-
-def _shown(value: Any) -> Any:
-    return value if isinstance(value, str) else to_stored(value).hex()
+    def _shown(self, value: Any) -> Any:
+        """A value as text: a string's characters, a number's stored bytes."""
+        if isinstance(value, Descriptor):
+            return self.machine.variables.strings.text(value)
+        return to_stored(value).hex()

@@ -26,7 +26,7 @@ class FlowCompiler(LineCompiler):
     def _goto(self) -> None:
         number = self._line_number()
         if number is not None:
-            self._leave(f"first[{number}]")
+            self._leave(f"enter(first[{number}])" if self.direct else f"first[{number}]")
 
     def _gosub(self) -> None:
         self._emit(f"return gosub(pc, {self.reader.line_number()})")
@@ -57,6 +57,8 @@ class FlowCompiler(LineCompiler):
         table = f"({', '.join(map(str, targets))},)[n - 1]"
         if targets:
             to = f"first[{table}]" if command == GOTO else f"gosub(pc, {table})"
+            if self.direct and command == GOTO:
+                to = f"enter({to})"
             self._emit(f"if 0 < n <= {len(targets)}: return {to}")
         if bad:
             self._fail("SYNTAX")
@@ -73,13 +75,8 @@ class FlowCompiler(LineCompiler):
         if value.kind == NUMBER:
             condition = value.condition
         else:
-            # the ROM looks at the number accumulator, where a new string's length stands, and
-            # forgets the string in one of the three places
-            condition = f"({value.code} != '')"
-            if value.temporary:
-                self.steps[-1].code.insert(0, "watch(pc)")
-                condition = f"lose({condition})"
-                formulas.free(value)
+            # the ROM looks at the number accumulator, and forgets a temporary in its place
+            condition = formulas.residue(value).condition
         self._emit(f"if not {condition}: return after[pc]")
         if is_digit(reader.peek()):
             self._goto()
@@ -135,7 +132,7 @@ class FlowCompiler(LineCompiler):
 
     def _return(self) -> None:
         if self.reader.at_end():
-            self._leave("return_()")
+            self._leave("return_(pc)")
 
     def _run(self) -> None:
         if self.reader.at_end():
@@ -144,7 +141,7 @@ class FlowCompiler(LineCompiler):
         self._emit("rerun()")
         number = self._line_number()
         if number is not None:
-            self._leave(f"run({number})")
+            self._leave(f"run({number}, pc)")
 
     def _onerr(self) -> None:
         if not self.reader.take(GOTO):

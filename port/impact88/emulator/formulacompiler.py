@@ -1,11 +1,15 @@
 """Compiling expressions: tokens into Python text, in the ROM's order of events.
 
 The ROM reads and computes in one go, so an error of syntax or type shows only after everything to
-its left has been computed. Here a piece that ends in such an error is *dead*: it computes what
+its left has been computed. Here an operand that ends in such an error is *dead*: it computes what
 comes before and then raises; nothing after it is read.
 
-Values are the triples of `real` and ``str``. The rules in `real` round the left operand and keep
-the right one's extension, as the ROM does, so nothing of that stands here.
+Values are the triples of `real`, and a string's `strings.Descriptor`. The rules in `real` round the
+left operand and keep the right one's extension, as the ROM does, so nothing of that stands here.
+
+Where the ROM takes a string for a number it takes what stands in its accumulator: the length of a
+string just made, or what an earlier number left there. `residue` is the name for it; ``leftovers``
+says that a formula may ask for the latter.
 
 ``at`` is how far below the statement's beginning the 6502 stack has come. In a *careful*
 compilation every formula looks at the stack before it goes deeper.
@@ -17,14 +21,13 @@ from ..applesoft import decimaltext
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import Number
 from .operand import (
-    ANYTHING,
+    ALL_RELATIONS,
     CLOSE,
     COMMA,
     COMPARED,
     FIRST_FUNCTION,
     FN,
     HIGHEST,
-    MAKING_TEXT,
     MINUS,
     NOT,
     NUMBER,
@@ -43,13 +46,11 @@ from .operand import (
     ROOM,
     SLICES,
     STACK,
-    TEMPORARIES,
     TEXT,
     USR,
     Operand,
 )
 from .reader import QUOTE, Reader, is_digit, is_letter
-from .strings import Literal
 from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
 from .tokens import TOKENS
 
@@ -62,23 +63,24 @@ class FormulaCompiler:
         self.careful = careful
         self.direct = direct
         self.constants: dict[str, Number | str] = {}
-        self.temporaries = 0
         self.deepest = 0
+        self.leftovers = False
+        self._strings_compared = False
 
     # --- errors -------------------------------------------------------------------------------
 
     def fails(self, kind: str, *before: Operand) -> Operand:
-        """A piece that computes ``before`` and then raises."""
+        """An operand that computes ``before`` and then raises."""
         code = f"bad({kind!r})"
         if before:
-            code = f"({', '.join(piece.code for piece in before)}, {code})"
+            code = f"({', '.join(operand.code for operand in before)}, {code})"
         return Operand(code, dead=True)
 
-    def then(self, *pieces: Operand) -> Operand:
+    def then(self, *operands: Operand) -> Operand:
         """Pieces of which the last is dead."""
-        if len(pieces) == 1:
-            return pieces[0]
-        return Operand(f"({', '.join(piece.code for piece in pieces)})", dead=True)
+        if len(operands) == 1:
+            return operands[0]
+        return Operand(f"({', '.join(operand.code for operand in operands)})", dead=True)
 
     # --- constants ----------------------------------------------------------------------------
 
@@ -89,41 +91,32 @@ class FormulaCompiler:
         self.constants[name] = value
         return name
 
-    def literal(self, text: str) -> Operand:
-        """A string in the program; typed without a line number, it has to be copied."""
-        if self.temporaries == TEMPORARIES:
-            return self.fails("FORMULA TOO COMPLEX")
-        self.temporaries += 1
-        name = f"t_{text.encode('latin-1').hex()}"
-        self.constants[name] = Literal(text)
-        code = f"made(str({name}))" if self.direct else name
-        return self._placed(code)
+    def literal(self) -> Operand:
+        """A string in the program, its opening quote read; typed without a line number, it has to
+        be copied."""
+        offset = self.reader.at
+        text = self.reader.string()
+        if self.direct:
+            name = f"t_{text.encode('latin-1').hex()}"
+            self.constants[name] = text
+            return Operand(f"made({name})", TEXT)
+        return Operand(f"literal(base[pc] + {offset}, {len(text)})", TEXT)
 
-    def _placed(self, code: str) -> Operand:
-        if self.careful:
-            code = f"(places({self.temporaries}), {code})[1]"
-        return Operand(code, TEXT, temporary=True)
-
-    def free(self, piece: Operand) -> None:
-        """A string has been used."""
-        if piece.temporary:
-            self.temporaries -= 1
-
-    def made(self, code: str) -> Operand:
-        """A string that was made; it holds a place."""
-        if self.temporaries == TEMPORARIES:
-            return Operand(f"({code}, bad('FORMULA TOO COMPLEX'))", dead=True)
-        self.temporaries += 1
-        return self._placed(code)
+    def residue(self, string: Operand) -> Operand:
+        """The number that the accumulator holds when a string has been found."""
+        if string.variable:
+            self.leftovers = True
+            return Operand(f"({string.code}, left_over())[1]")
+        return Operand(f"residue({string.code})")
 
     # --- formulas -----------------------------------------------------------------------------
 
     def number(self, at: int) -> Operand:
         """FRMNUM: a formula that must be a number."""
-        piece = self.formula(at)
-        if not piece.dead and piece.kind == TEXT:
-            return self.fails("TYPE MISMATCH", piece)
-        return piece
+        operand = self.formula(at)
+        if not operand.dead and operand.kind == TEXT:
+            return self.fails("TYPE MISMATCH", operand)
+        return operand
 
     def formula(self, at: int, last: int = 0) -> Operand:
         """FRMEVL: a formula, up to an operator that does not bind closer than ``last``."""
@@ -131,6 +124,7 @@ class FormulaCompiler:
         if at > STACK - ROOM:
             return self.fails("OUT OF MEMORY")
         left = self.element(at)
+        self._strings_compared = False
         if self.careful:
             left.code = f"(room({at}), {left.code})[1]"
             left.truth = None
@@ -138,6 +132,7 @@ class FormulaCompiler:
         while not left.dead:
             start = reader.at
             byte = reader.peek()
+            relation = 0
             if byte in RELATION_BITS:
                 relation = self._relation()
                 if not relation:
@@ -146,27 +141,36 @@ class FormulaCompiler:
             elif byte == PLUS and left.kind == TEXT:
                 reader.skip()
                 left = self._join(left, at)
-                continue
+                if self._strings_compared and not left.dead:
+                    # the ROM still holds the flags of the comparison, and takes them for another
+                    relation = ALL_RELATIONS
+                    precedence, operator = RELATIONAL, ""
+                else:
+                    continue
             elif byte in OPERATORS:
-                relation = 0
                 precedence, operator = OPERATORS[byte]
                 reader.skip()
             else:
                 break
             if precedence <= last:
                 reader.at = start
+                if relation and left.kind == TEXT:
+                    left = self.residue(left)
+                    left.text_relation = True
                 break
             if operator and left.kind == TEXT:
                 return self.fails("TYPE MISMATCH", left)
+            of_text = left.kind == TEXT or left.text_relation
             right = self.formula(at + PENDING, precedence)
             if right.dead:
                 return self.then(left, right)
             if relation:
-                left = self._compared(left, relation, right)
+                left, chained = self._compared(left, of_text, relation, right), right
             elif right.kind == TEXT:
                 return self.fails("TYPE MISMATCH", left, right)
             else:
-                left = self._operated(left, operator, right)
+                left, chained = self._operated(left, operator, right), right
+            left.text_relation = chained.text_relation
         return left
 
     def _relation(self) -> int:
@@ -179,15 +183,18 @@ class FormulaCompiler:
             self.reader.skip()
         return bits
 
-    def _compared(self, left: Operand, relation: int, right: Operand) -> Operand:
-        if left.kind != right.kind:
+    def _compared(self, left: Operand, of_text: bool, relation: int, right: Operand) -> Operand:
+        """left relation right. Whether it compares strings was settled by what stood before the
+        relation: a number there if another relation came between (``"A"="B"=1``)."""
+        if of_text != (right.kind == TEXT):
             return self.fails("TYPE MISMATCH", left, right)
-        self.free(right)
-        self.free(left)
-        if relation == 7:
+        if of_text:
+            self._strings_compared = True
+            order = "strcmp" if left.kind == TEXT else "junkcmp"
+            order = f"{order}({left.code}, {right.code})"
+            truth = f"({order} {RELATIONS[relation]} 0)" if relation != 7 else f"bool(({order},))"
+        elif relation == ALL_RELATIONS:
             truth = f"bool(({left.code}, {right.code}))"
-        elif left.kind == TEXT:
-            truth = f"({left.code} {RELATIONS[relation]} {right.code})"
         else:
             truth = f"(compare({left.stored}, {right.code}) {COMPARED[relation]})"
         return Operand(f"TRUTH[{truth}]", rounded=True, truth=truth)
@@ -205,9 +212,7 @@ class FormulaCompiler:
             return self.then(left, right)
         if right.kind == NUMBER:
             return self.fails("TYPE MISMATCH", left, right)
-        self.free(right)
-        self.free(left)
-        return self.made(f"joined({left.code}, {right.code})")
+        return Operand(f"joined({left.code}, {right.code})", TEXT)
 
     # --- elements -----------------------------------------------------------------------------
 
@@ -223,7 +228,7 @@ class FormulaCompiler:
             return self._variable(at)
         if byte == QUOTE:
             reader.skip()
-            return self.literal(reader.string())
+            return self.literal()
         if byte in (MINUS, NOT):
             reader.skip()
             operand = self.formula(at + PENDING, HIGHEST)
@@ -293,72 +298,87 @@ class FormulaCompiler:
         return Operand(code, value_kind, rounded=True, variable=kind == STRING)
 
     def subscripts(self, at: int) -> list[str] | Operand:
-        """Text for each subscript, from the parenthesis on; a dead piece if one fails."""
+        """Text for each subscript, from the parenthesis on; a dead operand if one fails."""
         self.reader.skip()
         subscripts: list[Operand] = []
         while True:
-            piece = self.number(at + 2 * len(subscripts))
-            if piece.dead:
-                return self.then(*subscripts, piece)
-            if piece.whole is not None:
-                subscripts.append(Operand(str(piece.whole)))
+            operand = self.number(at + 2 * len(subscripts))
+            if operand.dead:
+                return self.then(*subscripts, operand)
+            if operand.whole is not None:
+                subscripts.append(Operand(str(operand.whole)))
             else:
-                subscripts.append(Operand(f"subscript({piece.code})"))
+                subscripts.append(Operand(f"subscript({operand.code})"))
             if not self.reader.take(COMMA):
                 break
         if not self.reader.take(CLOSE):
             return self.fails("SYNTAX", *subscripts)
-        return [piece.code for piece in subscripts]
+        return [operand.code for operand in subscripts]
 
     # --- functions ----------------------------------------------------------------------------
 
-    def function_name(self) -> int | Operand:
-        """The slot of the function that is named after FN."""
-        found = self.variable_name()
-        if found is None or found[1] == INTEGER:
-            return self.fails("SYNTAX")
-        if found[1] == STRING:
-            return self.fails("TYPE MISMATCH")
-        return SIMPLE.slot(found[0], FUNCTION)
+    def function_name(self) -> tuple[int, Operand | None]:
+        """The slot of the function that is named after FN, and a dead operand if the name is none.
+
+        A string's name makes a variable before it is refused: with both marks in its name, that of
+        the kind and that of a function, it is an integer.
+        """
+        variable = self.variable_name()
+        if variable is None or variable[1] == INTEGER:
+            return -1, self.fails("SYNTAX")
+        name, kind = variable
+        if kind == STRING:
+            place = Operand(f"place({SIMPLE.slot(name, INTEGER)})")
+            return -1, self.fails("TYPE MISMATCH", place)
+        return SIMPLE.slot(name, FUNCTION), None
 
     def _call(self, at: int) -> Operand:
         self.reader.skip()
-        slot = self.function_name()
-        if isinstance(slot, Operand):
-            return slot
-        named = Operand(f"place({slot})")
+        slot, refused = self.function_name()
+        if refused is not None:
+            return refused
+        place = Operand(f"place({slot})")
         argument = self._parenthesis(at + 9)
         if argument.dead:
-            return self.then(named, argument)
+            return self.then(place, argument)
         if argument.kind == TEXT:
-            return self.fails("TYPE MISMATCH", named, argument)
-        return Operand(f"call({slot}, {argument.code}, {at + 16})")
+            return self.fails("TYPE MISMATCH", place, argument)
+        return Operand(f"call(place({slot})[1], {argument.code}, {at + 16})")
 
     def _function(self, token: int, at: int) -> Operand:
+        """A function of one argument. Most are worked out before the ROM sees that the argument
+        was a string; CHR$, PEEK and those of ANYTHING never look."""
         if token in SLICES:
             return self._slice(SLICES[token], at)
         argument = self._parenthesis(at + 8)
         if argument.dead:
             return argument
-        if token in ANYTHING:
-            self.free(argument)
-            return Operand(f"{ANYTHING[token]}({argument.code})", rounded=True)
+        if token == TOKENS["FRE"]:
+            code = "FREE" if argument.kind == TEXT else "FRE"
+            return Operand(f"{code}({argument.code})", rounded=True)
+        if token == TOKENS["POS"]:
+            return Operand(f"POS({argument.code})", rounded=True)
         if token in OF_TEXT:
             if argument.kind == NUMBER:
                 return self.fails("TYPE MISMATCH", argument)
-            self.free(argument)
             return Operand(f"{OF_TEXT[token]}({argument.code})", rounded=token != TOKENS["VAL"])
         if token == USR:
             return self.fails("ILLEGAL QUANTITY", argument)
-        if argument.kind == TEXT:
-            return self.fails("TYPE MISMATCH", argument)
-        if token in MAKING_TEXT:
-            return self.made(f"{MAKING_TEXT[token]}({argument.code})")
+        if token == TOKENS["STR$"]:
+            if argument.kind == TEXT:
+                return self.fails("TYPE MISMATCH", argument)
+            return Operand(f"STR({argument.code})", TEXT)
+        text = argument.kind == TEXT
+        if text:
+            argument = self.residue(argument)
+        if token == TOKENS["CHR$"]:
+            return Operand(f"CHR({argument.code})", TEXT)
         if token in REFUSED_FUNCTIONS:
             return Operand(f"({argument.code}, refuse({REFUSED_FUNCTIONS[token]!r}))", dead=True)
-        if token in NUMERIC:
-            return Operand(f"{NUMERIC[token]}({argument.code})", rounded=token == TOKENS["PEEK"])
-        return self.fails("SYNTAX", argument)
+        if token not in NUMERIC:
+            return self.fails("SYNTAX", argument)
+        value = Operand(f"{NUMERIC[token]}({argument.code})", rounded=token == TOKENS["PEEK"])
+        return self.fails("TYPE MISMATCH", value) if text and token != TOKENS["PEEK"] else value
 
     def _slice(self, function: str, at: int) -> Operand:
         """LEFT$, RIGHT$ and MID$."""
@@ -382,8 +402,7 @@ class FormulaCompiler:
                 break
         if not reader.take(CLOSE):
             return self.fails("SYNTAX", *arguments)
-        self.free(text)
-        return self.made(f"{function}({', '.join(piece.code for piece in arguments)})")
+        return Operand(f"{function}({', '.join(each.code for each in arguments)})", TEXT)
 
     def byte(self, at: int) -> Operand:
         """GETBYT: a number from 0 to 255, as text for an int."""
@@ -394,9 +413,9 @@ class FormulaCompiler:
         return self._as_int("address", 32767, self.number(at))
 
     @staticmethod
-    def _as_int(function: str, limit: int, piece: Operand) -> Operand:
-        if piece.dead:
-            return piece
-        if piece.whole is not None and piece.whole <= limit:
-            return Operand(str(piece.whole))
-        return Operand(f"{function}({piece.code})")
+    def _as_int(function: str, limit: int, operand: Operand) -> Operand:
+        if operand.dead:
+            return operand
+        if operand.whole is not None and operand.whole <= limit:
+            return Operand(str(operand.whole))
+        return Operand(f"{function}({operand.code})")

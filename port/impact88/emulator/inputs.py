@@ -15,7 +15,7 @@ from ..applesoft.console import Console
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import rounded
 from .programtext import START, ProgramText
-from .strings import Literal, StringArea
+from .strings import StringArea
 from .symbols import INTEGER, STRING
 from .tokens import DATA
 from .variables import whole
@@ -49,27 +49,34 @@ def _blanks(text: str, at: int) -> int:
     return at
 
 
-def _string(text: str, at: int) -> tuple[str, int]:
-    """The string at ``at`` and where it ends."""
+def _string(text: str, at: int) -> tuple[int, int, int]:
+    """Where the string at ``at`` begins and ends, and where what follows it does."""
     if text[at : at + 1] == '"':
-        start = at = at + 1
-        while text[at : at + 1] not in ('"', "", "\0"):
-            at += 1
-        return text[start:at], at + 1 if text[at : at + 1] == '"' else at
-    start = at
-    while text[at : at + 1] not in (*_ENDS, ","):
-        at += 1
-    return text[start:at], at
+        start = end = at + 1
+        while text[end : end + 1] not in ('"', "", "\0"):
+            end += 1
+        return start, end, end + 1 if text[end : end + 1] == '"' else end
+    end = at
+    while text[end : end + 1] not in (*_ENDS, ","):
+        end += 1
+    return at, end, end
 
 
 class Inputs:
-    """DATA's pointer and the three statements. ``onerr`` tells whether ONERR is on."""
+    """DATA's pointer and the three statements. ``put`` shows a message; ``onerr`` tells whether ONERR
+    is on."""
 
     def __init__(
-        self, program: ProgramText, console: Console, strings: StringArea, onerr: Callable[[], bool]
+        self,
+        program: ProgramText,
+        console: Console,
+        put: Callable[[str], object],
+        strings: StringArea,
+        onerr: Callable[[], bool],
     ) -> None:
         self._program = program
         self._console = console
+        self._put = put
         self._strings = strings
         self._onerr = onerr
         self._image: bytes | None = None
@@ -85,8 +92,13 @@ class Inputs:
         """Read a value of a kind at ``at``, store it, and return where it ends, blanks passed."""
         values, index = place
         if kind == STRING:
-            string, at = _string(text, at)
-            values[index] = Literal(string) if literal else self._strings.made(string)
+            start, end, at = _string(text, at)
+            strings = self._strings
+            if literal:
+                string = strings.temporary(end - start, START - 1 + start)
+            else:
+                string = strings.made(text[start:end])
+            values[index] = strings.kept(string)
         else:
             number, at = decimaltext.read(text, at)
             values[index] = whole(number) if kind == INTEGER else rounded(number)
@@ -138,7 +150,7 @@ class Inputs:
         for kind, where in items:
             place = where()
             if at >= 0 and text[at : at + 1] in _ENDS:
-                console.put("??")
+                self._put("??")
                 text = console.read_line()
                 at = -1
             refused = kind != STRING and not text
@@ -148,10 +160,10 @@ class Inputs:
             if refused:
                 if self._onerr():
                     raise BadReply
-                console.put("?REENTER\n")
+                self._put("?REENTER\n")
                 return True
         if at < len(text):
-            console.put("?EXTRA IGNORED\n")
+            self._put("?EXTRA IGNORED\n")
         return False
 
     # --- GET ----------------------------------------------------------------------------------
@@ -164,11 +176,11 @@ class Inputs:
             values, index = where()
             key = chr(ord(self._console.read_key()) & 0x7F).rstrip("\0")
             if kind == STRING:
-                values[index] = self._strings.made(key)
+                values[index] = self._strings.kept(self._strings.made(key))
                 at = len(key)
                 continue
             at = self._take(kind, (values, index), key, _blanks(key, 0))
             if key[at : at + 1] not in (*_ENDS, ","):
                 raise ApplesoftError("SYNTAX", DIRECT_AFTER_GET)
         if at < len(key):
-            self._console.put("?EXTRA IGNORED\n")
+            self._put("?EXTRA IGNORED\n")

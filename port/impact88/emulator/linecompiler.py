@@ -25,12 +25,15 @@ EQUAL = TOKENS["="]
 
 
 class Step:
-    """``code``: the function's body. ``begins``: whether a statement begins here. ``need``: how
-    deep its formulas go into the stack."""
+    """``code``: the function's body. ``begins``: whether a statement begins here, ``traced``:
+    whether TRACE shows it. ``position``: where the ROM stands in the line's tokens before it: at
+    the colon, or before the line. ``need``: how deep its formulas go into the stack."""
 
-    def __init__(self, begins: bool) -> None:
+    def __init__(self, begins: bool, position: int) -> None:
         self.code: list[str] = []
         self.begins = begins
+        self.traced = begins
+        self.position = position
         self.need = 0
 
 
@@ -47,8 +50,7 @@ class LineCompiler:
     # --- steps --------------------------------------------------------------------------------
 
     def _begin(self, begins: bool) -> None:
-        self.steps.append(Step(begins))
-        self.formulas.temporaries = 0
+        self.steps.append(Step(begins, self.reader.at - 1))
         self.formulas.deepest = 0
 
     def _end_step(self) -> None:
@@ -125,8 +127,7 @@ class LineCompiler:
     def _stored(self, kind: str, value: Operand) -> str:
         """Text for what a variable of a kind takes of a value."""
         if kind == STRING:
-            self.formulas.free(value)
-            return f"copy({value.code})" if value.variable else value.code
+            return f"{'copied' if value.variable else 'kept'}({value.code})"
         if kind == INTEGER:
             return f"whole({value.code})"
         return value.stored

@@ -11,12 +11,15 @@ from typing import Any
 
 from ..applesoft.errors import ApplesoftError
 from .compiledline import Namespace, compiled
-from .control import Control
+from .control import GOSUB, Control, Frame
 from .operand import ROOM
-from .programtext import ProgramText
+from .programtext import HEADER, START, Line, ProgramText
+from .reader import COLON, Reader
 
 DIRECT = 0xFF00
 """Line numbers from here on mean: typed without a line number."""
+INPUT_BUFFER = 0x200
+NO_STATEMENT = b")"
 
 
 class Halt(Exception):
@@ -35,10 +38,46 @@ def halt(pc: int) -> int:
     raise Halt
 
 
+def wild(pc: int) -> int:
+    """The step after a line behind which no line begins: the ROM reads on in what it finds there,
+    and seldom finds a statement."""
+    raise ApplesoftError("SYNTAX")
+
+
+class InputBuffer(bytearray):
+    """Page 2, where typed lines are read in and their tokens put in their place.
+
+    What an earlier, longer line left stands behind them: a FOR typed on that line goes back there.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(256)
+
+    def put(self, typed: bytes, tokens: bytes) -> None:
+        """A line typed without a number, and its tokens."""
+        for text in (typed, tokens):
+            self[: len(text)] = text[: len(self)]
+            if len(text) < len(self):
+                self[len(text)] = 0
+        if len(tokens) + 2 < len(self):
+            self[len(tokens) + 2] = 0  # the ROM's parser clears one more
+
+    def rest(self, position: int) -> bytes:
+        """The bytes from a position to the end of the line there."""
+        return bytes(self[position:]).partition(b"\0")[0]
+
+    def statement_end(self, position: int) -> int:
+        """Where the statement ends that goes on at a position."""
+        reader = Reader(self.rest(position))
+        reader.skip_statement()
+        return position + reader.at
+
+
 class Steps:
-    """The row, and of each step: whether a statement ``begins`` with it, its line (``lines``),
-    where the next line begins (``after``), and where its statement does (``start``). ``first``
-    finds a line's first step; ``end`` is the step after the program's last."""
+    """The row, and of each step: whether a statement ``begins`` with it, whether it is ``traced``,
+    its line (``lines``), where the next line begins (``after``), where its statement does
+    (``start``), the ``base`` address of its line's tokens, and its ``position`` among them.
+    ``first`` finds a line's first step; ``end`` is the step after the program's last."""
 
     def __init__(self, program: ProgramText, control: Control, names: Namespace) -> None:
         self._program = program
@@ -46,14 +85,19 @@ class Steps:
         self._names = names
         self._linked = False
         self._careful: list[Any] = []
-        self._direct = b""
+        self.buffer = InputBuffer()
         self.steps: list[Any] = []
         self.begins: list[bool] = []
+        self.traced: list[bool] = []
         self.lines: list[int] = []
         self.after: list[int] = []
         self.start: list[int] = []
+        self.base: list[int] = []
+        self.position: list[int] = []
         self.first = Targets()
         self.end = 0
+        self.leftovers = False
+        self._sources: list[tuple[int, bytes, int]] = []
 
     def changed(self) -> None:
         """The program is another one now."""
@@ -63,81 +107,159 @@ class Steps:
         """Whether a step was typed without a line number."""
         return self.lines[pc] >= DIRECT
 
+    def place(self, pc: int) -> int:
+        """The address where the ROM stands before a step: the colon or the zero in front of it."""
+        position = self.position[pc]
+        before_line = HEADER if position < 0 and not self.is_direct(pc) else 0
+        return self.base[pc] + position - before_line
+
     def _tables(self) -> tuple[MutableSequence[Any], ...]:
-        return self.steps, self.begins, self.lines, self.after, self.start
+        return (
+            self.steps,
+            self.begins,
+            self.traced,
+            self.lines,
+            self.after,
+            self.start,
+            self.base,
+            self.position,
+        )
 
     def _link(self) -> None:
         """Line up the steps of the program."""
         self._linked = True
         self._careful = []
+        self.leftovers = False
         self.first.clear()
+        self._sources.clear()
         for table in self._tables():
             table.clear()
         deepest = 0
-        for number in self._program.numbers:
-            self.first[number] = len(self.steps)
-            deepest = max(deepest, self._append(self._program.tokens[number], number))
+        lines = self._program.lines
+        for n, line in enumerate(lines):
+            self.first.setdefault(line.number, len(self.steps))
+            deepest = max(deepest, self._append(line.tokens, line.number, line.text))
+            following = lines[n + 1].address if n + 1 < len(lines) else None
+            if following != line.end and self._program.after(line) is not None:
+                self._append_jump(line)
         self.end = len(self.steps)
-        self._append_end(self.lines[-1] if self.lines else 0)
+        self._append_end(self.lines[-1] if self.lines else 0, START, -1)
         self._control.safe = ROOM + deepest
 
-    def _append(self, tokens: bytes, number: int) -> int:
-        """A line's steps; returns how deep they go into the stack."""
+    def _append(self, tokens: bytes, number: int, base: int, shift: int = 0) -> int:
+        """A line's steps; returns how deep they go into the stack. The line's own positions are
+        ``shift`` less than those kept."""
         line = compiled(tokens, direct=number == DIRECT)
         at = len(self.steps)
+        count = len(line.begins)
+        self._sources.append((number, tokens, at))
         self.steps += line.functions(self._names)
         self.begins += line.begins
-        self.lines += [number] * len(line.begins)
-        self.after += [at + len(line.begins)] * len(line.begins)
+        self.traced += line.traced
+        self.lines += [number] * count
+        self.after += [at + count] * count
+        self.base += [base] * count
+        self.position += [position + shift for position in line.positions]
+        self.leftovers |= line.leftovers
         for n, begins in enumerate(line.begins, at):
             self.start.append(n if begins else self.start[-1])
         return max(line.needs)
 
-    def _append_end(self, number: int) -> None:
-        self.after.append(len(self.steps))
-        self.start.append(len(self.steps))
-        self.steps.append(halt)
-        self.begins.append(False)
-        self.lines.append(number)
+    def _append_end(self, number: int, base: int, position: int) -> None:
+        self._append_step(halt, number, base, position)
+
+    def _append_step(self, step: Any, number: int, base: int, position: int) -> None:
+        pc = len(self.steps)
+        values = (step, False, False, number, pc, pc, base, position)
+        for table, value in zip(self._tables(), values, strict=True):
+            table.append(value)
+
+    def _append_jump(self, line: Line) -> None:
+        """What comes behind a line that is not the next one by its address."""
+        number = self._program.after(line)
+        assert number is not None
+        step = wild if number < 0 else lambda pc: self.first[number]
+        self._append_step(step, line.number, line.text, len(line.tokens))
 
     def careful(self) -> list[Any]:
-        """The program's steps, looking at the stack as they go."""
-        if not self._careful:
-            for number in self._program.numbers:
-                line = compiled(self._program.tokens[number], careful=True)
-                self._careful += line.functions(self._names)
-            self._careful.append(halt)
+        """The steps, looking at the stack and at the accumulator as they go."""
+        if len(self._careful) != len(self.steps):
+            self._careful = list(self.steps)
+            for number, tokens, first in self._sources:
+                line = compiled(tokens, careful=True, direct=number == DIRECT)
+                self._careful[first : first + len(line.codes)] = line.functions(self._names)
         return self._careful
 
-    def put_direct(self, tokens: bytes) -> int:
-        """Steps for a line typed without a number, after the program's; where they begin."""
+    def put_direct(self, typed: bytes, tokens: bytes) -> int:
+        """Steps for a line typed without a number, after the program's; where they begin.
+
+        Loops and subroutines that an earlier typed line began go back to the same place in the
+        buffer, whatever stands there now.
+        """
         if not self._linked:
             self._link()
-        at = self.end + 1
+        self.buffer.put(typed, tokens)
+        return self._place_direct(tokens)
+
+    def _place_direct(self, tokens: bytes) -> int:
+        first = self.end + 1
+        back = {
+            frame.back: self._position_back(frame)
+            for frame in self._control.frames
+            if frame.back >= first
+        }
         for table in self._tables():
-            del table[at:]
-        self._direct = tokens
-        self._append(tokens, DIRECT)
-        self._append_end(DIRECT)
-        # loops and subroutines that an earlier typed line began have nowhere to go back to
-        self._control.send_back(lambda back: back if back < at else len(self.steps) - 1)
-        return at
+            del table[first:]
+        self._sources = [source for source in self._sources if source[2] < first]
+        self._careful = []
+        self._append(tokens, DIRECT, INPUT_BUFFER)
+        self._append_end(DIRECT, INPUT_BUFFER, len(tokens))
+        places = {old: self._rest_of_buffer(position) for old, position in back.items()}
+        self._control.send_back(lambda old: places.get(old, old))
+        return first
+
+    def _position_back(self, frame: Frame) -> int:
+        """Where in the buffer a loop or subroutine goes back to."""
+        if frame.slot == GOSUB and frame.back > self.end + 1:
+            return self.buffer.statement_end(max(self.position[frame.back - 1], -1) + 2)
+        return self.position[frame.back]
+
+    def _rest_of_buffer(self, position: int) -> int:
+        """Steps for what stands in the buffer from a position on, a colon if a statement."""
+        rest = self.buffer.rest(max(position, 0))
+        if not rest:
+            return len(self.steps) - 1
+        first = len(self.steps)
+        tokens = rest[1:] if rest[0] == COLON else NO_STATEMENT
+        self._append(tokens, DIRECT, INPUT_BUFFER, position + 1)
+        self._append_end(DIRECT, INPUT_BUFFER, position + len(rest))
+        return first
 
     def relink(self, pc: int) -> int:
-        """Link again while the program runs, because a token was changed; where ``pc`` is now."""
-        lines, end = list(self.lines), self.end
-        first = dict(self.first)
+        """Link again while the program runs, because a byte of it was changed; where ``pc`` is
+        now."""
+        lines, end, position = list(self.lines), self.end, list(self.position)
+        direct = [table[end + 1 :] for table in self._tables()]
+        sources = [source for source in self._sources if source[2] > end]
+        self._link()
+        shift = self.end - end
+        self._sources += [(number, tokens, first + shift) for number, tokens, first in sources]
+        for table, rest in zip(self._tables(), direct, strict=True):
+            table += rest
+        for table in (self.after, self.start):
+            for n in range(self.end + 1, len(table)):
+                table[n] += shift
 
         def moved(place: int) -> int:
-            if lines[place] >= DIRECT:
-                return place - end + self.end
-            line = lines[place]
-            at = self.first[line] + place - first[line]
-            return at if self.lines[at] == line else self.after[self.first[line]]
+            if lines[place] >= DIRECT or place == end:
+                return place + shift
+            first = self.first.get(lines[place])
+            if first is None:
+                return self.end
+            same = (
+                n for n in range(first, self.after[first]) if self.position[n] >= position[place]
+            )
+            return next(same, self.after[first])
 
-        backs = [frame.back for frame in self._control.frames]
-        self._linked = False
-        self.put_direct(self._direct)
-        places = iter(backs)
-        self._control.send_back(lambda _: moved(next(places)))
+        self._control.send_back(moved)
         return moved(pc)

@@ -6,10 +6,11 @@ A program is a row of functions, its steps; each takes its own place and returns
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
-from ..applesoft import functions
+from ..applesoft import decimaltext, functions
 from ..applesoft.console import Device, Keyboard
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import Number, rounded
@@ -19,21 +20,26 @@ from .hardware import Hardware
 from .linking import DIRECT, Halt, Steps
 from .operand import ROOM
 from .programtext import START
+from .strings import Descriptor
 from .vocabulary import names
 
 CHUNK = 512
-"""Steps between two looks at the outside world."""
+"""Steps between two moments when the outside world is asked."""
+TEMPORARY = 0x55
+"""Where the ROM keeps a temporary's descriptor, on page 0."""
 BREAK_CODE = 255
 BELL = "\a"
-FASTEST = 255
 FORGET_ERROR, CLEAR = 0xF328, 0xD66C
 """Routines of Applesoft that a program may CALL."""
-_RUN_LINES = range(0xFE00, 0xFF00)
-"""What RUN of a missing line makes of the line number at the prompt."""
 
 
 class TooManyStatements(Exception):
     """The program has done as many statements as it was allowed."""
+
+
+def _exponent_sign(match: re.Match[str]) -> str:
+    """VAL takes the tokens of + and - for the signs, behind an E."""
+    return match[1] + ("+" if match[0][-1] == "\xc8" else "-")
 
 
 class Machine(Hardware):
@@ -61,9 +67,12 @@ class Machine(Hardware):
         self.refused: list[str] = []
         self.error: ApplesoftError | None = None
         self.broken = False
-        self._continue: int | None = None
-        self._here = 0
         self.last_line = 0
+        self._continue: int | None = None
+        self._continued_line = 0
+        self._entered: int | None = None
+        self._shown_line: int | None = None
+        self._current = 0
         self._names: dict[str, Any] = {}
         self.code = Steps(self.program, self.control, self._names)
         self._names.update(names(self), **self._methods())
@@ -81,6 +90,14 @@ class Machine(Hardware):
             "first": self.code.first,
             "after": self.code.after,
             "start": self.code.start,
+            "base": self.code.base,
+            "enter": self.enter,
+            "reenter": self.reenter,
+            "return_": self.return_,
+            "VAL": self.value,
+            "residue": self.residue,
+            "left_over": self.left_over,
+            "junkcmp": self.compare_junk,
             "gosub": self.gosub,
             "onerr": self.onerr,
             "resume": self.resume,
@@ -96,7 +113,7 @@ class Machine(Hardware):
             "list_": self.list_program,
             "call": self.call_function,
             "RND": self.random,
-            "here": self.look_here,
+            "look": self.look,
             "POKE": self.poke,
             "CALL": self.call,
             "refuse": self.refuse,
@@ -107,32 +124,45 @@ class Machine(Hardware):
 
     # --- running ------------------------------------------------------------------------------
 
-    def execute(self, tokens: bytes) -> None:
+    def execute(self, tokens: bytes, typed: bytes = b"") -> None:
         """Do a line typed without a number, and whatever it starts, until the machine is back at
         the prompt; ``error`` then holds the Applesoft error that ended it, or None.
 
-        Raises TooManyStatements and `console.EndOfInput`.
+        ``typed``: the line before it was made tokens. Raises TooManyStatements and
+        `console.EndOfInput`.
         """
         self.error = None
         self.broken = False
-        pc = self.code.put_direct(tokens)
+        self._entered = self._shown_line = None
+        pc = self.code.put_direct(typed, tokens)
         self.variables.grow()
         self._go(pc)
+
+    @property
+    def _slow(self) -> bool:
+        """Whether each step has to be watched."""
+        return bool(
+            self.control.careful
+            or self.tracing
+            or self.after_line
+            or self._entered is not None
+            or self._shown_line is not None
+        )
 
     def _go(self, pc: int) -> None:
         steps = self.code.steps
         while pc >= 0:
             try:
-                while self.control.careful or self.tracing or self.after_line:
+                while self._slow:
                     pc = self._step(pc)
                 while True:
-                    done = 0
+                    count = 0
                     try:
-                        for done in range(1, self._chunk() + 1):  # noqa: B007
+                        for count in range(1, self._chunk() + 1):  # noqa: B007
                             pc = steps[pc](pc)
                     finally:
                         if self.statements_left is not None:
-                            self.statements_left -= done
+                            self.statements_left -= count
                     if self.interrupted:
                         raise KeyboardInterrupt
             except Elsewhere as elsewhere:
@@ -167,50 +197,71 @@ class Machine(Hardware):
         code = self.code
         line = code.lines[pc]
         direct = line >= DIRECT
-        if self.tracing and code.begins[pc] and not direct:
-            self.output.put(f"#{line} ")
-        steps = code.careful() if self.control.careful and not direct else code.steps
-        to = pc
+        if self.tracing and code.traced[pc] and not direct:
+            self.output.put(f"#{self.line_of(pc)} ")
+        steps = code.careful() if self.control.careful else code.steps
+        entered = self._entered
+        following = pc
         try:
-            to = steps[pc](pc)
+            following = steps[pc](pc)
         except Elsewhere as elsewhere:
-            to = elsewhere.pc
-        if self.after_line and not direct and code.lines[to] != line:
+            following = elsewhere.pc
+        if entered == self._entered:
+            self._entered = None
+        if code.lines[following] != line or code.first.get(line) == following:
+            self._shown_line = None
+        if self.after_line and not direct and code.lines[following] != line:
             self.after_line(line)
-        return to
+        return following
+
+    def line_of(self, pc: int) -> int:
+        """The line number the machine believes it is in: another line's after RESUME from an error
+        in DATA, and after CONT from a line typed without a number."""
+        return self.code.lines[pc] if self._shown_line is None else self._shown_line
 
     def _halted(self, pc: int) -> None:
         line = self.code.lines[pc]
         if line < DIRECT:
             self.last_line = line
             if pc == self.code.end:
-                self._continue = pc
+                self._can_continue(pc, pc)
             if self.after_line and len(self.program):
                 self.after_line(line)
+
+    def _can_continue(self, pc: int, place: int) -> None:
+        """END, STOP or control-C at pc: CONT goes to ``place``."""
+        self._continue = place
+        self._continued_line = self.line_of(pc)
 
     def _handle(self, error: ApplesoftError, pc: int) -> int:
         """An error: to ONERR's line, or to the prompt (-1) with a message."""
         self.control.depth = 0
-        here = self.code.lines[pc]
-        line = here if error.line is None else error.line
+        actual = self.code.lines[pc]
+        line = self.line_of(pc) if error.line is None else error.line
         if self.errors.on:
             return self._to_handler(error, line, pc)
-        if here < DIRECT:
-            self.last_line = here
+        if actual < DIRECT:
+            self.last_line = line
             if self.after_line:
-                self.after_line(here)
+                self.after_line(actual)
         error.line = line if line < DIRECT else None
         self.error = error
         place = "" if error.line is None else f" IN {error.line}"
         self.output.put(f"\n?{error.kind} ERROR{BELL}{place}")
-        self.control.clear()
-        self._continue = None
+        self.forget()
         return -1
+
+    def forget(self) -> None:
+        """What every error does: the stack and the temporaries are gone, and CONT is refused."""
+        self.control.clear()
+        self.variables.strings.temporaries.clear()
+        self._continue = None
 
     def _to_handler(self, error: ApplesoftError, line: int, pc: int) -> int:
         errors = self.errors
         errors.catch(error.code, line, self.code.start[pc], len(self.control.frames))
         self.control.leave(error.kind)
+        self._shown_line = None
         try:
             return self.code.first[errors.handler]  # type: ignore[index]
         except ApplesoftError as undefined:
@@ -224,42 +275,73 @@ class Machine(Hardware):
         errors = self.errors
         start = self.code.start[pc]
         if errors.on:
-            errors.catch(BREAK_CODE, self.code.lines[pc], start, len(self.control.frames))
+            errors.catch(BREAK_CODE, self.line_of(pc), start, len(self.control.frames))
             self.control.leave("")
             return self.code.first.get(errors.handler or 0, -1)
         self._say_break(pc)
         self.broken = True
         if not self.code.is_direct(pc):
-            self._continue = start
+            self.last_line = self.line_of(pc)
+            self._can_continue(pc, start)
         return -1
 
     def _say_break(self, pc: int) -> None:
-        place = "" if self.code.is_direct(pc) else f" IN {self.code.lines[pc]}"
+        place = "" if self.code.is_direct(pc) else f" IN {self.line_of(pc)}"
         self.output.put(f"\nBREAK{BELL}{place}")
 
     # --- statements: what comes next ----------------------------------------------------------
 
+    def enter(self, pc: int) -> int:
+        """GOTO typed without a line number: the first statement is done before the ROM notes that
+        a program runs."""
+        self._entered = pc
+        raise Elsewhere(pc)
+
+    def reenter(self, pc: int) -> int:
+        """INPUT again after ?REENTER, from where the ROM noted last that a statement begins."""
+        start = self.code.start[pc]
+        if self._entered != start:
+            return start
+        if self._continue is None:
+            raise ApplesoftError("SYNTAX")
+        return self._continue
+
     def gosub(self, pc: int, number: int) -> int:
         """GOSUB. Raises OUT OF MEMORY and UNDEF'D STATEMENT."""
         self.control.push_gosub(pc + 1)
-        return self.control.settle(self.code.first[number])
+        first = self.code.first[number]
+        if self.code.is_direct(pc):
+            self._entered = first
+            raise Elsewhere(first)
+        return self.control.settle(first)
+
+    def return_(self, pc: int) -> int:
+        """RETURN. Raises RETURN WITHOUT GOSUB."""
+        back = self.control.return_()
+        if self.code.is_direct(back) and self._entered != pc and not self.code.is_direct(pc):
+            self._continue = self.code.start[pc]
+        return back
 
     def onerr(self, pc: int, number: int | None) -> None:
         """ONERR GOTO."""
         self.errors.arm(number, self.code.lines[pc])
 
     def resume(self) -> int:
-        """RESUME. Where there was no error the ROM runs wild; here it is a SYNTAX error."""
-        if self.errors.resume is None:
-            raise ApplesoftError("SYNTAX")
+        """RESUME. Where there was no error the ROM runs wild, from address 0."""
+        errors = self.errors
+        if errors.resume is None:
+            raise ApplesoftError("SYNTAX", errors.line)
         self.forget_error()
-        return self.errors.resume
+        if errors.line not in (self.code.lines[errors.resume], self._shown_line):
+            self._shown_line = errors.line
+            raise Elsewhere(errors.resume)
+        return errors.resume
 
     def forget_error(self) -> None:
         """CALL -3288: the stack as it was before the error."""
         self.control.cut(self.errors.frames)
 
-    def run(self, number: int | None) -> int:
+    def run(self, number: int | None, pc: int = 0) -> int:
         """RUN. Raises UNDEF'D STATEMENT."""
         self.clear()
         if number is None:
@@ -267,8 +349,10 @@ class Machine(Hardware):
         try:
             return self.code.first[number]
         except ApplesoftError as error:
-            # the machine has taken 256 from the line number, whatever it was
-            error.line = _RUN_LINES.start | self.last_line & 0xFF
+            # to say that a program runs now the machine takes 256 from the line number, also from
+            # that of a line that runs already
+            line = DIRECT | self.last_line & 0xFF if self.code.is_direct(pc) else self.line_of(pc)
+            error.line = line - 0x100 & 0xFFFF
             raise
 
     def clear(self) -> None:
@@ -281,7 +365,8 @@ class Machine(Hardware):
     def end(self, pc: int) -> None:
         """END."""
         if not self.code.is_direct(pc):
-            self._continue = pc + 1
+            self.last_line = self.line_of(pc)
+            self._can_continue(pc, pc + 1)
         raise Halt
 
     def stop(self, pc: int) -> None:
@@ -295,23 +380,41 @@ class Machine(Hardware):
             return self.code.start[pc]  # it continues with itself, for ever
         if self._continue is None:
             raise ApplesoftError("CAN'T CONTINUE")
+        if self._continued_line != self.code.lines[self._continue]:
+            self._shown_line = self._continued_line
+            raise Elsewhere(self._continue)
         return self._continue
 
-    def new(self) -> None:
+    def new(self, pc: int) -> None:
         """NEW."""
+        direct = self.code.is_direct(pc)
         self.program.clear()
         self.program.spare = 1
+        self._changed_by_itself(direct)
+
+    def delete(self, pc: int, first: int, last: int) -> None:
+        """DEL. The program ends, unless there was nothing to do."""
+        direct = self.code.is_direct(pc)
+        if self.program.delete(first, last):
+            self._changed_by_itself(direct)
+
+    def _changed_by_itself(self, direct: bool) -> None:
+        """The program is another one, and the line that made it so is gone; a program that did it
+        has come to its end, from where CONT can go on."""
         self.changed()
+        if not direct:
+            self.code.put_direct(b"", b"")
+            self._continue = self.code.end
         raise Halt
 
-    def delete(self, first: int, last: int) -> None:
-        """DEL. The program ends, unless there was nothing to do."""
-        if self.program.delete(first, last):
-            self.changed()
-            raise Halt
+    @property
+    def locked(self) -> bool:
+        """Whether every line typed means RUN (POKE 214,128)."""
+        return self.ram[memory.LOCK] >= 0x80
 
     def trace(self, pc: int, on: bool) -> None:
         """TRACE and NOTRACE."""
+        self.trace_flag = self.trace_flag >> 1 | (0x80 if on else 0)
         if on != self.tracing:
             self.tracing = on
             raise Elsewhere(pc + 1)
@@ -329,45 +432,80 @@ class Machine(Hardware):
     # --- functions and memory -----------------------------------------------------------------
 
     def call_function(self, slot: int, argument: Number, at: int) -> Number:
-        """FN, ``at`` bytes down the stack. Raises UNDEF'D FUNCTION and OUT OF MEMORY."""
+        """FN, ``at`` bytes down the stack. Raises UNDEF'D FUNCTION and OUT OF MEMORY, and leaves
+        the argument as it is then."""
         values, control = self.variables.values, self.control
         function = values[slot]
         if function is None:
-            self.variables.place(slot)
             raise ApplesoftError("UNDEF'D FUNCTION")
         control.depth += at
-        if control.pointer - control.depth - function.need < ROOM:
-            raise ApplesoftError("OUT OF MEMORY")
         saved = values[function.argument]
         values[function.argument] = rounded(argument)
+        if control.pointer - control.depth - function.need < ROOM:
+            raise ApplesoftError("OUT OF MEMORY")
         result: Number = function.body()
         values[function.argument] = saved
         control.depth -= at
         return result
+
+    def value(self, string: Descriptor) -> Number:
+        """VAL: the number the text begins with, zero if it begins with none. A zero byte ends it.
+
+        Raises OVERFLOW, and leaves behind the text the zero that the ROM puts there to end it.
+        """
+        text = self.variables.strings.used(string).partition("\0")[0]
+        try:
+            return decimaltext.read(re.sub("(?<=E)( *)[\xc8\xc9]", _exponent_sign, text), 0)[0]
+        except ApplesoftError:
+            self.write(string.address + string.length & 0xFFFF, 0)
+            raise
+
+    def residue(self, string: Descriptor) -> Number:
+        """The number that stands in the accumulator when a string was just made: its length for an
+        exponent, and its address."""
+        address = string.address
+        mantissa = (address & 0xFF) << 32 | address >> 8 << 24 | TEMPORARY << 16
+        return string.length, mantissa, self.fac[0][2]
+
+    def left_over(self) -> Number:
+        """The number that an earlier formula left in the accumulator."""
+        return self.fac[0]
+
+    def compare_junk(self, number: Number, string: Descriptor) -> int:
+        """A comparison that takes a number for a string: the bytes of its mantissa for an address."""
+        place = (number[1] >> 8 & 0xFF) << 8 | number[1] >> 16 & 0xFF
+        length, low, high = (memory.peek(self, place + n & 0xFFFF) for n in range(3))
+        address = low + 256 * high
+        text = "".join(chr(memory.peek(self, address + n & 0xFFFF)) for n in range(length))
+        other = self.variables.strings.used(string)
+        return (text > other) - (text < other)
 
     def random(self, x: Number) -> Number:
         """RND."""
         self.seed = functions.random(x, self.seed)
         return self.seed
 
-    def look_here(self, pc: int) -> None:
+    def look(self, pc: int) -> None:
         """Where the program is, before a step that may ask."""
-        self._here = pc
-        self.line = self.code.lines[pc]
+        self._current = pc
+        self.line = self.line_of(pc)
+        if not self.code.is_direct(pc):
+            self.statement = self.code.place(self.code.start[pc])
 
     def poke(self, place: int, n: int) -> None:
-        """POKE. In the program's text tokens may be changed, its structure not."""
+        """POKE."""
+        if self.write(place, n):
+            raise Elsewhere(self.code.relink(self._current) + 1)
+
+    def write(self, place: int, n: int) -> bool:
+        """Put a byte at an address; whether that changed the program."""
         if not START <= place < self.program.end:
             memory.poke(self, place, n)
-            return
-        for number in self.program.numbers:
-            offset = place - self.program.address_of(number) - 4
-            tokens = self.program.tokens[number]
-            if 0 <= offset < len(tokens) and n:
-                self.program.store(number, tokens[:offset] + bytes((n,)) + tokens[offset + 1 :])
-                pc = self.code.relink(self._here)
-                self.variables.grow()
-                raise Elsewhere(pc + 1)
+            return False
+        if not self.program.poke(place, n):
+            return False
+        self.code.changed()
+        return True
 
     def call(self, place: int) -> None:
         """CALL."""
@@ -386,7 +524,7 @@ class Machine(Hardware):
 
     def speed(self, n: int) -> None:
         """SPEED=, kept for PEEK; output is always at full speed."""
-        self.ram[memory.SPEED] = -n & FASTEST
+        self.ram[memory.SPEED] = -n & 0xFF
 
     def himem(self, place: int) -> None:
         """HIMEM:. Raises OUT OF MEMORY below the arrays."""

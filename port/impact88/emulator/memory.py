@@ -19,6 +19,7 @@ WINDOW = {32: "left", 33: "width", 34: "top", 35: "bottom"}
 COLUMN, ROW, MASK = 36, 37, 50
 ERROR_FLAG, ERROR_CODE = 216, 222
 FLASH_BIT, SPEED, TRACE_FLAG = 243, 241, 242
+LOCK = 214
 SCREEN = range(BASE, 0x800)
 APPLE_II_PLUS = {0xFBB3: 0xEA}
 """The byte of the monitor by which programs tell the machines apart."""
@@ -37,6 +38,7 @@ def _words(machine: Hardware) -> dict[int, int]:
         111: variables.strings.bottom,
         115: variables.strings.top,
         117: machine.line,
+        121: machine.statement,
         123: inputs.data_line,
         125: inputs.pointer,
         175: machine.program.end,
@@ -55,23 +57,10 @@ def peek(machine: Hardware, address: int) -> int:
         return _page_zero(machine, address)
     if address in SCREEN:
         return machine.screen.byte_at(address)
-    if START - 1 <= address < machine.program.end:
-        offset = address - START
-        image = machine.program.image
-        return image[offset] if 0 <= offset < len(image) else 0
-    field = layout.field_at(machine.variables, address, _locate(machine))
+    field = layout.field_at(machine.variables, address)
     if field is not None:
         return field.read(address)
-    if machine.variables.strings.bottom <= address < machine.variables.strings.top:
-        for at, text in layout.strings_in_memory(machine.variables):
-            if at <= address < at + len(text):
-                return ord(text[address - at]) & 0xFF
-    return machine.ram.get(address, APPLE_II_PLUS.get(address, 0))
-
-
-def _locate(machine: Hardware) -> layout.Locate:
-    image = machine.program.image
-    return lambda text: layout.string_address(machine.variables, image, START, text)
+    return APPLE_II_PLUS.get(address, 0) if address >= ROM else machine.ram[address]
 
 
 def _page_zero(machine: Hardware, address: int) -> int:
@@ -87,9 +76,9 @@ def _page_zero(machine: Hardware, address: int) -> int:
         ERROR_FLAG: lambda: errors.flag,
         ERROR_CODE: lambda: errors.code,
         FLASH_BIT: lambda: machine.output.flash_bit,
-        TRACE_FLAG: lambda: 0x80 if machine.tracing else 0,
+        TRACE_FLAG: lambda: machine.trace_flag,
     }
-    return known[address]() & 0xFF if address in known else machine.ram.get(address, 0)
+    return known[address]() & 0xFF if address in known else machine.ram[address]
 
 
 def poke(machine: Hardware, address: int, value: int) -> None:
@@ -116,7 +105,7 @@ def poke(machine: Hardware, address: int, value: int) -> None:
         stored[address - 201] = value
         machine.seed = from_stored(bytes(stored))
     else:
-        field = layout.field_at(machine.variables, address, _locate(machine))
+        field = layout.field_at(machine.variables, address)
         if field is not None:
             field.write(address, value)
         elif address < ROM:
@@ -147,6 +136,6 @@ def call(machine: Hardware, address: int) -> bool:
     }
     if address in routines:
         routines[address]()
-    elif machine.ram.get(address) != RTS:
+    elif peek(machine, address) != RTS:
         return False
     return True

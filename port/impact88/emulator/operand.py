@@ -1,4 +1,4 @@
-"""Pieces of compiled formulas, and the tables of operators and functions they are made with.
+"""Operands of compiled formulas, and the tables of operators and functions they are made with.
 
 The 6502 stack has 192 bytes to spare; every formula takes some of them while it is worked out, and
 the numbers below are the ROM's pushes and calls.
@@ -16,6 +16,7 @@ GREATER, EQUAL, LESS = (TOKENS[word] for word in (">", "=", "<"))
 FIRST_FUNCTION = TOKENS["SGN"]
 RELATION_BITS = {GREATER: 1, EQUAL: 2, LESS: 4}
 RELATIONS = {1: ">", 2: "==", 3: ">=", 4: "<", 5: "!=", 6: "<="}
+ALL_RELATIONS = 7
 COMPARED = {1: "< 0", 2: "== 0", 3: "<= 0", 4: "> 0", 5: "!= 0", 6: ">= 0"}
 """The same by what `real.compare` says of the right operand."""
 RELATIONAL = 0x64
@@ -33,9 +34,7 @@ OPERATORS = {
 NUMERIC = {
     TOKENS[word]: word for word in "SGN INT ABS SQR RND LOG EXP COS SIN TAN ATN PEEK".split()
 }
-ANYTHING = {TOKENS["FRE"]: "FRE", TOKENS["POS"]: "POS"}
 OF_TEXT = {TOKENS["LEN"]: "LEN", TOKENS["VAL"]: "VAL", TOKENS["ASC"]: "ASC"}
-MAKING_TEXT = {TOKENS["STR$"]: "STR", TOKENS["CHR$"]: "CHR"}
 SLICES = {TOKENS["LEFT$"]: "left", TOKENS["RIGHT$"]: "right", TOKENS["MID$"]: "mid"}
 USR = TOKENS["USR"]
 REFUSED_FUNCTIONS = {TOKENS["PDL"]: "PDL", TOKENS["SCRN("]: "SCRN"}
@@ -43,8 +42,6 @@ REFUSED_FUNCTIONS = {TOKENS["PDL"]: "PDL", TOKENS["SCRN("]: "SCRN"}
 
 PENDING = 12
 PARENTHESIS = 5
-TEMPORARIES = 3
-"""Strings that may be pending at once."""
 STACK = 248
 """The stack pointer when nothing is on the stack."""
 ROOM = 59
@@ -52,14 +49,24 @@ ROOM = 59
 
 
 class Operand:
-    """Python text for a value.
+    """Python text for a value: a triple of `real`, or a `strings.Descriptor`.
 
     ``rounded``: it has no extension. ``truth``: text for a bool, whether it is not zero.
-    ``temporary``: a string that holds one of the three places. ``variable``: the bare value of a
-    string variable. ``whole``: the number itself when it is a constant 0 ... 32767.
+    ``variable``: the bare value of a string variable. ``whole``: the number itself when it is a
+    constant 0 ... 32767. ``dead``: it ends in an error.
+    ``text_relation``: a relation comes next that takes this number for a string.
     """
 
-    __slots__ = ("code", "dead", "kind", "rounded", "temporary", "truth", "variable", "whole")
+    __slots__ = (
+        "code",
+        "dead",
+        "kind",
+        "rounded",
+        "text_relation",
+        "truth",
+        "variable",
+        "whole",
+    )
 
     def __init__(
         self,
@@ -69,18 +76,18 @@ class Operand:
         rounded: bool = False,
         truth: str | None = None,
         dead: bool = False,
-        temporary: bool = False,
         variable: bool = False,
         whole: int | None = None,
+        text_relation: bool = False,
     ) -> None:
         self.code = code
         self.kind = kind
         self.rounded = rounded
         self.truth = truth
         self.dead = dead
-        self.temporary = temporary
         self.variable = variable
         self.whole = whole
+        self.text_relation = text_relation
 
     @property
     def condition(self) -> str:

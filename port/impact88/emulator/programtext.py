@@ -1,26 +1,48 @@
 """The program in memory: numbered lines of tokens, and their image from address 2049 on.
 
 In memory a line is the address of the next one, its number (two bytes each, low byte first), its
-tokens and a zero; two zeros end the program.
+tokens and a zero; two zeros end the program. LIST and GOTO follow the addresses; a running program
+goes on with the bytes behind a line's zero. The two agree unless a program pokes into itself.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left
+from typing import NamedTuple
 
 START = 0x801
 """TXTTAB: where the program begins. The byte before it is zero."""
 HEADER = 4
+END_OF_LINE = 0
+
+
+class Line(NamedTuple):
+    """A line as it lies in memory."""
+
+    address: int
+    number: int
+    tokens: bytes
+
+    @property
+    def text(self) -> int:
+        """Where its tokens begin."""
+        return self.address + HEADER
+
+    @property
+    def end(self) -> int:
+        """The address behind its zero."""
+        return self.text + len(self.tokens) + 1
 
 
 class ProgramText:
-    """Lines by number, in order."""
+    """Lines by number, in order, and in ``ram``."""
 
-    def __init__(self) -> None:
+    def __init__(self, ram: bytearray) -> None:
         self.numbers: list[int] = []
         self.tokens: dict[int, bytes] = {}
+        self._ram = ram
         self._image: bytes | None = None
-        self._starts: list[int] = []
+        self._lines: list[Line] = []
         self.spare = 0
         """NEW, typed, leaves one byte more than the program takes, for good."""
 
@@ -35,14 +57,14 @@ class ProgramText:
 
     def store(self, number: int, tokens: bytes) -> None:
         """Put a line in, or take it out if it has no tokens."""
-        at = bisect_left(self.numbers, number)
-        known = self.numbers[at : at + 1] == [number]
+        index = bisect_left(self.numbers, number)
+        known = self.numbers[index : index + 1] == [number]
         if tokens:
             if not known:
-                self.numbers.insert(at, number)
+                self.numbers.insert(index, number)
             self.tokens[number] = tokens
         elif known:
-            del self.numbers[at]
+            del self.numbers[index]
             del self.tokens[number]
         self._image = None
 
@@ -67,14 +89,16 @@ class ProgramText:
         """The bytes from `START` on, the two zeros at the end included."""
         if self._image is None:
             out = bytearray()
-            self._starts = []
+            self._lines = []
             for number in self.numbers:
-                self._starts.append(START + len(out))
-                tokens = self.tokens[number]
-                link = START + len(out) + HEADER + len(tokens) + 1
-                out += bytes((link & 0xFF, link >> 8 & 0xFF, number & 0xFF, number >> 8))
-                out += tokens + b"\0"
+                line = Line(START + len(out), number, self.tokens[number])
+                self._lines.append(line)
+                out += bytes((line.end & 0xFF, line.end >> 8 & 0xFF, number & 0xFF, number >> 8))
+                out += line.tokens + bytes((END_OF_LINE,))
             self._image = bytes(out + b"\0\0")
+            self._ram[START - 1] = 0
+            room = self._ram[START : START + len(self._image)]
+            self._ram[START : START + len(room)] = self._image[: len(room)]
         return self._image
 
     @property
@@ -82,7 +106,56 @@ class ProgramText:
         """PRGEND: the address past the program."""
         return START + len(self.image) + self.spare
 
+    @property
+    def lines(self) -> list[Line]:
+        """The lines in the order in which their addresses follow each other."""
+        assert self.image is not None
+        return self._lines
+
+    def poke(self, address: int, value: int) -> bool:
+        """Change a byte; whether that changed a line.
+
+        The lines are found again by following the addresses, as LIST finds them, until one leads
+        out of the program or back.
+        """
+        image = bytearray(self.image)
+        offset = address - START
+        if not 0 <= offset < len(image):
+            self._ram[address] = value
+            return False
+        image[offset] = self._ram[address] = value
+        self._image = bytes(image)
+        before, self._lines = self._lines, self._followed()
+        self.numbers = [line.number for line in self._lines]
+        self.tokens = {line.number: line.tokens for line in reversed(self._lines)}
+        return before != self._lines
+
+    def _followed(self) -> list[Line]:
+        image = self.image
+        lines: list[Line] = []
+        passed: set[int] = set()
+        address = START
+        while START <= address <= START + len(image) - HEADER - 1 and address not in passed:
+            offset = address - START
+            following = image[offset] + 256 * image[offset + 1]
+            if following < 256:
+                break
+            passed.add(address)
+            text = offset + HEADER
+            end = image.find(END_OF_LINE, text)
+            number = image[offset + 2] + 256 * image[offset + 3]
+            lines.append(Line(address, number, image[text : end if end >= 0 else len(image)]))
+            address = following
+        return lines
+
     def address_of(self, number: int) -> int:
         """The address of a line."""
-        assert self.image is not None
-        return self._starts[bisect_left(self.numbers, number)]
+        return next(line.address for line in self.lines if line.number == number)
+
+    def after(self, line: Line) -> int | None:
+        """The number of the line whose bytes follow a line's; None at the end of the program, and
+        -1 where no line begins."""
+        offset = line.end - START
+        if self.image[offset + 1 : offset + 2] in (b"", b"\0"):
+            return None
+        return next((each.number for each in self.lines if each.address == line.end), -1)

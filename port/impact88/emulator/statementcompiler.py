@@ -1,6 +1,6 @@
 """Compiling statements: which keyword begins what, and the few that fit nowhere else.
 
-See `steps` for what they become, `flow` and `devices` for most of them.
+See `linecompiler` for what they become, `flowcompiler` and `devicecompiler` for most of them.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ class StatementCompiler(FlowCompiler, DeviceCompiler):
                 return
             if not reader.at_end():
                 self._begin(True)
+                self.steps[-1].traced = False
                 self._fail("SYNTAX")
                 return
             if not reader.peek():
@@ -96,9 +97,9 @@ class StatementCompiler(FlowCompiler, DeviceCompiler):
         if not reader.take(FN):
             self._fail("SYNTAX")
             return
-        slot = formulas.function_name()
-        if isinstance(slot, Operand):
-            self._stop(slot)
+        slot, refused = formulas.function_name()
+        if refused is not None:
+            self._stop(refused)
             return
         self._emit(f"place({slot})")
         if self.direct:
@@ -164,7 +165,7 @@ _WITH_BYTE = {
 _ALONE = {
     "END": "end(pc)",
     "STOP": "stop(pc)",
-    "NEW": "new()",
+    "NEW": "new(pc)",
     "CLEAR": "clear()",
     "POP": "pop()",
     "CONT": "return cont(pc)",

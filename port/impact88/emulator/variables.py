@@ -7,12 +7,12 @@ follow the variables in memory, strings grow down from HIMEM towards them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from ..applesoft.errors import ApplesoftError, illegal_quantity
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
-from .strings import Literal, StringArea
+from .strings import EMPTY, Descriptor, StringArea
 from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
 
 TOP_OF_MEMORY = 0xC000
@@ -22,8 +22,8 @@ ARRAY_HEADER = 5
 ELEMENT_SIZES = {REAL: 5, INTEGER: 2, STRING: 3}
 AUTOMATIC = 11
 """Elements per dimension of an array that no DIM made."""
-EMPTY = Literal("")
-MINUS_32768 = from_stored("9080000000")
+LOWEST = from_stored("9080000020")
+"""The one number below -32767.99 that the ROM lets through: a little less than -32768."""
 
 
 class Array(NamedTuple):
@@ -54,7 +54,7 @@ class Variables:
     says which simple variables exist, ``order`` and ``array_order`` since when.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, ram: bytearray) -> None:
         self.values: list[Any] = []
         self.made = bytearray()
         self.arrays: list[Array | None] = []
@@ -63,7 +63,7 @@ class Variables:
         self.start = 0
         self._end = 0
         self._arrays_size = 0
-        self.strings = StringArea(TOP_OF_MEMORY, self.end_of_arrays, self._live_characters)
+        self.strings = StringArea(ram, TOP_OF_MEMORY, self.end_of_arrays, self._held)
         self.grow()
 
     def grow(self) -> None:
@@ -99,23 +99,26 @@ class Variables:
         """STREND."""
         return self._end + self._arrays_size
 
-    def free(self, _: object) -> Number:
-        """FRE, whatever its argument: the room left, past 32767 as a negative number."""
+    def free(self) -> Number:
+        """FRE: the room left, past 32767 as a negative number."""
         self.strings.collect()
         room = self.strings.bottom - self.end_of_arrays()
         return integer((room + 0x8000 & 0xFFFF) - 0x8000)
 
-    def _live_characters(self) -> int:
-        total = 0
+    def _held(self) -> Iterator[Descriptor]:
+        """The descriptors that variables and arrays hold, in memory's order."""
         for slot in self.order:
             value = self.values[slot]
-            if value.__class__ is str:
-                total += len(value)
+            if value.__class__ is Descriptor:
+                yield value
         for slot in self.array_order:
             array = self.arrays[slot]
             if array is not None and array.kind == STRING:
-                total += sum(len(text) for text in array.data if text.__class__ is str)
-        return total
+                yield from array.data
+
+    def address_of(self, slot: int) -> int:
+        """Where a simple variable's value lies."""
+        return self.start + VARIABLE_SIZE * self.order.index(slot) + 2
 
     def _room(self, size: int) -> None:
         """Raises OUT OF MEMORY unless so much more fits between arrays and strings."""
@@ -132,6 +135,8 @@ class Variables:
         self._room(VARIABLE_SIZE)
         self._end += VARIABLE_SIZE
         self.made[slot] = 1
+        if self.values[slot] is EMPTY:
+            self.values[slot] = Descriptor(0, 0)
         self.order.append(slot)
 
     def place(self, slot: int) -> tuple[list[Any], int]:
@@ -159,7 +164,8 @@ class Variables:
         self._room(size)
         self._arrays_size += size
         self.array_order.append(slot)
-        array = Array(tuple(sizes), [blank(kind)] * elements, kind)
+        nothing = Descriptor(0, 0) if kind == STRING else ZERO
+        array = Array(tuple(sizes), [nothing] * elements, kind)
         self.arrays[slot] = array
         return array
 
@@ -221,11 +227,15 @@ class Variables:
 
 def whole(x: Number) -> Number:
     """What an integer variable stores: rounded to 32 bits, then down. Raises ILLEGAL QUANTITY
-    outside -32768 ... 32767."""
+    outside -32767 ... 32767.
+
+    The ROM means to let -32768 through too, but its constant has a bit too many: it lets through
+    -32768.0005 only, which is stored as 32767.
+    """
     x = rounded(x)
-    if x[0] >= 0x90 and compare(MINUS_32768, x):
+    if x[0] >= 0x90 and compare(LOWEST, x):
         raise illegal_quantity()
-    return integer(to_integer(x))
+    return integer((to_integer(x) + 0x8000 & 0xFFFF) - 0x8000)
 
 
 def subscript(x: Number) -> int:

@@ -1,4 +1,4 @@
-"""The names that compiled steps use, and what each means on a given hardware.
+"""The names that compiled steps use, and what each means for a machine.
 
 `expressions` and the statement compilers write these names; nothing else may depend on them.
 """
@@ -24,7 +24,6 @@ from ..applesoft.real import (
 )
 from . import memory
 from .hardware import Hardware
-from .strings import code, value
 from .variables import Function, address, byte, subscript, whole
 
 
@@ -58,10 +57,6 @@ _NUMBERS: dict[str, Any] = {
     "address": address,
     "subscript": subscript,
     "whole": whole,
-    "LEN": lambda text: integer(len(text)),
-    "ASC": lambda text: integer(code(text)),
-    "VAL": lambda text: value(text, decimaltext.read),
-    "write": decimaltext.write,
     "Function": Function,
     "bad": bad,
 }
@@ -91,10 +86,16 @@ def _values(hardware: Hardware) -> dict[str, Any]:
         "right": strings.right,
         "mid": strings.mid,
         "made": strings.made,
-        "copy": strings.copy,
-        "CHR": lambda x: strings.character(byte(x)),
+        "literal": lambda address, length: strings.temporary(length, address),
+        "copied": strings.copied,
+        "kept": strings.kept,
+        "strcmp": strings.compare,
+        "CHR": lambda x: strings.made(chr(byte(x))),
         "STR": lambda x: strings.made(decimaltext.write(x)),
-        "FRE": variables.free,
+        "LEN": lambda string: integer(strings.free(string).length),
+        "ASC": lambda string: integer(strings.code(string)),
+        "FRE": lambda number: variables.free(),
+        "FREE": lambda string: (strings.free(string), variables.free())[1],
     }
 
 
@@ -104,19 +105,17 @@ def _flow(hardware: Hardware) -> dict[str, Any]:
         "begin_for": control.begin_for,
         "push_for": control.push_for,
         "next_": control.next_,
-        "return_": control.return_,
         "pop": control.pop,
         "room": control.room,
-        "places": control.places,
-        "watch": control.watch,
-        "lose": control.lose,
     }
 
 
 def _outside(hardware: Hardware) -> dict[str, Any]:
-    output, inputs = hardware.output, hardware.inputs
+    output, inputs, strings = hardware.output, hardware.inputs, hardware.variables.strings
     return {
         "out": output.out,
+        "out_string": lambda string: output.out(strings.used(string)),
+        "out_number": lambda x: output.out(decimaltext.write(x)),
         "newline": output.newline,
         "zone": output.zone,
         "tab": output.tab,
