@@ -84,7 +84,7 @@ def test_line_numbers_end_at_63999():
         ("10 PRINT 1/(0*)", f"\n?SYNTAX ERROR{BEL} IN 10"),
         ("10 FOR I%=1 TO 2", f"\n?SYNTAX ERROR{BEL} IN 10"),
         ("10 A%=32768", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
-        ("10 A%=-32767.5:PRINT A%", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
+        ("10 A%=-32768:PRINT A%", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
         ("10 PRINT CHR$(256)", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),
         ("10 DIM A(5):DIM A(5)", f"\n?REDIM'D ARRAY ERROR{BEL} IN 10"),
         ("10 PRINT A(-1)", f"\n?ILLEGAL QUANTITY ERROR{BEL} IN 10"),

@@ -12,6 +12,7 @@ the screen and the printer are functions that take text.
 from __future__ import annotations
 
 import re
+from collections import deque
 from collections.abc import Callable, Iterator
 
 TYPE_CHECKING = False
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
 CONTROL_C = "\x03"
 CONTROL_D = "\x04"
 CONTROL_H = "\x08"
+CONTROL_U = "\x15"
 CONTROL_X = "\x18"
+ESCAPE = "\x1b"
 PROMPT = "\0"
 """The prompt character Applesoft gives the monitor's line reader: it is sent, and shows nothing."""
 LINE_LIMIT = 239
@@ -31,6 +34,8 @@ BUFFER = 256
 WARNING = 248
 BELL = "\a"
 PRINTER_SLOT = 1
+_MOVES = {"I": "D", "J": "B", "K": "A", "M": "C"}
+"""Keys after ESC that may be repeated, and what they do once."""
 
 Keyboard = Callable[[], "str | None"]
 Device = Callable[[str], object]
@@ -49,11 +54,28 @@ class EndOfInput(Exception):
     """The keyboard has no more lines and the program asks for one."""
 
 
+class Editor:
+    """What typing a line asks of a screen; this one is of a console that has none."""
+
+    def under_cursor(self) -> str:
+        """The character that control-U takes."""
+        return " "
+
+    def escape(self, key: str) -> None:
+        """ESC and this key: the monitor's movements of the cursor."""
+
+    def end_line(self) -> None:
+        """RETURN: what stands behind the cursor is cleared."""
+
+    def typed(self) -> None:
+        """A line was typed on a terminal, which has shown it."""
+
+
 class Console:
     """A screen, a keyboard, and what stands between them and a program.
 
-    ``echo``: whether typed lines go into the output (False where a terminal has shown them;
-    ``typed`` is called then).
+    ``echo``: whether typed lines go into the output (False where a terminal has shown them).
+    ``editor`` is the screen's side of typing; ``reply`` the last one that INPUT got.
     """
 
     def __init__(
@@ -74,7 +96,8 @@ class Console:
         self._line_begins = True
         self._command: str | None = None
         self._keys = ""
-        self.typed: Callable[[], object] = lambda: None
+        self.editor = Editor()
+        self.reply: Reply | None = None
 
     # --- output -------------------------------------------------------------------------------
 
@@ -151,43 +174,87 @@ class Console:
     def read_line(self, prompt: str = PROMPT) -> str:
         """One line from the keyboard as the monitor reads it: upper case, edited, echoed.
 
-        Control-H takes back a character, control-X the line. Raises EndOfInput, and
-        KeyboardInterrupt for control-C at the start of the line.
+        Raises EndOfInput.
         """
+        self.put(prompt)
+        typed = capitals(self._typed_line())
+        if typed.isprintable() and len(typed) <= WARNING:
+            self._echo(typed)
+        else:
+            typed = self._edited(prompt, typed)
+        self.editor.end_line()
+        self._end_echo()
+        return typed[:LINE_LIMIT]
+
+    def _edited(self, prompt: str, typed: str) -> str:
+        """The line that the keys make. Control-H takes back a character, control-X the line,
+        control-U takes the character under the cursor, ESC and a key move the cursor. The bell
+        rings when the line is nearly full; a full one is abandoned, as if by control-X."""
+        keys = deque(typed)
+        kept: list[str] = []
+        while keys:
+            key = keys.popleft()
+            if key == ESCAPE:
+                self._escape(keys)
+                continue
+            if key == CONTROL_U:
+                key = self.editor.under_cursor()
+            self._echo(key)
+            if key == CONTROL_H and kept:
+                kept.pop()
+            elif key == CONTROL_H:
+                self._echo("\n" + prompt)
+            elif key == CONTROL_X:
+                self._cancel(kept, prompt)
+            else:
+                if len(kept) >= WARNING:
+                    self._echo(BELL)
+                kept.append(key)
+                if len(kept) == BUFFER:
+                    self._cancel(kept, prompt)
+        return "".join(kept)
+
+    def _cancel(self, kept: list[str], prompt: str) -> None:
+        kept.clear()
+        self._echo("\\\n" + prompt)
+
+    def _escape(self, keys: deque[str]) -> None:
+        """ESC: the keys I, J, K and M move the cursor and wait for more, any other is the last."""
         while True:
-            self.put(prompt)
-            typed = self._typed_line()
-            typed = capitals(typed)
-            if typed.startswith(CONTROL_C):
-                raise KeyboardInterrupt
-            kept, cancelled, rest = typed.rpartition(CONTROL_X)
-            if cancelled:
-                cancelled += "\\\n" + prompt
-                self._echo(kept.replace(CONTROL_X, cancelled) + cancelled)
-                typed = rest
-            while len(typed) >= BUFFER:
-                self._echo(_warned(typed[:BUFFER]) + "\\\n" + prompt)
-                typed = typed[BUFFER:]
-            self._echo(_warned(typed) + "\n")
-            return _edited(typed)[:LINE_LIMIT]
+            if not keys:  # RETURN ends it, and the line goes on with the next one
+                keys.extend(capitals(self._typed_line()))
+                return
+            key = keys.popleft()
+            self.editor.escape(_MOVES.get(key, key))
+            if key not in _MOVES:
+                return
 
     def _echo(self, text: str) -> None:
         if self.echo:
             self.put(text)
-        else:  # the terminal has shown it, RETURN included
+
+    def _end_echo(self) -> None:
+        if self.echo:
+            self.put("\n")
+        else:  # the terminal has shown the line, RETURN included
             self._line_begins = True
-            self.typed()
+            self.editor.typed()
 
     def input(self, read: Read, zero: Any) -> Iterator[Reply]:
         """INPUT of numbers: one Reply per attempt, to be called once for each variable.
 
         Too few values are asked for with ``??``; a value that is no number gets ``?REENTER`` and a
         new attempt; values left over get ``?EXTRA IGNORED``. Values stored before a bad one stay
-        stored, as in the ROM.
+        stored, as in the ROM. Raises EndOfInput, and KeyboardInterrupt for control-C at the start
+        of a reply.
         """
         while True:
             self.put("?")
-            reply = Reply(self, read, zero, self.read_line())
+            line = self.read_line()
+            if line.startswith(CONTROL_C):
+                raise KeyboardInterrupt
+            reply = Reply(self, read, zero, line)
+            self.reply = reply
             yield reply
             if not reply.refused:
                 break
@@ -197,7 +264,10 @@ class Console:
 
 
 class Reply:
-    """The values of one reply to INPUT; calling it yields the next one."""
+    """The values of one reply to INPUT; calling it yields the next one.
+
+    ``begun`` counts the values that have been looked for: the ROM has made so many variables.
+    """
 
     def __init__(self, console: Console, read: Read, zero: Any, line: str) -> None:
         self._console = console
@@ -205,25 +275,29 @@ class Reply:
         self._zero = zero
         self._line = line
         self._position = 0
-        self._started = False
+        self.begun = 0
         self.refused = False
 
     def __call__(self, old: Any) -> Any:
         """The next value; ``old``, the variable's value so far, once this reply has been refused.
 
         A text that only begins as a number is refused after its beginning has been stored, as in
-        the ROM. Raises ApplesoftError OVERFLOW and EndOfInput.
+        the ROM; a line without any character is refused before. Raises ApplesoftError OVERFLOW and
+        EndOfInput.
         """
         if self.refused:
             return self._zero if old is None else old
-        if self._started:
+        self.begun += 1
+        if self.begun > 1:
             if self._at_end():
                 self._console.put("??")
                 self._line = self._console.read_line()
                 self._position = 0
             else:
                 self._position += 1  # the comma
-        self._started = True
+        if not self._line:
+            self.refused = True
+            return self._zero if old is None else old
         value, self._position = self._read(self._line, self._position)
         while self._line.startswith(" ", self._position):
             self._position += 1
@@ -243,21 +317,3 @@ class Reply:
 def capitals(typed: str) -> str:
     """What the monitor makes of the codes above capital letters: those, and ``{`` becomes ``[``."""
     return "".join(chr(n & 0x5F) if 0x60 <= n < 0x80 else chr(n & 0x7F) for n in map(ord, typed))
-
-
-def _warned(typed: str) -> str:
-    """What is shown of a line: near the end of the buffer every key rings the bell."""
-    return typed[:WARNING] + "".join(character + BELL for character in typed[WARNING:])
-
-
-def _edited(typed: str) -> str:
-    """The line after its backspaces."""
-    if CONTROL_H not in typed:
-        return typed
-    kept: list[str] = []
-    for character in typed:
-        if character != CONTROL_H:
-            kept.append(character)
-        elif kept:
-            kept.pop()
-    return "".join(kept)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from ..applesoft import functions
 from ..applesoft.console import Console, Device, Keyboard
-from ..applesoft.real import Number
+from ..applesoft.real import Number, from_stored
 from .control import Control
 from .inputs import Inputs
 from .onerr import Errors
@@ -16,14 +15,21 @@ from .variables import Variables
 AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
 """What the ROM's parser leaves in the accumulator: an address."""
 SPEED = 241
+PAGE_ZERO = bytes.fromhex("4C3CD4 4C3ADB 000000 00 4C99E1")
+"""The jumps with which switching on begins page 0: to the prompt, to print a text, and USR's."""
+
+
+FIRST_SEED = from_stored("804FC75200")
+"""RND's seed after switching on: of the ROM's five bytes, which end in 58, four are copied."""
 
 
 class Hardware:
-    """Screen, keyboard, program, variables, stack, ONERR, RAM (``ram``),
-    RND's ``seed``, whether TRACE is on (``tracing``, and the byte ``trace_flag``), the ``line`` being
-    executed and the address of the ``statement`` as far as a program can ask for them, and the
-    number in the floating-point accumulator (``fac``, a list of one) as far as anything is left of
-    it."""
+    """Screen, keyboard, program, variables, stack, ONERR, RAM (``ram``), RND's ``seed``.
+
+    ``tracing``: whether TRACE is on, ``trace_flag`` its byte. ``line`` and ``statement``: the line
+    being executed and the address of its statement, as far as a program can ask for them. ``fac``:
+    a list of one, the number left in the floating-point accumulator as far as one can tell.
+    """
 
     def __init__(
         self,
@@ -35,11 +41,13 @@ class Hardware:
         echo: bool = True,
         blanks: bool = True,
     ) -> None:
-        self.screen = Screen(screen, blanks=blanks)
-        self.console = Console(keyboard, self.screen.write, printer, dos=dos, echo=echo)
-        self.console.typed = self.screen.typed
-        self.output = Output(self.console, self.screen)
         self.ram = bytearray(0x10000)
+        self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
+        self.ram[SPEED] = 1
+        self.screen = Screen(self.ram, screen, blanks=blanks)
+        self.console = Console(keyboard, self.screen.write, printer, dos=dos, echo=echo)
+        self.console.editor = self.screen
+        self.output = Output(self.console, self.screen)
         self.program = ProgramText(self.ram)
         self.variables = Variables(self.ram)
         self.control = Control(self.variables)
@@ -51,10 +59,9 @@ class Hardware:
             self.variables.strings,
             lambda: self.errors.on,
         )
-        self.seed = functions.FIRST_SEED
+        self.seed = FIRST_SEED
         self.tracing = False
         self.trace_flag = 0
         self.line = 0
         self.statement = 0
         self.fac: list[Number] = [AFTER_TYPING]
-        self.ram[SPEED] = 1

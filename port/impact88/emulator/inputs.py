@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..applesoft import decimaltext
-from ..applesoft.console import Console
+from ..applesoft.console import CONTROL_C, Console
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import rounded
 from .programtext import START, ProgramText
@@ -29,6 +29,10 @@ _DATA = chr(DATA)
 BAD_REPLY = 254
 DIRECT_AFTER_GET = 0xFF40
 """What a bad GET puts in place of the line number: the machine believes it is at the prompt."""
+
+
+class InputBreak(KeyboardInterrupt):
+    """Control-C as a reply: CONT will not find the beginning of a statement."""
 
 
 class BadReply(ApplesoftError):
@@ -145,7 +149,12 @@ class Inputs:
     def input_(self, pc: int, items: Items) -> bool:
         """INPUT after its prompt; True if the statement has to be done again."""
         console = self._console
-        text = console.read_line()
+        try:
+            text = console.read_line()
+        except KeyboardInterrupt:
+            raise InputBreak from None
+        if text.startswith(CONTROL_C):
+            raise InputBreak
         at = -1
         for kind, where in items:
             place = where()

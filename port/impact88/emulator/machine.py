@@ -17,6 +17,7 @@ from ..applesoft.real import Number, rounded
 from . import memory
 from .control import Elsewhere
 from .hardware import Hardware
+from .inputs import InputBreak
 from .linking import DIRECT, Halt, Steps
 from .operand import ROOM
 from .programtext import START
@@ -70,6 +71,7 @@ class Machine(Hardware):
         self.last_line = 0
         self._continue: int | None = None
         self._continued_line = 0
+        self._within_statement = False
         self._entered: int | None = None
         self._shown_line: int | None = None
         self._current = 0
@@ -170,9 +172,9 @@ class Machine(Hardware):
             except Halt:
                 self._halted(pc)
                 return
-            except KeyboardInterrupt:
+            except KeyboardInterrupt as interrupt:
                 self.interrupted = False
-                pc = self._break(pc)
+                pc = self._break(pc, in_input=isinstance(interrupt, InputBreak))
             except RecursionError:
                 pc = self._handle(ApplesoftError("OUT OF MEMORY"), pc)
             except ApplesoftError as error:
@@ -232,6 +234,7 @@ class Machine(Hardware):
         """END, STOP or control-C at pc: CONT goes to ``place``."""
         self._continue = place
         self._continued_line = self.line_of(pc)
+        self._within_statement = False
 
     def _handle(self, error: ApplesoftError, pc: int) -> int:
         """An error: to ONERR's line, or to the prompt (-1) with a message."""
@@ -270,7 +273,7 @@ class Machine(Hardware):
             undefined.line = errors.handler_line
             return self._handle(undefined, pc)
 
-    def _break(self, pc: int) -> int:
+    def _break(self, pc: int, *, in_input: bool) -> int:
         """Control-C."""
         errors = self.errors
         start = self.code.start[pc]
@@ -283,6 +286,7 @@ class Machine(Hardware):
         if not self.code.is_direct(pc):
             self.last_line = self.line_of(pc)
             self._can_continue(pc, start)
+            self._within_statement = in_input
         return -1
 
     def _say_break(self, pc: int) -> None:
@@ -320,6 +324,7 @@ class Machine(Hardware):
         back = self.control.return_()
         if self.code.is_direct(back) and self._entered != pc and not self.code.is_direct(pc):
             self._continue = self.code.start[pc]
+            self._within_statement = False
         return back
 
     def onerr(self, pc: int, number: int | None) -> None:
@@ -380,6 +385,8 @@ class Machine(Hardware):
             return self.code.start[pc]  # it continues with itself, for ever
         if self._continue is None:
             raise ApplesoftError("CAN'T CONTINUE")
+        if self._within_statement:
+            raise ApplesoftError("SYNTAX", self._continued_line)
         if self._continued_line != self.code.lines[self._continue]:
             self._shown_line = self._continued_line
             raise Elsewhere(self._continue)
@@ -405,6 +412,7 @@ class Machine(Hardware):
         if not direct:
             self.code.put_direct(b"", b"")
             self._continue = self.code.end
+            self._within_statement = False
         raise Halt
 
     @property

@@ -13,14 +13,14 @@ from ..applesoft.real import from_stored, to_stored
 from . import layout
 from .hardware import Hardware
 from .programtext import START
-from .screen import BASE
+from .screen import BASE, END
 
 WINDOW = {32: "left", 33: "width", 34: "top", 35: "bottom"}
 COLUMN, ROW, MASK = 36, 37, 50
 ERROR_FLAG, ERROR_CODE = 216, 222
 FLASH_BIT, SPEED, TRACE_FLAG = 243, 241, 242
 LOCK = 214
-SCREEN = range(BASE, 0x800)
+SCREEN = range(BASE, END)
 APPLE_II_PLUS = {0xFBB3: 0xEA}
 """The byte of the monitor by which programs tell the machines apart."""
 RTS = 0x60
@@ -91,7 +91,7 @@ def poke(machine: Hardware, address: int, value: int) -> None:
     elif address == COLUMN:
         screen.move_to_column(value)
     elif address == ROW:
-        screen.move_to_row(min(value, 23))
+        screen.put_row(value)
     elif address == MASK:
         screen.set_mode(value)
     elif address == ERROR_FLAG:
@@ -123,6 +123,7 @@ def call(machine: Hardware, address: int) -> bool:
         0xFC66: screen.line_feed,
         0xFC1A: screen.step_up,
         0xFC10: screen.step_back,
+        0xFBF4: screen.advance,
         0xFC62: lambda: screen.write("\n"),
         0xFD8E: lambda: machine.output.put("\n"),
         0xFF3A: lambda: machine.output.put("\a"),

@@ -1,29 +1,41 @@
-"""The text screen: 40 columns and 24 rows, the cursor, and the text window.
+"""The text screen: 40 columns and 24 rows in memory, the cursor, and the text window.
 
 Characters come with their high bit dropped. The screen passes them on to a device in the same form;
 columns that the cursor skipped (comma zones, HTAB) can be passed on as blanks when a character
 follows on the line. Rows have no newline at column 40.
+
+Rows lie in memory in three groups, 128 bytes from one to the next, with eight bytes between the
+groups that no row shows. The monitor works out a row's address when the cursor comes to it, from
+any row number and with the window's left edge added: so a window set while the cursor stands
+outside has its effect only then, and odd ones write where no row is.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from ..applesoft.console import Editor
+
 WIDTH = 40
 HEIGHT = 24
-BASE = 0x400
+BASE, END = 0x400, 0x800
 NORMAL, INVERSE, FLASHING = 0xFF, 0x3F, 0x7F
 _BLANK = 0xA0
+_SMALL_LETTERS = 0xE0
 _PENDING_LIMIT = 20_000
 
 
-class Screen:
-    """Where characters appear, and where the next one will.
+class Screen(Editor):
+    """Where characters appear, in ``ram``, and where the next one will.
 
-    ``blanks``: whether skipped columns are passed on as blanks; the machine sends none.
+    ``column`` and ``row`` are the cursor's, from 0; ``left``, ``width``, ``top`` and ``bottom`` the
+    window's. ``blanks``: whether skipped columns are passed on as blanks; the machine sends none.
     """
 
-    def __init__(self, device: Callable[[str], object], *, blanks: bool = True) -> None:
+    def __init__(
+        self, ram: bytearray, device: Callable[[str], object], *, blanks: bool = True
+    ) -> None:
+        self._ram = ram
         self._device = device
         self._blanks = blanks
         self.column = 0
@@ -31,9 +43,10 @@ class Screen:
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
         self.mask = NORMAL
         self._row = 0
-        self._cells = [bytearray([_BLANK] * WIDTH) for _ in range(HEIGHT)]
+        self._address = BASE
         self._pending: list[tuple[int, str]] = []
         self._pending_size = 0
+        ram[BASE:END] = bytes([_BLANK]) * (END - BASE)
 
     # --- characters ---------------------------------------------------------------------------
 
@@ -47,7 +60,7 @@ class Screen:
             gap = 0
             self._device(text)
         self._draw_later(text)
-        if text.isprintable() and self.left + self.column + len(text) < self.left + self.width:
+        if text.isprintable() and self.column + len(text) < self.width:
             self.column += len(text)
         else:
             self._move(text)
@@ -63,12 +76,9 @@ class Screen:
             elif character in "\n\r":
                 self.column = 0
             elif character == "\b":
-                self.column = self.column - 1 if self.column else self.width - 1
-
-    def typed(self) -> None:
-        """A line was typed on a terminal, which has shown it: the cursor is at the left."""
-        self._draw_later("\n")
-        self.column = self._expected = 0
+                self.column -= 1
+                if self.column < 0:
+                    self.column = self.width - 1 & 0xFF
 
     # --- the picture, drawn only when somebody looks ------------------------------------------
 
@@ -84,44 +94,76 @@ class Screen:
         for column, text in pending:
             for character in text:
                 if character >= " ":
-                    self._poke_cell(column, ord(character) | 0x80)
+                    code = ord(character) | 0x80
+                    self._put(self._address + column, code & self.mask if code >= _BLANK else code)
                     column += 1
                     if column >= self.width:
                         column = 0
                         self._line_feed()
-                elif character == "\n":
+                elif character in "\n\r":
                     column = 0
                     self._line_feed()
                 elif character == "\b":
                     column -= 1
                     if column < 0:
-                        column = self.width - 1
-                        self._row = max(self._row - 1, self.top)
+                        column = self.width - 1 & 0xFF
+                        self._step_up()
 
-    def _poke_cell(self, column: int, code: int) -> None:
-        at = self.left + column
-        if at < WIDTH:
-            self._cells[self._row][at] = code & self.mask if code >= _BLANK else code
+    def _put(self, address: int, code: int) -> None:
+        """A byte on the screen; behind its end there is the program, which nothing here writes."""
+        if address < END:
+            self._ram[address] = code
+
+    def _go_to_row(self, row: int) -> None:
+        """The cursor's address in a row, whether the screen has such a row or not."""
+        page = BASE + (row >> 1 & 3) * 0x100
+        low = (row & 0x18) * 5 + (row & 1) * 0x80 + self.left
+        self._address = page + (low & 0xFF)
 
     def _line_feed(self) -> None:
-        self._row += 1
-        if self._row >= self.bottom:
-            self._row = self.bottom - 1
+        self._row = self._row + 1 & 0xFF
+        if self._row < self.bottom:
+            self._go_to_row(self._row)
+        else:
+            self._row = self._row - 1 & 0xFF
             self._scroll()
 
-    def _scroll(self) -> None:
-        span = slice(self.left, min(self.left + self.width, WIDTH))
-        for row in range(self.top, self.bottom - 1):
-            self._cells[row][span] = self._cells[row + 1][span]
-        self._clear_from(self.bottom - 1, 0)
+    def _step_up(self) -> None:
+        if self._row > self.top:
+            self._row -= 1
+            self._go_to_row(self._row)
 
-    def _clear_from(self, row: int, column: int) -> None:
-        for at in range(self.left + column, min(self.left + self.width, WIDTH)):
-            self._cells[row][at] = _BLANK
+    def _scroll(self) -> None:
+        row = self.top
+        self._go_to_row(row)
+        while row + 1 < self.bottom:
+            row += 1
+            upper = self._address
+            self._go_to_row(row)
+            # the monitor counts columns down while they look positive
+            columns = self.width if 1 <= self.width <= 0x80 else 1
+            for column in range(self.width - columns, self.width) if self.width else (0xFF,):
+                self._put(upper + column, self._ram[self._address + column])
+        self._clear_from(0)
+        self._go_to_row(self._row)
+
+    def _clear_from(self, column: int) -> None:
+        """Blanks to the end of the window's row; one at least."""
+        for each in range(column, max(self.width, column + 1)):
+            self._put(self._address + each, _BLANK)
+
+    def _clear_rows(self, row: int, column: int) -> None:
+        while True:
+            self._go_to_row(row)
+            self._clear_from(column)
+            row, column = row + 1, 0
+            if row >= self.bottom:
+                break
+        self._go_to_row(self._row)
 
     @property
     def row(self) -> int:
-        """The cursor's row, from 0."""
+        """The cursor's row."""
         self._draw()
         return self._row
 
@@ -129,41 +171,40 @@ class Screen:
         """The 24 rows as text, blanks at the end of each cut; inverse and flashing characters as
         normal ones."""
         self._draw()
-        return "".join("".join(map(_shown, row)).rstrip(" ") + "\n" for row in self._cells)
+        rows = (BASE + row % 8 * 0x80 + row // 8 * WIDTH for row in range(HEIGHT))
+        return "".join(
+            "".join(map(_shown, self._ram[first : first + WIDTH])).rstrip(" ") + "\n"
+            for first in rows
+        )
 
     def byte_at(self, address: int) -> int:
-        """What screen memory holds: rows in eights, 128 bytes apart."""
+        """What screen memory holds."""
         self._draw()
-        row, column = _cell(address)
-        return self._cells[row][column] if column < WIDTH else 0
+        return self._ram[address]
 
     def put_byte(self, address: int, value: int) -> None:
         """POKE into screen memory."""
         self._draw()
-        row, column = _cell(address)
-        if column < WIDTH:
-            self._cells[row][column] = value
+        self._ram[address] = value
 
     # --- statements ---------------------------------------------------------------------------
 
     def home(self) -> None:
         """Clear the window; the cursor at its top left."""
         self._draw()
-        for row in range(self.top, self.bottom):
-            self._clear_from(row, 0)
         self._row = self.top
         self.column = 0
+        self._clear_rows(self.top, 0)
 
     def clear_to_end_of_line(self) -> None:
         """CALL -868."""
         self._draw()
-        self._clear_from(self._row, self.column)
+        self._clear_from(self.column)
 
     def clear_to_end(self) -> None:
         """CALL -958."""
-        self.clear_to_end_of_line()
-        for row in range(self._row + 1, self.bottom):
-            self._clear_from(row, 0)
+        self._draw()
+        self._clear_rows(self._row, self.column)
 
     def scroll(self) -> None:
         """CALL -912."""
@@ -180,16 +221,30 @@ class Screen:
         self._draw()
         self.column -= 1
         if self.column < 0:
-            self.column = self.width - 1
-            self.step_up()
+            self.column = self.width - 1 & 0xFF
+            self._step_up()
 
     def step_up(self) -> None:
         """CALL -998: the cursor one row up, not past the window's top."""
         self._draw()
-        self._row = max(self._row - 1, self.top)
+        self._step_up()
+
+    def advance(self) -> None:
+        """CALL -1036: the cursor one column to the right."""
+        self._draw()
+        self.column += 1
+        if self.column >= self.width:
+            self.column = 0
+            self._line_feed()
 
     def move_to_row(self, row: int) -> None:
         """VTAB."""
+        self._draw()
+        self._row = row
+        self._go_to_row(row)
+
+    def put_row(self, row: int) -> None:
+        """POKE 37: the row's number alone; the cursor is still where it was."""
         self._draw()
         self._row = row
 
@@ -210,18 +265,45 @@ class Screen:
         """TEXT: the whole screen, the cursor in the last row."""
         self._draw()
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
-        self._row = HEIGHT - 1
+        self.move_to_row(HEIGHT - 1)
 
     def set_window(self, edge: str, value: int) -> None:
         """POKE 32 to 35: ``left``, ``width``, ``top`` or ``bottom``."""
         self._draw()
-        if edge == "width":
-            value = value or 256
-        elif edge in ("top", "bottom"):
-            value = min(value, HEIGHT)
         setattr(self, edge, value)
-        self.bottom = max(self.bottom, self.top + 1)
-        self._row = min(self._row, HEIGHT - 1)
+
+    # --- typing -------------------------------------------------------------------------------
+
+    def under_cursor(self) -> str:
+        """The character that control-U takes."""
+        self._draw()
+        address = self._address + self.column
+        code = self._ram[address] if address < END else 0
+        return chr((code & 0xDF if code >= _SMALL_LETTERS else code) & 0x7F)
+
+    def escape(self, key: str) -> None:
+        """ESC and @ and A to F: clear the screen, move, clear to the end of the row or window."""
+        moves: dict[str, Callable[[], object]] = {
+            "@": self.home,
+            "A": self.advance,
+            "B": self.step_back,
+            "C": self.line_feed,
+            "D": self.step_up,
+            "E": self.clear_to_end_of_line,
+            "F": self.clear_to_end,
+        }
+        if key in moves:
+            moves[key]()
+            self._expected = self.column
+
+    def end_line(self) -> None:
+        """RETURN: what stands behind the cursor in its row is cleared."""
+        self.clear_to_end_of_line()
+
+    def typed(self) -> None:
+        """A line was typed on a terminal, which has shown it: the cursor is at the left."""
+        self._draw_later("\n")
+        self.column = self._expected = 0
 
 
 def _filled(text: str, gap: int) -> tuple[str, int]:
@@ -233,12 +315,6 @@ def _filled(text: str, gap: int) -> tuple[str, int]:
         if character == "\n":
             return text, 0
     return text, gap
-
-
-def _cell(address: int) -> tuple[int, int]:
-    offset = address - BASE
-    third, column = divmod(offset % 128, WIDTH)
-    return third * 8 + offset // 128 if third < 3 else 0, column if third < 3 else WIDTH
 
 
 def _shown(code: int) -> str:

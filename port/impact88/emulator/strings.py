@@ -158,7 +158,13 @@ class StringArea:
         return Descriptor(string.length, address)
 
     def _move(self, source: int, target: int, length: int) -> None:
-        self._ram[target : target + length] = self._ram[source : source + length]
+        """The ROM copies the last character first."""
+        ram = self._ram
+        if target < source < target + length:
+            for offset in range(length - 1, -1, -1):
+                ram[target + offset] = ram[source + offset]
+        else:
+            ram[target : target + length] = ram[source : source + length]
 
     def joined(self, left: Descriptor, right: Descriptor) -> Descriptor:
         """left + right. Raises STRING TOO LONG past 255 characters."""

@@ -226,10 +226,10 @@ class Variables:
 
 
 def whole(x: Number) -> Number:
-    """What an integer variable stores: rounded to 32 bits, then down. Raises ILLEGAL QUANTITY
-    outside -32767 ... 32767.
+    """What an integer variable stores: rounded to 32 bits, then down. Raises ILLEGAL QUANTITY from
+    32768 and -32768 on.
 
-    The ROM means to let -32768 through too, but its constant has a bit too many: it lets through
+    The ROM means to let -32768 through, but its constant has a bit too many: it lets through
     -32768.0005 only, which is stored as 32767.
     """
     x = rounded(x)
