@@ -173,7 +173,7 @@ def test_a_bad_reply_under_onerr_is_code_254():
 
 
 def test_control_c_as_a_reply_breaks():
-    assert displayed("10 INPUT A", "\x03\nPRINT 5\n") == f"?\nBREAK{BEL} IN 10\n]PRINT 5\n5\n"
+    assert displayed("10 INPUT A", "\x03\nPRINT 5\n") == f"?\x03\n\nBREAK{BEL} IN 10\n]PRINT 5\n5\n"
 
 
 def test_input_into_an_integer_variable():

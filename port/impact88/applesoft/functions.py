@@ -105,13 +105,7 @@ def logarithm(x: Number) -> Number:
 
 def exponential(x: Number) -> Number:
     """EXP: e to the x. Raises OVERFLOW; underflows to zero."""
-    e, m, s = multiply(LOG2_E, x)
-    if e:
-        m += EXP_ROUNDING
-        if m >= LIMIT:
-            # the 32-bit mantissa overflows to 80000000; the extension's sum is kept as it is
-            m = TOP | m & 0xFF
-            e += 1
+    e, m, s = _over_ln_two(x)
     if e >= BIAS + 8:
         return _exponential_out_of_range(s)
     i = to_integer((e, m & ~0xFF, s))
@@ -125,6 +119,25 @@ def exponential(x: Number) -> Number:
     e, m, s = polynomial(EXP_COEFFICIENTS, g)
     e = product_exponent(k, e)
     return (e, m, 0) if e else ZERO
+
+
+def _over_ln_two(x: Number) -> Number:
+    """x / ln 2 as EXP takes it apart, its extension raised."""
+    e, m, s = multiply(LOG2_E, x)
+    if e:
+        m += EXP_ROUNDING
+        if m >= LIMIT:
+            # the 32-bit mantissa overflows to 80000000; the extension's sum is kept as it is
+            m = TOP | m & 0xFF
+            e += 1
+    return e, m, s
+
+
+def exponential_integer(x: Number) -> int:
+    """The whole number of doublings in EXP (x), which EXP finds with INT; 0 when it is out of
+    range and EXP does not look for it."""
+    e, m, s = _over_ln_two(x)
+    return to_integer((e, m & ~0xFF, s)) if e < BIAS + 8 else 0
 
 
 def _exponential_out_of_range(negative: int) -> Number:

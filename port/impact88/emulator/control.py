@@ -63,7 +63,10 @@ class Control:
         self.pointer = STACK
         self.safe = 0
         self.careful = False
+        self.watched = False
         self.depth = 0
+        self.at = 0
+        self.assigned_page = 0
         self._values = variables.values
         self._variables = variables
 
@@ -71,11 +74,29 @@ class Control:
         """STKINI."""
         self.frames.clear()
         self.pointer = STACK
-        self.careful = False
+        self.careful = self.watched
         self.depth = 0
 
+    def watch(self, watched: bool) -> bool:
+        """Whether steps are to be careful whatever the stack; whether that is something new."""
+        before = self.careful
+        self.watched = watched
+        self.careful = self._must_be_careful()
+        return self.careful and not before
+
+    def _must_be_careful(self) -> bool:
+        return self.watched or self.pointer < self.safe
+
+    def enter(self, at: int) -> None:
+        """A formula is worked out ``at`` bytes down the stack."""
+        self.at = at
+
+    def assign(self, slot: int) -> None:
+        """A simple variable is about to be assigned; the ROM keeps its address."""
+        self.assigned_page = self._variables.address_of(slot) >> 8
+
     def _look(self, pc: int) -> None:
-        careful = self.pointer < self.safe
+        careful = self._must_be_careful()
         if careful != self.careful:
             self.careful = careful
             raise Elsewhere(pc)
@@ -110,6 +131,10 @@ class Control:
         sign = (-1 if step[2] else 1) if step[0] else 0
         self.frames.append(Frame(slot, back, limit, step, sign))
         self.pointer -= FOR_SIZE
+        if self._variables.lies_at_page_end(slot):
+            self.watched = True  # RETURN may take this loop for what it looks for
+            self.assign(slot)
+            self._look(back)
         if self.pointer < self.safe:
             self._look(back)
         return back
@@ -181,6 +206,8 @@ class Control:
         frames = self.frames
         n = len(frames) - 1
         while n >= 0 and frames[n].slot >= 0:
+            if self._taken_for_gosub(frames[n].slot):
+                raise ApplesoftError("RETURN WITHOUT GOSUB")
             n -= 1
         # the ROM has moved its stack pointer before it finds that there is no GOSUB
         self._drop(n + 1)
@@ -190,17 +217,34 @@ class Control:
         self._drop(n)
         return back
 
+    def _taken_for_gosub(self, slot: int) -> bool:
+        """Whether a loop looks like what RETURN looks for: a variable at $xxFF, xx being left over
+        from the last assignment."""
+        variables = self._variables
+        return (
+            variables.lies_at_page_end(slot)
+            and variables.address_of(slot) >> 8 == self.assigned_page
+        )
+
     # --- errors that ONERR catches ------------------------------------------------------------
 
-    def leave(self, kind: str) -> None:
-        """What an error leaves on the stack."""
-        size = _LEFT_BY.get(kind, 2)
-        if size:
+    def leave(self, kind: str, depth: int) -> None:
+        """What an error that happened ``depth`` bytes down leaves on the stack, for as long as the
+        program runs. A pointer that goes below the stack's page comes in again at the top."""
+        size = depth + _LEFT_BY.get(kind, 2)
+        if self.pointer < size:
+            self.frames.clear()
+            self.pointer = self.pointer - size & 0xFF
+            self.frames.append(Frame(LEFTOVER, 0, sign=STACK - self.pointer))
+        elif self.frames and self.frames[-1].slot == LEFTOVER:
+            self.frames[-1] = Frame(LEFTOVER, 0, sign=self.frames[-1].sign + size)
+            self.pointer -= size
+        elif size:
             self.frames.append(Frame(LEFTOVER, 0, sign=size))
             self.pointer -= size
-        self.careful = self.pointer < self.safe
+        self.careful = self._must_be_careful()
 
     def cut(self, frames: int) -> None:
         """Back to as many frames as there were."""
         self._drop(frames)
-        self.careful = self.pointer < self.safe
+        self.careful = self._must_be_careful()

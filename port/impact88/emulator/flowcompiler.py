@@ -72,12 +72,9 @@ class FlowCompiler(LineCompiler):
         if reader.peek() != GOTO and not reader.take(THEN):
             self._fail("SYNTAX", value)
             return
-        if value.kind == NUMBER:
-            condition = value.condition
-        else:
-            # the ROM looks at the number accumulator, and forgets a temporary in its place
-            condition = formulas.residue(value).condition
-        self._emit(f"if not {condition}: return after[pc]")
+        # of a string the ROM sees the accumulator's number, and leaves a temporary in its place
+        number = value if value.kind == NUMBER else formulas.residue(value)
+        self._emit(f"if not {number.condition}: return after[pc]")
         if is_digit(reader.peek()):
             self._goto()
         else:

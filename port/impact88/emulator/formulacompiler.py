@@ -12,7 +12,11 @@ string just made, or what an earlier number left there. `residue` is the name fo
 says that a formula may ask for the latter.
 
 ``at`` is how far below the statement's beginning the 6502 stack has come. In a *careful*
-compilation every formula looks at the stack before it goes deeper.
+compilation every formula looks at the stack before it goes deeper, and leaves its number in the
+accumulator.
+
+A string may be the left operand of a comparison, which rounds its address by the accumulator's
+extension (`accumulator`). ``Operand.tracked`` is its text when that is to be followed.
 """
 
 from __future__ import annotations
@@ -65,13 +69,14 @@ class FormulaCompiler:
         self.constants: dict[str, Number | str] = {}
         self.deepest = 0
         self.leftovers = False
+        self._at = 0
         self._strings_compared = False
 
     # --- errors -------------------------------------------------------------------------------
 
     def fails(self, kind: str, *before: Operand) -> Operand:
         """An operand that computes ``before`` and then raises."""
-        code = f"bad({kind!r})"
+        code = self.at_depth("bad", repr(kind))
         if before:
             code = f"({', '.join(operand.code for operand in before)}, {code})"
         return Operand(code, dead=True)
@@ -81,6 +86,33 @@ class FormulaCompiler:
         if len(operands) == 1:
             return operands[0]
         return Operand(f"({', '.join(operand.code for operand in operands)})", dead=True)
+
+    # --- careful steps ------------------------------------------------------------------------
+
+    def at_depth(self, function: str, *operands: str, leaves: str = "done_at") -> str:
+        """Text for a call that is made where the formula now stands on the stack; ``leaves``: what
+        it leaves in the accumulator."""
+        if self.careful:
+            return f"{leaves}({', '.join((str(self._at), function, *operands))})"
+        return f"{function}({', '.join(operands)})"
+
+    def to_number(self, function: str, *operands: str) -> str:
+        """The same for one that makes a number."""
+        return self.at_depth(function, *operands, leaves="number_at")
+
+    def to_string(self, function: str, *operands: str) -> str:
+        """The same for one that makes a string."""
+        return self.at_depth(function, *operands, leaves="string_at")
+
+    def loaded(self, code: str) -> str:
+        """A number that comes into the accumulator as it is."""
+        return f"load({code})" if self.careful else code
+
+    def truth(self, condition: str) -> Operand:
+        """1 or 0."""
+        if self.careful:
+            return Operand(f"load(TRUTH[{condition}])", rounded=True)
+        return Operand(f"TRUTH[{condition}]", rounded=True, truth=condition)
 
     # --- constants ----------------------------------------------------------------------------
 
@@ -99,8 +131,10 @@ class FormulaCompiler:
         if self.direct:
             name = f"t_{text.encode('latin-1').hex()}"
             self.constants[name] = text
-            return Operand(f"made({name})", TEXT)
-        return Operand(f"literal(base[pc] + {offset}, {len(text)})", TEXT)
+            return Operand(self.to_string("made", name), TEXT)
+        place = (f"base[pc] + {offset}", str(len(text)))
+        code, tracked = (self.to_string(name, *place) for name in ("literal", "literal_"))
+        return Operand(code, TEXT, tracked=tracked)
 
     def residue(self, string: Operand) -> Operand:
         """The number that the accumulator holds when a string has been found."""
@@ -120,6 +154,12 @@ class FormulaCompiler:
 
     def formula(self, at: int, last: int = 0) -> Operand:
         """FRMEVL: a formula, up to an operator that does not bind closer than ``last``."""
+        before, self._at = self._at, at
+        operand = self._formula(at, last)
+        self._at = before
+        return operand
+
+    def _formula(self, at: int, last: int) -> Operand:
         self.deepest = max(self.deepest, at)
         if at > STACK - ROOM:
             return self.fails("OUT OF MEMORY")
@@ -191,19 +231,19 @@ class FormulaCompiler:
         if of_text:
             self._strings_compared = True
             order = "strcmp" if left.kind == TEXT else "junkcmp"
-            order = f"{order}({left.code}, {right.code})"
+            code = f"left_operand({left.tracked})" if left.tracked else left.code
+            order = self.at_depth(order, code, right.code)
             truth = f"({order} {RELATIONS[relation]} 0)" if relation != 7 else f"bool(({order},))"
         elif relation == ALL_RELATIONS:
             truth = f"bool(({left.code}, {right.code}))"
         else:
             truth = f"(compare({left.stored}, {right.code}) {COMPARED[relation]})"
-        return Operand(f"TRUTH[{truth}]", rounded=True, truth=truth)
+        return self.truth(truth)
 
     def _operated(self, left: Operand, operator: str, right: Operand) -> Operand:
         if operator in "&|":
-            truth = f"({left.condition} {operator} {right.condition})"
-            return Operand(f"TRUTH[{truth}]", rounded=True, truth=truth)
-        return Operand(f"{operator}({left.code}, {right.code})")
+            return self.truth(f"({left.condition} {operator} {right.condition})")
+        return Operand(self.to_number(operator, left.code, right.code))
 
     def _join(self, left: Operand, at: int) -> Operand:
         """left + the next element, whatever operator stands before."""
@@ -212,7 +252,9 @@ class FormulaCompiler:
             return self.then(left, right)
         if right.kind == NUMBER:
             return self.fails("TYPE MISMATCH", left, right)
-        return Operand(f"joined({left.code}, {right.code})", TEXT)
+        code = self.to_string("joined", left.code, right.code)
+        tracked = self.to_string("joined_", left.code, right.code)
+        return Operand(code, TEXT, tracked=tracked)
 
     # --- elements -----------------------------------------------------------------------------
 
@@ -237,9 +279,9 @@ class FormulaCompiler:
             if operand.kind == TEXT:
                 return self.fails("TYPE MISMATCH", operand)
             if byte == MINUS:
-                return Operand(f"negate({operand.code})", rounded=operand.rounded)
-            truth = f"(not {operand.condition})"
-            return Operand(f"TRUTH[{truth}]", rounded=True, truth=truth)
+                code = self.to_number("negate", operand.code)
+                return Operand(code, rounded=operand.rounded)
+            return self.truth(f"(not {operand.condition})")
         if byte == FN:
             return self._call(at)
         if byte >= FIRST_FUNCTION:
@@ -257,7 +299,8 @@ class FormulaCompiler:
         e, m, s = value
         if not s and e <= 143 and not m & (1 << 168 - e) - 1:
             whole = m >> 168 - e
-        return Operand(self.real(value), rounded=not m & 0xFF, whole=whole)
+        code = self.loaded(self.real(value))
+        return Operand(code, rounded=not m & 0xFF, whole=None if self.careful else whole)
 
     def _parenthesis(self, at: int) -> Operand:
         """PARCHK: a formula in parentheses."""
@@ -292,9 +335,11 @@ class FormulaCompiler:
             if isinstance(subscripts, Operand):
                 return subscripts
             function = f"value{len(subscripts)}" if len(subscripts) < 3 else "value"
-            code = f"{function}({ARRAYS.slot(name, kind)}, {', '.join(subscripts)})"
+            code = self.at_depth(function, str(ARRAYS.slot(name, kind)), *subscripts)
         else:
             code = f"V[{SIMPLE.slot(name, kind)}]"
+        if value_kind == NUMBER:
+            code = self.loaded(code)
         return Operand(code, value_kind, rounded=True, variable=kind == STRING)
 
     def subscripts(self, at: int) -> list[str] | Operand:
@@ -308,7 +353,7 @@ class FormulaCompiler:
             if operand.whole is not None:
                 subscripts.append(Operand(str(operand.whole)))
             else:
-                subscripts.append(Operand(f"subscript({operand.code})"))
+                subscripts.append(Operand(self.at_depth("subscript", operand.code)))
             if not self.reader.take(COMMA):
                 break
         if not self.reader.take(CLOSE):
@@ -343,7 +388,8 @@ class FormulaCompiler:
             return self.then(place, argument)
         if argument.kind == TEXT:
             return self.fails("TYPE MISMATCH", place, argument)
-        return Operand(f"call(place({slot})[1], {argument.code}, {at + 16})")
+        name = f"place({slot})[1]"
+        return Operand(self.to_number("call", name, argument.code, str(at + 16)))
 
     def _function(self, token: int, at: int) -> Operand:
         """A function of one argument. Most are worked out before the ROM sees that the argument
@@ -355,29 +401,32 @@ class FormulaCompiler:
             return argument
         if token == TOKENS["FRE"]:
             code = "FREE" if argument.kind == TEXT else "FRE"
-            return Operand(f"{code}({argument.code})", rounded=True)
+            return Operand(self.to_number(code, argument.code), rounded=True)
         if token == TOKENS["POS"]:
-            return Operand(f"POS({argument.code})", rounded=True)
+            return Operand(self.to_number("POS", argument.code), rounded=True)
         if token in OF_TEXT:
             if argument.kind == NUMBER:
                 return self.fails("TYPE MISMATCH", argument)
-            return Operand(f"{OF_TEXT[token]}({argument.code})", rounded=token != TOKENS["VAL"])
+            code = self.to_number(OF_TEXT[token], argument.code)
+            return Operand(code, rounded=token != TOKENS["VAL"])
         if token == USR:
             return self.fails("ILLEGAL QUANTITY", argument)
         if token == TOKENS["STR$"]:
             if argument.kind == TEXT:
                 return self.fails("TYPE MISMATCH", argument)
-            return Operand(f"STR({argument.code})", TEXT)
+            return Operand(self.to_string("STR", argument.code), TEXT)
         text = argument.kind == TEXT
         if text:
             argument = self.residue(argument)
         if token == TOKENS["CHR$"]:
-            return Operand(f"CHR({argument.code})", TEXT)
+            code, tracked = (self.to_string(name, argument.code) for name in ("CHR", "CHR_"))
+            return Operand(code, TEXT, tracked=tracked)
         if token in REFUSED_FUNCTIONS:
             return Operand(f"({argument.code}, refuse({REFUSED_FUNCTIONS[token]!r}))", dead=True)
         if token not in NUMERIC:
             return self.fails("SYNTAX", argument)
-        value = Operand(f"{NUMERIC[token]}({argument.code})", rounded=token == TOKENS["PEEK"])
+        code = self.to_number(NUMERIC[token], argument.code)
+        value = Operand(code, rounded=token == TOKENS["PEEK"])
         return self.fails("TYPE MISMATCH", value) if text and token != TOKENS["PEEK"] else value
 
     def _slice(self, function: str, at: int) -> Operand:
@@ -393,8 +442,10 @@ class FormulaCompiler:
         if text.kind == NUMBER:
             return self.fails("TYPE MISMATCH", text)
         arguments = [text]
+        last = None
         for place in (at + 12, at + 14):
-            n = self.byte(place)
+            last = self.number(place)
+            n = self._as_int("byte", 255, last)
             if n.dead:
                 return self.then(*arguments, n)
             arguments.append(n)
@@ -402,7 +453,12 @@ class FormulaCompiler:
                 break
         if not reader.take(CLOSE):
             return self.fails("SYNTAX", *arguments)
-        return Operand(f"{function}({', '.join(each.code for each in arguments)})", TEXT)
+        codes = [each.code for each in arguments]
+        code = self.to_string(function, *codes)
+        if last is None or last.whole is not None:
+            return Operand(code, TEXT)
+        codes[-1] = self.at_depth("byte_", last.code)
+        return Operand(code, TEXT, tracked=self.to_string(function, *codes))
 
     def byte(self, at: int) -> Operand:
         """GETBYT: a number from 0 to 255, as text for an int."""
@@ -412,10 +468,9 @@ class FormulaCompiler:
         """GETADR: a 16-bit address, as text for an int."""
         return self._as_int("address", 32767, self.number(at))
 
-    @staticmethod
-    def _as_int(function: str, limit: int, operand: Operand) -> Operand:
+    def _as_int(self, function: str, limit: int, operand: Operand) -> Operand:
         if operand.dead:
             return operand
         if operand.whole is not None and operand.whole <= limit:
             return Operand(str(operand.whole))
-        return Operand(f"{function}({operand.code})")
+        return Operand(self.at_depth(function, operand.code))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ..applesoft.console import Console, Device, Keyboard
-from ..applesoft.real import Number, from_stored
+from ..applesoft.real import from_stored
+from .accumulator import Accumulator
 from .control import Control
 from .inputs import Inputs
 from .onerr import Errors
@@ -12,8 +13,6 @@ from .programtext import ProgramText
 from .screen import Screen
 from .variables import Variables
 
-AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
-"""What the ROM's parser leaves in the accumulator: an address."""
 SPEED = 241
 PAGE_ZERO = bytes.fromhex("4C3CD4 4C3ADB 000000 00 4C99E1")
 """The jumps with which switching on begins page 0: to the prompt, to print a text, and USR's."""
@@ -27,8 +26,8 @@ class Hardware:
     """Screen, keyboard, program, variables, stack, ONERR, RAM (``ram``), RND's ``seed``.
 
     ``tracing``: whether TRACE is on, ``trace_flag`` its byte. ``line`` and ``statement``: the line
-    being executed and the address of its statement, as far as a program can ask for them. ``fac``:
-    a list of one, the number left in the floating-point accumulator as far as one can tell.
+    being executed and the address of its statement, as far as a program can ask for them.
+    ``accumulator``: what is left in the floating-point accumulator, as far as one can tell.
     """
 
     def __init__(
@@ -64,4 +63,4 @@ class Hardware:
         self.trace_flag = 0
         self.line = 0
         self.statement = 0
-        self.fac: list[Number] = [AFTER_TYPING]
+        self.accumulator = Accumulator(self.variables, self.ram)

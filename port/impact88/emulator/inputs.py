@@ -67,8 +67,10 @@ def _string(text: str, at: int) -> tuple[int, int, int]:
 
 
 class Inputs:
-    """DATA's pointer and the three statements. ``put`` shows a message; ``onerr`` tells whether ONERR
-    is on."""
+    """DATA's pointer and the three statements.
+
+    ``put`` shows a message; ``onerr`` tells whether ONERR is on.
+    """
 
     def __init__(
         self,

@@ -108,6 +108,8 @@ class LineCompiler:
         slot = int(place[6:-1]) if place.startswith("place(") else None
         if slot is not None:
             self._emit(f"if not made_[{slot}]: make({slot})")
+            if self.formulas.careful:
+                self._emit(f"assign({slot})")
             to = f"V[{slot}]"
         else:
             self._emit(f"a, i = {place}")
@@ -127,7 +129,7 @@ class LineCompiler:
     def _stored(self, kind: str, value: Operand) -> str:
         """Text for what a variable of a kind takes of a value."""
         if kind == STRING:
-            return f"{'copied' if value.variable else 'kept'}({value.code})"
+            return self.formulas.to_string("copied" if value.variable else "kept", value.code)
         if kind == INTEGER:
             return f"whole({value.code})"
         return value.stored

@@ -15,6 +15,7 @@ from ..applesoft.console import Device, Keyboard
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import Number, rounded
 from . import memory
+from .accumulator import AFTER_TYPING
 from .control import Elsewhere
 from .hardware import Hardware
 from .inputs import InputBreak
@@ -26,8 +27,6 @@ from .vocabulary import names
 
 CHUNK = 512
 """Steps between two moments when the outside world is asked."""
-TEMPORARY = 0x55
-"""Where the ROM keeps a temporary's descriptor, on page 0."""
 BREAK_CODE = 255
 BELL = "\a"
 FORGET_ERROR, CLEAR = 0xF328, 0xD66C
@@ -97,8 +96,6 @@ class Machine(Hardware):
             "reenter": self.reenter,
             "return_": self.return_,
             "VAL": self.value,
-            "residue": self.residue,
-            "left_over": self.left_over,
             "junkcmp": self.compare_junk,
             "gosub": self.gosub,
             "onerr": self.onerr,
@@ -137,6 +134,8 @@ class Machine(Hardware):
         self.broken = False
         self._entered = self._shown_line = None
         pc = self.code.put_direct(typed, tokens)
+        self.control.watch(self.code.leftovers or self.errors.on)
+        self.accumulator.number = AFTER_TYPING
         self.variables.grow()
         self._go(pc)
 
@@ -202,6 +201,7 @@ class Machine(Hardware):
         if self.tracing and code.traced[pc] and not direct:
             self.output.put(f"#{self.line_of(pc)} ")
         steps = code.careful() if self.control.careful else code.steps
+        self.control.at = 0
         entered = self._entered
         following = pc
         try:
@@ -238,11 +238,11 @@ class Machine(Hardware):
 
     def _handle(self, error: ApplesoftError, pc: int) -> int:
         """An error: to ONERR's line, or to the prompt (-1) with a message."""
-        self.control.depth = 0
+        depth, self.control.depth = self.control.depth + self.control.at, 0
         actual = self.code.lines[pc]
         line = self.line_of(pc) if error.line is None else error.line
         if self.errors.on:
-            return self._to_handler(error, line, pc)
+            return self._to_handler(error, line, pc, depth)
         if actual < DIRECT:
             self.last_line = line
             if self.after_line:
@@ -260,10 +260,10 @@ class Machine(Hardware):
         self.variables.strings.temporaries.clear()
         self._continue = None
 
-    def _to_handler(self, error: ApplesoftError, line: int, pc: int) -> int:
+    def _to_handler(self, error: ApplesoftError, line: int, pc: int, depth: int) -> int:
         errors = self.errors
         errors.catch(error.code, line, self.code.start[pc], len(self.control.frames))
-        self.control.leave(error.kind)
+        self.control.leave(error.kind, depth)
         self._shown_line = None
         try:
             return self.code.first[errors.handler]  # type: ignore[index]
@@ -279,7 +279,7 @@ class Machine(Hardware):
         start = self.code.start[pc]
         if errors.on:
             errors.catch(BREAK_CODE, self.line_of(pc), start, len(self.control.frames))
-            self.control.leave("")
+            self.control.leave("", 0)
             return self.code.first.get(errors.handler or 0, -1)
         self._say_break(pc)
         self.broken = True
@@ -330,6 +330,8 @@ class Machine(Hardware):
     def onerr(self, pc: int, number: int | None) -> None:
         """ONERR GOTO."""
         self.errors.arm(number, self.code.lines[pc])
+        if self.control.watch(True):
+            raise Elsewhere(pc + 1)
 
     def resume(self) -> int:
         """RESUME. Where there was no error the ROM runs wild, from address 0."""
@@ -468,19 +470,8 @@ class Machine(Hardware):
             self.write(string.address + string.length & 0xFFFF, 0)
             raise
 
-    def residue(self, string: Descriptor) -> Number:
-        """The number that stands in the accumulator when a string was just made: its length for an
-        exponent, and its address."""
-        address = string.address
-        mantissa = (address & 0xFF) << 32 | address >> 8 << 24 | TEMPORARY << 16
-        return string.length, mantissa, self.fac[0][2]
-
-    def left_over(self) -> Number:
-        """The number that an earlier formula left in the accumulator."""
-        return self.fac[0]
-
     def compare_junk(self, number: Number, string: Descriptor) -> int:
-        """A comparison that takes a number for a string: the bytes of its mantissa for an address."""
+        """A comparison that takes a number for a string, its mantissa's bytes for an address."""
         place = (number[1] >> 8 & 0xFF) << 8 | number[1] >> 16 & 0xFF
         length, low, high = (memory.peek(self, place + n & 0xFFFF) for n in range(3))
         address = low + 256 * high

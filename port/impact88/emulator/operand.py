@@ -53,8 +53,9 @@ class Operand:
 
     ``rounded``: it has no extension. ``truth``: text for a bool, whether it is not zero.
     ``variable``: the bare value of a string variable. ``whole``: the number itself when it is a
-    constant 0 ... 32767. ``dead``: it ends in an error.
-    ``text_relation``: a relation comes next that takes this number for a string.
+    constant 0 ... 32767. ``dead``: it ends in an error. ``tracked``: text for a string that
+    follows the accumulator's extension. ``text_relation``: a relation comes next that takes this
+    number for a string.
     """
 
     __slots__ = (
@@ -63,6 +64,7 @@ class Operand:
         "kind",
         "rounded",
         "text_relation",
+        "tracked",
         "truth",
         "variable",
         "whole",
@@ -79,6 +81,7 @@ class Operand:
         variable: bool = False,
         whole: int | None = None,
         text_relation: bool = False,
+        tracked: str | None = None,
     ) -> None:
         self.code = code
         self.kind = kind
@@ -88,6 +91,7 @@ class Operand:
         self.variable = variable
         self.whole = whole
         self.text_relation = text_relation
+        self.tracked = tracked
 
     @property
     def condition(self) -> str:

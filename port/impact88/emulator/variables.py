@@ -116,6 +116,30 @@ class Variables:
             if array is not None and array.kind == STRING:
                 yield from array.data
 
+    def descriptor_address(self, string: Descriptor) -> int:
+        """Where the descriptor of a string variable or element lies; 0 for any other."""
+        for slot in self.order:
+            if self.values[slot] is string:
+                return self.address_of(slot)
+        start = self._end
+        for slot in self.array_order:
+            array = self.arrays[slot]
+            assert array is not None
+            start += ARRAY_HEADER + 2 * len(array.sizes)
+            size = ELEMENT_SIZES[array.kind]
+            if array.kind == STRING:
+                for n, element in enumerate(array.data):
+                    if element is string:
+                        return start + size * n
+            start += size * len(array.data)
+        return 0
+
+    def lies_at_page_end(self, slot: int) -> bool:
+        """Whether a simple variable's value begins at the last byte of a page."""
+        # variables take 7 bytes, and 183 * 7 is 1 modulo 256
+        n = (0xFD - self.start) * 183 & 0xFF
+        return n < len(self.order) and slot in self.order[n::0x100]
+
     def address_of(self, slot: int) -> int:
         """Where a simple variable's value lies."""
         return self.start + VARIABLE_SIZE * self.order.index(slot) + 2

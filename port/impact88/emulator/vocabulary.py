@@ -15,7 +15,6 @@ from ..applesoft.real import (
     add,
     compare,
     divide,
-    floor,
     integer,
     multiply,
     negate,
@@ -23,6 +22,7 @@ from ..applesoft.real import (
     subtract,
 )
 from . import memory
+from .accumulator import wrapped
 from .hardware import Hardware
 from .variables import Function, address, byte, subscript, whole
 
@@ -37,18 +37,14 @@ _NUMBERS: dict[str, Any] = {
     "subtract": subtract,
     "multiply": multiply,
     "divide": divide,
-    "power": functions.power,
     "negate": negate,
     "rounded": rounded,
     "compare": compare,
     "ONE": integer(1),
     "TRUTH": (ZERO, integer(1)),
     "SGN": functions.sign,
-    "INT": floor,
     "ABS": absolute,
-    "SQR": functions.square_root,
     "LOG": functions.logarithm,
-    "EXP": functions.exponential,
     "SIN": functions.sine,
     "COS": functions.cosine,
     "TAN": functions.tangent,
@@ -69,6 +65,7 @@ def names(hardware: Hardware) -> dict[str, Any]:
 
 def _values(hardware: Hardware) -> dict[str, Any]:
     variables, strings = hardware.variables, hardware.variables.strings
+    accumulator = hardware.accumulator
     return {
         "V": variables.values,
         "made_": variables.made,
@@ -82,6 +79,19 @@ def _values(hardware: Hardware) -> dict[str, Any]:
         "value": variables.value,
         "dimension": variables.dimension,
         "joined": strings.joined,
+        "joined_": accumulator.joined,
+        "byte_": accumulator.byte,
+        "CHR_": accumulator.character,
+        "literal_": accumulator.literal,
+        "left_operand": accumulator.left_operand,
+        "load": accumulator.load,
+        "keep": accumulator.keep,
+        "residue": accumulator.residue,
+        "left_over": accumulator.left_over,
+        "INT": accumulator.floor,
+        "EXP": accumulator.exponential,
+        "SQR": accumulator.square_root,
+        "power": accumulator.power,
         "left": strings.left,
         "right": strings.right,
         "mid": strings.mid,
@@ -107,6 +117,8 @@ def _flow(hardware: Hardware) -> dict[str, Any]:
         "next_": control.next_,
         "pop": control.pop,
         "room": control.room,
+        "assign": control.assign,
+        **wrapped(hardware.accumulator, control.enter),
     }
 
 
@@ -115,7 +127,7 @@ def _outside(hardware: Hardware) -> dict[str, Any]:
     return {
         "out": output.out,
         "out_string": lambda string: output.out(strings.used(string)),
-        "out_number": lambda x: output.out(decimaltext.write(x)),
+        "out_number": lambda x: output.out(hardware.accumulator.printed(x)),
         "newline": output.newline,
         "zone": output.zone,
         "tab": output.tab,
