@@ -93,6 +93,7 @@ class Control:
 
     def assign(self, slot: int) -> None:
         """A simple variable is about to be assigned; the ROM keeps its address."""
+        self._variables.find(slot)
         self.assigned_page = self._variables.address_of(slot) >> 8
 
     def _look(self, pc: int) -> None:

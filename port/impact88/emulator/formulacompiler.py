@@ -58,6 +58,9 @@ from .reader import QUOTE, Reader, is_digit, is_letter
 from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
 from .tokens import TOKENS
 
+VARIABLE_POINTER = (131, 132)
+"""Where the ROM keeps the address of the variable it found last."""
+
 
 class FormulaCompiler:
     """The expression compiler for one line."""
@@ -337,7 +340,8 @@ class FormulaCompiler:
             function = f"value{len(subscripts)}" if len(subscripts) < 3 else "value"
             code = self.at_depth(function, str(ARRAYS.slot(name, kind)), *subscripts)
         else:
-            code = f"V[{SIMPLE.slot(name, kind)}]"
+            slot = SIMPLE.slot(name, kind)
+            code = f"V[find({slot})]" if self.careful else f"V[{slot}]"
         if value_kind == NUMBER:
             code = self.loaded(code)
         return Operand(code, value_kind, rounded=True, variable=kind == STRING)
@@ -425,6 +429,8 @@ class FormulaCompiler:
             return Operand(f"({argument.code}, refuse({REFUSED_FUNCTIONS[token]!r}))", dead=True)
         if token not in NUMERIC:
             return self.fails("SYNTAX", argument)
+        if token == TOKENS["PEEK"] and argument.whole in VARIABLE_POINTER:
+            self.leftovers = True
         code = self.to_number(NUMERIC[token], argument.code)
         value = Operand(code, rounded=token == TOKENS["PEEK"])
         return self.fails("TYPE MISMATCH", value) if text and token != TOKENS["PEEK"] else value

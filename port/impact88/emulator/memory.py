@@ -39,6 +39,7 @@ def _words(machine: Hardware) -> dict[int, int]:
         115: variables.strings.top,
         117: machine.line,
         121: machine.statement,
+        131: variables.found_address(),
         123: inputs.data_line,
         125: inputs.pointer,
         175: machine.program.end,

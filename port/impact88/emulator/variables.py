@@ -61,6 +61,7 @@ class Variables:
         self.order: list[int] = []
         self.array_order: list[int] = []
         self.start = 0
+        self.found: int | None = None
         self._end = 0
         self._arrays_size = 0
         self.strings = StringArea(ram, TOP_OF_MEMORY, self.end_of_arrays, self._held)
@@ -139,6 +140,17 @@ class Variables:
         # variables take 7 bytes, and 183 * 7 is 1 modulo 256
         n = (0xFD - self.start) * 183 & 0xFF
         return n < len(self.order) and slot in self.order[n::0x100]
+
+    def find(self, slot: int) -> int:
+        """A simple variable is looked up; the ROM keeps its address."""
+        self.found = slot
+        return slot
+
+    def found_address(self) -> int:
+        """The address of the value of the variable found last."""
+        if self.found is None or not self.made[self.found]:
+            return EMPTY.address
+        return self.address_of(self.found)
 
     def address_of(self, slot: int) -> int:
         """Where a simple variable's value lies."""

@@ -110,7 +110,7 @@ def _values(hardware: Hardware) -> dict[str, Any]:
 
 
 def _flow(hardware: Hardware) -> dict[str, Any]:
-    control = hardware.control
+    control, variables = hardware.control, hardware.variables
     return {
         "begin_for": control.begin_for,
         "push_for": control.push_for,
@@ -118,6 +118,7 @@ def _flow(hardware: Hardware) -> dict[str, Any]:
         "pop": control.pop,
         "room": control.room,
         "assign": control.assign,
+        "find": variables.find,
         **wrapped(hardware.accumulator, control.enter),
     }
 
