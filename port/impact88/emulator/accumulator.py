@@ -158,14 +158,20 @@ def wrapped(accumulator: Accumulator, enter: Callable[[int], object]) -> dict[st
 
     def number_at(at: int, function: Callable[..., Any], *operands: Any) -> Any:
         enter(at)
-        return accumulator.load(function(*operands))
+        result = accumulator.load(function(*operands))
+        enter(0)
+        return result
 
     def string_at(at: int, function: Callable[..., Any], *operands: Any) -> Any:
         enter(at)
-        return accumulator.keep(function(*operands))
+        result = accumulator.keep(function(*operands))
+        enter(0)
+        return result
 
     def done_at(at: int, function: Callable[..., Any], *operands: Any) -> Any:
         enter(at)
-        return function(*operands)
+        result = function(*operands)
+        enter(0)
+        return result
 
     return {"number_at": number_at, "string_at": string_at, "done_at": done_at}

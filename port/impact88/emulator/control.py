@@ -22,18 +22,15 @@ GOSUB_ROOM = 64
 GOSUB = -2
 LEFTOVER = -3
 _LEFT_BY = {
-    "DIVISION BY ZERO": 9,
-    "OVERFLOW": 11,
-    "ILLEGAL QUANTITY": 13,
-    "BAD SUBSCRIPT": 11,
-    "UNDEF'D FUNCTION": 9,
+    "ILLEGAL QUANTITY": 4,
+    "BAD SUBSCRIPT": 4,
     "REDIM'D ARRAY": 6,
     "TYPE MISMATCH": 5,
     "SYNTAX": 4,
     "RETURN WITHOUT GOSUB": 0,
 }
-"""Bytes an error leaves on the stack (else 2), as in the plainest statement that runs into it; in
-a longer formula it may leave more."""
+"""Bytes that an error outside any formula leaves on the stack, else 2: as in the plainest statement
+that runs into it."""
 
 
 class Frame(NamedTuple):
@@ -110,8 +107,10 @@ class Control:
 
     def room(self, at: int) -> None:
         """Raises OUT OF MEMORY if a formula cannot begin ``at`` bytes down."""
+        self.at = at
         if self.pointer - self.depth - at < ROOM:
             raise ApplesoftError("OUT OF MEMORY")
+        self.at = 0
 
     # --- FOR and NEXT -------------------------------------------------------------------------
 
@@ -232,7 +231,7 @@ class Control:
     def leave(self, kind: str, depth: int) -> None:
         """What an error that happened ``depth`` bytes down leaves on the stack, for as long as the
         program runs. A pointer that goes below the stack's page comes in again at the top."""
-        size = depth + _LEFT_BY.get(kind, 2)
+        size = depth or _LEFT_BY.get(kind, 2)
         if self.pointer < size:
             self.frames.clear()
             self.pointer = self.pointer - size & 0xFF

@@ -58,6 +58,25 @@ from .reader import QUOTE, Reader, is_digit, is_letter
 from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
 from .tokens import TOKENS
 
+WITHIN = {
+    "add": 3,
+    "subtract": 3,
+    "divide": 3,
+    "power": 6,
+    "EXP": 7,
+    "SQR": 8,
+    "PEEK": 9,
+    "VAL": 10,
+    "CHR": 7,
+    "CHR_": 7,
+    "call": 3,
+    "subscript": 12,
+    "byte_": 8,
+}
+"""How deep in its own calls a routine of the ROM finds an error, where it is not `ELSEWHERE`."""
+ELSEWHERE = 5
+STATEMENT = -1
+"""Where a statement's own calls stand, compared with those of a formula."""
 VARIABLE_POINTER = (131, 132)
 """Where the ROM keeps the address of the variable it found last."""
 
@@ -72,14 +91,16 @@ class FormulaCompiler:
         self.constants: dict[str, Number | str] = {}
         self.deepest = 0
         self.leftovers = False
-        self._at = 0
+        self._at = STATEMENT
         self._strings_compared = False
 
     # --- errors -------------------------------------------------------------------------------
 
-    def fails(self, kind: str, *before: Operand) -> Operand:
-        """An operand that computes ``before`` and then raises."""
-        code = self.at_depth("bad", repr(kind))
+    def fails(self, kind: str, *before: Operand, within: int = ELSEWHERE) -> Operand:
+        """An operand that computes ``before`` and then raises, ``within`` bytes further down."""
+        code = f"bad({kind!r})"
+        if self.careful:
+            code = f"done_at({self._at + within}, bad, {kind!r})"
         if before:
             code = f"({', '.join(operand.code for operand in before)}, {code})"
         return Operand(code, dead=True)
@@ -96,7 +117,8 @@ class FormulaCompiler:
         """Text for a call that is made where the formula now stands on the stack; ``leaves``: what
         it leaves in the accumulator."""
         if self.careful:
-            return f"{leaves}({', '.join((str(self._at), function, *operands))})"
+            at = self._at + WITHIN.get(function, ELSEWHERE)
+            return f"{leaves}({', '.join((str(at), function, *operands))})"
         return f"{function}({', '.join(operands)})"
 
     def to_number(self, function: str, *operands: str) -> str:
@@ -152,7 +174,7 @@ class FormulaCompiler:
         """FRMNUM: a formula that must be a number."""
         operand = self.formula(at)
         if not operand.dead and operand.kind == TEXT:
-            return self.fails("TYPE MISMATCH", operand)
+            return self.fails("TYPE MISMATCH", operand, within=7)
         return operand
 
     def formula(self, at: int, last: int = 0) -> Operand:
@@ -202,7 +224,7 @@ class FormulaCompiler:
                     left.text_relation = True
                 break
             if operator and left.kind == TEXT:
-                return self.fails("TYPE MISMATCH", left)
+                return self.fails("TYPE MISMATCH", left, within=2)
             of_text = left.kind == TEXT or left.text_relation
             right = self.formula(at + PENDING, precedence)
             if right.dead:
@@ -210,7 +232,7 @@ class FormulaCompiler:
             if relation:
                 left, chained = self._compared(left, of_text, relation, right), right
             elif right.kind == TEXT:
-                return self.fails("TYPE MISMATCH", left, right)
+                return self.fails("TYPE MISMATCH", left, right, within=PENDING + 2)
             else:
                 left, chained = self._operated(left, operator, right), right
             left.text_relation = chained.text_relation
@@ -250,7 +272,9 @@ class FormulaCompiler:
 
     def _join(self, left: Operand, at: int) -> Operand:
         """left + the next element, whatever operator stands before."""
+        self._at = at + 2
         right = self.element(at + 2)
+        self._at = at
         if right.dead:
             return self.then(left, right)
         if right.kind == NUMBER:
@@ -280,7 +304,7 @@ class FormulaCompiler:
             if operand.dead:
                 return operand
             if operand.kind == TEXT:
-                return self.fails("TYPE MISMATCH", operand)
+                return self.fails("TYPE MISMATCH", operand, within=PENDING + 2)
             if byte == MINUS:
                 code = self.to_number("negate", operand.code)
                 return Operand(code, rounded=operand.rounded)
@@ -308,12 +332,12 @@ class FormulaCompiler:
     def _parenthesis(self, at: int) -> Operand:
         """PARCHK: a formula in parentheses."""
         if not self.reader.take(OPEN):
-            return self.fails("SYNTAX")
+            return self.fails("SYNTAX", within=max(ELSEWHERE, at - self._at))
         inner = self.formula(at)
         if inner.dead:
             return inner
         if not self.reader.take(CLOSE):
-            return self.fails("SYNTAX", inner)
+            return self.fails("SYNTAX", inner, within=at - self._at - 2)
         return inner
 
     # --- variables ----------------------------------------------------------------------------
@@ -410,7 +434,7 @@ class FormulaCompiler:
             return Operand(self.to_number("POS", argument.code), rounded=True)
         if token in OF_TEXT:
             if argument.kind == NUMBER:
-                return self.fails("TYPE MISMATCH", argument)
+                return self.fails("TYPE MISMATCH", argument, within=11)
             code = self.to_number(OF_TEXT[token], argument.code)
             return Operand(code, rounded=token != TOKENS["VAL"])
         if token == USR:
@@ -444,14 +468,14 @@ class FormulaCompiler:
         if text.dead:
             return text
         if not reader.take(COMMA):
-            return self.fails("SYNTAX", text)
+            return self.fails("SYNTAX", text, within=6)
         if text.kind == NUMBER:
-            return self.fails("TYPE MISMATCH", text)
+            return self.fails("TYPE MISMATCH", text, within=6)
         arguments = [text]
         last = None
         for place in (at + 12, at + 14):
             last = self.number(place)
-            n = self._as_int("byte", 255, last)
+            n = self._as_int("byte", 255, last, within=8)
             if n.dead:
                 return self.then(*arguments, n)
             arguments.append(n)
@@ -474,9 +498,14 @@ class FormulaCompiler:
         """GETADR: a 16-bit address, as text for an int."""
         return self._as_int("address", 32767, self.number(at))
 
-    def _as_int(self, function: str, limit: int, operand: Operand) -> Operand:
+    def _as_int(
+        self, function: str, limit: int, operand: Operand, *, within: int = ELSEWHERE
+    ) -> Operand:
         if operand.dead:
             return operand
         if operand.whole is not None and operand.whole <= limit:
             return Operand(str(operand.whole))
-        return Operand(self.at_depth(function, operand.code))
+        code = f"{function}({operand.code})"
+        if self.careful:
+            code = f"done_at({self._at + within}, {function}, {operand.code})"
+        return Operand(code)

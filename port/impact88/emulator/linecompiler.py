@@ -119,7 +119,7 @@ class LineCompiler:
             return None
         value = self.formulas.formula(LET_AT + CALLED if simple else LET_AT)
         if not value.dead and (value.kind == TEXT) != (kind == STRING):
-            value = self.formulas.fails("TYPE MISMATCH", value)
+            value = self.formulas.fails("TYPE MISMATCH", value, within=6)
         if value.dead:
             self._stop(value)
             return None

@@ -16,7 +16,7 @@ from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import Number, rounded
 from . import memory
 from .accumulator import AFTER_TYPING
-from .control import Elsewhere
+from .control import GOSUB_SIZE, Elsewhere
 from .hardware import Hardware
 from .inputs import InputBreak
 from .linking import DIRECT, Halt, Steps
@@ -28,6 +28,7 @@ from .vocabulary import names
 CHUNK = 512
 """Steps between two moments when the outside world is asked."""
 BREAK_CODE = 255
+RETURN_ADDRESS = 2
 BELL = "\a"
 FORGET_ERROR, CLEAR = 0xF328, 0xD66C
 """Routines of Applesoft that a program may CALL."""
@@ -312,8 +313,10 @@ class Machine(Hardware):
 
     def gosub(self, pc: int, number: int) -> int:
         """GOSUB. Raises OUT OF MEMORY and UNDEF'D STATEMENT."""
-        self.control.push_gosub(pc + 1)
+        self.control.enter(GOSUB_SIZE + RETURN_ADDRESS)
         first = self.code.first[number]
+        self.control.enter(0)
+        self.control.push_gosub(pc + 1)
         if self.code.is_direct(pc):
             self._entered = first
             raise Elsewhere(first)
