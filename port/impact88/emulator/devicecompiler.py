@@ -153,4 +153,4 @@ class DeviceCompiler(LineCompiler):
             return
         last = self._line_number()
         if last is not None:
-            self._emit(f"delete(pc, {first}, {last})")
+            self._emit(f"delete({first}, {last})")

@@ -19,11 +19,18 @@ from .reader import COLON, Reader
 DIRECT = 0xFF00
 """Line numbers from here on mean: typed without a line number."""
 INPUT_BUFFER = 0x200
+AFTER_END = 2
+"""Steps behind the program's last: `halt` and `wild`."""
 NO_STATEMENT = b")"
+NO_LINE = Line(START - HEADER - 1, 0, b"")
 
 
 class Halt(Exception):
     """The program ends."""
+
+
+class ProgramGone(Halt):
+    """The program ends because it took itself out."""
 
 
 class Targets(dict[int, int]):
@@ -39,8 +46,8 @@ def halt(pc: int) -> int:
 
 
 def wild(pc: int) -> int:
-    """The step after a line behind which no line begins: the ROM reads on in what it finds there,
-    and seldom finds a statement."""
+    """Where a line's link leads that was poked to lead nowhere: the ROM reads on in what it finds
+    there, and seldom finds a statement."""
     raise ApplesoftError("SYNTAX")
 
 
@@ -135,15 +142,19 @@ class Steps:
         for table in self._tables():
             table.clear()
         deepest = 0
-        lines = self._program.lines
-        for n, line in enumerate(lines):
-            self.first.setdefault(line.number, len(self.steps))
+        places: dict[int, int] = {}
+        lines = self._program.flow()
+        for line in lines:
+            places[line.address] = len(self.steps)
             deepest = max(deepest, self._append(line.tokens, line.number, line.text))
-            following = lines[n + 1].address if n + 1 < len(lines) else None
-            if following != line.end and self._program.after(line) is not None:
-                self._append_jump(line)
+            if self._program.ends_at(line.end) and line is not lines[-1]:
+                self._append_end(line.number, line.text, len(line.tokens))
+        for line in self._program.lines:
+            self.first.setdefault(line.number, places.get(line.address, len(self.steps) + 1))
         self.end = len(self.steps)
-        self._append_end(self.lines[-1] if self.lines else 0, START, -1)
+        last = lines[-1] if lines else NO_LINE
+        self._append_end(last.number, last.text, len(last.tokens))
+        self._append_step(wild, last.number, last.text, 0)
         self._control.safe = ROOM + deepest
 
     def _append(self, tokens: bytes, number: int, base: int, shift: int = 0) -> int:
@@ -174,13 +185,6 @@ class Steps:
         for table, value in zip(self._tables(), values, strict=True):
             table.append(value)
 
-    def _append_jump(self, line: Line) -> None:
-        """What comes behind a line that is not the next one by its address."""
-        number = self._program.after(line)
-        assert number is not None
-        step = wild if number < 0 else lambda pc: self.first[number]
-        self._append_step(step, line.number, line.text, len(line.tokens))
-
     def careful(self) -> list[Any]:
         """The steps, looking at the stack and at the accumulator as they go."""
         if len(self._careful) != len(self.steps):
@@ -202,7 +206,7 @@ class Steps:
         return self._place_direct(tokens)
 
     def _place_direct(self, tokens: bytes) -> int:
-        first = self.end + 1
+        first = self.end + AFTER_END
         back = {
             frame.back: self._position_back(frame)
             for frame in self._control.frames
@@ -220,46 +224,58 @@ class Steps:
 
     def _position_back(self, frame: Frame) -> int:
         """Where in the buffer a loop or subroutine goes back to."""
-        if frame.slot == GOSUB and frame.back > self.end + 1:
+        if frame.slot == GOSUB and frame.back > self.end + AFTER_END:
             return self.buffer.statement_end(max(self.position[frame.back - 1], -1) + 2)
         return self.position[frame.back]
 
     def _rest_of_buffer(self, position: int) -> int:
         """Steps for what stands in the buffer from a position on, a colon if a statement."""
         rest = self.buffer.rest(max(position, 0))
-        if not rest:
-            return len(self.steps) - 1
         first = len(self.steps)
-        tokens = rest[1:] if rest[0] == COLON else NO_STATEMENT
-        self._append(tokens, DIRECT, INPUT_BUFFER, position + 1)
-        self._append_end(DIRECT, INPUT_BUFFER, position + len(rest))
+        if rest:
+            tokens = rest[1:] if rest[0] == COLON else NO_STATEMENT
+            self._append(tokens, DIRECT, INPUT_BUFFER, position + 1)
+        self._append_line_behind(position + len(rest))
         return first
+
+    def _append_line_behind(self, position: int) -> None:
+        """What comes behind a zero in the buffer: the end, or, if the second byte from there is
+        none, a line of a program that the ROM takes the rest of the buffer for."""
+        behind = self.buffer[position : position + HEADER + 1]
+        if len(behind) <= HEADER or not behind[2]:
+            self._append_end(DIRECT, INPUT_BUFFER, position)
+            return
+        number = behind[3] + 256 * behind[4]
+        tokens = self.buffer.rest(position + HEADER + 1)
+        self._append(tokens, number, INPUT_BUFFER, position + HEADER + 1)
+        self._append_line_behind(position + HEADER + 1 + len(tokens))
 
     def relink(self, pc: int) -> int:
         """Link again while the program runs, because a byte of it was changed; where ``pc`` is
         now."""
-        lines, end, position = list(self.lines), self.end, list(self.position)
-        direct = [table[end + 1 :] for table in self._tables()]
-        sources = [source for source in self._sources if source[2] > end]
+        lines, end = list(self.lines), self.end
+        base, position = list(self.base), list(self.position)
+        direct = [table[end + AFTER_END :] for table in self._tables()]
+        sources = [source for source in self._sources if source[2] >= end + AFTER_END]
         self._link()
         shift = self.end - end
         self._sources += [(number, tokens, first + shift) for number, tokens, first in sources]
         for table, rest in zip(self._tables(), direct, strict=True):
             table += rest
         for table in (self.after, self.start):
-            for n in range(self.end + 1, len(table)):
+            for n in range(self.end + AFTER_END, len(table)):
                 table[n] += shift
 
         def moved(place: int) -> int:
-            if lines[place] >= DIRECT or place == end:
+            if lines[place] >= DIRECT or place >= end:
                 return place + shift
-            first = self.first.get(lines[place])
-            if first is None:
-                return self.end
+            address = base[place] + position[place]
             same = (
-                n for n in range(first, self.after[first]) if self.position[n] >= position[place]
+                n
+                for n in range(self.end)
+                if self.base[n] + self.position[n] >= address and self.base[n] >= base[place]
             )
-            return next(same, self.after[first])
+            return next(same, self.end)
 
         self._control.send_back(moved)
         return moved(pc)

@@ -19,7 +19,7 @@ from .accumulator import AFTER_TYPING
 from .control import GOSUB_SIZE, Elsewhere
 from .hardware import Hardware
 from .inputs import InputBreak
-from .linking import DIRECT, Halt, Steps
+from .linking import DIRECT, Halt, ProgramGone, Steps
 from .operand import ROOM
 from .programtext import START
 from .strings import Descriptor
@@ -169,6 +169,8 @@ class Machine(Hardware):
                         raise KeyboardInterrupt
             except Elsewhere as elsewhere:
                 pc = elsewhere.pc
+            except ProgramGone:
+                return
             except Halt:
                 self._halted(pc)
                 return
@@ -236,6 +238,7 @@ class Machine(Hardware):
         self._continue = place
         self._continued_line = self.line_of(pc)
         self._within_statement = False
+        self.statement = self.code.place(place)
 
     def _handle(self, error: ApplesoftError, pc: int) -> int:
         """An error: to ONERR's line, or to the prompt (-1) with a message."""
@@ -398,27 +401,21 @@ class Machine(Hardware):
         return self._continue
 
     def new(self, pc: int) -> None:
-        """NEW."""
+        """NEW. A program that does it comes to its end, from where CONT can go on."""
         direct = self.code.is_direct(pc)
         self.program.clear()
         self.program.spare = 1
-        self._changed_by_itself(direct)
-
-    def delete(self, pc: int, first: int, last: int) -> None:
-        """DEL. The program ends, unless there was nothing to do."""
-        direct = self.code.is_direct(pc)
-        if self.program.delete(first, last):
-            self._changed_by_itself(direct)
-
-    def _changed_by_itself(self, direct: bool) -> None:
-        """The program is another one, and the line that made it so is gone; a program that did it
-        has come to its end, from where CONT can go on."""
         self.changed()
         if not direct:
             self.code.put_direct(b"", b"")
-            self._continue = self.code.end
-            self._within_statement = False
-        raise Halt
+            self._can_continue(self.code.end, self.code.end)
+        raise ProgramGone
+
+    def delete(self, first: int, last: int) -> None:
+        """DEL. The program ends, unless there was nothing to do."""
+        if self.program.delete(first, last):
+            self.changed()
+            raise ProgramGone
 
     @property
     def locked(self) -> bool:

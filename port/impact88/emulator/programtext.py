@@ -43,6 +43,7 @@ class ProgramText:
         self._ram = ram
         self._image: bytes | None = None
         self._lines: list[Line] = []
+        self._as_stored = True
         self.spare = 0
         """NEW, typed, leaves one byte more than the program takes, for good."""
 
@@ -89,6 +90,7 @@ class ProgramText:
         """The bytes from `START` on, the two zeros at the end included."""
         if self._image is None:
             out = bytearray()
+            self._as_stored = True
             self._lines = []
             for number in self.numbers:
                 line = Line(START + len(out), number, self.tokens[number])
@@ -125,10 +127,13 @@ class ProgramText:
             return False
         image[offset] = self._ram[address] = value
         self._image = bytes(image)
-        before, self._lines = self._lines, self._followed()
+        before = self.flow()
+        followed = self._lines, self._followed()
+        self._lines = followed[1]
+        self._as_stored = False
         self.numbers = [line.number for line in self._lines]
         self.tokens = {line.number: line.tokens for line in reversed(self._lines)}
-        return before != self._lines
+        return before != self.flow() or followed[0] != followed[1]
 
     def _followed(self) -> list[Line]:
         image = self.image
@@ -148,14 +153,23 @@ class ProgramText:
             address = following
         return lines
 
-    def address_of(self, number: int) -> int:
-        """The address of a line."""
-        return next(line.address for line in self.lines if line.number == number)
+    def flow(self) -> list[Line]:
+        """The lines in the order in which a program runs through them: each begins behind the zero
+        of the one before, whatever the addresses say."""
+        image = self.image
+        if self._as_stored:
+            return self._lines
+        lines = []
+        offset = 0
+        while offset + HEADER < len(image) - 1:
+            end = image.find(END_OF_LINE, offset + HEADER)
+            end = len(image) if end < 0 else end
+            number = image[offset + 2] + 256 * image[offset + 3]
+            lines.append(Line(START + offset, number, image[offset + HEADER : end]))
+            offset = end + 1
+        return lines
 
-    def after(self, line: Line) -> int | None:
-        """The number of the line whose bytes follow a line's; None at the end of the program, and
-        -1 where no line begins."""
-        offset = line.end - START
-        if self.image[offset + 1 : offset + 2] in (b"", b"\0"):
-            return None
-        return next((each.number for each in self.lines if each.address == line.end), -1)
+    def ends_at(self, address: int) -> bool:
+        """Whether a program ends that comes to an address: the high byte of a line's link is 0."""
+        offset = address - START
+        return self.image[offset + 1 : offset + 2] in (b"", b"\0")
