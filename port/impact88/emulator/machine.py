@@ -29,6 +29,9 @@ CHUNK = 512
 """Steps between two moments when the outside world is asked."""
 BREAK_CODE = 255
 RETURN_ADDRESS = 2
+REFUSALS = 8
+MORE_REFUSED = "more of the kind"
+"""Statements that are not done are remembered up to a number."""
 BELL = "\a"
 FORGET_ERROR, CLEAR = 0xF328, 0xD66C
 """Routines of Applesoft that a program may CALL."""
@@ -517,8 +520,8 @@ class Machine(Hardware):
 
     def refuse(self, what: str) -> None:
         """A statement that is not done here is a SYNTAX error, and remembered."""
-        if what not in self.refused:
-            self.refused.append(what)
+        if what not in self.refused and len(self.refused) <= REFUSALS:
+            self.refused.append(what if len(self.refused) < REFUSALS else MORE_REFUSED)
         raise ApplesoftError("SYNTAX")
 
     def speed(self, n: int) -> None:
