@@ -18,6 +18,7 @@ from impact88.accuracy import reference
 from impact88.accuracy.elimination import (
     LISTING_PI,
     ORDER,
+    changes,
     eliminate,
     equilibrated_condition,
     fill,
@@ -121,19 +122,24 @@ def test_angles_of_many_turns():
         np.testing.assert_array_equal(far[name][beyond], near[name][beyond])
 
 
-def test_no_worse_than_lapack_on_casework_and_far_better_than_the_listing_on_heavy():
+def test_beside_lapack_and_the_listing():
+    """Of cars no method is far from the last digit (which is worst depends on the seed); with a
+    body far heavier the listing's unknowns lose it, whoever solves for them, its changes do not."""
     g = scenes("casework", 300, 1)
     A, b = fill(g)
-    theirs = lapack(A, b)
     mine = errors(g, solve(g, FINAL_VELOCITIES))
-    lapacks = errors(g, dict(zip(ORDER, theirs.T, strict=True)))
-    assert mine.max() <= lapacks.max()
-    g = scenes("heavy", 300, 1)
+    lapacks = errors(g, dict(zip(ORDER, lapack(A, b).T, strict=True)))
+    assert np.median(mine) <= np.median(lapacks)
+    g = scenes("heavy", 200, 1)
     A, b = fill(g)
-    listing = np.array([listing_in_double(A[i], b[i]) for i in range(300)])
+    listing = np.array([listing_in_double(A[i], b[i]) for i in range(200)])
     mine = errors(g, solve(g, FINAL_VELOCITIES))
     listings = errors(g, dict(zip(ORDER, listing.T, strict=True)))
-    assert 1000 * mine.max() <= listings.max()
+    lapacks = errors(g, dict(zip(ORDER, lapack(A, b).T, strict=True)))
+    right, before = changes(g, A)
+    changed = errors(g, dict(zip(ORDER, (before + lapack(A, right)).T, strict=True)))
+    assert 1000 * mine.max() <= min(listings.max(), lapacks.max())
+    assert 1000 * changed.max() <= lapacks.max()
 
 
 def test_the_two_references_agree():

@@ -19,6 +19,8 @@ Array = NDArray[Any]
 
 LISTING_PI = 3.14159265
 """The pi of line 300."""
+VELOCITIES_OF_BOTH = ("UX", "UY", "VX", "VY", "WA", "WB")
+"""The velocities before, in the order of the unknowns."""
 ORDER = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 """The unknowns, column by column."""
 
@@ -67,6 +69,26 @@ def fill(columns: Mapping[str, Any], pi: float = np.pi) -> tuple[Array, Array]:
         -MA * D3 * UX / IA + MA * D4 * UY / IA - MB * D1 * VX / IB + MB * D2 * VY / IB + WA - WB
     )
     return A, b
+
+
+def changes(columns: Mapping[str, Any], A: Array) -> tuple[Array, Array]:
+    """Right-hand sides (n, 6) with which the matrices of `fill` give what the velocities *change*,
+    and the velocities before (n, 6). They are small where a body is heavy; the listing's unknowns,
+    the velocities themselves, then lose them."""
+    before = np.stack(
+        np.broadcast_arrays(
+            *(np.asarray(columns[name], dtype=np.float64) for name in VELOCITIES_OF_BOTH),
+            np.empty(len(A)),
+        )[:6],
+        axis=1,
+    )
+    b = np.zeros((len(A), 6))
+    # gn and, of a pivot, gt are what rows 4 and 3 make of the velocities before
+    approach, slip = (np.einsum("ij,ij->i", A[:, row], before) for row in (3, 2))
+    b[:, 2] = np.where(np.asarray(columns["MU"]) == PIVOT, -slip, 0.0)
+    b[:, 3] = -(1 + np.asarray(columns["E"])) * approach
+    b[:, 5] = (1 - np.asarray(columns["EM"])) * (before[:, 4] - before[:, 5])
+    return b, before
 
 
 def listing_rows(t: Any, zero: Any) -> list[list[Any]]:

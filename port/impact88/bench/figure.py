@@ -20,6 +20,7 @@ MARKS = {
     "float64": ("o", BLUE, False),
     "elimination": ("v", BLUE, True),
     "lapack": ("^", GREY, True),
+    "lapack-changes": (">", GREY, True),
     "lapack-fill": ("^", GREY, False),
     "closed-form": ("D", ORANGE, True),
     "closed-form-2": ("D", BLACK, False),

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..accuracy.elimination import ORDER, eliminate, fill, lapack
+from ..accuracy.elimination import ORDER, changes, eliminate, fill, lapack
 from ..applesoft.operators import Real
 from ..closedform.solve import solve
 from ..program.run import run
@@ -87,6 +87,16 @@ def _lapack_filled(prepared: Prepared) -> Floats:
     return lapack(*fill(prepared.columns))
 
 
+def _lapack_changes(matrices: tuple[Floats, Floats, Floats]) -> Floats:
+    A, b, before = matrices
+    return before + lapack(A, b)
+
+
+def _changes_ready(prepared: Prepared) -> tuple[Floats, Floats, Floats]:
+    A, _ = fill(prepared.columns)
+    return (A, *changes(prepared.columns, A))
+
+
 def _lapack_ready(matrices: tuple[Floats, Floats]) -> Floats:
     return lapack(*matrices)
 
@@ -130,6 +140,14 @@ METHODS: Sequence[Method] = (
         100_000,
         _lapack_ready,
         lambda p: fill(p.columns),
+    ),
+    Method(
+        "lapack-changes",
+        "LAPACK, velocity changes",
+        DOUBLE,
+        100_000,
+        _lapack_changes,
+        _changes_ready,
     ),
     Method("lapack-fill", "LAPACK, filled and solved", DOUBLE, 100_000, _lapack_filled),
     Method("closed-form", "closed form, one core", DOUBLE, 1_000_000, _closed_form(1)),
