@@ -107,6 +107,12 @@ CHAPTER: dict[str, Quantity] = {
         Quantity("CAY", "-d3", "y from A's center of gravity to the contact point", _LENGTH, 0),
         Quantity("CBX", "d2", "x from B's center of gravity to the contact point", _LENGTH, 0),
         Quantity("CBY", "d1", "y from B's center of gravity to the contact point", _LENGTH, 0),
+        Quantity("CAF", "", "contact point forward of A's center of gravity", _LENGTH, 0),
+        Quantity("CAL", "", "contact point to the left of A's center of gravity", _LENGTH, 0),
+        Quantity("CBF", "", "contact point forward of B's center of gravity", _LENGTH, 0),
+        Quantity("CBL", "", "contact point to the left of B's center of gravity", _LENGTH, 0),
+        Quantity("CX", "ΔC_x", "move of the contact point along x", _LENGTH, 0),
+        Quantity("CY", "ΔC_y", "move of the contact point along y", _LENGTH, 0),
         Quantity(
             *("RR0", "R/R_0", "final over initial relative spin that the moment alone makes"),
             *("1", 0),

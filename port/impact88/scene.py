@@ -32,13 +32,18 @@ _ENTRY = r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)"""
 class Scene(Mapping[str, str]):
     """The 21 values of a scene by the listing's names, in the table's order, each as typed.
 
-    ``source`` says where it came from (a file's name), for messages.
+    ``source`` says where it came from (a file's name), for messages; ``units`` names the system of
+    units its file was written in (`impact88.units`), whose base units the values are in.
     """
 
-    __slots__ = ("_values", "source", "title")
+    __slots__ = ("_values", "source", "title", "units")
 
     def __init__(
-        self, values: Mapping[str, str], title: str | None = None, source: str = "scene"
+        self,
+        values: Mapping[str, str],
+        title: str | None = None,
+        source: str = "scene",
+        units: str | None = None,
     ) -> None:
         """Raises UserError for a missing or unknown name and for text that is no number."""
         given = dict(values)
@@ -50,6 +55,7 @@ class Scene(Mapping[str, str]):
         self._values = {name: check_value(name, given[name], source) for name in SCENE}
         self.title = title
         self.source = source
+        self.units = units
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, str], source: str = "scene") -> Scene:
@@ -57,16 +63,17 @@ class Scene(Mapping[str, str]):
         return cls(values, source=source)
 
     @classmethod
-    def from_toml(cls, path: str) -> Scene:
-        """The scene in a TOML file. Raises UserError naming file, line or key."""
-        return cls.from_toml_text(read_text(path, TOML_LIMIT), called(path))
+    def from_toml(cls, path: str, units: str | None = None) -> Scene:
+        """The scene in a TOML file, bare numbers in ``units`` where it names none itself. Raises
+        UserError naming file, line or key."""
+        return cls.from_toml_text(read_text(path, TOML_LIMIT), called(path), units)
 
     @classmethod
-    def from_toml_text(cls, text: str, source: str) -> Scene:
+    def from_toml_text(cls, text: str, source: str, units: str | None = None) -> Scene:
         """The scene in a TOML document; ``source`` names it in errors."""
-        values = toml_texts(text, source)
+        values, units = in_base_units(toml_texts(text, source), source, units)
         title = values.pop("title", None)
-        return cls(values, title, source)
+        return cls(_with_contact_point(values, source), title, source, units)
 
     def __getitem__(self, name: str) -> str:
         return self._values[name]
@@ -82,7 +89,7 @@ class Scene(Mapping[str, str]):
 
     def replaced(self, changes: Mapping[str, str]) -> Scene:
         """This scene with some values changed. Raises UserError as the constructor does."""
-        return Scene({**self._values, **changes}, self.title, self.source)
+        return Scene({**self._values, **changes}, self.title, self.source, self.units)
 
     def keyboard(self) -> list[str]:
         """The replies to the INPUTs of lines 210 and 230."""
@@ -128,6 +135,47 @@ def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
             raise UserError(f"{text!r} is no finite number", name)
         result[name] = value
     return result
+
+
+_OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
+
+
+def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
+    """The values with DA PA or DB PB worked out where the contact point is given in a vehicle's own
+    axes: CAF CAL, CBF CBL, forward and to the left of its center of gravity."""
+    for vehicle, names in _OWN_AXES.items():
+        if not set(names) & set(values):
+            continue
+        for name in names:
+            if name not in values:
+                raise UserError(f"{name} is missing beside {' '.join(names)}", source)
+        both = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in values]
+        if both:
+            raise UserError(f"{both[0]} and {names[0]} are both given; expected one pair", source)
+        forward, left = (float(check_value(name, values.pop(name), source)) for name in names)
+        values[f"D{vehicle}"] = repr(math.hypot(forward, left)).upper()
+        values[f"P{vehicle}"] = repr(math.degrees(math.atan2(left, forward))).upper()
+    return values
+
+
+_BARE = frozenset("0123456789+-.eE ")
+
+
+def in_base_units(
+    texts: Mapping[str, str], source: str, units: str | None = None
+) -> tuple[dict[str, str], str | None]:
+    """The texts with every value in base units (`impact88.units`), and the system's name; as they
+    are where neither a value nor the entry ``units`` nor ``units`` says of any. Raises UserError.
+    """
+    if units is None and all(_BARE.issuperset(texts[n]) for n in texts if n != "title"):
+        return dict(texts), None
+    from .units import has_units, system_named, to_base
+
+    if units is None and not has_units(texts):
+        return dict(texts), None
+    system = system_named(units, "--units") if units else None
+    values, found = to_base(texts, source, system)
+    return values, found.name if found else None
 
 
 def check_value(name: str, text: str, source: str | None) -> str:

@@ -16,6 +16,9 @@ standard deviations), sought at the corners, on faces and inside. Every bound is
 gives the inputs that do. The true bound lies no closer; that it lies no farther is not proven.
 Share of draws with a warning: see impact88.status. Units are those of the scene; angles in degrees.
 
+CX and CY move the contact point along x and y, in both vehicles at once: --range CX="+- 1". (DA PA
+DB PB varied apart would tear it in two.)
+
 --reconstruct goes from final to initial velocities: the file (or --range) gives VAX VAY VBX VBY WAF
 WBF and MUP, the signed P_t/P_n; if it gives none, those of the scene's forward solution are taken.
 
@@ -35,7 +38,8 @@ from typing import TYPE_CHECKING
 
 from ..errors import UserError
 from ..files import called
-from ..scene import sample, toml_file
+from ..scene import in_base_units, sample, toml_file
+from ..talk import tell
 from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
 from .options import (
     add_json_argument,
@@ -109,11 +113,17 @@ def read_scene(args: argparse.Namespace) -> Inputs:
     if bool(args.scene) == bool(args.sample):
         raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
     if args.scene:
-        texts: dict[str, str] = toml_file(args.scene)
         source = called(args.scene)
+        texts, units = in_base_units(toml_file(args.scene), source)
     else:
         texts, source = dict(sample(args.sample)), f"sample {args.sample}"
+        units = None
     changes = pairs(args.ranges, "--range", "NAME=RANGE, such as MU='.7 .. .9'")
+    changes, own = in_base_units(changes, "--range", units)
+    if units or own:
+        from ..units import base_of, system_of
+
+        tell("bounds", f"results are in {base_of(system_of(units or own))}")
     problem = "reconstruction" if args.reconstruct else "forward"
     inputs = read_inputs(texts, changes, problem, source)
     correlations = dict(inputs.correlations)

@@ -33,6 +33,7 @@ from ..names import RESULTS
 from ..scene import Scene, numbers_of
 from .bounds import add_scene_arguments, explored
 from .options import (
+    add_move_argument,
     add_names_argument,
     add_set_argument,
     add_sweep_argument,
@@ -60,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_scene_arguments(parser)
     add_set_argument(parser, "change a value of the scene")
+    add_move_argument(parser)
     add_sweep_argument(parser)
     add_names_argument(parser, "--outputs", "NAMES", "the results wanted")
 

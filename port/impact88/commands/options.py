@@ -15,7 +15,7 @@ from ..doubles import double
 from ..errors import UserError, quoted
 from ..files import called, check_apart
 from ..names import SCENE, check_names
-from ..scene import SAMPLES, Scene, check_value, sample, toml_file
+from ..scene import SAMPLES, Scene, check_value, in_base_units, sample, toml_file
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -75,13 +75,16 @@ def settings(
     texts: Sequence[str],
     allowed: Collection[str] = tuple(SCENE),
     others: Collection[str] = (),
+    units: str | None = None,
 ) -> dict[str, str]:
-    """What ``--set`` gives: names that are ``allowed``, and the text of a number for each.
+    """What ``--set`` gives: names that are ``allowed``, and the text of a number for each, in base
+    units (``units``: the system of bare numbers).
 
     ``others``: texts that are no numbers and are taken all the same. Raises UserError.
     """
     given = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
     check_names(given, allowed, "value here", "--set")
+    given, _ = in_base_units(given, "--set", units)
     for name, text in given.items():
         if text not in others:
             check_value(name, text, "--set")
@@ -97,42 +100,62 @@ def known_values(
     makes a value unknown. Raises UserError, naming file and name, for names not ``allowed`` and
     texts that are no numbers.
     """
+    return known_with_units(path, texts, allowed)[0]
+
+
+def known_with_units(
+    path: str | None, texts: Sequence[str], allowed: Collection[str], units: str | None = None
+) -> tuple[dict[str, float], str | None]:
+    """The same in base units, and the name of the system they were written in; ``units``: of bare
+    numbers where the file names none."""
     values: dict[str, float] = {}
     if path is not None:
         source = called(path)
-        entries = toml_file(path)
-        entries.pop("title", None)
-        check_names(entries, allowed, "value here", source)
+        entries, units = _entries(path, allowed, units)
         values = {n: _double(n, text, source) for n, text in entries.items() if text}
-    for name, text in settings(texts, allowed, others=("",)).items():
+    given, own = in_base_units(_changes(texts, allowed), "--set", units)
+    for name, text in given.items():
         if text:
             values[name] = _double(name, text, "--set")
         else:
             values.pop(name, None)
-    return values
+    return values, units or own
+
+
+def _entries(
+    path: str, allowed: Collection[str], units: str | None
+) -> tuple[dict[str, str], str | None]:
+    """The values of a file in base units, and their system."""
+    source = called(path)
+    entries, units = in_base_units(toml_file(path), source, units)
+    entries.pop("title", None)
+    check_names(entries, allowed, "value here", source)
+    return entries, units
+
+
+def _changes(texts: Sequence[str], allowed: Collection[str]) -> dict[str, str]:
+    changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
+    check_names(changes, allowed, "value here", "--set")
+    return changes
 
 
 def known_within_limits(
-    path: str | None, texts: Sequence[str], allowed: Collection[str]
-) -> dict[str, Uncertain]:
-    """As `known_values`, but each value a number or known within limits (`uncertainty.uncertain`);
-    a setting's ``+- D`` is around the file's value."""
+    path: str | None, texts: Sequence[str], allowed: Collection[str], units: str | None = None
+) -> tuple[dict[str, Uncertain], str | None]:
+    """As `known_with_units`, but each value a number or known within limits
+    (`uncertainty.uncertain`); a setting's ``+- D`` is around the file's value."""
     values: dict[str, Uncertain] = {}
     if path is not None:
-        source = called(path)
-        entries = toml_file(path)
-        entries.pop("title", None)
-        check_names(entries, allowed, "value here", source)
-        values = {n: _within_limits(n, text, source) for n, text in entries.items() if text}
-    changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
-    check_names(changes, allowed, "value here", "--set")
-    for name, text in changes.items():
+        entries, units = _entries(path, allowed, units)
+        values = {n: _within_limits(n, text, called(path)) for n, text in entries.items() if text}
+    given, own = in_base_units(_changes(texts, allowed), "--set", units)
+    for name, text in given.items():
         center = values[name].nominal if name in values else None
         if text:
             values[name] = _within_limits(name, text, "--set", center)
         else:
             values.pop(name, None)
-    return values
+    return values, units or own
 
 
 _RANGES = ("..", "+-", "±", "uniform", "triangular", "normal")
@@ -179,6 +202,7 @@ def add_known_arguments(parser: argparse.ArgumentParser) -> None:
 def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the commands that solve for what is not known and print the solution."""
     add_known_arguments(parser)
+    add_units_argument(parser)
     parser.add_argument(
         "--contact-time",
         type=float,
@@ -215,9 +239,36 @@ def one_scene(args: argparse.Namespace) -> Scene:
     there is exactly one."""
     if bool(args.scene) == bool(args.sample):
         raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
-    scene = Scene.from_toml(args.scene) if args.scene else sample(args.sample)
-    changes = settings(args.set)
-    return scene.replaced(changes) if changes else scene
+    units = getattr(args, "units", None)
+    scene = Scene.from_toml(args.scene, units) if args.scene else sample(args.sample)
+    changes = settings(args.set, units=scene.units)
+    scene = scene.replaced(changes) if changes else scene
+    return with_contact_moved(scene, getattr(args, "move_contact", None))
+
+
+def add_move_argument(parser: argparse.ArgumentParser) -> None:
+    """The option ``--move-contact DX,DY``."""
+    parser.add_argument(
+        "--move-contact",
+        metavar="DX,DY",
+        help="move the contact point along the scene's x and y, in both vehicles (write "
+        "--move-contact=-1,0 where DX is negative)",
+    )
+
+
+def with_contact_moved(scene: Scene, move: str | None) -> Scene:
+    """The scene with the contact point moved as ``--move-contact`` says. Raises UserError."""
+    if move is None:
+        return scene
+    from ..reconstruction.contact import moved_texts
+
+    parts = [part.strip() for part in move.split(",")]
+    if len(parts) != 2:
+        raise UserError(f"--move-contact {move}: expected DX,DY, such as 1,-0.5")
+    given = dict(zip(("CX", "CY"), parts, strict=True))
+    texts, _ = in_base_units(given, "--move-contact", scene.units)
+    dx, dy = (_double(name, texts[name], "--move-contact") for name in ("CX", "CY"))
+    return scene.replaced(moved_texts(scene, dx, dy))
 
 
 def add_names_argument(
@@ -247,6 +298,16 @@ def names_given(
         raise UserError(f"{option}: no name given; expected some of {' '.join(known)}")
     check_names(names, known, what, option)
     return list(dict.fromkeys(names))
+
+
+def add_units_argument(parser: argparse.ArgumentParser) -> None:
+    """The option ``--units``."""
+    parser.add_argument(
+        "--units",
+        metavar="SYSTEM",
+        help="what bare numbers are in: us (lb, mph, ft), chapter (slug, ft/s, ft), metric (kg, "
+        "km/h, m) or si (kg, m/s, m), where the file does not say",
+    )
 
 
 def add_json_argument(parser: argparse.ArgumentParser, what: str = "one JSON object") -> None:

@@ -17,7 +17,9 @@ Uncertainties stand side by side: first order, random draws, bounds that are att
 
 MU is the number of line 280: friction opposes the sliding (line 400). Where the velocities before
 are unknown, both signs are tried and every solution that agrees with itself is shown. MUP is the
-signed P_t/P_n instead. Units: any consistent set; angles in degrees, spins in rad per unit of time.
+signed P_t/P_n instead. Units: any consistent set; angles in degrees, spins in rad per unit of time;
+or values with units, "-25 +- 2 mph", "3091 lb", "3.5 ft", or units = "us" (or metric, chapter, si)
+in the file, for bare numbers: results are then in the same.
 PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
 
 examples:
@@ -55,6 +57,7 @@ from .options import (
 if TYPE_CHECKING:
     from ..reconstruction.adjustment import Reconstruction
     from ..uncertainty.uncertain import Uncertain
+    from ..units import System
 
 SAMPLES = 20_000
 
@@ -89,16 +92,18 @@ def main(args: argparse.Namespace) -> int:
         return 0
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
-    known = known_within_limits(args.file, args.set, KNOWABLE)
     from ..reconstruction.adjustment import needs_adjustment
+    from ..units import system_of
 
+    known, named = known_within_limits(args.file, args.set, KNOWABLE, args.units)
+    units = system_of(named)
     if not args.scene and not needs_adjustment(known, _wanted(args)):
         from ..reconstruction.solutiontable import show
 
         numbers = {name: item.nominal for name, item in known.items()}
-        show(numbers, _wanted(args), source_of(args.file), args.contact_time, args.json)
+        show(numbers, _wanted(args), source_of(args.file), args.contact_time, args.json, units)
         return 0
-    _reconstruct(known, args)
+    _reconstruct(known, args, units)
     return 0
 
 
@@ -111,7 +116,7 @@ def _wanted(args: argparse.Namespace) -> list[str] | None:
     return args.wanted.upper().replace(",", " ").split() if args.wanted else None
 
 
-def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace) -> None:
+def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: System) -> None:
     from ..reconstruction.adjustment import reconstruct
     from ..reconstruction.state import QUANTITIES
     from ..uncertainty.reconstructedtable import as_json, as_text, completed_values, uncertainty
@@ -131,12 +136,12 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace) -> None:
         spread = uncertainty(solution, args.samples, args.seed, wanted)
         tables.append((solution, completed_values(solution, args.contact_time), spread))
     if args.json:
-        print(json.dumps({"solutions": [as_json(*one) for one in tables]}, allow_nan=False))
+        print(json.dumps({"solutions": [as_json(*one, units) for one in tables]}, allow_nan=False))
         return
     for count, one in enumerate(tables, 1):
         if len(tables) > 1:
             print(f"{chr(10) if count > 1 else ''}SOLUTION {count} OF {len(tables)}\n")
-        print(as_text(*one))
+        print(as_text(*one, units))
 
 
 def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace) -> None:

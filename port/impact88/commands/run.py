@@ -27,10 +27,12 @@ from ..program.run import finished, start
 from ..scene import Scene, published_data, sample
 from .options import (
     add_json_argument,
+    add_move_argument,
     add_output_argument,
     add_scene_argument,
     add_set_argument,
     settings,
+    with_contact_moved,
 )
 
 MOST_REPLIES = 10_000
@@ -41,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 run`."""
     add_scene_argument(parser)
     add_set_argument(parser, "change a value of the scene")
+    add_move_argument(parser)
     parser.add_argument(
         "--arithmetic",
         choices=tuple(ARITHMETICS),
@@ -78,7 +81,10 @@ def chosen_scene(args: argparse.Namespace, changes: dict[str, str]) -> Scene | N
         raise UserError(f"a scene file and --sample {args.sample} are both given; expected one")
     if args.scene or args.sample:
         scene = Scene.from_toml(args.scene) if args.scene else sample(args.sample)
-        return scene.replaced(changes) if changes else scene
+        if scene.units:
+            changes = settings(args.set, units=scene.units)
+        scene = scene.replaced(changes) if changes else scene
+        return with_contact_moved(scene, args.move_contact)
     given = [name for name in VELOCITIES if name in changes]
     if not given:
         return None

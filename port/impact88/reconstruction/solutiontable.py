@@ -11,6 +11,7 @@ from ..errors import UserError
 from ..names import CHAPTER, PIVOT, RESULTS, SCENE, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..status import sentences
+from ..units import RULES, System
 from .impulse import clock, forces
 from .outcome import moment_ratio, outcome
 from .state import CHANGES
@@ -53,6 +54,13 @@ def completed(values: dict[str, float], contact_time: float | None) -> dict[str,
     return {name: values[name] for name in _ORDER if name in values and name not in untold}
 
 
+def written(values: Mapping[str, float], units: System) -> dict[str, float]:
+    """Values in base units as they are shown."""
+    if units is RULES:
+        return dict(values)
+    return {name: units.shown(quantity(name).unit, value) for name, value in values.items()}
+
+
 def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
     """What a reader must know about a solution of a single scene, in sentences."""
     found = []
@@ -69,16 +77,21 @@ def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
     return found + sentences(int(values.get("STATUS", 0)))
 
 
-def as_text(known: Mapping[str, float], solution: Solution, values: Mapping[str, float]) -> str:
+def as_text(
+    known: Mapping[str, float],
+    solution: Solution,
+    values: Mapping[str, float],
+    units: System = RULES,
+) -> str:
     """The solution as tables: velocities, coefficients, impulse, consequences, warnings."""
     blocks: list[list[str]] = [
-        velocities_table(known, values),
-        named_table(("E", "MUP", "EM", "RR0"), known, values),
-        named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values),
-        named_table(("TF", "FA", "FM2", "FM3"), known, values),
-        named_table(CHANGES, known, values),
-        named_table(("KI", "KF", "LOSS"), known, values),
-        named_table(("CAX", "CAY", "CBX", "CBY"), known, values),
+        velocities_table(known, values, units),
+        named_table(("E", "MUP", "EM", "RR0"), known, values, units),
+        named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
+        named_table(("TF", "FA", "FM2", "FM3"), known, values, units),
+        named_table(CHANGES, known, values, units),
+        named_table(("KI", "KF", "LOSS"), known, values, units),
+        named_table(("CAX", "CAY", "CBX", "CBY"), known, values, units),
         _conditions(solution),
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
@@ -98,7 +111,11 @@ _ROWS = (
 )
 
 
-def velocities_table(known: Mapping[str, float], values: Mapping[str, float]) -> list[str]:
+def velocities_table(
+    known: Mapping[str, float], values: Mapping[str, float], units: System = RULES
+) -> list[str]:
+    """Velocities before and after of both vehicles, in components, sizes and directions."""
+    values = written(values, units)
     decimals = {}
     for unit in ("length/time", "rad/time", "degree"):
         alike = [name for _, row_unit, row in _ROWS if row_unit == unit for name in row]
@@ -114,15 +131,20 @@ def velocities_table(known: Mapping[str, float], values: Mapping[str, float]) ->
             text = fixed(values[name], decimals[unit]) if name in values else "unknown"
             given = name in known or label not in ("x", "y", "spin") or name not in values
             cells.append(f"{text}{' ' if given else '*'}")
-        rows.append([label, *cells, unit])
+        rows.append([label, *cells, units.label(unit)])
     heading = ["A before ", "A after ", "B before ", "B after "][: 2 * vehicles]
     lines = table(rows, ["velocity", *heading, "unit"], left=(0, 1 + 2 * vehicles))
     return [*lines, "* solved for"]
 
 
 def named_table(
-    names: tuple[str, ...], known: Mapping[str, float], values: Mapping[str, float]
+    names: tuple[str, ...],
+    known: Mapping[str, float],
+    values: Mapping[str, float],
+    units: System = RULES,
 ) -> list[str]:
+    """Values by name, each with unit and meaning."""
+    values = written(values, units)
     rows = []
     for name in names:
         if name not in values or values[name] != values[name]:
@@ -137,7 +159,7 @@ def named_table(
             note = _friction(values)
         if name == "EM":
             note = f"{note}; {number(-values[name])} with the sign the other way"
-        rows.append([name, f"{number(values[name])}{mark}", what.unit, note])
+        rows.append([name, f"{number(values[name])}{mark}", units.label(what.unit), note])
     return table(rows, left=(0, 2, 3))
 
 
@@ -166,7 +188,10 @@ def _conditions(solution: Solution) -> list[str]:
 
 
 def as_json(
-    known: Mapping[str, float], solution: Solution, values: Mapping[str, float]
+    known: Mapping[str, float],
+    solution: Solution,
+    values: Mapping[str, float],
+    units: System = RULES,
 ) -> dict[str, Any]:
     """The solution for a program; numbers that do not exist are null."""
     status = int(values.get("STATUS", 0))
@@ -174,8 +199,8 @@ def as_json(
         {
             "known": [name for name in values if name in known],
             "solved_for": list(solution.unknown),
-            "values": {n: v for n, v in values.items() if n != "STATUS"},
-            "units": {n: quantity(n).unit for n in values if n != "STATUS"},
+            "values": {n: v for n, v in written(values, units).items() if n != "STATUS"},
+            "units": {n: units.label(quantity(n).unit) for n in values if n != "STATUS"},
             "amplification": solution.amplification,
             "badly_conditioned": solution.badly_conditioned,
             "mismatch": solution.mismatch,
@@ -193,19 +218,24 @@ def show(
     source: str | None,
     contact_time: float | None,
     as_object: bool,
+    units: System = RULES,
 ) -> None:
     """Print the solutions of one problem, as tables or as one JSON object; ``source`` names where
-    the known values come from in errors."""
+    the known values come from in errors, ``units`` how values are written."""
     try:
         solutions = solve_for(known, wanted)
     except UserError as error:
         raise UserError(str(error), source) from None
     tables = [(s, complete(known, s, contact_time)) for s in solutions]
     if as_object:
-        print(json.dumps({"solutions": [as_json(known, s, v) for s, v in tables]}, allow_nan=False))
+        print(
+            json.dumps(
+                {"solutions": [as_json(known, s, v, units) for s, v in tables]}, allow_nan=False
+            )
+        )
         return
     for at, (solution, values) in enumerate(tables):
         if len(tables) > 1:
             head = f"SOLUTION {at + 1} OF {len(tables)}"
             print(f"{chr(10) if at else ''}{head}: MU is known in size, and both signs agree\n")
-        print(as_text(known, solution, values))
+        print(as_text(known, solution, values, units))

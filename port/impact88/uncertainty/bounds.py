@@ -30,6 +30,7 @@ from .. import status
 from ..closedform.solve import quantities
 from ..errors import UserError
 from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
+from ..reconstruction.contact import MOVES, moved
 from ..reconstruction.model import (
     DividedModel,
     Model,
@@ -117,7 +118,8 @@ class Bounds:
 
 def input_names(problem: str) -> tuple[str, ...]:
     """The values a problem needs: the scene's, for a reconstruction with the six final velocities
-    in place of the initial ones and the signed friction MUP in place of MU."""
+    in place of the initial ones and the signed friction MUP in place of MU. Beside them CX and CY
+    (`reconstruction.contact`) may move the contact point."""
     if problem == "forward":
         return tuple(SCENE)
     kept = (name for name in SCENE if name not in VELOCITIES)
@@ -292,7 +294,12 @@ class _Box:
     def solved(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
         """The outputs at n sets of inputs, n each (a lone number where nothing varies)."""
         with np.errstate(all="ignore"):
-            return self.model({**self.known, **columns}, outputs)
+            return self.model(self.scenes(columns), outputs)
+
+    def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
+        """All inputs, the contact point moved by CX and CY where they are among them."""
+        values: dict[str, Array | float] = {**self.known, **columns}
+        return moved(values) if set(MOVES) & set(values) else values
 
     def extremes(self, rng: np.random.Generator) -> Extremes:
         """The extremes of the outputs over the box."""
@@ -317,7 +324,7 @@ class _Box:
         names = (*self.outputs, "STATUS") if self.excluded else self.outputs
 
         def values(points: Array) -> Array:
-            columns = {**self.known, **self.columns(points)}
+            columns = self.scenes(self.columns(points))
             with np.errstate(all="ignore"):
                 solved, denominators = self.divided(columns, names, sign)
             found = [np.array(solved[name]) for name in self.outputs]
@@ -333,7 +340,7 @@ class _Box:
 
     def slip(self, points: Array) -> Array:
         """gt at points of the unit cube, n."""
-        values = quantities({**self.known, **self.columns(points)}, ["gt"])["gt"]
+        values = quantities(self.scenes(self.columns(points)), ["gt"])["gt"]
         return np.broadcast_to(values, len(points))
 
     def left_out(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
@@ -379,7 +386,7 @@ def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
         if name not in given:
             raise UserError(f"{name} is missing; a {problem} needs {' '.join(names)}")
     for name in given:
-        if name not in names:
+        if name not in (*names, *MOVES):
             raise UserError(f"is no input of a {problem}; expected one of {' '.join(names)}", name)
     if given["M"].varies or given["M"].nominal not in (4, 6):
         raise UserError("expected 6, or 4 for point masses", "M")

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 from ..errors import UserError
 from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, VELOCITIES
+from ..reconstruction.contact import MOVES, moved
 from . import uncertain
 from .uncertain import Uncertain
 
@@ -55,12 +56,12 @@ def read_inputs(
     entries.pop("title", None)
     correlations = read_correlations(entries.pop("correlations", ""), source)
     for name in entries:
-        if name not in (*SCENE, *AFTER):
+        if name not in (*SCENE, *AFTER, *MOVES):
             expected = " ".join((*SCENE, *AFTER, "title", "correlations"))
             raise UserError(f"{name!r} is no value here; expected {expected}", source)
     wanted = (*COMMON, *(BEFORE if problem == "forward" else AFTER))
     for name in changes:
-        if name not in wanted:
+        if name not in (*wanted, *MOVES):
             raise UserError(
                 f"{name!r} is no input of the {problem} problem; expected one of "
                 f"{' '.join(wanted)}",
@@ -69,14 +70,14 @@ def read_inputs(
     values = {
         name: uncertain.read(text, f"{source}, {name}")
         for name, text in entries.items()
-        if name in SCENE or problem != "forward"
+        if name in (*SCENE, *MOVES) or problem != "forward"
     }
     derived: tuple[str, ...] = ()
     if problem != "forward" and not set(AFTER) & set(values) and not set(AFTER) <= set(changes):
         values |= _forward_solution(values, source)
         derived = tuple(name for name in AFTER if name not in changes)
     for name, text in changes.items():
-        center = values[name].nominal if name in values else None
+        center = values[name].nominal if name in values else 0.0 if name in MOVES else None
         values[name] = uncertain.read(text, f"--range {name}", center)
     missing = [name for name in wanted if name not in values]
     if missing:
@@ -84,6 +85,7 @@ def read_inputs(
         raise UserError(
             f"{' '.join(missing)} missing; the {problem} problem needs it{hint}", source
         )
+    wanted = (*wanted, *(name for name in MOVES if name in values))
     return Inputs({name: values[name] for name in wanted}, correlations, derived)
 
 
@@ -98,7 +100,7 @@ def _forward_solution(values: Mapping[str, Uncertain], source: str) -> dict[str,
         )
     from ..closedform.solve import solve
 
-    solved = solve({name: item.nominal for name, item in values.items()}, AFTER)
+    solved = solve(moved({name: item.nominal for name, item in values.items()}), AFTER)
     friction = values["MU"]
     if float(solved["MUP"]) == -friction.nominal:
         friction = replace(

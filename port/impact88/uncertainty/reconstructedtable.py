@@ -14,9 +14,16 @@ from numpy.typing import NDArray
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..plaintable import number, paragraph, plain, table
 from ..reconstruction.adjustment import Reconstruction, typed_friction
-from ..reconstruction.solutiontable import CHANGES, completed, named_table, velocities_table
+from ..reconstruction.solutiontable import (
+    CHANGES,
+    completed,
+    named_table,
+    velocities_table,
+    written,
+)
 from ..reconstruction.state import COURSES, SPEEDS
 from ..status import sentences
+from ..units import RULES, System, base_of
 from .reconstructed import Draws, Range, draws, ranges
 
 _RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB", "LOSS", *COEFFICIENTS)
@@ -144,18 +151,23 @@ def _drivers(solution: Reconstruction, spread: Uncertainty, row: int) -> list[tu
     return [(solution.system.observations[i], float(squares[i] / total)) for i in ranked]
 
 
-def as_text(solution: Reconstruction, values: Mapping[str, float], spread: Uncertainty) -> str:
+def as_text(
+    solution: Reconstruction,
+    values: Mapping[str, float],
+    spread: Uncertainty,
+    units: System = RULES,
+) -> str:
     """The reconstruction as tables."""
     known = solution.system.nominal
     blocks = [
-        velocities_table(known, values),
-        named_table(("E", "MUP", "EM", "RR0"), known, values),
-        named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values),
-        named_table(("TF", "FA", "FM2", "FM3"), known, values),
-        named_table(CHANGES, known, values),
-        named_table(("KI", "KF", "EL", "LOSS"), known, values),
-        _adjustments(solution),
-        _spreads(spread),
+        velocities_table(known, values, units),
+        named_table(("E", "MUP", "EM", "RR0"), known, values, units),
+        named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
+        named_table(("TF", "FA", "FM2", "FM3"), known, values, units),
+        named_table(CHANGES, known, values, units),
+        named_table(("KI", "KF", "EL", "LOSS"), known, values, units),
+        _adjustments(solution, units),
+        _spreads(spread, units),
         _correlations(spread),
         _driving(solution, spread),
     ]
@@ -165,13 +177,15 @@ def as_text(solution: Reconstruction, values: Mapping[str, float], spread: Uncer
     return "\n".join(lines).rstrip("\n")
 
 
-def _adjustments(solution: Reconstruction) -> list[str]:
+def _adjustments(solution: Reconstruction, units: System) -> list[str]:
     if not solution.redundancy:
         return []
     rows = []
     for a in solution.adjusted:
-        cells = [a.name, number(a.measured), number(a.tolerance, 3), number(a.adjusted)]
-        rows.append([*cells, f"{a.moved + 0.0:.2f}", quantity(a.name).unit])
+        unit = quantity(a.name).unit
+        shown = [units.shown(unit, x) for x in (a.measured, a.tolerance, a.adjusted)]
+        cells = [a.name, number(shown[0]), number(shown[1], 3), number(shown[2])]
+        rows.append([*cells, f"{a.moved + 0.0:.2f}", units.label(unit)])
     heading = ["known", "measured", "+-", "adjusted", "moved, tolerances", "unit"]
     lines = table(rows, heading, left=(0, 5))
     count = solution.redundancy
@@ -184,7 +198,7 @@ def _adjustments(solution: Reconstruction) -> list[str]:
     return lines
 
 
-def _spreads(spread: Uncertainty) -> list[str]:
+def _spreads(spread: Uncertainty, units: System) -> list[str]:
     if not spread.names:
         return []
     heading = ["result", "first order +-"]
@@ -193,15 +207,18 @@ def _spreads(spread: Uncertainty) -> list[str]:
         heading += ["lower bound", "upper bound"]
     rows = []
     for name in spread.names:
-        cells = [name, number(spread.deviations[name], 3)]
+        unit = quantity(name).unit
+        factor = units.shown(unit, 1.0)
+        cells = [name, number(factor * spread.deviations[name], 3)]
         if spread.draws:
             drawn = spread.draws.values[name]
             drawn = drawn[np.isfinite(drawn)]
             quantiles = np.quantile(drawn, QUANTILES) if len(drawn) else [math.nan] * 3
-            cells.append(number(drawn.std() if len(drawn) else math.nan, 3))
+            cells.append(number(factor * drawn.std() if len(drawn) else math.nan, 3))
             bound = spread.ranges[name]
-            cells += [number(value, 5) for value in (*quantiles, bound.lower, bound.upper)]
-        rows.append([*cells, quantity(name).unit])
+            limits = (*quantiles, bound.lower, bound.upper)
+            cells += [number(factor * value, 5) for value in limits]
+        rows.append([*cells, units.label(unit)])
     return table(rows, [*heading, "unit"], left=(0, len(heading)))
 
 
@@ -228,15 +245,20 @@ def _driving(solution: Reconstruction, spread: Uncertainty) -> list[str]:
 
 
 def as_json(
-    solution: Reconstruction, values: Mapping[str, float], spread: Uncertainty
+    solution: Reconstruction,
+    values: Mapping[str, float],
+    spread: Uncertainty,
+    units: System = RULES,
 ) -> dict[str, Any]:
-    """The reconstruction for a program; numbers that do not exist are null."""
+    """The reconstruction for a program; numbers that do not exist are null. Values are in
+    ``units``; uncertainties and adjustments in base units, which "base" names."""
     drawn = spread.draws
     whole: dict[str, Any] = plain(
         {
             "known": list(solution.system.known),
-            "values": {n: v for n, v in values.items() if n != "STATUS"},
-            "units": {n: quantity(n).unit for n in values if n != "STATUS"},
+            "values": {n: v for n, v in written(values, units).items() if n != "STATUS"},
+            "units": {n: units.label(quantity(n).unit) for n in values if n != "STATUS"},
+            "base": base_of(units),
             "undetermined": list(solution.undetermined),
             "adjusted": [
                 {

@@ -1,0 +1,42 @@
+"""The contact point moved.
+
+DA PA and DB PB are the contact point's polar coordinates in each vehicle, from its front (A faces
+TA + 180, B faces TB). One point has four numbers there, so a move of it changes all four together:
+varied apart they tear it in two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ..doubles import double
+
+MOVES = ("CX", "CY")
+"""How far the contact point moves along the scene's x and y."""
+
+
+def moved(values: Mapping[str, Any]) -> dict[str, Any]:
+    """``values`` (a scene's geometry, numbers or arrays, with CX and CY) with DA PA DB PB of the
+    contact point moved, and without CX and CY."""
+    kept = {name: value for name, value in values.items() if name not in MOVES}
+    dx, dy = (np.asarray(values.get(name, 0.0), np.float64) for name in MOVES)
+    for vehicle, sign in (("A", -1.0), ("B", 1.0)):
+        heading = np.asarray(values[f"T{vehicle}"], np.float64)
+        distance = np.asarray(values[f"D{vehicle}"], np.float64)
+        angle = np.radians(heading + values[f"P{vehicle}"])
+        # A's polar coordinates point from the contact point to its center of gravity
+        x = distance * np.cos(angle) + sign * dx
+        y = distance * np.sin(angle) + sign * dy
+        kept[f"D{vehicle}"] = np.hypot(x, y)
+        kept[f"P{vehicle}"] = np.degrees(np.arctan2(y, x)) - heading
+    return kept
+
+
+def moved_texts(texts: Mapping[str, str], dx: float, dy: float) -> dict[str, str]:
+    """What a move of the contact point changes in a scene's texts: DA PA DB PB."""
+    names = [kind + vehicle for vehicle in "AB" for kind in "DPT"]
+    values = moved({**{name: double(texts[name]) for name in names}, "CX": dx, "CY": dy})
+    return {name: repr(float(values[name])).upper() for name in ("DA", "PA", "DB", "PB")}

@@ -1,0 +1,209 @@
+"""Values with units, against conversions written out here."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from impact88 import solve
+from impact88.cli import main
+from impact88.errors import UserError
+from impact88.scene import Scene, sample
+from impact88.uncertainty.bounds import bounds
+from impact88.uncertainty.uncertain import read
+from impact88.units import SYSTEMS, UNITS, to_base
+
+G = 9.80665 / 0.3048
+"""ft/s²"""
+RUN_1 = {name: float(text) for name, text in sample(1).items()}
+
+
+def based(**texts):
+    return to_base(texts, "file")[0]
+
+
+class TestConversion:
+    @pytest.mark.parametrize(
+        ("name", "text", "expected"),
+        [
+            ("UX", "-25 mph", -25 * 5280 / 3600),
+            ("MA", "3091 lb", 3091 / G),
+            ("DA", "42 in", 3.5),
+            ("IA", "2000 slug-ft2", 2000),
+            ("WA", "90 deg/s", math.pi / 2),
+            ("UX", "-90 km/h", -25),
+            ("MA", "1.4 t", 1400),
+            ("DA", "350 mm", 0.35),
+            ("GA", "0.5 rad", math.degrees(0.5)),
+        ],
+    )
+    def test_to_the_system_s_base(self, name, text, expected):
+        assert float(based(**{name: text})[name]) == pytest.approx(expected, rel=1e-15)
+
+    def test_a_number_that_needs_no_factor_keeps_its_digits(self):
+        texts = based(UX="-36.66700 ft/s", DA="3.50 ft", E=".250")
+        assert texts == {"UX": "-36.66700", "DA": "3.50", "E": ".250"}
+
+    def test_a_named_system_gives_bare_numbers_their_unit(self):
+        values, system = to_base({"units": "us", "UX": "-30", "MA": "3217.4048556", "E": ".1"}, "f")
+        assert float(values["UX"]) == pytest.approx(-44)
+        assert float(values["MA"]) == pytest.approx(100, rel=1e-9)
+        assert values["E"] == ".1"
+        assert system is SYSTEMS["us"]
+        assert based(units="chapter", UX="-30", MA="100") == {"UX": "-30", "MA": "100"}
+        assert float(based(units="metric", UX="36")["UX"]) == pytest.approx(10)
+        assert float(based(units="us", DA="1 m")["DA"]) == pytest.approx(1 / 0.3048)
+
+    def test_ranges_are_converted_as_a_whole(self):
+        assert based(UX="-30 +- 3 mph")["UX"].split() == ["-44", "+-", "4.4"]
+        texts = based(MA="3217.4048556 lb +- 5%", UX="normal 15 1.5 mph within 10 .. 20 mph")
+        assert texts["MA"].endswith("+- 5%")
+        assert [float(x) for x in texts["UX"].split() if x[0].isdigit()] == pytest.approx(
+            [22, 2.2, 44 / 3, 88 / 3]
+        )
+
+    @pytest.mark.parametrize(
+        ("texts", "message"),
+        [
+            ({"UX": "-25 mph", "MA": "96"}, "MA = 96 has no unit, and others have"),
+            ({"UX": "-25 mph", "MA": "960 kg"}, "units of two systems"),
+            ({"UX": "-25 lb"}, "lb is no unit of its length/time"),
+            ({"units": "imperial", "UX": "1"}, "'imperial' is no system of units"),
+        ],
+    )
+    def test_what_is_refused(self, texts, message):
+        with pytest.raises(UserError, match=message):
+            to_base(texts, "file")
+
+    def test_shown_and_read_are_inverse(self):
+        for system in SYSTEMS.values():
+            for rule, unit in system.usual.items():
+                value, _ = to_base({"units": system.name, _NAMES[rule]: f"12.5 {unit}"}, "f")
+                assert system.shown(rule, float(value[_NAMES[rule]])) == pytest.approx(12.5)
+                assert UNITS[unit][0] == rule
+
+
+_NAMES = {
+    **{"length": "DA", "length/time": "UX", "mass": "MA", "mass·length²": "IA"},
+    **{"mass·length²/time²": "EL", "rad/time": "WA", "degree": "GA"},
+}
+
+
+class TestFiles:
+    def scene(self, tmp_path, **changes):
+        """Run 1 with weights in lb and speeds in mph."""
+        texts = {**sample(1), **changes}
+        for name in ("UX", "UY", "VX", "VY"):
+            texts[name] = repr(float(texts[name]) * 3600 / 5280)
+        for name in ("MA", "MB"):
+            texts[name] = repr(float(texts[name]) * G)
+        lines = ['units = "us"', 'title = "at 25 mph"']
+        path = tmp_path / "us.toml"
+        path.write_text("\n".join([*lines, *(f'{n} = "{t}"' for n, t in texts.items())]))
+        return str(path)
+
+    def test_a_scene_in_mph_is_the_same_collision(self, tmp_path):
+        scene = Scene.from_toml(self.scene(tmp_path))
+        assert scene.units == "us"
+        found = solve({n: float(t) for n, t in scene.items()})
+        expected = solve(RUN_1)
+        for name in ("VAX", "VBY", "WAF", "LOSS", "DVA"):
+            assert float(found[name]) == pytest.approx(float(expected[name]), rel=1e-12)
+
+    def test_the_program_gets_base_units(self, tmp_path, capsys):
+        assert main(["run", self.scene(tmp_path), "--set", "UX=-19.8 mph"]) == 0
+        assert "UX= -29.04 " in capsys.readouterr().out
+        # a bare number is in the file's units
+        assert main(["run", self.scene(tmp_path), "--set", "UX=-19.8"]) == 0
+        assert "UX= -29.04 " in capsys.readouterr().out
+
+    def test_results_come_in_the_units_that_went_in(self, tmp_path, capsys):
+        path = self.scene(tmp_path)
+        assert main(["reconstruct", path, "--json"]) == 0
+        (us,) = json.loads(capsys.readouterr().out)["solutions"]
+        expected = solve(RUN_1)
+        assert us["values"]["VAX"] == pytest.approx(float(expected["VAX"]) * 3600 / 5280)
+        assert us["units"]["VAX"] == "mph"
+        assert us["values"]["MA"] == pytest.approx(143.5 * G)
+        assert us["units"]["KI"] == "ft-lb"
+        assert us["values"]["KI"] == pytest.approx(float(expected["KI"]))
+        assert main(["reconstruct", path, "--set", "UX=-19.8 +- 1", "--samples", "200"]) == 0
+        out = capsys.readouterr().out
+        assert "mph" in out
+        assert "length/time" not in out
+
+    def test_units_option(self, tmp_path, capsys):
+        car = "MA=3217.4 IA=2000 DA=4 PA=0 TA=0 GA=0 E=.1 MU=0 EM=-.5 UX=-30 UY=0 WA=0".split()
+        settings = [part for pair in car for part in ("--set", pair)]
+        assert main(["barrier", *settings, "--units", "us", "--json"]) == 0
+        (found,) = json.loads(capsys.readouterr().out)["solutions"]
+        assert found["values"]["VAX"] == pytest.approx(3.0)
+        assert found["units"]["VAX"] == "mph"
+        assert main(["barrier", *settings, "--units", "foot"]) == 2
+        assert "no system of units" in capsys.readouterr().err
+
+
+class TestContactPoint:
+    def test_in_a_vehicle_s_own_axes(self, tmp_path):
+        lines = [f'{n} = "{t}"' for n, t in sample(1).items() if n not in ("DA", "PA", "DB", "PB")]
+        lines += ["CAF = 7.0", "CAL = -2.5", "CBF = 2.5", "CBL = -2.0"]
+        path = tmp_path / "own.toml"
+        path.write_text("\n".join(lines))
+        scene = {n: float(t) for n, t in Scene.from_toml(str(path)).items()}
+        assert scene["DA"] * math.cos(math.radians(scene["PA"])) == pytest.approx(7.0)
+        assert scene["DB"] * math.sin(math.radians(scene["PB"])) == pytest.approx(-2.0)
+        path.write_text("\n".join([*lines, "DA = 3"]))
+        with pytest.raises(UserError, match="DA and CAF are both given"):
+            Scene.from_toml(str(path))
+        path.write_text("\n".join(lines[:-1]))
+        with pytest.raises(UserError, match="CBL is missing"):
+            Scene.from_toml(str(path))
+
+    def contact(self, scene):
+        """From A's and B's center of gravity, along x and y (line 330)."""
+        a, b = (math.radians(scene["T" + v] + scene["P" + v]) for v in "AB")
+        return (
+            (-scene["DA"] * math.cos(a), -scene["DA"] * math.sin(a)),
+            (scene["DB"] * math.cos(b), scene["DB"] * math.sin(b)),
+        )
+
+    def test_a_move_is_the_same_in_both_vehicles(self, capsys):
+        assert main(["run", "--sample", "1", "--move-contact", "1,-.5", "--json"]) == 0
+        printout = json.loads(capsys.readouterr().out)["printout"]
+        words = printout.replace("=", "= ").split()
+        values = {n: float(words[words.index(f"{n}=") + 1]) for n in ("DA", "DB")}
+        angles = printout.split("GA\n")[1].split()
+        moved = RUN_1 | values | {"PA": float(angles[0]), "PB": float(angles[1])}
+        for before, after in zip(self.contact(RUN_1), self.contact(moved), strict=True):
+            assert after == pytest.approx((before[0] + 1, before[1] - 0.5), abs=1e-6)
+        assert main(["run", "--sample", "1", "--move-contact", "1"]) == 2
+
+    def test_bounds_of_a_real_move(self):
+        """A foot in any direction: the issue's 15.0 to 16.8, not what four torn ranges give."""
+        turn = np.linspace(0, 2 * np.pi, 721)
+        (ax, ay), (bx, by) = self.contact(RUN_1)
+        x, y = np.cos(turn), np.sin(turn)
+        circle = RUN_1 | {
+            "DA": np.hypot(ax + x, ay + y),
+            "PA": np.degrees(np.arctan2(-(ay + y), -(ax + x))) - RUN_1["TA"],
+            "DB": np.hypot(bx + x, by + y),
+            "PB": np.degrees(np.arctan2(by + y, bx + x)) - RUN_1["TB"],
+        }
+        changes = solve(circle, "DVA")["DVA"]
+        assert (changes.min(), changes.max()) == pytest.approx((15.0, 16.8), abs=0.1)
+        box = {**RUN_1, "CX": read("0 +- 1", "CX"), "CY": read("0 +- 1", "CY")}
+        found = bounds(box, ["DVA"], samples=200).bounds["DVA"]
+        assert found.lower < changes.min() < changes.max() < found.upper
+        assert found.upper - found.lower < 2.5
+        corner = RUN_1 | {n: found.at_lower[n] for n in ()}
+        dx, dy = found.at_lower["CX"], found.at_lower["CY"]
+        corner |= {
+            "DA": math.hypot(ax + dx, ay + dy),
+            "PA": math.degrees(math.atan2(-(ay + dy), -(ax + dx))),
+            "DB": math.hypot(bx + dx, by + dy),
+            "PB": math.degrees(math.atan2(by + dy, bx + dx)) - 60,
+        }
+        assert float(solve(corner, "DVA")["DVA"]) == pytest.approx(found.lower, rel=1e-12)
