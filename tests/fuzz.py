@@ -97,6 +97,8 @@ def campaign(
             number = numbers.stop
             for count, found in pool.map(batch, repeat(kinds), repeat(seed), numbers):
                 counts += count
+                if counts.total() % 20_000 == 0:
+                    print(f"{counts.total():,} cases, {wrong} went wrong", file=sys.stderr)
                 for case, faults_of_it in found:
                     wrong += 1
                     key = faults_of_it[0][-120:]

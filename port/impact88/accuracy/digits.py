@@ -8,18 +8,29 @@ masses (M = 4) the arms count as 0 and the spins stay out of the energies.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from . import reference
 from .reference import mpmath, total
 
 DIGITS = 30
+LONGEST_EXPONENT = 4
+"""Digits of the largest exponents that are computed with."""
+
+
+def _exponents(scene: Mapping[str, str]) -> Iterator[str]:
+    """The digits of the numbers' exponents."""
+    for text in scene.values():
+        _, _, exponent = text.upper().replace(" ", "").partition("E")
+        yield exponent.lstrip("+-0")
 
 
 def thirty_digits(scene: Mapping[str, str]) -> dict[str, str]:
     """Result name -> 30 digits; empty when the equations are singular or make no sense. What is no
     number (LOSS where nothing moves, MUC where a pivot feels no impulse) is not in it."""
+    if any(len(exponent) > LONGEST_EXPONENT for exponent in _exponents(scene)):
+        return {}  # a number of a million digits is nobody's measurement
     try:
         values = fifty_digits(scene)
     except (ValueError, ZeroDivisionError):

@@ -25,6 +25,7 @@ ZERO_DETERMINANT = 1
 DONE = stamp(570, 900)
 """The place after line 570's GOSUB 1000."""
 
+NEAR_OVERFLOW = 2.0**120
 C_1E_9 = from_number(scalar.read("1E-9")[0])
 
 
@@ -52,7 +53,9 @@ def solve(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool = Fa
             unit.record(none, ZERO_DETERMINANT)
             AP[none] = 1.0
         _exchange(block, filled, J, RX)
-        columns = np.flatnonzero(filled[J, :] & (np.arange(M + 2) > J - matrix))
+        # what column J becomes is known, and not looked at again; that it overflows is not known
+        known = not matrix and high < NEAR_OVERFLOW
+        columns = np.flatnonzero(filled[J, :] & (np.arange(M + 2) > J - (not known)))
         rows = np.flatnonzero(filled[:, J] & (np.arange(M + 1) != J))
         if not columns.size:
             continue

@@ -126,6 +126,7 @@ def input_names(problem: str) -> tuple[str, ...]:
     return (*("MUP" if name == "MU" else name for name in kept), *FINAL_VELOCITIES)
 
 
+@np.errstate(all="ignore")
 def bounds(
     values: Mapping[str, Uncertain | float],
     outputs: Sequence[str] | None = None,
@@ -271,6 +272,9 @@ class _Box:
         if not wanted:
             raise UserError(f"no result is asked for; expected some of {' '.join(allowed)}")
         limits = {name: item.limits(sigmas) for name, item in inputs.items()}
+        for name, (low, high) in limits.items():
+            if not high - low < float("inf"):
+                raise UserError("its limits are too far apart for double precision", name)
         forward = problem == "forward"
         model = forward_model if forward else reconstruction_model
         divided = forward_with_denominators if forward else reconstruction_with_denominators
