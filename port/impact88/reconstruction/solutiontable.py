@@ -236,6 +236,7 @@ def show(
         return
     for at, (solution, values) in enumerate(tables):
         if len(tables) > 1:
-            head = f"SOLUTION {at + 1} OF {len(tables)}"
-            print(f"{chr(10) if at else ''}{head}: MU is known in size, and both signs agree\n")
+            head = f"SOLUTION {at + 1} OF {len(tables)}: MU is known in size, and both signs agree"
+            fit = " (each a fit of values that contradict one another)"
+            print(f"{chr(10) if at else ''}{head}{fit if solution.contradictory else ''}\n")
         print(as_text(known, solution, values, units))
