@@ -2,7 +2,7 @@
 
 For each scene: what the 1988 program prints; each result as Applesoft has it (printed text, the
 five bytes stored, their exact decimal value), in double precision by the closed form, and to 30
-digits where mpmath (extra ``bench``) is installed; how well the scene is conditioned; how far
+digits; how well the scene is conditioned; how far
 rounding may take the final velocities and spins, in doubles and on the Apple (a bound; relative to
 `errorbound.scales`: the largest velocity about, spins to the largest spin or that velocity over the
 longer arm); what is unphysical about it.
@@ -11,7 +11,7 @@ longer arm); what is unphysical about it.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -72,7 +72,7 @@ class Request:
 def answers(lines: Iterable[str], reference: bool = True) -> Iterator[dict[str, Any]]:
     """An answer for every line that is not blank, in order.
 
-    ``reference``: give 30 digits too, where mpmath is installed. A line that cannot be used gives
+    ``reference``: give 30 digits too. A line that cannot be used gives
     ``{"id", "error": {"line", "message"}}``.
     """
     batch: list[Request] = []
@@ -103,6 +103,7 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
     if not scenes:
         return []
 
+    from ..accuracy.digits import thirty_digits
     from ..closedform.solve import solve
     from ..program.run import run
     from ..replay import replay
@@ -118,12 +119,11 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
             present, stored = replayed.present(name).tolist(), replayed.reals(name).tolist()
             printed = replayed.printed(name).tolist() if name != "KF" else [""] * len(scenes)
             applesoft[name] = (present, printed, stored)
-    exact = _references(reference)
     double, listing = errorbound.oracle_bounds(scenes, numbers, found)
     out = []
     for index, scene in enumerate(scenes):
         done = run(scene)
-        digits = exact(scene)
+        digits = thirty_digits(scene) if reference else {}
         results: dict[str, dict[str, Any]] = {}
         for name in RESULTS:
             if name in _NO_NUMBERS:
@@ -176,15 +176,3 @@ def decimal_of(value: Fraction) -> str:
 def _json_number(value: float) -> float | None:
     """JSON has no NaN and no infinity."""
     return value if value == value and abs(value) != float("inf") else None
-
-
-def _references(wanted: bool) -> Callable[[Mapping[str, str]], dict[str, str]]:
-    """A function that gives a scene's results to 30 digits; an empty dict without mpmath."""
-    if wanted:
-        try:
-            from ..accuracy.digits import thirty_digits
-        except UserError:
-            pass
-        else:
-            return thirty_digits
-    return lambda scene: {}
