@@ -2,10 +2,9 @@
 
 For each scene: what the 1988 program prints; each result as Applesoft has it (printed text, the
 five bytes stored, their exact decimal value), in double precision by the closed form, and to 30
-digits; how well the scene is conditioned; how far
-rounding may take the final velocities and spins, in doubles and on the Apple (a bound; relative to
-`errorbound.scales`: the largest velocity about, spins to the largest spin or that velocity over the
-longer arm); what is unphysical about it.
+digits; how well the scene is conditioned; how far rounding may take the final velocities and spins,
+in doubles and on the Apple (a bound; relative to `errorbound.scales`: the largest velocity about,
+spins to the largest spin or that velocity over the longer arm); what is unphysical about it.
 """
 
 from __future__ import annotations
@@ -20,6 +19,7 @@ from ..accuracy import errorbound
 from ..errors import UserError
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..scene import Scene
+from ..schemas import stamped
 
 BATCH = 256
 """Scenes computed together."""
@@ -92,10 +92,12 @@ def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[st
     found = iter(look_up(scenes, reference))
     for request in batch:
         if request.scene is None:
-            yield {"id": request.id, "error": {"line": request.line, "message": request.problem}}
+            error = {"line": request.line, "message": request.problem}
+            yield stamped("oracle", {"id": request.id, "error": error})
         else:
             scene = {name: request.scene[name] for name in SCENE}
-            yield {"id": request.id, **request.extra, "scene": scene, **next(found)}
+            whole = {"id": request.id, **request.extra, "scene": scene, **next(found)}
+            yield stamped("oracle", whole)
 
 
 def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list[dict[str, Any]]:

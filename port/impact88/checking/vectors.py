@@ -14,18 +14,22 @@ from random import Random
 from typing import Any
 
 from ..doubles import doubles_of
+from ..files import packaged_bytes
 from ..names import SCENE
+from ..schemas import stamped
 from .oracle import BATCH, look_up
 
 Texts = dict[str, str]
 
 CLASSES = CASEWORK, EDGE, FAILURE = "casework", "edge", "failure"
 
+PUBLISHED, PUBLISHED_SEED = 1000, 1988
+
 
 def vectors(
     count: int, seed: int = 0, reference: bool = True, only: str | None = None
 ) -> Iterator[dict[str, Any]]:
-    """``count`` vectors (``only`` of one class): id, class, label, scene and the oracle's answer."""
+    """``count`` vectors: id, class, label, scene, the oracle's answer. ``only``: of one class."""
     labelled = islice(
         ((index, one) for index, one in enumerate(_endless(seed)) if only in (None, one[0])), count
     )
@@ -33,7 +37,15 @@ def vectors(
         answers = look_up([scene for _, (_, _, scene) in batch], reference)
         for (index, (kind, label, scene)), answer in zip(batch, answers, strict=True):
             head = {"id": f"{seed}-{index:06d}", "class": kind, "label": label}
-            yield {**head, "scene": scene, **answer}
+            yield stamped("vectors", {**head, "scene": scene, **answer})
+
+
+def published() -> str:
+    """The vectors that are packaged, an object a line: the first `PUBLISHED` of seed
+    `PUBLISHED_SEED`, as they were when they were published."""
+    import gzip
+
+    return gzip.decompress(packaged_bytes("impact88.golden", "vectors.jsonl.gz")).decode("utf-8")
 
 
 def scenes(count: int, seed: int = 0) -> Iterator[tuple[str, str, Texts]]:

@@ -135,18 +135,10 @@ def main(args: argparse.Namespace) -> int:
     if args.json:
         import json
 
+        from ..schemas import stamped
+
         run = finished("".join(shown), error, zero_determinant, left)
-        print(
-            json.dumps(
-                {
-                    "printout": run.printout,
-                    "error": run.error,
-                    "line": run.line,
-                    "reals": run.reals,
-                    "A": run.A,
-                }
-            )
-        )
+        print(json.dumps(stamped("run", run._asdict())))
     elif error is not None and sys.stdout.isatty():
         print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
     return 1 if error else 0

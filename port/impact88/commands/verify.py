@@ -23,6 +23,7 @@ from collections.abc import Iterator
 from ..casework.verify import FieldCheck, Verdict, Verification, verify_file
 from ..errors import UserError, shown
 from ..files import called
+from ..schemas import stamped
 from .options import add_json_argument, add_output_argument
 
 
@@ -46,7 +47,7 @@ def main(args: argparse.Namespace) -> int:
         try:
             for result in verify_file(path):
                 if args.json:
-                    print(json.dumps(result.as_json(), ensure_ascii=False))
+                    print(json.dumps(stamped("verify", result.as_json()), ensure_ascii=False))
                 else:
                     print("\n".join(_lines(result, args.brief)))
                 sys.stdout.flush()

@@ -10,6 +10,7 @@ from typing import Any
 from ..errors import UserError
 from ..names import CHAPTER, PIVOT, RESULTS, SCENE, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
+from ..schemas import stamped
 from ..status import sentences
 from ..units import RULES, System
 from .impulse import clock, forces
@@ -228,11 +229,8 @@ def show(
         raise UserError(str(error), source) from None
     tables = [(s, complete(known, s, contact_time)) for s in solutions]
     if as_object:
-        print(
-            json.dumps(
-                {"solutions": [as_json(known, s, v, units) for s, v in tables]}, allow_nan=False
-            )
-        )
+        solved = [as_json(known, s, v, units) for s, v in tables]
+        print(json.dumps(stamped("reconstruct", {"solutions": solved}), allow_nan=False))
         return
     for at, (solution, values) in enumerate(tables):
         if len(tables) > 1:
