@@ -15,9 +15,9 @@ import mpmath
 import pytest
 
 import captures
+from impact88.accuracy import decimals, digits, reference
 from impact88.bench import populations
 from impact88.bench.populations import POPULATIONS, texts
-from impact88.accuracy import decimals, digits, reference
 from impact88.checking.oracle import answers, decimal_of, look_up
 from impact88.checking.vectors import (
     CLASSES,
