@@ -110,3 +110,5 @@ MANGLED: dict[str, Callable[[str], str]] = {
     "DOS line ends": lambda text: text.replace("\n", "\r\n"),
     "typographic": lambda text: text.replace("-", "−").replace("0", "O").replace("1", "l"),
 }
+MANGLED_HARMLESSLY = ("one line", "no blank lines", "forty columns", "DOS line ends")
+"""Those that leave every number whole."""

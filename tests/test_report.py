@@ -10,7 +10,7 @@ import pytest
 from impact88.casework.printout import read_printouts
 from impact88.casework.provenance import captures_hash, listing_hash, sha256
 from impact88.casework.report import report, write_report
-from impact88.casework.verify import verify, verify_file
+from impact88.casework.verify import Examined, examine, verify
 from impact88.errors import UserError
 from installed import impact88
 from test_printout import SAMPLE
@@ -52,13 +52,15 @@ class Page(HTMLParser):
 
 
 def page(text: str, date: str | None = None) -> Page:
-    return Page(report([verify(shown) for shown in read_printouts(text)], date))
+    return Page(
+        report([Examined("-", None, [verify(shown) for shown in read_printouts(text)])], date)
+    )
 
 
 def test_a_page_says_verdict_columns_and_provenance(tmp_path) -> None:
     path = tmp_path / "exhibit <7>.txt"
     path.write_text(SAMPLE.replace("143.5", "148.5"), encoding="utf-8")
-    shown = Page(report(list(verify_file(str(path))), "17 May 2024"))
+    shown = Page(report([examine(str(path))], "17 May 2024"))
     assert "differs" in shown.text
     assert "exhibit <7>.txt" in shown.text
     assert "100904.929" in shown.text
@@ -75,15 +77,17 @@ def test_a_page_needs_nothing_from_elsewhere() -> None:
     assert "svg" in shown.tags
     outside = [value for name, value in shown.attributes if name in ("src", "href", "xlink:href")]
     assert all(value and value.startswith("#") for value in outside)
-    assert "@import" not in report([verify(read_printouts(SAMPLE)[0])])
-    assert not re.search(r"url\((?!#)", report([verify(read_printouts(SAMPLE)[0])]))
+    assert "@import" not in report([Examined("-", None, [verify(read_printouts(SAMPLE)[0])])])
+    assert not re.search(
+        r"url\((?!#)", report([Examined("-", None, [verify(read_printouts(SAMPLE)[0])])])
+    )
 
 
 def test_ids_are_unique_with_several_printouts() -> None:
     shown = page(SAMPLE + SAMPLE.replace("143.5", "96"))
     ids = [value for name, value in shown.attributes if name == "id"]
     assert len(ids) == len(set(ids))
-    assert shown.tags.count("section") == 2
+    assert shown.tags.count("section") == 3  # the first sheet, and one for each
 
 
 def test_what_was_read_cannot_inject_markup() -> None:
@@ -94,7 +98,7 @@ def test_what_was_read_cannot_inject_markup() -> None:
 
 def test_an_incomplete_printout_has_a_page_too() -> None:
     shown = page(SAMPLE.replace("IA= 3728", ""))
-    assert "Missing: IA." in shown.text
+    assert "IA is missing" in shown.text
     assert "svg" not in shown.tags
 
 
@@ -108,4 +112,4 @@ def test_command_writes_all_or_nothing(tmp_path) -> None:
     done = impact88("verify", str(path), "--report", str(tmp_path / "no" / "case.html"))
     assert done.returncode == 2
     with pytest.raises(UserError, match="cannot be written"):
-        write_report(str(tmp_path / "no" / "case.html"), list(verify_file(str(path))))
+        write_report(str(tmp_path / "no" / "case.html"), [examine(str(path))])

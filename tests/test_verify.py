@@ -53,10 +53,16 @@ def test_captured_printouts_verify_as_identical() -> None:
 
 @pytest.mark.captures
 @pytest.mark.parametrize("how", printouts.MANGLED)
-def test_mangled_printouts_verify_as_identical(how: str) -> None:
+def test_mangled_printouts_are_settled(how: str) -> None:
     for row in printouts.sampled(printouts.normal_ends(), 3, seed=2):
         text = printouts.MANGLED[how](printouts.body(row["printout"]))
-        assert verified(text).verdict is Verdict.IDENTICAL, (row["scene"], text)
+        verdict = verified(text).verdict
+        if how in printouts.MANGLED_HARMLESSLY:
+            assert verdict is Verdict.IDENTICAL, (row["scene"], text)
+        elif how != "typographic":  # the row of angles may be cut in too many ways
+            assert verdict in (Verdict.IDENTICAL_AS_READ, Verdict.INCOMPLETE), (row["scene"], text)
+        else:  # a blank inside a number, or an O for a 0, is not read for certain
+            assert verdict is Verdict.IDENTICAL_AS_READ, (row["scene"], text)
 
 
 @pytest.mark.captures
@@ -146,11 +152,14 @@ def test_a_missing_input_is_named_and_the_rest_still_checked() -> None:
 
 def test_digits_that_fit_an_illegible_character() -> None:
     result = verified(SAMPLE.replace("143.5", "1?3.5").replace("(XA=-8.78", "(XA=-8.?8"))
-    assert result.verdict is Verdict.INCOMPLETE
-    assert [(row["name"], row["fits"]) for row in result.illegible] == [
-        ("MA", ["143.5"]),
-        ("XAF", ["-8.78"]),
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert [(check.name, check.printed, check.recomputed) for check in result.doubtful] == [
+        ("MA", "1?3.5", "143.5"),
+        ("XAF", "-8.?8", "-8.78"),
     ]
+    (doubt,) = result.doubtful[0].doubts
+    assert (doubt.line, doubt.column, doubt.read, doubt.printed) == (1, 6, "?", "4")
+    assert result.guessed == ["MA"]
 
 
 def test_a_printout_cut_short_is_incomplete() -> None:
@@ -229,7 +238,10 @@ def test_json_one_object_a_printout_and_exit_status(tmp_path) -> None:
     assert done.returncode == 0
     done = impact88("verify", "--json", str(good), str(bad), str(tmp_path / "none.txt"))
     assert done.returncode == 2
-    assert len(done.stdout.splitlines()) == 3
+    objects = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [one.get("verdict") for one in objects] == ["identical", "identical", "differs", None]
+    assert "cannot be read" in objects[3]["error"]
+    assert {one["schema"] for one in objects} == {2}
     assert done.stderr.count("\n") == 1
     (one,) = [
         json.loads(line) for line in impact88("verify", "--json", str(bad)).stdout.splitlines()

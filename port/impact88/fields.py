@@ -48,3 +48,40 @@ FINAL_SPINS = tuple(name for name, field in FIELDS.items() if field.line == 760)
 """What line 750 leaves out unless M = N."""
 ZERO_DETERMINANT = "ZERO DETERMINANT"
 """What line 1160 prints in place of results."""
+
+_LABELS = {
+    "MUP": "MU=",
+    "KI": "INITIAL KE=",
+    "LOSS": "KE LOSS=",
+    **{name: f"{name[:-1]}=" for name in ("XAF", "YAF", "XBF", "YBF", *FINAL_SPINS)},
+}
+"""Labels that are not the field's name."""
+_END_OF_NUMBER = frozenset(" )\n\x00\x07")
+
+
+def label(name: str) -> str:
+    """What is printed before a field, ``MA=``; the angles share one heading."""
+    return "PA PB TA TB GA" if name in ANGLES else _LABELS.get(name, f"{name}=")
+
+
+def outcome_fields(printed: str) -> dict[str, str]:
+    """The fields of what one run printed, by name, as far as it got; none where it stopped before
+    printing any. For the program's own output, whose layout is known to the last blank."""
+    found: dict[str, str] = {}
+    place = printed.find("MA= ")
+    for name in FIELDS if place >= 0 else ():
+        if name not in ANGLES[1:]:
+            text = label(name)
+            start = printed.find(text, place)
+            if start < 0:
+                break
+            place = start + len(text)
+        while place < len(printed) and printed[place] in " \n":
+            place += 1
+        stop = place
+        while stop < len(printed) and printed[stop] not in _END_OF_NUMBER:
+            stop += 1
+        if stop == place or printed[place] == "?":
+            break
+        found[name], place = printed[place:stop], stop
+    return found

@@ -13,7 +13,7 @@ from .. import status
 from ..doubles import doubles_of
 from ..fields import INPUTS
 from ..names import RESULTS
-from .recovery import FieldCheck
+from .judging import FieldCheck
 
 _DIGITS = 12
 """Digits an exact value is shown with: as many as double precision is sure of."""

@@ -1,60 +1,52 @@
 """Explaining a printout that differs: causes, each tested by replay, best first.
 
-A cause is a change of one printed number (`misreading`), of MU's sign or of M, another arithmetic,
-or rounding where the program floors. A misread input is put right, the scene replayed, and the
-whole printout compared anew: what counts is how many of the differing fields then agree, and that
-no other stops agreeing. A misread output explains the one field it is in.
+A cause is a slip or two in what is printed (`rereading`), two numbers in each other's place,
+another unit, another program or arithmetic (`otherruns`). What counts is how many of the numbers
+that differ then agree and how much has to be believed for it; a cause is offered only when it
+explains nearly all that differs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from decimal import ROUND_FLOOR, Decimal
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from dataclasses import field as default
+from typing import Any
 
-from ..fields import ANGLES, FIELDS, INPUTS
-from . import misreading, trial
+from . import misreading, otherruns
+from .judging import FieldCheck, Status, field_checks, machine_read, reply_checks, settled
+from .otherruns import Hypothesis
 from .printout import Printout
-from .recovery import FieldCheck, Recovered, disagreeing, fits, opposite, printable, same_value
-from .typedtext import stored_and_printed, texts_that_print
+from .recovery import Recovered
+from .rereading import Change, Reread, Rereading
+from .search import Scored
 
-MOST = 8
+MOST = 6
 """Explanations given at most."""
+_NEARLY_ALL = 0.15
+"""An explanation that leaves more than this of what differs is none."""
+_SLIPS_IN_RESULTS = 3
+NO_SINGLE_SLIP = "no single slip explains this"
 
-_BY_CHANCE = 4
-"""An explanation of this many times fewer fields than the best is left out."""
-
-MU_SIGN = "sign of MU"
-POINT_MASS = "M = 4 with DA, DB left"
-OTHER_M = "M misjudged"
-DOUBLE = "IEEE double arithmetic"
-ROUNDED = "rounded, not floored"
-DOUBLE_ROUNDED = "IEEE double arithmetic, rounded, not floored"
-
-_RANK = (
-    misreading.DIGIT,
-    misreading.SIGN,
-    MU_SIGN,
-    misreading.POINT,
-    misreading.SWAP,
-    OTHER_M,
-    POINT_MASS,
-    DOUBLE,
-    ROUNDED,
-    DOUBLE_ROUNDED,
-    misreading.COUNT,
-)
-_NOT_APPLESOFT = "then this program on an Apple II did not print it"
-_FLOAT64 = f"float64 prints so; {_NOT_APPLESOFT}"
+_COST = {
+    misreading.DIGIT: 1.0,
+    misreading.SIGN: 0.95,
+    misreading.POINT: 1.05,
+    misreading.SWAP: 1.1,
+    misreading.COUNT: 1.25,
+    misreading.TWO_DIGITS: 1.9,
+}
+"""How much a slip asks to be believed."""
+_LAST_PLACE = 0.8
+"""A result wrong by one in its last place is more likely another arithmetic than a misreading."""
 
 
 @dataclass
 class Explanation:
-    """A cause that would make printed and recomputed agree in ``explains`` of the differing fields
-    and leaves ``remaining`` differences; ``field`` and the two texts where one field is to blame.
-    ``alone``: the field explains itself, nothing else changes.
-    """
+    """A cause that would make printed and recomputed agree in ``explains`` of the differing numbers
+    and leaves ``remaining`` differences. ``changes``: every printed number it puts right, and where
+    it stands; ``field``, ``printed``, ``would_be``: the first of them. ``look``: where to look on
+    the paper."""
 
     kind: str
     field: str | None
@@ -63,17 +55,33 @@ class Explanation:
     explains: int
     remaining: int
     note: str = ""
-    alone: bool = False
+    changes: list[dict[str, Any]] = default(default_factory=list)
+    look: list[str] = default(default_factory=list)
+    weight: float = 0.0
+
+    def as_json(self) -> dict[str, Any]:
+        """The object `impact88 verify --json` prints."""
+        shown = dict(vars(self))
+        del shown["weight"]
+        return shown
 
 
-class _Trial(NamedTuple):
-    """A cause to be tested: the scene it means, and the printed text it assumes for its field."""
+@dataclass
+class Rejudged:
+    """The printout judged with the slips of its reader looked past."""
 
-    kind: str
-    field: str
-    printed: str
-    would_be: str
-    scene: dict[str, str]
+    scene: dict[str, str | None]
+    fields: list[FieldCheck]
+    replies: list[FieldCheck]
+
+
+@dataclass
+class Explained:
+    """What `explain` found: explanations, and the printout judged anew where all that differs is
+    its reader's."""
+
+    explanations: list[Explanation] = default(default_factory=list)
+    reread: Rejudged | None = None
 
 
 def explain(
@@ -82,209 +90,227 @@ def explain(
     checks: Sequence[FieldCheck],
     replies: Sequence[FieldCheck],
     ending: FieldCheck,
-) -> list[Explanation]:
-    """Causes that make more of a differing printout agree, those that explain most first."""
-    differing = [check for check in checks if check.same is False]
-    differing_replies = [check for check in replies if check.same is False]
-    base = {check.name for check in differing}
-    base |= {f"reply {check.name}" for check in differing_replies}
-    if ending.same is False:
-        base.add(ending.name)
-    found = list(_misread_alone(differing, differing_replies))
+) -> Explained:
+    """Causes that make more of a differing printout agree, those that ask least first."""
+    base = frozenset(
+        [check.name for check in checks if check.status == Status.CONTRADICTED]
+        + [f"reply {check.name}" for check in replies if check.status == Status.CONTRADICTED]
+        + ([ending.name] if ending.status == Status.CONTRADICTED else [])
+    )
+    work = _Work(shown, recovered, base, {check.name: check for check in checks})
+    alone = work.by_results_alone(replies)
+    found = [alone] if alone else []
     if not recovered.missing:
-        found += _misread_inputs(shown, recovered, base)
-        found += _other_runs(shown, recovered, base)
-    for one in found:
-        if one.remaining < 0:
-            one.remaining = len(base) - one.explains
-    found = [one for one in found if one.explains > 0 and one.remaining < len(base)]
-    found.sort(key=_rank)
-    # among thousands of trials some hit a field by chance: far less than the best is no cause
-    least = found[0].explains / _BY_CHANCE if found else 0
-    found = [one for one in found if one.explains >= least]
-    # a field that explains itself is found again among the misread inputs
-    once = {(one.kind, one.field, one.would_be): one for one in reversed(found)}
-    return [one for one in found if once[one.kind, one.field, one.would_be] is one][:MOST]
+        reread = _reread(shown, recovered, base)
+        again = _looked_past(shown, recovered, reread)
+        if again is not None:
+            return Explained([], again)
+        found += work.rereads(reread, replies)
+        found += work.others(otherruns.hypotheses(shown, recovered), replies)
+        if not found or min(one.weight for one in found) > 1.6:
+            doubles = Rereading(recovered).double_slips()
+            found += work.rereads(doubles, replies)
+    return Explained(_chosen(found, len(base)))
 
 
-def _rank(one: Explanation) -> tuple[int, ...]:
-    """What leaves least unexplained first. Of equals, a cause that fixes every digit of the page at
-    once (another arithmetic) before a slip that could have gone many ways."""
-    alike = misreading.likeness(one.printed, one.would_be) if one.printed and one.would_be else 4
-    order = 0 if one.field is None else 1 if one.alone else 2
-    return one.remaining, order, _RANK.index(one.kind), alike
+def _reread(shown: Printout, recovered: Recovered, base: frozenset[str]) -> list[Reread]:
+    unchanged = Reread((), recovered.search.replayed_scene(recovered.scene, recovered.assumed))
+    found = [unchanged]
+    if len(base) <= 2 and not base & {"KI"} and not _input_may_be_wrong(base):
+        return found
+    return [*found, *Rereading(recovered).best(deep=machine_read(shown))]
 
 
-def _misread_alone(
-    differing: Sequence[FieldCheck], replies: Sequence[FieldCheck]
-) -> Iterator[Explanation]:
-    """Fields that are one slip away from what they should be: each explains itself."""
-    checks = [(check, "") for check in differing]
-    checks += [(check, "in the typed reply") for check in replies]
-    for check, note in checks:
-        if check.printed is None or check.recomputed is None:
-            continue
-        kind = misreading.slip(check.printed, check.recomputed)
-        if kind:
-            yield Explanation(kind, check.name, check.printed, check.recomputed, 1, -1, note, True)
+def _input_may_be_wrong(base: frozenset[str]) -> bool:
+    return bool(base)
 
 
-def _misread_inputs(shown: Printout, recovered: Recovered, base: set[str]) -> list[Explanation]:
-    """Every slip in every input, put right and replayed."""
-    printed = {
-        name: recovered.assumed.get(name, reading.text)
-        for name, reading in shown.fields.items()
-        if name in INPUTS
-    }
-    trials = [one for name, text in printed.items() for one in _trials(name, text, recovered.scene)]
-    if not trials:
-        return []
-    found, typed_mu = _tested(shown, base, trials)
-    # line 400 flips MU by the geometry, so another input may mean that MU was typed the other way
-    mu = opposite(printed.get("MUP", ""))
-    flipped = [
-        one._replace(scene={**one.scene, "MU": opposite(one.scene["MU"])})
-        for one, text in zip(trials, typed_mu, strict=True)
-        if text == mu and one.field != "MUP"
-    ]
-    if flipped:
-        found += _tested(shown, base, flipped)[0]
-    return found
+def _looked_past(
+    shown: Printout, recovered: Recovered, reread: Sequence[Reread]
+) -> Rejudged | None:
+    """The printout judged with its reader's slips put right, where only a reader makes such."""
+    if not machine_read(shown):
+        return None
+    best = min(reread, key=lambda one: one.scored.cost, default=None)
+    if best is None:
+        return None
+    other = replace(
+        recovered,
+        scene=best.scored.scene,
+        assumed=best.scored.assumed,
+        outcome=best.scored.outcome,
+    )
+    checks = field_checks(shown, other)
+    replies = reply_checks(shown, other)
+    if not settled(shown, checks, replies):
+        return None
+    for check in [*checks, *replies]:
+        if check.status == Status.CONTRADICTED:
+            check.status, check.same = Status.DOUBTFUL, None
+    return Rejudged(other.scene_or_missing(), checks, replies)
 
 
-def _tested(
-    shown: Printout, base: set[str], trials: Sequence[_Trial]
-) -> tuple[list[Explanation], list[str]]:
-    """The trials, each with what it explains and what it leaves; and the MU each prints.
+@dataclass
+class _Work:
+    """What all explanations are measured against: the names that differ."""
 
-    An input prints as it is assumed to, or the trial had not been made; so only what is computed is
-    compared, and of the inputs those that did not print back as shown."""
-    import numpy as np
+    shown: Printout
+    recovered: Recovered
+    base: frozenset[str]
+    checks: dict[str, FieldCheck]
 
-    names = [name for name in shown.fields if name not in INPUTS or name == "MUP"]
-    endings, columns = trial.run_columns([one.scene for one in trials], [*names, "MUP"])
-    would_be = {name: [one.field == name for one in trials] for name in base & {*INPUTS}}
-    left = np.zeros(len(trials), int)
-    explained = np.zeros(len(trials), int)
+    def by_results_alone(self, replies: Sequence[FieldCheck]) -> Explanation | None:
+        """Results and replies that are one slip away from what they should be."""
+        names = {name for name in self.base if name != "ENDING"}
+        changes = list(self._slips(names, self.recovered.outcome.fields, replies))
+        if not changes:
+            return None
+        return self._explanation(changes, self.base, len(self.base) - len(changes))
 
-    def count(name: str, agrees: Any) -> None:
-        nonlocal left, explained
-        left += ~agrees
-        if name in base:
-            explained += agrees
+    def rereads(
+        self, reread: Sequence[Reread], replies: Sequence[FieldCheck]
+    ) -> Iterator[Explanation]:
+        """Inputs put right, with what results are then still a slip away."""
+        for one in reread:
+            if not one.changes:
+                continue
+            wrong = self._wrong(one.scored, replies)
+            changes = list(one.changes)
+            names = {name for name in wrong if name in self.base}
+            if len(names) <= _SLIPS_IN_RESULTS:
+                changes += self._slips(names, one.scored.outcome.fields, replies)
+            left = len(wrong) - (len(changes) - len(one.changes))
+            yield self._explanation(changes, wrong - {c.field for c in changes}, left)
 
-    for name in names:
-        reading = shown.fields[name]
-        if name == "MUP":
-            assumed = [one.would_be if one.field == name else reading.text for one in trials]
-            agrees = columns[name] == np.array(assumed)
-        elif reading.legible and not reading.alternatives and not reading.cut:
-            agrees = columns[name] == reading.text
-        else:
-            agrees = np.array([fits(reading, text) for text in columns[name].tolist()])
-        count(name, agrees)
-    for name, itself in would_be.items():
-        if name != "MUP":
-            count(name, np.array(itself))
-    for name, reading in shown.replies.items():
-        same = [same_value(reading.text, one.scene[name]) for one in trials]
-        count(f"reply {name}", np.array(same))
-    if shown.ending is not None:
-        count("ENDING", np.array(endings) == shown.ending)
-    found = [
-        Explanation(one.kind, one.field, one.printed, one.would_be, explains, remains)
-        for one, explains, remains in zip(trials, explained.tolist(), left.tolist(), strict=True)
-        if explains
-    ]
-    return found, columns["MUP"].tolist()
+    def others(
+        self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
+    ) -> Iterator[Explanation]:
+        """Other units, places, programs and arithmetics, tried."""
+        for one in otherruns.tried(self.shown, self.recovered, hypotheses):
+            wrong = one.wrong | self._wrong_replies(one.scene, replies)
+            explained = len(self.base - wrong)
+            shown = Explanation(
+                one.hypothesis.kind,
+                None,
+                None,
+                None,
+                explained,
+                len(wrong),
+                one.hypothesis.note,
+                weight=one.hypothesis.weight + len(wrong),
+            )
+            first = one.hypothesis.changes[0] if one.hypothesis.changes else None
+            if first is not None:
+                shown.field, shown.printed, shown.would_be = (
+                    first.field,
+                    first.printed,
+                    first.would_be,
+                )
+                shown.changes = [self._change(change) for change in one.hypothesis.changes]
+            yield shown
 
+    def _wrong(self, scored: Scored, replies: Sequence[FieldCheck]) -> frozenset[str]:
+        return scored.wrong | self._wrong_replies(scored.scene, replies)
 
-def _trials(name: str, text: str, scene: Mapping[str, str]) -> Iterator[_Trial]:
-    """The scenes that one slip in an input would mean."""
-    for kind, other in misreading.misreadings(text):
-        if not printable(other):
-            continue
-        if name == "MUP":
-            kind = MU_SIGN if kind == misreading.SIGN else kind
-            for typed in (other, opposite(other)):
-                yield _Trial(kind, name, text, other, {**scene, "MU": typed})
-            continue
-        text_typed = _typed(other, name in ANGLES)
-        if text_typed is not None:
-            yield _Trial(kind, name, text, other, {**scene, name: text_typed})
+    def _wrong_replies(
+        self, scene: dict[str, str], replies: Sequence[FieldCheck]
+    ) -> frozenset[str]:
+        from .judging import same_value
 
+        return frozenset(
+            f"reply {check.name}"
+            for check in replies
+            if check.printed is not None
+            and check.status in (Status.READ, Status.CONTRADICTED)
+            and not same_value(check.printed, scene[check.name])
+        )
 
-def _typed(printed: str, angle: bool) -> str | None:
-    """What was typed where this is printed; None when nothing prints so."""
-    if len(printed.lstrip("-").replace(".", "")) < 7 and not angle:
-        seen = stored_and_printed(printed)
-        if seen is not None and seen[1] == printed:
-            return printed
-    texts = texts_that_print(printed, angle)
-    return texts[0] if texts else None
+    def _slips(
+        self, names: set[str], fields: dict[str, str], replies: Sequence[FieldCheck]
+    ) -> Iterator[Change]:
+        for name in sorted(names - {"ENDING"}):
+            if name.startswith("reply "):
+                check = next(one for one in replies if f"reply {one.name}" == name)
+                should = self.recovered.scene.get(check.name)
+            else:
+                check, should = self.checks[name], fields.get(name)
+            if check.printed is None or should is None:
+                continue
+            kind = misreading.slip(check.printed, should)
+            if kind is None and misreading.differ_in_two(check.printed, should):
+                kind = misreading.TWO_DIGITS
+            if kind:
+                yield Change(kind, name, check.printed, should)
 
-
-def _other_runs(shown: Printout, recovered: Recovered, base: set[str]) -> Iterator[Explanation]:
-    """Other values of M, another arithmetic, rounding."""
-    scene = recovered.scene
-
-    def tested(
-        kind: str, run: Mapping[str, str], outcome: trial.Outcome, note: str = "", m: str = ""
+    def _explanation(
+        self, changes: Sequence[Change], left: frozenset[str], remaining: int
     ) -> Explanation:
-        left = disagreeing(shown, run, recovered.assumed, outcome)
-        explains = len(base.difference(left))
-        if m:
-            return Explanation(kind, "M", scene["M"], m, explains, len(left), note)
-        return Explanation(kind, None, None, None, explains, len(left), note)
+        first = changes[0]
+        kinds = list(dict.fromkeys(change.kind for change in changes))
+        kind = kinds[0] if len(kinds) == 1 else " and ".join(kinds)
+        weight = sum(_believed(change) for change in changes) + remaining
+        weight += 0.1 * (len(changes) - 1)
+        explains = len(self.base - left) if left is not self.base else len(changes)
+        name = first.field.removeprefix("reply ")
+        note = "in the typed reply" if first.field.startswith("reply ") else ""
+        described = [self._change(change) for change in changes]
+        look = [one["look"] for one in described if one["look"]]
+        return Explanation(
+            kind, name, first.printed, first.would_be, explains, max(0, remaining), note,
+            described, look, weight,
+        )  # fmt: skip
 
-    other = "4" if scene["M"] == "6" else "6"
-    run = {**scene, "M": other}
-    yield tested(OTHER_M, run, trial.run_once(run), m=other)
-    if any(float(scene[name] or 0) for name in ("DA", "DB")):
-        run = {**scene, "M": "4", "DA": "0", "DB": "0"}
-        outcome = trial.run_once(run)
-        for name in ("DA", "DB"):
-            if name in outcome.fields and name in shown.fields:
-                outcome.fields[name] = shown.fields[name].text
-        note = "as if computed with DA = DB = 0, though the printout shows others"
-        yield tested(POINT_MASS, run, outcome, note)
-    for run in _as_typed(shown, recovered):
-        outcome, values = trial.run_whole(run, "float64")
-        yield tested(DOUBLE, run, outcome, _FLOAT64)
-        yield tested(DOUBLE_ROUNDED, run, _rounded(outcome, values), _FLOAT64)
-    outcome, values = trial.run_whole(scene)
-    yield tested(ROUNDED, scene, _rounded(outcome, values), _NOT_APPLESOFT)
-
-
-def _as_typed(shown: Printout, recovered: Recovered) -> Iterator[dict[str, str]]:
-    """The scene as another arithmetic would have been given it: the printed numbers themselves."""
-    texts = {
-        name: recovered.assumed.get(name, reading.text)
-        for name, reading in shown.fields.items()
-        if name in INPUTS and reading.legible
-    }
-    mu = texts.pop("MUP", None)
-    scene = {**recovered.scene, **texts}
-    yield scene
-    if mu is not None and mu != "0":
-        yield {**scene, "MU": opposite(scene["MU"])}
-
-
-def _rounded(outcome: trial.Outcome, values: Mapping[str, float]) -> trial.Outcome:
-    """The outcome with the floored fields as rounding to the same places would print them."""
-    rounded = {
-        name: rounded_text(value, FIELDS[name].places or 0) for name, value in values.items()
-    }
-    return trial.Outcome({**outcome.fields, **rounded}, outcome.ending)
+    def _change(self, change: Change) -> dict[str, Any]:
+        name = change.field.removeprefix("reply ")
+        source = self.shown.replies if change.field.startswith("reply ") else self.shown.fields
+        reading = source.get(name)
+        where = (reading.line, reading.column) if reading else (None, None)
+        look = ""
+        if reading is not None and change.kind == misreading.DIGIT:
+            pairs = enumerate(zip(change.printed, change.would_be, strict=False))
+            index = next((i for i, (read, true) in pairs if read != true), 0)
+            if index < len(reading.region):
+                line, column = self.shown.place(reading.region[index].offset)
+                read, true = change.printed[index], change.would_be[index]
+                article = "an" if true == "8" else "a"
+                look = f"line {line}, column {column}: is this {read} {article} {true}?"
+        elif reading is not None:
+            look = (
+                f"line {reading.line}, column {reading.column}: is this {change.printed} "
+                f"{change.would_be}?"
+            )
+        return {
+            "kind": change.kind, "field": name, "printed": change.printed,
+            "would_be": change.would_be, "line": where[0], "column": where[1], "look": look,
+        }  # fmt: skip
 
 
-def rounded_text(value: float, places: int) -> str:
-    """A value rounded to so many decimals, halves upward, as Applesoft writes numbers."""
-    half = Decimal(5).scaleb(-places - 1)
-    quantum = Decimal(1).scaleb(-places)
-    text = f"{(Decimal(value) + half).quantize(quantum, rounding=ROUND_FLOOR):f}"
-    sign = "-" if text.startswith("-") and text.strip("-0.") else ""
-    text = text.lstrip("-")
-    if "." in text:
-        text = text.rstrip("0").rstrip(".")
-    return sign + (text.removeprefix("0") or "0")
+def _believed(change: Change) -> float:
+    cost = _COST[change.kind]
+    if change.kind == misreading.DIGIT:
+        cost += 0.04 * misreading.likeness(change.printed, change.would_be)
+        one_off = change.printed[:-1] == change.would_be[:-1] and change.printed[-1:].isdigit()
+        if one_off and abs(int(change.printed[-1]) - int(change.would_be[-1])) == 1:
+            cost += _LAST_PLACE
+    return cost
+
+
+def _chosen(found: list[Explanation], base: int) -> list[Explanation]:
+    """Those that explain nearly all, the least to believe first; none twice."""
+    most_left = max(0, int(_NEARLY_ALL * base))
+    kept = [one for one in found if one.explains > 0 and one.remaining <= most_left]
+    kept.sort(key=lambda one: (one.remaining, one.weight))
+    if kept:
+        # what asks for much more than the best is no cause
+        kept = [one for one in kept if one.weight <= kept[0].weight + 1.5]
+    chosen: list[Explanation] = []
+    for one in kept:
+        changes = _changes(one)
+        # what only adds to a simpler cause, or says it again, is none of its own
+        if not any(_changes(other) <= changes and _changes(other) for other in chosen):
+            chosen.append(one)
+    return chosen[:MOST]
+
+
+def _changes(one: Explanation) -> frozenset[tuple[str, str]]:
+    return frozenset((change["field"], change["would_be"]) for change in one.changes)

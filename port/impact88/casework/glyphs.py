@@ -1,104 +1,171 @@
 """Glyphs: what typists and optical readers put where the printer struck a digit or a sign.
 
-A text is looked at without its blanks, line ends, form feeds and control characters (`squeezed`),
-each remaining character remembering where it stood, so that a number broken by a line end is one
-number and an error still points at the spot.
+A page is a row of glyphs, blanks and control characters left out, each with the kind of gap before
+it and the place where it stood. Capitals and small letters, the many minus signs and the full-width
+forms are one glyph each; a soft hyphen, a superscript or a stroke through a digit stay what they
+are, for they mean something else.
 """
 
 from __future__ import annotations
 
 import re
 import unicodedata
-from array import array
 from bisect import bisect_right
+from enum import IntEnum
+from functools import lru_cache
+from typing import NamedTuple
 
 ILLEGIBLE = "?"
 """Stands for a character nobody can read."""
 
-_MINUS = "−‐‑‒–—―﹣－⁻¯"
-_POINT = "·•‧∙․．,，"
-_EQUALS = "＝﹦≡"
+_MINUS = "−‐‑‒–—―﹣－⁻"
 _GLYPHS = {
-    **dict.fromkeys(map(ord, _MINUS), "-"),
-    **dict.fromkeys(map(ord, _POINT), "."),
-    **dict.fromkeys(map(ord, _EQUALS), "="),
-    **dict.fromkeys(map(ord, "∗✱＊⁎"), "*"),
-    ord("？"): "?",
+    **dict.fromkeys(_MINUS, "-"),
+    **dict.fromkeys("＝﹦≡", "="),
+    **dict.fromkeys("∗✱＊⁎", "*"),
+    "？": ILLEGIBLE,
+    "μ": "M",
+    "µ": "M",
 }
-_AS_DIGIT = str.maketrans({"O": "0", "Q": "0", "Ø": "0", "I": "1", "L": "1", "|": "1", "!": "1"})
-"""Capital letters and strokes that are a digit wherever a number must stand."""
 
-_NUMBER = re.compile(r"[+-]?(?=[.]?[0-9?])[0-9?]*(?:[.][0-9?]*)?(?:E[+-]?[0-9?]{1,2})?")
+LOOK_ALIKES: dict[str, str] = {
+    **dict.fromkeys("OQØ©®°", "0"),
+    **dict.fromkeys("DCU", "06"),
+    **dict.fromkeys("@", "0869"),
+    **dict.fromkeys("I|![]", "1"),
+    **dict.fromkeys("L/\\JT", "17"),
+    "Z": "2",
+    "S": "589",
+    "$": "58",
+    "B": "863",
+    "&": "86",
+    "R": "82",
+    "G": "609",
+    "P": "9",
+    "Y": "79",
+    "F": "7",
+    "A": "4",
+    "H": "4",
+    **dict.fromkeys("()", "01"),
+    **dict.fromkeys("{}<>", "1"),
+    **dict.fromkeys("~_=\u00ad¬«^", "-"),
+    **dict.fromkeys(",·•‧∙․:;'`´’‘", "."),
+    '"': "-",
+    "“": "-",
+    "”": "-",
+}
+"""Glyph that stands in no number -> the digits and signs it is read for."""
+
+NUMERIC = frozenset("0123456789.-+E")
+"""The glyphs numbers are made of."""
 
 
-class Squeezed:
-    """A text without blanks and control characters, in capitals, usual glyphs for unusual ones.
+class Gap(IntEnum):
+    """What stands before a glyph: nothing, a blank, more of them, the end of a line."""
 
-    ``text``: what remains; ``position(i)``: the line and column (from 1) in the original where
-    character ``i`` stood; ``original(i, j)``: the original's text from character ``i`` up to ``j``,
-    blanks and all.
-    """
+    NONE = 0
+    BLANK = 1
+    WIDE = 2
+    LINE = 3
 
-    def __init__(self, original: str) -> None:
-        kept: list[str] = []
-        self._offsets = array("Q")
-        for offset, character in enumerate(original):
-            if character <= " " or character.isspace():
+
+class Glyph(NamedTuple):
+    """One glyph: the character it is taken for, the gap before it, its offset in the text, and
+    whether the line before it was full, so that a break there parts nothing."""
+
+    char: str
+    gap: Gap
+    offset: int
+    wrapped: bool = False
+
+    @property
+    def joined(self) -> bool:
+        """Whether nothing parts it from the glyph before."""
+        return self.gap is Gap.NONE or self.wrapped
+
+
+class Page:
+    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self._lines = [0, *(match.end() for match in re.finditer("\n", text))]
+        self._width = _wrapping_width(text)
+        self.glyphs = self._read(text)
+
+    def _read(self, text: str) -> list[Glyph]:
+        glyphs: list[Glyph] = []
+        gap = Gap.LINE
+        start, length = 0, 0
+        wrapped = False
+        for offset, character in enumerate(text):
+            if character == "\n":
+                wrapped = bool(self._width) and length == self._width and gap is Gap.NONE
+                gap, start = Gap.LINE, offset + 1
+                length = 0
                 continue
-            for plain in _plain(character):
-                kept.append(plain)
-                self._offsets.append(offset)
-        self._offsets.append(len(original))
-        self.text = "".join(kept)
-        self._original = original
-        self._lines = array("Q", [0])
-        self._lines.extend(match.end() for match in re.finditer("\n", original))
+            length = offset - start + 1
+            if character == " " or character.isspace():
+                if gap is not Gap.LINE:
+                    gap = Gap.WIDE if gap or character == "\t" else Gap.BLANK
+                wrapped = False
+                continue
+            for plain in plain_glyphs(character):
+                glyphs.append(Glyph(plain, gap, offset, wrapped and gap is Gap.LINE))
+                gap = Gap.NONE
+        return glyphs
 
-    def position(self, index: int) -> tuple[int, int]:
-        """Line and column, counted from 1, of character ``index``."""
-        offset = self._offsets[index]
+    def place(self, offset: int) -> tuple[int, int]:
+        """Line and column, counted from 1, of an offset in the text."""
         line = bisect_right(self._lines, offset)
         return line, offset - self._lines[line - 1] + 1
 
-    def ends_at(self, index: int) -> bool:
-        """Whether the original ends with the character before ``index``, no blank after it."""
-        return index == len(self.text) and self._offsets[index - 1] == len(self._original) - 1
-
-    def original(self, start: int, stop: int) -> str:
-        """The original's text from character ``start`` up to character ``stop``."""
+    def span(self, start: int, stop: int) -> tuple[int, int]:
+        """Offsets of the text from glyph ``start`` up to before glyph ``stop``, without the blanks
+        after it."""
         if start >= stop:
-            return ""
-        return self._original[self._offsets[start] : self._offsets[stop]]
+            end = self.glyphs[start].offset if start < len(self.glyphs) else len(self.text)
+            return end, end
+        return self.glyphs[start].offset, self.glyphs[stop - 1].offset + 1
+
+    def shown(self, start: int, stop: int) -> str:
+        """The text from glyph ``start`` up to before glyph ``stop``, blanks as one."""
+        return " ".join(self.text[slice(*self.span(start, stop))].split())
 
 
-def _plain(character: str) -> str:
-    """The usual glyphs for a character: nothing for what does not show, else capitals."""
-    if character < "\x7f":
+def _wrapping_width(text: str) -> int:
+    """The width at which a screen broke the lines of a text (40 columns as a rule); 0: nowhere.
+
+    A screen that wraps fills its lines: the longest lines are all of one length, and there are
+    several of them."""
+    lengths = [len(line.rstrip("\r")) for line in text.split("\n")]
+    longest = max(lengths, default=0)
+    return longest if 0 < longest <= 80 and lengths.count(longest) >= 3 else 0
+
+
+@lru_cache(maxsize=4096)
+def plain_glyphs(character: str) -> str:
+    """The glyphs of one character: none for what does not show, else capitals."""
+    if " " < character < "\x7f":
         return character.upper()
-    plain = _GLYPHS.get(ord(character))
+    plain = _GLYPHS.get(character)
     if plain is not None:
         return plain
-    if unicodedata.category(character) in ("Cf", "Cc", "Mn"):
+    if character == "\u00ad":
+        return character
+    if unicodedata.category(character) in ("Cf", "Cc"):
         return ""
-    return unicodedata.normalize("NFKC", character).upper()
+    if "\uff01" <= character <= "\uff5e":
+        return chr(ord(character) - 0xFEE0).upper()
+    upper = character.upper()
+    return upper if len(upper) == 1 else character
 
 
 def squeeze(text: str) -> str:
-    """``text`` as `Squeezed` sees it, for a text whose places do not matter."""
-    return Squeezed(text).text
-
-
-def as_number(text: str) -> str | None:
-    """``text`` (squeezed) as the number it must be, letters read as the digits they look like and
-    commas as points; ``?`` may stand in it. None when it is no number."""
-    plain = text.translate(_AS_DIGIT)
-    return plain if _NUMBER.fullmatch(plain) else None
-
-
-def leading_number(text: str) -> str | None:
-    """The longest beginning of ``text`` (squeezed) that is a number, as `as_number` reads it."""
-    match = _NUMBER.match(text.translate(_AS_DIGIT))
-    return match.group() if match else None
+    """The glyphs of a text as one string."""
+    return "".join(
+        plain for character in text if not character.isspace() for plain in plain_glyphs(character)
+    )
 
 
 def canonical(number: str) -> str:

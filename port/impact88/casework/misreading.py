@@ -14,6 +14,7 @@ SWAP = "digits swapped"
 SIGN = "sign misread"
 POINT = "decimal point misread"
 COUNT = "digit lost or added"
+TWO_DIGITS = "two digits misread"
 
 KINDS = (DIGIT, SIGN, POINT, SWAP, COUNT)
 """In the order of how common they are taken to be."""
@@ -47,6 +48,14 @@ def slip(text: str, other: str) -> str | None:
     if abs(len(text) - len(other)) > 1:
         return None
     return next((kind for kind, near in _slips(text) if near == other), None)
+
+
+def differ_in_two(text: str, other: str) -> bool:
+    """Whether two texts differ in two digits and nothing else."""
+    if len(text) != len(other):
+        return False
+    pairs = [(old, new) for old, new in zip(text, other, strict=True) if old != new]
+    return len(pairs) == 2 and all(old.isdigit() and new.isdigit() for old, new in pairs)
 
 
 def likeness(text: str, other: str) -> int:

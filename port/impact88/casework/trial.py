@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..fields import FIELDS, ZERO_DETERMINANT
+from ..fields import FIELDS, ZERO_DETERMINANT, outcome_fields
 from ..names import SCENE
-from . import printout
 
 if TYPE_CHECKING:
+    from ..program.arithmetics import Arithmetic
     from ..program.run import Run
 
 _FEW = 6
@@ -40,13 +40,8 @@ def run_whole(
     from ..program.run import run
 
     done = run(scene, arithmetic)
-    return outcome_of(done.printout), _unfloored(done)
-
-
-def outcome_of(text: str) -> Outcome:
-    """The outcome shown by what one run printed."""
-    shown = printout.read_printouts(text)[0]
-    return Outcome({name: one.text for name, one in shown.fields.items()}, shown.ending)
+    ending = ZERO_DETERMINANT if done.zero_determinant else done.error
+    return Outcome(outcome_fields(done.printout), ending), _unfloored(done)
 
 
 def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
@@ -107,3 +102,26 @@ def _unfloored(done: Run) -> dict[str, float]:
     if value["M"] == value["N"]:
         found |= {"WAF": solution[4], "WBF": solution[5]}
     return found
+
+
+def run_on(scene: Mapping[str, str], arithmetic: Arithmetic) -> Outcome:
+    """What the listing prints for a scene in another machine's arithmetic."""
+    from ..applesoft.console import Console
+    from ..program import listing
+    from ..scene import Scene
+
+    whole = Scene.from_mapping(scene)
+    printed: list[str] = []
+    replies = iter(whole.keyboard())
+    console = Console(lambda: next(replies, None), printed.append)
+    ending: str | None = None
+    try:
+        listing.impact(whole, arithmetic, console)
+    except listing.End:
+        ending = ZERO_DETERMINANT
+    except Exception as exception:
+        error = arithmetic.error(exception)
+        if error is None:
+            raise
+        ending = error.message
+    return Outcome(outcome_fields("".join(printed)), ending)

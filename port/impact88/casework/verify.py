@@ -6,98 +6,72 @@ beside it and never change it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from enum import StrEnum
-from typing import Any
+from collections.abc import Iterator, Mapping
 
-from . import beside
-from .explain import Explanation, explain
-from .printout import Printout, read_file
-from .recovery import FieldCheck, ending_check, field_checks, illegible, recover, reply_checks
+from .. import files
+from ..errors import UserError
+from . import beside, provenance, wording
+from .explain import explain
+from .judging import (
+    FieldCheck,
+    Status,
+    Verdict,
+    ending_check,
+    field_checks,
+    reply_checks,
+    verdict_of,
+)
+from .printout import LARGEST_FILE, Printout, read_bytes
+from .recovery import recover
+from .unseen import unseen
+from .verification import Examined, Verification
 
-
-class Verdict(StrEnum):
-    """What a printout is found to be."""
-
-    IDENTICAL = "identical"
-    DIFFERS = "differs"
-    INCOMPLETE = "incomplete"
-
-
-@dataclass
-class Verification:
-    """The result for one printout; `as_json` gives the documented object."""
-
-    file: str
-    number: int
-    line: int
-    verdict: Verdict
-    scene: dict[str, str | None]
-    fields: list[FieldCheck]
-    replies: list[FieldCheck] = field(default_factory=list)
-    ending: FieldCheck | None = None
-    illegible: list[dict[str, Any]] = field(default_factory=list)
-    missing: list[str] = field(default_factory=list)
-    explanations: list[Explanation] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-    remarks: list[str] = field(default_factory=list)
-
-    @property
-    def differing(self) -> list[FieldCheck]:
-        """The fields printed otherwise than recomputed."""
-        return [check for check in self.fields if check.same is False]
-
-    @property
-    def disagreements(self) -> int:
-        """How many fields, replies and endings differ: what an explanation has to explain."""
-        ending = [self.ending] if self.ending else []
-        return sum(check.same is False for check in [*self.fields, *self.replies, *ending])
-
-    @property
-    def runnable(self) -> bool:
-        """Whether every value of the scene was recovered."""
-        return all(text is not None for text in self.scene.values())
-
-    def as_json(self) -> dict[str, Any]:
-        """The object `impact88 verify --json` prints."""
-        return {
-            "file": self.file,
-            "printout": self.number,
-            "line": self.line,
-            "verdict": str(self.verdict),
-            "scene": self.scene,
-            "fields": [vars(check) for check in self.fields],
-            "replies": [vars(check) for check in self.replies],
-            "ending": vars(self.ending) if self.ending else None,
-            "missing": self.missing,
-            "illegible": self.illegible,
-            "explanations": [
-                {
-                    "kind": one.kind,
-                    "field": one.field,
-                    "printed": one.printed,
-                    "would_be": one.would_be,
-                    "explains": one.explains,
-                    "remaining": one.remaining,
-                    "note": one.note,
-                }
-                for one in self.explanations
-            ],
-            "warnings": self.warnings,
-            "remarks": self.remarks,
-        }
+__all__ = [
+    "Examined",
+    "FieldCheck",
+    "Status",
+    "Verdict",
+    "Verification",
+    "examine",
+    "verify",
+    "verify_file",
+]
 
 
-def verify_file(path: str) -> Iterator[Verification]:
+def examine(path: str, given: Mapping[str, str] | None = None) -> Examined:
+    """A file (``-``: standard input), every printout in it judged; what cannot be read is told."""
+    digest = None
+    try:
+        data = files.read_bytes(path, LARGEST_FILE)
+        digest = provenance.sha256(data)
+        results = list(_verified(path, data, digest, given))
+    except UserError as error:
+        return Examined(path, digest, error=str(error))
+    return Examined(path, digest, results)
+
+
+def verify_file(path: str, given: Mapping[str, str] | None = None) -> Iterator[Verification]:
     """Each printout in a file (``-``: standard input). Raises UserError if it cannot be read."""
-    for number, shown in enumerate(read_file(path), 1):
-        yield verify(shown, path, number)
+    data = files.read_bytes(path, LARGEST_FILE)
+    yield from _verified(path, data, provenance.sha256(data), given)
 
 
-def verify(shown: Printout, file: str = "-", number: int = 1) -> Verification:
-    """The verdict on one printout, with explanations where it differs."""
-    recovered = recover(shown)
+def _verified(
+    path: str, data: bytes, digest: str, given: Mapping[str, str] | None
+) -> Iterator[Verification]:
+    for number, shown in enumerate(read_bytes(data, files.called(path)), 1):
+        result = verify(shown, path, number, given)
+        result.sha256 = digest
+        yield result
+
+
+def verify(
+    shown: Printout, file: str = "-", number: int = 1, given: Mapping[str, str] | None = None
+) -> Verification:
+    """The verdict on one printout, with explanations where it differs.
+
+    ``given``: texts of inputs by scene name, known from elsewhere than the printout."""
+    recovered = recover(shown, given)
     checks = field_checks(shown, recovered)
     replies = reply_checks(shown, recovered)
     ending = ending_check(shown, recovered)
@@ -105,25 +79,43 @@ def verify(shown: Printout, file: str = "-", number: int = 1) -> Verification:
         file=file,
         number=number,
         line=shown.line,
-        verdict=Verdict.IDENTICAL,
+        verdict=verdict_of(shown, recovered, checks, replies, ending),
         scene=recovered.scene_or_missing(),
         fields=checks,
         replies=replies,
         ending=ending,
-        illegible=illegible(shown, recovered),
         missing=recovered.missing,
         remarks=[str(remark) for remark in shown.remarks],
+        left_over=shown.left_over,
+        start=shown.start,
+        stop=shown.stop,
+        text=shown.page.text if shown.page else "",
     )
-    every = [*checks, *replies, ending]
-    if any(check.same is False for check in every):
-        result.verdict = Verdict.DIFFERS
-    elif any(check.same is None for check in every) or recovered.missing:
-        result.verdict = Verdict.INCOMPLETE
-    if recovered.m_unknown:
-        result.remarks.append("whether M was 6 or 4 does not show in this printout")
     if result.verdict is Verdict.DIFFERS:
-        result.explanations = explain(shown, recovered, checks, replies, ending)
+        explained = explain(shown, recovered, checks, replies, ending)
+        result.explanations = explained.explanations
+        if explained.reread is not None:
+            reread = explained.reread
+            result.verdict = Verdict.IDENTICAL_AS_READ
+            result.scene, result.fields = reread.scene, reread.fields
+            result.replies, result.explanations = reread.replies, []
+    result.guessed = _guessed(result)
+    result.findings = wording.findings(shown, result.fields, recovered)
+    result.unseen = unseen(result.scene, result.missing)
     if result.runnable:
-        beside.add_exact_values(recovered.scene, checks)
-        result.warnings = beside.warnings(recovered.scene)
+        scene = {name: text or "" for name, text in result.scene.items()}
+        beside.add_exact_values(scene, result.fields)
+        result.warnings = beside.warnings(scene)
     return result
+
+
+def _guessed(result: Verification) -> list[str]:
+    """The inputs that do not stand on the paper as they were used."""
+    status = {check.name: check.status for check in result.fields}
+    return [
+        name
+        for name, text in result.scene.items()
+        if text is not None
+        and name != "M"
+        and status.get("MUP" if name == "MU" else name) != Status.READ
+    ]

@@ -15,8 +15,7 @@ from importlib import resources
 from typing import Any, NamedTuple, Protocol
 
 from ..casework import provenance
-from ..casework.printout import outcome_fields
-from ..fields import FIELDS
+from ..fields import FIELDS, outcome_fields
 from ..names import SCENE
 from ..program.run import run
 from ..scene import sample

@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from ..applesoft.console import Console
-from ..casework.printout import FIELDS, outcome_fields
 from ..checking import captured
 from ..checking.selfcheck import GOLDEN_RUNS
+from ..fields import FIELDS, outcome_fields
 from ..files import packaged_bytes
 from ..names import SCENE
 from ..program import emulated

@@ -1,0 +1,223 @@
+"""Aligning a text with the program's page by dynamic programming.
+
+The page is a known template seen through noise, so the text is read as the cheapest way through its
+states: a glyph opens the next state or stays in one, states may be missed, whole lines may be
+missing, and text outside costs little. One forward pass over the text (numpy rows over the states),
+one trace back; memory is bounded by reading long texts in windows, so time grows as the text does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .glyphs import Glyph
+from .template import RESULTS, WITHIN, code, template
+
+WINDOW = 9000
+"""Glyphs aligned at a time: a dozen printouts."""
+_BEGIN, _END = 2.2, 0.8
+"""What it costs that a printout begins or ends."""
+_BIG = 1e6
+_FIGURES = frozenset("0123456789.")
+
+
+@dataclass
+class Aligned:
+    """One printout's part of the text: ``slots``, field -> glyphs ``(start, stop)`` in its place;
+    ``states``, the template's state of every glyph from ``start`` on; ``lines``, the template's
+    lines of which something was read."""
+
+    start: int
+    stop: int
+    states: list[int]
+    slots: dict[str, tuple[int, int]] = field(default_factory=dict)
+    lines: list[int] = field(default_factory=list)
+
+
+def align(glyphs: Sequence[Glyph]) -> Iterator[Aligned]:
+    """The printouts in a row of glyphs, in order, each with what its glyphs are taken for."""
+    start = 0
+    while start < len(glyphs):
+        window = glyphs[start : start + WINDOW]
+        last = start + len(window) >= len(glyphs)
+        parts = _merged(_parts(_states(window)))
+        taken = parts if last else parts[:-1] or parts[:1]
+        for part in taken:
+            yield _Described(part, start).aligned
+        if last:
+            return
+        if not parts:
+            start += len(window)
+        elif len(parts) == 1:
+            start += max(parts[0][1], 1)
+        else:
+            start += parts[-1][0]
+
+
+class _Described:
+    """A part of the states, described."""
+
+    def __init__(self, part: tuple[int, int, list[int]], offset: int) -> None:
+        names = template().slots
+        lines = template().line
+        start, stop, states = part
+        self.aligned = Aligned(offset + start, offset + stop, states)
+        for index, state in enumerate(states):
+            name = names.get(state)
+            if name is not None:
+                old = self.aligned.slots.get(name, (offset + start + index, 0))
+                self.aligned.slots[name] = (old[0], offset + start + index + 1)
+        betweens = set(template().between.tolist())
+        self.aligned.lines = sorted({lines[s] for s in states if s and s not in betweens})
+
+
+def _parts(states: Sequence[int]) -> list[tuple[int, int, list[int]]]:
+    """The stretches of glyphs inside printouts: start, stop, states. The template only goes
+    forward, so a state below the one before it begins another printout."""
+    parts: list[tuple[int, int, list[int]]] = []
+    start = -1
+    for index, state in enumerate([*states, 0]):
+        inside = state > 0
+        if start >= 0 and (not inside or state < states[index - 1]):
+            parts.append((start, index, list(states[start:index])))
+            start = -1
+        if inside and start < 0:
+            start = index
+    return parts
+
+
+def _merged(parts: list[tuple[int, int, list[int]]]) -> list[tuple[int, int, list[int]]]:
+    """Parts that go on where the one before left off are one printout, with something between."""
+    line = template().line
+    merged: list[tuple[int, int, list[int]]] = []
+    for start, stop, states in parts:
+        if merged:
+            before = merged[-1]
+            ends, begins = line[before[2][-1]], line[states[0]]
+            goes_on = ends < begins and not (ends < RESULTS <= begins and start - before[1] > 600)
+            if goes_on and start - before[1] < 1500:
+                between = [0] * (start - before[1])
+                merged[-1] = (before[0], stop, [*before[2], *between, *states])
+                continue
+        merged.append((start, stop, states))
+    return merged
+
+
+def _gaps(glyphs: Sequence[Glyph]) -> list[int]:
+    """The gap before every glyph, and whether it stands within figures."""
+    gaps = []
+    before = ""
+    for glyph in glyphs:
+        gap = 0 if glyph.wrapped else int(glyph.gap)
+        figures = glyph.char in _FIGURES and before in _FIGURES
+        gaps.append(WITHIN if figures and not gap else gap)
+        before = glyph.char
+    return gaps
+
+
+def _states(glyphs: Sequence[Glyph]) -> list[int]:
+    """The state of every glyph on the cheapest way."""
+    page = template()
+    size = page.miss.size
+    count = len(glyphs)
+    codes = [code(glyph.char) for glyph in glyphs]
+    gaps = _gaps(glyphs)
+    enter = {
+        key: page.enter[key[0]] + page.gap_enter[key[1]]
+        for key in set(zip(codes, gaps, strict=True))
+    }
+    stay = {key: page.stay[key[0]] + page.gap_stay[key[1]] for key in enter}
+    missed = np.cumsum(page.miss)
+    missed_line = np.concatenate([[0], np.cumsum(page.absent[:-1])])
+    between = page.between
+    index = np.arange(size, dtype=np.int16)
+    lines = np.arange(between.size, dtype=np.int16)
+    exits = np.flatnonzero(page.closes)
+    labelled = page.unlabelled[0, 1:] > 0
+    numbered = np.zeros(size, bool)
+    numbered[list(page.slots)] = True
+    # what is needed to find the way back
+    moved = np.empty((count, size), bool)
+    straight = np.zeros((count, size), bool)
+    first = np.empty((count, size), np.int16)
+    second = np.empty((count, size), np.int16)
+    ended = np.empty(count, np.int16)
+    begun = np.empty((count, between.size), bool)
+    skipped = np.empty((count, between.size), np.int16)
+
+    def passed(costs: np.ndarray, sources: np.ndarray) -> np.ndarray:
+        """States may be missed: the least cost to be after each, and from which state."""
+        relative = costs - missed
+        least = np.minimum.accumulate(relative)
+        np.maximum.accumulate(np.where(relative == least, index, 0), out=sources)
+        return least + missed
+
+    def opened(costs: np.ndarray, row: int | None) -> np.ndarray:
+        """A printout may begin before any line, and lines may be missing."""
+        waiting = costs[between]
+        start = costs[0] + _BEGIN
+        begins = start < waiting
+        waiting = np.where(begins, start, waiting)
+        relative = waiting - missed_line
+        least = np.minimum.accumulate(relative)
+        if row is not None:
+            begun[row] = begins
+            np.maximum.accumulate(np.where(relative == least, lines, 0), out=skipped[row])
+        costs = costs.copy()
+        costs[between] = least + missed_line
+        return costs
+
+    costs = np.full(size, _BIG)
+    costs[0] = 0
+    scratch = np.empty(size, np.int16)
+    emitted = np.full(size, _BIG)
+    origin = passed(opened(costs, None), scratch)
+    for row in range(count):
+        key = codes[row], gaps[row]
+        advance = np.empty_like(origin)
+        advance[0] = _BIG
+        advance[1:] = origin[:-1]
+        advance += page.unlabelled[gaps[row]]
+        # a number right after the glyph of its label costs nothing more
+        advance[1:][labelled] = np.minimum(advance[1:], emitted[:-1])[labelled]
+        straight[row, 1:] = labelled & (advance[1:] == emitted[:-1])
+        advance[1] = _BIG  # a printout begins at a price: `opened`
+        advance += enter[key]
+        remain = np.where(numbered, emitted, origin) + stay[key]
+        np.less(advance, remain, out=moved[row])
+        costs = np.where(moved[row], advance, remain)
+        emitted = costs.copy()
+        closing = exits[np.argmin(costs[exits])]
+        end = costs[closing] + _END
+        ended[row] = closing if end < costs[0] else 0
+        if end < costs[0]:
+            costs[0] = end
+        costs = passed(costs, first[row])
+        costs = opened(costs, row)
+        origin = passed(costs, second[row])
+        least = origin.min()
+        origin -= least
+        emitted -= least
+    states = [0] * count
+    line_of = {int(state): number for number, state in enumerate(between)}
+    state = int(np.argmin(np.where(page.closes | (index == 0), origin, _BIG)))
+    direct = False
+    for row in range(count - 1, -1, -1):
+        if not direct:
+            state = int(second[row, state])
+            number = line_of.get(state)
+            if number is not None:
+                number = int(skipped[row, number])
+                state = 0 if begun[row, number] else int(between[number])
+            state = int(first[row, state]) if state else 0
+            if state == 0 and ended[row]:
+                state = int(ended[row])
+        states[row] = state
+        # one more glyph of a number follows a glyph of it, not a place passed over
+        direct = bool(straight[row, state]) if moved[row, state] else bool(numbered[state])
+        if moved[row, state]:
+            state -= 1
+    return states

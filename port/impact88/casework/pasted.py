@@ -1,0 +1,137 @@
+"""What people type, paste and save: encodings and markup, made the text that stands in them.
+
+Markup is blanked out, never shortened, so that every character keeps its line and column.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+
+from ..errors import UserError
+
+_NO_TEXT = (
+    (b"%PDF", "is a PDF; expected text: pdftotext -layout FILE.pdf makes it, or, of a scan, "
+     "ocrmypdf --sidecar FILE.txt"),
+    (b"\x89PNG", "is a picture; expected text: tesseract FILE out --psm 6 makes it"),
+    (b"\xff\xd8\xff", "is a picture; expected text: tesseract FILE out --psm 6 makes it"),
+    (b"II*\0", "is a picture; expected text: tesseract FILE out --psm 6 makes it"),
+    (b"MM\0*", "is a picture; expected text: tesseract FILE out --psm 6 makes it"),
+    (b"GIF8", "is a picture; expected text: tesseract FILE out --psm 6 makes it"),
+    (b"BM", "is a picture; expected text: tesseract FILE out --psm 6 makes it"),
+    (b"PK\x03\x04", "is a Word or other packed file; expected text: save it as plain text, or "
+     "pandoc -t plain FILE"),
+    (b"\xd0\xcf\x11\xe0", "is a Word file; expected text: save it as plain text, or antiword FILE"),
+    (b"\x1f\x8b", "is packed; expected text: gunzip FILE"),
+)  # fmt: skip
+"""First bytes of files that are no text, and what makes text of them."""
+
+_BINARY = 0.02
+"""More control characters than this, and a file is no text."""
+_MARKS = ("MA=", "MB=", "KE=", "VAX", "UX=", "ENTER", "LOSS", "PA PB", "ZERO DET", "MA ")
+
+
+def decoded(data: bytes, where: str) -> str:
+    """The text of a file, by the encoding that makes sense of it. Raises UserError for no text."""
+    for start, message in _NO_TEXT:
+        if data.startswith(start) and not (start == b"BM" and b"=" in data[:200]):
+            raise UserError(message, where)
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return _lines(data.decode("utf-16", "replace"))
+    if len(data) > 8:
+        # UTF-16 whose byte-order mark was lost: every other byte of such a text is zero
+        for encoding, zeros in (("utf-16-le", data[1::2]), ("utf-16-be", data[0::2])):
+            if zeros.count(0) > 0.9 * len(zeros):
+                return _lines(data[: len(data) // 2 * 2].decode(encoding, "replace"))
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = _of_other_machines(data, where)
+    if _looks_binary(text):
+        raise UserError("is not UTF-8 text, nor any other this reads; expected plain text", where)
+    return _lines(text)
+
+
+def _lines(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _looks_binary(text: str) -> bool:
+    odd = sum(c < " " and c not in "\t\n\r\f\a\b\0\x04\x1b" for c in text)
+    return odd > 4 + _BINARY * len(text)
+
+
+def _of_other_machines(data: bytes, where: str) -> str:
+    """Text of an Apple II (high bits set), of Windows or of a Macintosh."""
+    high = sum(byte >= 0x80 for byte in data)
+    if high > 0.7 * len(data):
+        text = bytes(byte & 0x7F for byte in data).decode("ascii")
+        if _marks(text):
+            return text
+    for encoding in ("cp037", "cp500"):
+        text = data.decode(encoding, "replace")
+        if high > 0.3 * len(data) and _marks(text) >= 3:
+            return text.replace("\x85", "\n")
+    if high > 0.2 * len(data):
+        raise UserError("is not UTF-8 text, nor any other this reads; expected plain text", where)
+    ways = [data.decode(encoding, "replace") for encoding in ("cp1252", "mac_roman", "latin-1")]
+    return max(ways, key=_minus_signs)
+
+
+def _marks(text: str) -> int:
+    return sum(mark in text.upper() for mark in _MARKS)
+
+
+def _minus_signs(text: str) -> int:
+    """How often a dash stands right before a number."""
+    return len(re.findall(r"[–—−\u00ad-]\s?[.0-9]", text)) - 5 * text.count("�")
+
+
+# --- markup --------------------------------------------------------------------------------------
+
+
+def unwrapped(text: str) -> str:
+    """A text with markup blanked out: e-mail quotes, HTML, RTF, TeX, Markdown. Of equal length."""
+    text = _lines_kept(text)
+    if re.search(r"(?m)^\s*>", text):
+        text = re.sub(r"(?m)^(\s*>)+", _blank, text)
+    if "<" in text and re.search(r"<(?:/?[a-zA-Z][^<>\n]{0,80}|!--.*?--)>", text):
+        text = re.sub(r"<(?:/?[a-zA-Z][^<>\n]{0,80}|!--.*?--)>", _blank, text)
+    text = re.sub(r"&(?:#[0-9]{1,6}|#[xX][0-9a-fA-F]{1,6}|[a-zA-Z]{2,8});", _entity, text)
+    if text.lstrip().startswith("{\\rtf"):
+        text = re.sub(r"\\[a-z]+-?[0-9]* ?|[{}]", _blank, text)
+    text = _STATEMENT.sub(_blank, text)
+    text = re.sub(r"\$(-|−)\$", r"  \1", text)
+    text = re.sub(r"(?m)^[ \t]*(```|~~~).*$", _blank, text)
+    text = re.sub(r"(?m)^[ \t]*[•*+‣◦-][ \t]+(?=[-A-Za-z(.0-9])", _bullet, text)
+    if len(re.findall(r"(?m)^\s*\|.*\|\s*$", text)) >= 3:
+        text = re.sub(r"(?m)^\s*\|[-:| \t]+\|\s*$", _blank, text)
+        text = re.sub(r"(?m)^\s*\|.*\|\s*$", lambda row: row.group().replace("|", " "), text)
+    return text
+
+
+_STATEMENT = re.compile(
+    r"(?m)^[ \t]*[0-9]{1,5} +(?:(?:REM|PRINT|INPUT|IF|GOTO|GOSUB|FOR|NEXT|DIM|END|RETURN|DATA|ON)\b"
+    r"|[A-Z][A-Z0-9]*[$%]?(?:\([^)\n]*\))? ?=[^=\n]*:).*$"
+)
+"""A line of a BASIC program, whose assignments are no printout."""
+
+
+def _lines_kept(text: str) -> str:
+    return text.replace("\r\n", " \n").replace("\r", "\n")
+
+
+def _blank(match: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", match.group())
+
+
+def _bullet(match: re.Match[str]) -> str:
+    """A list's mark; a lone minus before a number on a line of its own stays."""
+    return _blank(match)
+
+
+def _entity(match: re.Match[str]) -> str:
+    character = html.unescape(match.group())
+    if len(character) != 1:
+        return match.group()
+    return character.rjust(len(match.group()))

@@ -1,0 +1,268 @@
+"""Rereading: which slips in the printed inputs, put right, make the page agree with itself.
+
+Every slip in every input (`misreading`) is a hypothesis, alone and in pairs; two digits of one
+number are another. They are screened in double precision, masses and velocities by the kinetic
+energy first, and the best replayed. Nothing here is a verdict: `explain` names what is found, and
+`judging` says when a reader's slips may be looked past.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations as pairs_of
+from typing import NamedTuple
+
+import numpy as np
+
+from ..fields import ANGLES, INPUTS
+from . import misreading
+from .numerals import printable
+from .recovery import Recovered
+from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search
+from .typedtext import stored_and_printed, texts_that_print
+from .ways import Choice, Choices, opposite, scene_name
+
+COSTS = {
+    misreading.DIGIT: 2.7,
+    misreading.SIGN: 2.6,
+    misreading.POINT: 2.8,
+    misreading.SWAP: 2.9,
+    misreading.COUNT: 3.0,
+    misreading.TWO_DIGITS: 4.4,
+}
+"""What it costs to believe a slip; a result that differs costs `search.MISMATCH`."""
+_UNLIKE = 0.05
+_SINGLES_KEPT = 220
+_PAIRS = 160_000
+_ENERGIES = 24
+
+
+class Change(NamedTuple):
+    """One printed input put right: the kind of slip, the field, its printed text, the true one."""
+
+    kind: str
+    field: str
+    printed: str
+    would_be: str
+
+
+class Reread(NamedTuple):
+    """A scene with some printed inputs put right."""
+
+    changes: tuple[Change, ...]
+    scored: Scored
+
+
+class Rereading:
+    """The slips of one printout's inputs, tried."""
+
+    def __init__(self, recovered: Recovered) -> None:
+        self._search: Search = recovered.search
+        self._scene = recovered.scene
+        self._base = {name: recovered.assumed[name] for name in INPUTS if name in recovered.assumed}
+        self._names = list(INPUTS)
+        self._slips: dict[str, list[tuple[Change, Choice]]] = {}
+
+    def best(self, deep: bool = False) -> list[Reread]:
+        """Scenes with one input put right, or two, or (``deep``) two in the masses and velocities
+        and two in the rest, those that explain most first."""
+        choices, changes = self._choices()
+        kinetic = [place for place, name in enumerate(self._names) if scene_name(name) in KINETIC]
+        rest = [place for place in range(len(choices)) if place not in kinetic]
+        picks = [self._singles(choices)]
+        picks.append(self._in_energy(choices, kinetic, rest, deep))
+        picks.append(self._pairs(choices, rest))
+        every = np.unique(np.concatenate(picks), axis=0)
+        every = self._search.screened(choices, every, 320)
+        tried = self._search.replayed(choices, every)
+        found = []
+        for pick, scored in zip(every.tolist(), tried, strict=True):
+            made = tuple(
+                change
+                for place, index in enumerate(pick)
+                if (change := changes[place][index]) is not None
+            )
+            found.append(Reread(made, scored))
+        found.sort(key=lambda one: one.scored.cost)
+        return found
+
+    def double_slips(self) -> list[Reread]:
+        """Scenes with two digits of one input put right."""
+        found: list[Reread] = []
+        choices: Choices = []
+        rows: list[list[int]] = []
+        made: list[Change] = []
+        columns: list[list[Choice]] = []
+        for place, name in enumerate(self._names):
+            options = [self._unchanged(name)]
+            for other in _two_digits(self._base.get(name, "")):
+                for choice in self._typed(name, other, COSTS[misreading.TWO_DIGITS]):
+                    change = Change(misreading.TWO_DIGITS, name, self._base[name], other)
+                    rows.append([0] * place + [len(options)] + [0] * (len(self._names) - place))
+                    options.append(choice)
+                    made.append(change)
+            columns.append(options)
+        choices = [*columns, self._m()]
+        if not rows:
+            return found
+        picks = np.array(rows, np.intp)
+        best = self._search.screened(choices, picks, 60)
+        where = {tuple(row): index for index, row in enumerate(rows)}
+        for pick, scored in zip(best.tolist(), self._search.replayed(choices, best), strict=True):
+            found.append(Reread((made[where[tuple(pick)]],), scored))
+        found.sort(key=lambda one: one.scored.cost)
+        return found
+
+    # --- the hypotheses ---
+
+    def _choices(self) -> tuple[Choices, list[list[Change | None]]]:
+        """For each input the base and every slip, and what each changes."""
+        choices: Choices = []
+        changes: list[list[Change | None]] = []
+        for name in self._names:
+            options, made = [self._unchanged(name)], [None]
+            if name == "MUP" and float(self._scene["MU"] or 0):
+                flipped = {"MU": opposite(self._scene["MU"])}
+                options.append(options[0]._replace(typed=flipped, cost=0.001))
+                made.append(None)
+            for change, choice in self._of(name):
+                options.append(choice)
+                made.append(change)  # type: ignore[arg-type]
+            choices.append(options)
+            changes.append(made)  # type: ignore[arg-type]
+        choices.append(self._m())
+        changes.append([None])
+        return choices, changes
+
+    def _m(self) -> list[Choice]:
+        return [Choice({"M": self._scene["M"]}, {}, 0.0)]
+
+    def _unchanged(self, name: str) -> Choice:
+        printed = {name: self._base[name]} if name in self._base else {}
+        return Choice({scene_name(name): self._scene[scene_name(name)]}, printed, 0.0)
+
+    def _of(self, name: str) -> Iterator[tuple[Change, Choice]]:
+        text = self._base.get(name)
+        if text is None:
+            return
+        for kind, other in misreading.misreadings(text):
+            if printable(other):
+                cost = COSTS[kind]
+                if kind == misreading.DIGIT:
+                    cost += _UNLIKE * misreading.likeness(text, other)
+                for choice in self._typed(name, other, cost):
+                    yield Change(kind, name, text, other), choice
+
+    def _typed(self, name: str, printed: str, cost: float) -> Iterator[Choice]:
+        """What was typed where this is printed; for MU with either sign."""
+        typed = typed_for(printed, name in ANGLES)
+        if typed is None:
+            return
+        yield Choice({scene_name(name): typed}, {name: printed}, cost)
+        if name == "MUP" and float(typed):
+            yield Choice({"MU": opposite(typed)}, {name: printed}, cost + 0.001)
+
+    # --- combinations ---
+
+    def _singles(self, choices: Choices) -> Picks:
+        rows = [[0] * len(choices)]
+        for place, options in enumerate(choices):
+            for index in range(1, len(options)):
+                row = [0] * len(choices)
+                row[place] = index
+                rows.append(row)
+        mu = self._names.index("MUP")
+        if len(choices[mu]) > 1 and not choices[mu][1].cost >= 1:
+            rows += [[*row[:mu], 1, *row[mu + 1 :]] for row in rows if not row[mu]]
+        return np.array(rows, np.intp)
+
+    def _in_energy(
+        self, choices: Choices, kinetic: list[int], rest: list[int], deep: bool
+    ) -> Picks:
+        """Up to two slips in masses and velocities, with up to one (or two) in the rest."""
+        own = [choices[place] for place in kinetic]
+        first = self._search.by_energy(own, _two_changes(own, _PAIRS), _ENERGIES)
+        others = [choices[place] for place in rest]
+        second = _one_change(others)
+        if deep:
+            best = self._best_of_rest(choices, kinetic, rest, first[:4])
+            second = np.unique(np.concatenate([second, best]), axis=0)
+        picks = np.zeros((len(first) * len(second), len(choices)), np.intp)
+        picks[:, kinetic] = np.repeat(first, len(second), axis=0)
+        picks[:, rest] = np.tile(second, (len(first), 1))
+        return self._search.screened(choices, picks, _SINGLES_KEPT)
+
+    def _best_of_rest(
+        self, choices: Choices, kinetic: list[int], rest: list[int], first: Picks
+    ) -> Picks:
+        pairs = _two_changes([choices[place] for place in rest], _PAIRS)
+        picks = np.zeros((len(first) * len(pairs), len(choices)), np.intp)
+        picks[:, kinetic] = np.repeat(first, len(pairs), axis=0)
+        picks[:, rest] = np.tile(pairs, (len(first), 1))
+        return self._search.screened(choices, picks, 60)[:, rest]
+
+    def _pairs(self, choices: Choices, rest: list[int]) -> Picks:
+        """Two slips in what does not enter the kinetic energy, and inertias."""
+        wide = sorted({*rest, *(self._names.index(name) for name in ("IA", "IB"))})
+        pairs = _two_changes([choices[place] for place in wide], _PAIRS)
+        picks = np.zeros((len(pairs), len(choices)), np.intp)
+        picks[:, wide] = pairs
+        return self._search.screened(choices, picks, 60)
+
+
+def _one_change(choices: Choices) -> Picks:
+    rows = [[0] * len(choices)]
+    for place, options in enumerate(choices):
+        for index in range(1, len(options)):
+            rows.append([*([0] * place), index, *([0] * (len(choices) - place - 1))])
+    return np.array(rows, np.intp)
+
+
+def _two_changes(choices: Choices, most: int) -> Picks:
+    """No change, one, or two in different columns; of too many pairs the likeliest."""
+    parts = [_one_change(choices)]
+    lost = COSTS[misreading.COUNT]
+    sizes = [sum(one.cost < lost for one in options[1:]) for options in choices]
+    total = sum(one * two for one, two in pairs_of(sizes, 2))
+    share = min(1.0, (most / total) ** 0.5) if total else 1.0
+    for one, two in pairs_of(range(len(choices)), 2):
+        kept = [_cheapest(choices[place], share) for place in (one, two)]
+        if not len(kept[0]) or not len(kept[1]):
+            continue
+        block = np.zeros((len(kept[0]) * len(kept[1]), len(choices)), np.intp)
+        block[:, one] = np.repeat(kept[0], len(kept[1]))
+        block[:, two] = np.tile(kept[1], len(kept[0]))
+        parts.append(block)
+    return np.concatenate(parts)
+
+
+def _cheapest(options: list[Choice], share: float) -> Picks:
+    lost = COSTS[misreading.COUNT]
+    few = [index for index in range(1, len(options)) if options[index].cost < lost]
+    order = sorted(few, key=lambda index: options[index].cost)
+    return np.array(order[: max(1, int(share * len(order)))] if order else [], np.intp)
+
+
+def _two_digits(text: str) -> Iterator[str]:
+    """Texts that differ in two digits."""
+    places = [index for index, glyph in enumerate(text) if glyph.isdigit()]
+    for one, two in pairs_of(places, 2):
+        for first in "0123456789":
+            for second in "0123456789":
+                if first != text[one] and second != text[two]:
+                    other = text[:one] + first + text[one + 1 : two] + second + text[two + 1 :]
+                    if printable(other):
+                        yield other
+
+
+def typed_for(printed: str, angle: bool) -> str | None:
+    """What was typed where this is printed; None when nothing prints so."""
+    if len(printed.lstrip("-").replace(".", "")) < 7 and not angle:
+        seen = stored_and_printed(printed)
+        if seen is not None and seen[1] == printed:
+            return printed
+    texts = texts_that_print(printed, angle)
+    return texts[0] if texts else None
+
+
+__all__ = ["AGREES", "MISMATCH", "Change", "Reread", "Rereading"]

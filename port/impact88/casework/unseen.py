@@ -1,0 +1,94 @@
+"""What a page cannot show: inputs that nothing else printed on it depends on.
+
+A misreading of such an input leaves a page that agrees with itself, so no verdict covers it. With
+M = 4 that is a third of all inputs. Angles that enter only as a sum are told together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..fields import ANGLES, FIELDS, INPUTS
+from . import trial
+from .ways import scene_name
+
+_SUMS = (("PA", "TA"), ("PB", "TB"))
+_STEP = 7
+_ANGLE_STEPS = ("11", "-23")
+_LAST_PLACES = 2.0
+
+
+def unseen(scene: Mapping[str, str | None], missing: list[str]) -> list[str]:
+    """What the results printed for a scene do not depend on, one sentence each; nothing when the
+    scene is not complete."""
+    if missing or any(text is None for text in scene.values()):
+        return []
+    base = {name: text or "0" for name, text in scene.items()}
+    tried: list[tuple[str, dict[str, str]]] = []
+    for name in INPUTS:
+        own = scene_name(name)
+        for text in _others(base[own], name):
+            tried.append((name, {**base, own: text}))
+    for one, two in _SUMS:
+        tried.append(
+            (
+                f"{one} + {two}",
+                {**base, one: _plus(base[one], _STEP), two: _plus(base[two], -_STEP)},
+            )
+        )
+    first, *outcomes = trial.run_all([base, *(other for _, other in tried)])
+    same: dict[str, bool] = {}
+    for (name, _), outcome in zip(tried, outcomes, strict=True):
+        exact = "+" not in name
+        same[name] = same.get(name, True) and _agree(first, outcome, {name}, exact)
+    alone = [name for name in INPUTS if same[name]]
+    found = []
+    if alone:
+        names = ", ".join(scene_name(name) for name in alone)
+        found.append(
+            f"{names}: nothing else on the page depends on {'it' if len(alone) == 1 else 'them'}, "
+            "so a misreading there would not show"
+        )
+    for one, two in _SUMS:
+        if same[f"{one} + {two}"] and not {one, two} & set(alone):
+            found.append(
+                f"{one} and {two} enter only as their sum, so which of the two is misread would "
+                "not show"
+            )
+    return found
+
+
+def _others(text: str, name: str) -> list[str]:
+    """Other values of an input, not near any symmetry."""
+    if name in ANGLES:
+        return [_plus(text, int(step)) for step in _ANGLE_STEPS]
+    value = float(text)
+    if name == "E":
+        return [_short(value * 0.7 + 0.11)]
+    return [_short(value * 1.37 + 0.53)]
+
+
+def _plus(text: str, step: int) -> str:
+    return _short(float(text) + step)
+
+
+def _short(value: float) -> str:
+    return f"{value:.6g}".replace("e", "E")
+
+
+def _agree(one: trial.Outcome, other: trial.Outcome, names: set[str], exact: bool) -> bool:
+    """Whether two outcomes print the same results, to the digit or nearly so."""
+    if one.ending != other.ending:
+        return False
+    for name, field in FIELDS.items():
+        if (name in INPUTS and name != "MUP") or name in names:
+            continue
+        text, second = one.fields.get(name), other.fields.get(name)
+        if text == second:
+            continue
+        if exact or text is None or second is None:
+            return False
+        unit = 10.0 ** -(field.places or 0)
+        if abs(float(text) - float(second)) > _LAST_PLACES * unit + 1e-6 * abs(float(text)):
+            return False
+    return True

@@ -1,0 +1,201 @@
+"""The words of verdicts, findings and doubts: said in one place, whoever shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from .explain import NO_SINGLE_SLIP, Explanation
+from .judging import FieldCheck, Status, Verdict
+from .numerals import Doubt
+from .printout import Piece, Printout
+from .recovery import Recovered
+from .verification import Verification
+
+TITLES = {
+    Verdict.IDENTICAL: "IDENTICAL",
+    Verdict.IDENTICAL_AS_READ: "IDENTICAL AS FAR AS READ",
+    Verdict.DIFFERS: "DIFFERS",
+    Verdict.INCOMPLETE: "INCOMPLETE",
+}
+
+_SAYS = {
+    Verdict.IDENTICAL: "every printed number is what the 1988 program prints, digit for digit",
+    Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; what was not read "
+    "exactly is listed, and is to be looked at on the paper",
+    Verdict.DIFFERS: "something on the paper contradicts every scene that its inputs allow",
+    Verdict.INCOMPLETE: "numbers are missing or could not be read; what could be compared agrees",
+}
+
+
+def title(verdict: Verdict) -> str:
+    """The verdict as it is shown."""
+    return TITLES[verdict]
+
+
+def says(verdict: Verdict) -> str:
+    """What a verdict says, in a lay person's words."""
+    return _SAYS[verdict]
+
+
+def counts(fields: Sequence[FieldCheck]) -> str:
+    """How many numbers were read exactly, doubtful, contradicted, not read."""
+    number = {status: sum(check.status == status for check in fields) for status in Status}
+    read = number[Status.READ]
+    parts = [f"{read} of {len(fields)} printed numbers read exactly and as the program prints them"]
+    for status, words in (
+        (Status.DOUBTFUL, "read doubtfully"),
+        (Status.CONTRADICTED, "differ" if number[Status.CONTRADICTED] != 1 else "differs"),
+        (Status.NOT_READ, "not read"),
+        (Status.NOT_COMPARED, "not compared"),
+    ):
+        if number[status]:
+            parts.append(f"{number[status]} {words}")
+    return ", ".join(parts)
+
+
+def place(line: int | None, column: int | None) -> str:
+    """Where something stands."""
+    return f"line {line}, column {column}"
+
+
+def doubts(check: FieldCheck) -> list[str]:
+    """What stands doubtfully in a number, place by place."""
+    return [
+        f"{place(one.line, one.column)}: {check.name} "
+        + _doubt(check, one.read, one.printed, one.how)
+        for one in check.doubts
+        if one.how != Doubt.CONTRADICTS
+    ] + [f"{where} ({check.name}: the program prints {check.recomputed})" for where in look(check)]
+
+
+def _doubt(check: FieldCheck, read: str, printed: str, how: str) -> str:
+    program = check.recomputed or ""
+    if how == Doubt.LOOK_ALIKE:
+        return f"read {read!r} where the program prints {printed!r} ({program})"
+    if how == Doubt.ILLEGIBLE:
+        what = f"read {read!r}" if read else "nothing read"
+        return f"illegible, {what} where the program prints {printed!r} ({program})"
+    if how == Doubt.BLANK:
+        return f"a blank or a joint in it; the program prints {program}"
+    if how == Doubt.RETYPED:
+        return f"read {check.printed}; the program prints {program}, never this form"
+    if how == Doubt.CUT:
+        return f"cut off; the program prints {program}"
+    return f"{read!r} left over beside {program}"
+
+
+def look(check: FieldCheck) -> list[str]:
+    """Where to look on the paper for a misread digit."""
+    found = []
+    for one in check.doubts:
+        if one.how != Doubt.CONTRADICTS:
+            continue
+        where = place(one.line, one.column)
+        if one.read and one.printed:
+            found.append(f"{where}: is this {one.read} {_a(one.printed)} {one.printed}?")
+        elif one.read:
+            found.append(f"{where}: is this {one.read} part of the number?")
+        else:
+            found.append(f"{where}: is {_a(one.printed)} {one.printed} missing here?")
+    return found
+
+
+def _a(glyph: str) -> str:
+    return "an" if glyph[:1] == "8" else "a"
+
+
+def findings(shown: Printout, fields: Sequence[FieldCheck], recovered: Recovered) -> list[str]:
+    """What the page shows besides its numbers."""
+    found = []
+    retyped = [
+        check.name for check in fields if any(one.how == Doubt.RETYPED for one in check.doubts)
+    ]
+    if retyped:
+        found.append(
+            f"{', '.join(retyped)} in a form Applesoft never prints (a zero before the point or at "
+            "the end, a plus sign): retyped, or made by another program"
+        )
+    if commas(shown):
+        found.append("decimal commas throughout: retyped, or made by another program")
+    if recovered.m_unknown and not recovered.missing:
+        m = recovered.scene["M"]
+        found.append(
+            f"no line of final spins: read as M = {m}; with M = {'6' if m == '4' else '4'} the "
+            "program prints the same numbers but for that line"
+        )
+    elif recovered.scene["M"] == "4" and "M" not in recovered.missing and not shown.has_final_spins:
+        found.append("no line of final spins: the results are those of M = 4, not of M = 6")
+    return found
+
+
+def commas(shown: Printout) -> bool:
+    """Whether every decimal point is a comma."""
+    text = "".join(glyph.char for reading in shown.fields.values() for glyph in reading.region[:-1])
+    return text.count(",") >= 3 and "." not in text
+
+
+def summary(result: Verification) -> Iterator[str]:
+    """What a verdict rests on: counts, and by name what is missing."""
+    verdict = result.verdict
+    fields = result.fields
+    if verdict is Verdict.IDENTICAL:
+        yield f"all {len(fields)} printed numbers are what the program prints, digit for digit"
+    elif verdict is Verdict.DIFFERS:
+        compared = sum(check.same is not None for check in fields)
+        yield f"{compared} printed numbers compared, {len(result.differing)} differ"
+    else:
+        yield counts(fields)
+    if verdict is Verdict.IDENTICAL_AS_READ:
+        yield says(verdict)
+    if len(result.missing) == 1:
+        yield f"{result.missing[0]} is missing: what depends on it was not compared"
+    elif result.missing:
+        yield f"{', '.join(result.missing)} are missing: what depends on them was not compared"
+    not_read = [name for name in result.not_read if name not in result.missing]
+    if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
+        yield f"not read: {', '.join(not_read)}"
+    if verdict is Verdict.INCOMPLETE and not result.missing and not not_read:
+        yield "the results are missing, or the page ends before they do"
+    ending = result.ending
+    if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
+        yield (
+            f"ends with {ending.printed or 'no error'}, "
+            f"recomputed: {ending.recomputed or 'no error'}"
+        )
+
+
+def explained(result: Verification) -> Iterator[str]:
+    """The explanations, best first, and where to look on the paper."""
+    if not result.explanations:
+        yield NO_SINGLE_SLIP
+        return
+    yield "possible explanations, best first:"
+    for place_, one in enumerate(result.explanations, 1):
+        yield f"{place_}. {cause(one)}; explains {one.explains} of {result.disagreements}"
+        for where in one.look[:4]:
+            yield f"   look at {where}"
+
+
+def cause(one: Explanation) -> str:
+    """An explanation in one line."""
+    what = one.kind
+    if one.changes:
+        changes = "; ".join(
+            f"{change['field']} {change['printed']}, would be {change['would_be']}"
+            for change in one.changes[:6]
+        )
+        what += f": {changes}"
+    return what + (f" ({one.note})" if one.note else "")
+
+
+def left_over(pieces: Sequence[Piece]) -> list[str]:
+    """What belongs to no number and no label, where it stands beside a number."""
+    return [
+        f"{place(piece.line, piece.column)}: {_quoted(piece.text)} left over beside a number"
+        for piece in pieces
+        if piece.beside
+    ]
+
+
+def _quoted(text: str) -> str:
+    return repr(text if len(text) <= 40 else text[:37] + "...")
