@@ -206,6 +206,27 @@ class TestPlan:
         front = max(np.dot(np.subtract(p, a.center), a.front) for p in a.outline)
         assert front >= 12 * math.cos(math.radians(5)) - 1e-9
 
+    def test_crush_of_both_is_visible(self):
+        """Dashed lines lie over every ground."""
+        items = scene_drawing(sample(1), solved(sample(1))).items
+        roles = [item.role for item in items]
+        grounds = [at for at, role in enumerate(roles) if role == "body"]
+        for vehicle in "AB":
+            assert roles.index(f"{vehicle} whole") > max(grounds)
+
+    def test_units_and_title_are_shown(self, tmp_path):
+        path = tmp_path / "us.toml"
+        text = sample(1).to_toml().replace("title = ", 'units = "us"\ntitle = ', 1)
+        path.write_text(text, encoding="utf-8")
+        scene = Scene.from_toml(str(path))
+        drawing = scene_drawing(scene, solved(scene), title=scene.title)
+        texts = [item.text for item in drawing.texts()]
+        assert "Appendix, first sample run" in texts
+        assert "10 mph" in texts
+        assert any(text.endswith(" ft") for text in texts)
+        assert "29.04" in texts  # mph, as typed
+        assert any("lb-s" in text for text in texts)
+
     def test_crushed_part_is_cut_at_the_plane(self):
         a, b = plan(sample(1)).vehicles
         n = plan(sample(1)).normal
@@ -249,12 +270,16 @@ class TestPlan:
 
     def test_scale_bar(self):
         drawing = scene_drawing(sample(1), solved(sample(1)))
-        bar = one(drawing, "scale")
+        bar = one(drawing, "speed scale")
         shaft, head = one(drawing, "A before"), one(drawing, "A before head")
         length = math.dist(shaft.points[0], head.points[0])
         shown = math.dist(*bar.points)
         assert shown / length == pytest.approx(10 / 29.04)
-        assert any(text.text == "10 length/time" for text in drawing.texts())
+        assert any(text.text == "speed 10" for text in drawing.texts())
+        length = one(drawing, "length scale")
+        side = np.subtract(*one(drawing, "A whole").points[1:3])
+        shown = math.dist(*length.points) / np.hypot(*side)
+        assert shown == pytest.approx(5 / plan(sample(1)).vehicles[0].length)
 
     def test_spins_turn_the_way_they_do(self):
         scene = sample(1).replaced({"WA": "2"})
@@ -302,12 +327,31 @@ class TestSvg:
         name = "{http://www.w3.org/2000/svg}"
         assert root.tag == f"{name}svg"
         assert root.get("width") == "85mm"
-        shown = ["".join(node.itertext()) for node in root.iter(f"{name}text")]
+        texts = [node for node in root.iter(f"{name}text") if node.get("class") != "halo"]
+        shown = ["".join(node.itertext()) for node in texts]
         assert shown == [re.sub(r"_\{?|\}", "", item.text) for item in drawing.texts()]
         paths = [item for item in drawing.items if isinstance(item, Path)]
         assert len(list(root.iter(f"{name}path"))) == len(paths)
         assert not re.search(r"href|url\(|<script|nan|inf", text)
         assert "speed" in (root.find(f"{name}desc").text or "")
+
+    def test_halo_is_a_text_of_its_own_behind(self):
+        """Painted in order, white first: no renderer hides the text under its own outline."""
+        root = ElementTree.fromstring(scene_svg(sample(1)))
+        texts = [node for node in root.iter() if node.tag.endswith("}text")]
+        assert len(texts) % 2 == 0
+        for halo, text in zip(texts[::2], texts[1::2], strict=True):
+            assert halo.get("class") == "halo"
+            assert (halo.get("fill"), halo.get("stroke")) == ("#ffffff", "#ffffff")
+            assert "".join(halo.itertext()) == "".join(text.itertext())
+            assert text.get("stroke") is None
+            assert text.get("fill") != "#ffffff"
+
+    def test_dashes_are_drawn_piece_by_piece(self):
+        text = svg(Drawing(20, 10, "t", items=[Path(((0, 5), (10, 5)), dash=(2.0, 1.0))]))
+        assert 'd="M0 5 L2 5 M3 5 L5 5 M6 5 L8 5 M9 5 L10 5"' in text
+        corner = svg(Drawing(20, 10, "t", items=[Path(((0, 5), (3, 5), (3, 0)), dash=(4.0, 1.0))]))
+        assert 'd="M0 5 L3 5 L3 6 M3 7 L3 10"' in corner
 
     def test_y_points_down_in_svg(self):
         drawing = Drawing(10, 10, "t", items=[Path(((1, 1), (1, 9))), Text(1, 9, "top")])
@@ -512,6 +556,13 @@ class TestFreeBodies:
             for way in directions:
                 assert (-way[0], -way[1]) in directions
 
+    def test_planar_of_point_masses_has_no_arms_and_no_moment(self):
+        texts = {text.text for text in freebody.planar(sample(2)).texts()}
+        assert {"P_n", "P_t", "−P_n", "−P_t", "n", "t", "Γ", "x", "y"} <= texts
+        assert not {"M", "−M", "d_a", "d_b", "φ_a", "φ_b", "θ_b"} & texts
+        roles = {item.role for item in freebody.planar(sample(2)).items}
+        assert not any(role.startswith("moment") for role in roles)
+
     def test_planar_names_every_quantity_of_figure_3(self):
         texts = {text.text for text in freebody.planar().texts()}
         assert {"M", "−M", "d_a", "d_b", "φ_a", "φ_b", "θ_b", "Γ", "n", "t"} <= texts
@@ -583,7 +634,8 @@ class TestCharts:
         line = upper.lines[0]
         x, y = line.get_data()
         assert y == pytest.approx(solve({**numbers, "MU": x}, ["LOSS"])["LOSS"])
-        # shaded exactly where energy is gained
+        assert x[0] == 0
+        # shaded exactly beyond the critical friction, and nothing cut off
         spans = [
             patch.get_extents().transformed(upper.transData.inverted()) for patch in upper.patches
         ]
@@ -591,8 +643,12 @@ class TestCharts:
         inside = np.zeros(len(x), bool)
         for span in spans:
             inside |= (x > span.x0 - step / 2) & (x < span.x1 + step / 2)
-        assert (inside == (y < 0)).all()
+        assert (inside == (x > abs(float(solve(numbers, ["MUC"])["MUC"])))).all()
         assert inside.any()
+        for axes in (upper, lower):
+            drawn = np.concatenate([ln.get_ydata() for ln in axes.lines if len(ln.get_ydata()) > 2])
+            low, high = axes.get_ylim()
+            assert low <= drawn.min() <= drawn.max() <= high
         critical = [
             ln.get_xdata()[0]
             for ln in upper.lines
@@ -630,12 +686,21 @@ class TestCharts:
             x, y = axes.collections[0].get_paths()[0].vertices.T
             areas.append(abs(np.dot(x, np.roll(y, 1)) - np.dot(y, np.roll(x, 1))) / 2)
         assert areas[0] == pytest.approx(areas[1], rel=1e-6)
+        peak, mean = (
+            axes.collections[0].get_paths()[0].vertices[:, 1].max() for axes in (typical, average)
+        )
+        assert 2 <= peak / mean <= 3  # Section III
 
     def test_colours_differ_in_grey_or_in_mark(self):
-        """The two vehicles' lines differ in style; the bars in hatching."""
+        """Lines differ in style, bars in lightness; nothing is hatched."""
         lower = charts.friction_sweep(sample(1)).axes[1]
         styles = {line.get_linestyle() for line in lower.lines[:2]}
         assert len(styles) == 2
+        for figure in (
+            charts.friction_sweep(sample(1)),
+            charts.swept(sample(1), "MU", [0, 1], ["PN"]),
+        ):
+            assert not any(patch.get_hatch() for axes in figure.axes for patch in axes.patches)
 
 
 class TestCommand:

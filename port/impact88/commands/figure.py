@@ -1,5 +1,6 @@
 """kinds:
   scene            the scene from above: vehicles, contact plane, velocities, impulse
+  barrier          one vehicle against a rigid barrier, from above; FILE.toml as impact88 barrier's
   friction         energy loss and delta-V against MU, with the critical value
   sweep            results of a scene as one value runs through a range (--sweep, --outputs)
   histogram        the draws of uncertain results; options as impact88 bounds
@@ -16,6 +17,7 @@ takes pip install 'impact88[plot]', but for scene, planar, colinear and configur
 examples:
   impact88 figure scene --sample 1 -o scene.svg
   impact88 figure scene crash.toml --set MU=-10 -o pivot.pdf
+  impact88 figure barrier car.toml -o barrier.svg
   impact88 figure friction --sample 3 -o friction.png
   impact88 figure sweep --sample 1 --sweep GA=-50:-10:81 --outputs DVA,LOSS -o gamma.svg
   impact88 figure tornado --sample 1 --range GA="+- 10" --range MU=".7 .. 1" \\
@@ -37,6 +39,7 @@ from .options import (
     add_names_argument,
     add_set_argument,
     add_sweep_argument,
+    known_with_units,
     names_given,
     one_scene,
     sweeps,
@@ -50,7 +53,7 @@ if TYPE_CHECKING:
 OF_A_SCENE = ("scene", "friction", "sweep")
 OF_RANGES = ("histogram", "tornado")
 OF_NOTHING = ("staged", "force", "colinear", "configurations")
-KINDS = (*OF_A_SCENE, *OF_RANGES, "planar", *OF_NOTHING)
+KINDS = (*OF_A_SCENE, "barrier", *OF_RANGES, "planar", *OF_NOTHING)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -96,6 +99,8 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
             f"{kind} shows one scene as it is; --range and --outputs are for histogram "
             "and tornado, --set changes a value"
         )
+    if kind == "barrier":
+        return _barrier(args)
     if kind == "friction":
         from ..figures import charts
 
@@ -120,6 +125,29 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
     from ..figures import charts
 
     return charts.figure_5() if kind == "staged" else charts.force_and_impulse()
+
+
+def _barrier(args: argparse.Namespace) -> Drawing:
+    """A vehicle against a barrier, its approach and its rebound."""
+    from ..chapter.barrier import BARRIER, VEHICLE, barrier
+    from ..figures.sceneview import scene_drawing
+    from ..names import missing
+    from ..units import system_of
+
+    if args.sample:
+        raise UserError("a sample has two vehicles; expected FILE.toml or --set of one")
+    known, units = known_with_units(args.scene, args.set, (*VEHICLE, "M"))
+    absent = [name for name in VEHICLE if name not in known]
+    if absent:
+        raise UserError(missing(absent), args.scene)
+    found = barrier(known, ("VAX", "VAY", "WAF", "STATUS"))
+    result = {name: value.item() for name, value in found.items()}
+    still = {"VBX": 0.0, "VBY": 0.0, "WBF": 0.0}
+    # as heavy as a drawing needs it: an infinite mass has no outline
+    wall = {"MB": 1e9 * known["MA"], "IB": 1e9 * known["IA"]}
+    scene = {**BARRIER, **known, **wall}
+    drawing = scene_drawing(scene, result | still, title="Barrier", units=system_of(units))
+    return drawing
 
 
 def _swept(args: argparse.Namespace) -> Figure:

@@ -1,7 +1,8 @@
 """Charts with axes: draws and drivers of bounds, the friction sweep, staged collisions.
 
 Every function returns a matplotlib figure one column (85 mm) wide. Nothing is told by colour alone:
-marks, line styles and hatching differ as well, so a grey copy reads the same.
+marks, line styles and lightness differ as well, so a grey copy reads the same. Nothing is hatched:
+some renderers of SVG paint patterns black.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from ..errors import UserError
 from ..names import PIVOT
 from ..scene import numbers_of
 from ..status import Status
+from ..units import RULES, system_of
 from .canvas import new_figure, style
 from .drawing import BLACK, BLUE, COLUMN, GREY, ORANGE, VERMILION
 from .sceneview import short
@@ -140,7 +142,7 @@ def tornado(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
             drives = sorted(found.drives[name].items(), key=lambda entry: -entry[1].swing)
             ticks = []
             for place, (source, drive) in enumerate(drives[:bars]):
-                ends = [(drive.at_low, "#ffffff", "////"), (drive.at_high, BLUE, "")]
+                ends = [(drive.at_low, "#ffffff", ""), (drive.at_high, BLUE, "")]
                 # where both lie on one side the shorter bar stands on the longer
                 for value, colour, hatch in sorted(
                     ends, key=lambda end: -abs(end[0] - bound.nominal)
@@ -168,7 +170,7 @@ def tornado(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
             axes.margins(x=0.04)
         figure.legend(
             handles=_keys(
-                ("bar", "#ffffff", "////", "at its lower limit"),
+                ("bar", "#ffffff", "", "at its lower limit"),
                 ("bar", BLUE, "", "at its upper limit"),
                 ("line", BLACK, "-", "in between"),
             ),
@@ -180,60 +182,61 @@ def tornado(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
 
 
 def friction_sweep(scene: Any) -> Figure:
-    """Energy loss and both ΔV against the friction coefficient as typed, all else as in ``scene``.
+    """Energy loss and both ΔV against the size of friction that opposes the sliding, all else as in
+    ``scene``: from none to beyond the critical coefficient, at which the sliding ends.
 
-    Positive values oppose the sliding (line 400's sign rule). A dotted line marks the critical
-    coefficient, beyond which friction would reverse the sliding; where kinetic energy is gained the
-    ground is shaded. Raises UserError when a value of the scene is no number.
+    More friction than that would reverse the sliding, which friction cannot do: shaded. Raises
+    UserError when a value of the scene is no number.
     """
     import numpy as np
 
     from ..closedform.solve import solve
 
     values: dict[str, Any] = numbers_of(scene)
-    pivot = solve({**values, "MU": PIVOT}, ["MUC", "STATUS"])
-    # line 400 turns the sign of what is typed where gt > 0: the critical value as one would type it
+    units = system_of(getattr(scene, "units", None))
+    speed = units.shown("length/time", 1.0)
+    signed = solve({**values, "MU": PIVOT}, ["MUC", "PN", "PT"])
+    # as one would type it: line 400 turns the sign of what is typed where gt > 0
     sign = float(np.sign(solve({**values, "MU": 1.0}, ["MUP"])["MUP"]))
-    critical = sign * float(pivot["MUC"])
+    critical = sign * float(signed["MUC"])
     own = critical if values["MU"] == PIVOT else values["MU"]
-    reach = max(1.0, 1.5 * abs(critical) if np.isfinite(critical) else 0.0, 1.2 * abs(own))
-    reach = min(reach, WIDEST_SWEEP)
-    friction = np.linspace(-reach, reach, SWEEP)
-    swept = solve({**values, "MU": friction}, ["LOSS", "DVA", "DVB", "STATUS"])
-    gained = (swept["STATUS"].astype(int) & Status.ENERGY_GAINED) != 0
+    limit = critical if np.isfinite(critical) and 0 < critical <= WIDEST_SWEEP else 0.0
+    reach = min(max(1.0, 1.3 * limit, 1.2 * own), WIDEST_SWEEP)
+    low = min(0.0, 1.2 * own)  # a scene whose friction drives the sliding shows itself
+    friction = np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP)
+    results = solve({**values, "MU": friction}, ["LOSS", "DVA", "DVB", "STATUS"])
+    beyond = (results["STATUS"] & np.uint16(Status.SLIDING_REVERSED)) != 0
     here = {name: float(value) for name, value in solve(values, ["LOSS", "DVA", "DVB"]).items()}
     with style():
         figure = new_figure(COLUMN, 92)
         figure.set_layout_engine("constrained", h_pad=0.03)
         upper, lower = figure.subplots(2, 1, sharex=True)
-        upper.plot(friction, swept["LOSS"], color=BLACK)
+        upper.plot(friction, results["LOSS"], color=BLACK)
         upper.axhline(0, color=GREY, linewidth=0.6)
         upper.set_ylabel("kinetic energy lost, %")
-        lower.plot(friction, swept["DVA"], color=BLUE, label=symbol("ΔV_a"))
-        lower.plot(friction, swept["DVB"], color=VERMILION, linestyle=(0, (4, 1.5)))
-        lower.set_ylabel("ΔV, length/time")
-        lower.set_xlabel("friction coefficient as typed; above 0 it opposes the sliding")
-        _limit(upper, swept["LOSS"], -60, 105)
-        _limit(lower, np.concatenate([swept["DVA"], swept["DVB"]]), 0, None)
-        if abs(own) <= reach:
+        lower.plot(friction, speed * results["DVA"], color=BLUE, label=symbol("ΔV_a"))
+        lower.plot(friction, speed * results["DVB"], color=VERMILION, linestyle=(0, (4, 1.5)))
+        lower.set_ylabel("ΔV" if units is RULES else f"ΔV, {units.label('length/time')}")
+        lower.set_xlabel("friction coefficient as typed (MU)")
+        lower.set_ylim(bottom=0)
+        if friction[0] <= own <= friction[-1]:
             upper.plot(own, here["LOSS"], "o", color=BLACK, markersize=4, zorder=6)
-            lower.plot(own, here["DVA"], "o", color=BLUE, markersize=4, zorder=6)
-            lower.plot(own, here["DVB"], "o", color=VERMILION, markersize=4, zorder=6)
+            for name, colour in (("DVA", BLUE), ("DVB", VERMILION)):
+                lower.plot(own, speed * here[name], "o", color=colour, markersize=4, zorder=6)
         for axes in (upper, lower):
-            axes.set_xlim(-reach, reach)
-            _shade(axes, friction, gained)
-            if abs(critical) <= reach:
+            axes.set_xlim(friction[0], friction[-1])
+            _shade(axes, friction, beyond)
+            if limit:
                 axes.axvline(critical, color=BLACK, linewidth=1.0, linestyle=(0, (1, 1.5)))
         entries = [
             ("line", BLUE, "-", symbol("ΔV_a")),
             ("line", VERMILION, (0, (4, 1.5)), symbol("ΔV_b")),
             ("mark", BLACK, "o", "pivot" if values["MU"] == PIVOT else "this scene"),
         ]
-        if abs(critical) <= reach:
-            what = f"critical: {short(critical)}"
-            entries.append(("line", BLACK, (0, (1, 1.5)), what))
-        if gained.any():
-            entries.append(("bar", _GAINED, "....", "energy gained"))
+        if limit:
+            entries.append(("line", BLACK, (0, (1, 1.5)), f"critical: {short(critical)}"))
+        if beyond.any():
+            entries.append(("bar", _GAINED, "", "sliding reversed"))
         figure.legend(
             handles=_keys(*entries), loc="outside lower center", ncols=3, columnspacing=1.2
         )
@@ -267,7 +270,7 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
         panels[-1].set_xlabel(_axis_label(name))
         entries = [("mark", BLACK, "o", "this scene")]
         if faulty.any():
-            entries.append(("bar", _GAINED, "....", "unphysical: see STATUS"))
+            entries.append(("bar", _GAINED, "", "unphysical: see STATUS"))
         figure.legend(handles=_keys(*entries), loc="outside lower center", ncols=2)
     return figure
 
@@ -285,24 +288,9 @@ def _shade(axes: Axes, friction: Any, gained: Any) -> None:
             friction[first],
             friction[last - 1],
             facecolor=_GAINED,
-            edgecolor=ORANGE,
-            hatch="....",
             linewidth=0,
             zorder=0,
         )
-
-
-def _limit(axes: Axes, values: Any, least: float, most: float | None) -> None:
-    """Show the values, but no more than ``least`` ... ``most`` where they run away near a pole."""
-    import numpy as np
-
-    finite = values[np.isfinite(values)]
-    low, high = np.min(finite, initial=0.0), np.max(finite, initial=0.0)
-    if most is None:
-        most = 6 * float(np.median(finite)) if len(finite) else 1.0
-    low, high = max(low, least), min(high, most)
-    pad = 0.06 * (high - low) or 1.0
-    axes.set_ylim(low - (pad if low < 0 else 0), high + pad)
 
 
 def figure_5() -> Figure:
@@ -382,8 +370,8 @@ def force_and_impulse() -> Figure:
         figure.set_layout_engine("constrained", w_pad=0.05)
         typical, average = figure.subplots(1, 2)
         time = np.linspace(0, 1, 201)
-        # a skewed hump; its mean is the average force by construction
-        force = time**1.2 * (1 - time) ** 1.6 * (1 + 0.12 * np.sin(9 * np.pi * time))
+        # a skewed hump, its peak two to three times the mean as Section III says of F_M
+        force = time**2.6 * (1 - time) ** 4.2 * (1 + 0.1 * np.sin(9 * np.pi * time))
         force /= force.max()
         mean = float(np.trapezoid(force, time))
         typical.fill_between(time, force, facecolor="#c6dff0", edgecolor=BLUE, linewidth=1.2)
@@ -395,7 +383,7 @@ def force_and_impulse() -> Figure:
             axes.set_xlim(0, 1.15)
             axes.set_ylim(0, 1.18)
             axes.set_xlabel("time")
-            axes.text(0.42, 0.4 * mean, "impulse", ha="center", va="center")
+            axes.text(0.4, 0.4 * mean, "impulse", ha="center", va="center")
         typical.set_ylabel("force")
         typical.set_title("a. typical force", loc="left")
         average.set_title("b. average force", loc="left")

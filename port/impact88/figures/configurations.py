@@ -9,7 +9,7 @@ from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
 from .plan import Plan, plan
-from .sceneview import COLOURS, draw_body
+from .sceneview import COLOURS, draw_bodies
 
 _GAP = 4.0
 _TITLE = 5.0
@@ -80,8 +80,7 @@ def _panel(
 
     labels = []
     fastest = max(vehicle.before.speed for vehicle in shapes.vehicles)
-    for vehicle in shapes.vehicles:
-        draw_body(drawing.items, vehicle, ats)
+    draw_bodies(drawing.items, shapes.vehicles, ats)
     for vehicle in shapes.vehicles:
         colour = COLOURS[vehicle.name]
         x, y = vehicle.before.velocity

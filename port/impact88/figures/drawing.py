@@ -287,6 +287,28 @@ def turning_arrow(
     ]
 
 
+def dashes(points: Sequence[Point], pattern: Sequence[float]) -> list[tuple[Point, ...]]:
+    """The drawn pieces of a line dashed by ``pattern`` (drawn, left out, drawn ... in mm)."""
+    pieces: list[tuple[Point, ...]] = []
+    piece: list[Point] = [points[0]]
+    count, left = 0, pattern[0]
+    for start, end in pairwise(points):
+        length, done = math.dist(start, end), 0.0
+        while length - done > left:
+            done += left
+            share = done / length
+            place = (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+            if count % 2 == 0:
+                pieces.append((*piece, place))
+            count += 1
+            piece, left = [place], pattern[count % len(pattern)]
+        left -= length - done
+        piece.append(end)
+    if count % 2 == 0 and len(piece) > 1:
+        pieces.append(tuple(piece))
+    return pieces
+
+
 def circle(center: Point, radius: float) -> tuple[Point, ...]:
     """A circle as a polygon of 32 corners."""
     return tuple(

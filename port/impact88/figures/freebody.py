@@ -14,7 +14,7 @@ from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
 from .plan import Plan, Vehicle, plan
-from .sceneview import COLOURS, IMPULSE, TINTS
+from .sceneview import COLOURS, IMPULSE, TINTS, draw_axes
 
 _ANGLE = "#444444"
 _MARGIN = 7.5
@@ -98,6 +98,7 @@ def planar(scene: Any = None) -> Drawing:
         "Both vehicles pulled apart along the normal, with heading angles, distance and angle of "
         "the contact point, axes n and t, impulses P_n and P_t and moment impulse M on each.",
     )
+    point = shapes.apart or shapes.numbers["M"] == 4
     size = max(vehicle.length for vehicle in shapes.vehicles)
     shift = {v.name: (0.42 if v.name == "A" else -0.42) * size for v in shapes.vehicles}
     moved = {name: (by * shapes.normal[0], by * shapes.normal[1]) for name, by in shift.items()}
@@ -136,22 +137,78 @@ def planar(scene: Any = None) -> Drawing:
                 origin[1] + scale * (point[1] + offset[1]),
             )
 
-        _body(drawing, labels, shapes, vehicle, at, scale * size)
+        _body(drawing, labels, shapes, vehicle, at, scale * size, point)
     _plane(drawing.items, labels, shapes, origin, scale * size)
+    draw_axes(drawing, 0.0, drawing.height)
     place(drawing, labels, Box(0.6, 0.4, drawing.width - 0.6, drawing.height - 0.4))
     return drawing
 
 
 def _body(
-    drawing: Drawing, labels: list[Label], shapes: Plan, vehicle: Vehicle, at: Any, size: float
+    drawing: Drawing,
+    labels: list[Label],
+    shapes: Plan,
+    vehicle: Vehicle,
+    at: Any,
+    size: float,
+    point: bool,
 ) -> None:
+    """One body; of a point mass the impulse acts at its center, and nothing turns it."""
     items = drawing.items
-    colour, low = COLOURS[vehicle.name], vehicle.name.lower()
+    colour = COLOURS[vehicle.name]
     outline = tuple(at(point) for point in vehicle.outline)
     items.append(Path(outline, colour, 0.45, fill=TINTS[vehicle.name], role="body outline"))
-    center, contact = at(vehicle.center), at((0.0, 0.0))
+    center = at(vehicle.center)
+    contact = center if point else at((0.0, 0.0))
     labels.insert(0, Label(center, _back(vehicle), vehicle.name, 10, colour, True))
+    if not point:
+        _angles(items, labels, shapes, vehicle, center, contact, size)
 
+    # impulses: on A along n and t, on B against them
+    sense = 1.0 if vehicle.name == "A" else -1.0
+    minus = "" if vehicle.name == "A" else "−"
+    reach = 0.3 * size
+    for unit, symbol in ((shapes.normal, "n"), (shapes.tangent, "t")):
+        along = (sense * unit[0], sense * unit[1])
+        end = (contact[0] + reach * along[0], contact[1] + reach * along[1])
+        items += d.arrow(contact, end, IMPULSE, 0.8, head=2.6, role="impulse")
+        labels.append(Label(end, along, f"{minus}P_{symbol}", 8, IMPULSE, True, "impulse label"))
+    if not point:
+        outward = math.degrees(math.atan2(-sense * shapes.normal[1], -sense * shapes.normal[0]))
+        items += d.turning_arrow(
+            contact, 3.4, vehicle.name == "A", IMPULSE, 0.6, (), outward + 180, 200, role="moment"
+        )
+        edge = (
+            contact[0] + 3.4 * math.cos(math.radians(outward)),
+            contact[1] + 3.4 * math.sin(math.radians(outward)),
+        )
+        labels.append(
+            Label(
+                edge,
+                (edge[0] - contact[0], edge[1] - contact[1]),
+                f"{minus}M",
+                8,
+                IMPULSE,
+                True,
+                "moment label",
+            )
+        )
+    items.append(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))
+    if not point:
+        items.append(Path(d.circle(contact, 0.5), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
+
+
+def _angles(
+    items: list[Path | Text],
+    labels: list[Label],
+    shapes: Plan,
+    vehicle: Vehicle,
+    center: Point,
+    contact: Point,
+    size: float,
+) -> None:
+    """Heading angle, and distance and angle of the contact point."""
+    low = vehicle.name.lower()
     # heading: TB of the front of B, TA of the rear of A (see figures.plan)
     sign = -1.0 if vehicle.name == "A" else 1.0
     axis = (sign * vehicle.front[0], sign * vehicle.front[1])
@@ -177,37 +234,6 @@ def _body(
         if abs(angle) > 3:
             radius = min(0.16 * size, 0.6 * math.dist(center, contact))
             labels.append(_arc(items, center, front, angle, radius, f"φ_{low}"))
-
-    # impulses: on A along n and t, on B against them
-    sense = 1.0 if vehicle.name == "A" else -1.0
-    minus = "" if vehicle.name == "A" else "−"
-    reach = 0.3 * size
-    for unit, symbol in ((shapes.normal, "n"), (shapes.tangent, "t")):
-        along = (sense * unit[0], sense * unit[1])
-        end = (contact[0] + reach * along[0], contact[1] + reach * along[1])
-        items += d.arrow(contact, end, IMPULSE, 0.8, head=2.6, role="impulse")
-        labels.append(Label(end, along, f"{minus}P_{symbol}", 8, IMPULSE, True, "impulse label"))
-    outward = math.degrees(math.atan2(-sense * shapes.normal[1], -sense * shapes.normal[0]))
-    items += d.turning_arrow(
-        contact, 3.4, vehicle.name == "A", IMPULSE, 0.6, (), outward + 180, 200, role="moment"
-    )
-    edge = (
-        contact[0] + 3.4 * math.cos(math.radians(outward)),
-        contact[1] + 3.4 * math.sin(math.radians(outward)),
-    )
-    labels.append(
-        Label(
-            edge,
-            (edge[0] - contact[0], edge[1] - contact[1]),
-            f"{minus}M",
-            8,
-            IMPULSE,
-            True,
-            "moment label",
-        )
-    )
-    items.append(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))
-    items.append(Path(d.circle(contact, 0.5), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
 
 
 def _plane(

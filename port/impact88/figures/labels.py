@@ -14,7 +14,10 @@ REACHES = (0.9, 2.0, 3.4, 5.0, 7.0, 10.0, 14.0, 20.0)
 """Distances in mm tried between the point named and the nearest edge of the text."""
 LEADER_FROM = 3.6
 """Beyond this distance a thin line leads from the label to its point."""
-WEIGHTS = {"glass": 0.4, "heading": 0.4, "body": 0.0, "after": 2.5, "impulse": 2.5, "head": 2.5}
+WEIGHTS = {
+    **{"glass": 0.4, "heading": 1.5, "body": 0.0, "after": 2.5, "impulse": 2.5, "head": 2.5},
+    **{"spin": 2.0, "moment": 2.5, "before": 2.0, "angle": 1.5},
+}
 """What crossing a line of the role ending so costs, against 1 for any other."""
 
 

@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..units import RULES, System, system_of
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
@@ -23,7 +24,7 @@ IMPULSE = "#a03c78"
 _MARGIN = 6.0
 _TEXT = 6.5
 _ROW = 3.4
-_FIELD = 78.0
+_FIELD = 70.0
 """Largest height in mm of the drawing proper."""
 
 
@@ -32,6 +33,7 @@ def scene_drawing(
     result: Mapping[str, Any] | None = None,
     width: float = d.COLUMN,
     title: str = "Scene from above",
+    units: System | None = None,
 ) -> Drawing:
     """The scene from above, with key and table, ``width`` mm wide. Arguments as `plan`.
 
@@ -39,12 +41,18 @@ def scene_drawing(
     scale; both vehicles' spins turn around their centers.
     """
     shapes = plan(scene, result)
+    if units is None:
+        units = system_of(getattr(scene, "units", None))
     field = _Field(shapes, width)
-    notes = _notes(shapes)
-    footer = _ROW * (3 + 3 + len(notes)) + 5.5
-    drawing = Drawing(width, field.height + footer, title, _description(shapes))
+    notes = _notes(shapes, units)
+    footer = _ROW * (4 + 3 + len(notes)) + 5.5
+    head = _wrapped(title, (width - 4) / d.BOLD)
+    height = field.height + footer + _ROW * len(head)
+    drawing = Drawing(width, height, title, _description(shapes, units))
+    for line, text in enumerate(head, 1):
+        drawing.items.append(Text(2.0, height - _ROW * line, text, 7, bold=True, role="title"))
     field.draw(drawing, footer)
-    _legend(drawing, shapes, field, footer, notes)
+    _legend(drawing, shapes, field, footer, notes, units)
     return drawing
 
 
@@ -162,11 +170,11 @@ class _Field:
 
         items = drawing.items
         labels: list[Label] = []
+        bodies = [vehicle for vehicle in self.shapes.vehicles if not vehicle.wall]
         for vehicle in self.shapes.vehicles:
             if vehicle.wall:
                 self._draw_wall(items, vehicle, ats)
-            else:
-                draw_body(items, vehicle, ats)
+        draw_bodies(items, bodies, ats)
         self._draw_plane(items, labels, at)
         for vehicle in self.shapes.vehicles:
             if not vehicle.wall:
@@ -189,8 +197,8 @@ class _Field:
             labels.insert(
                 0, Label(where, towards, vehicle.name, 10, colour, True, f"{vehicle.name} label")
             )
-        self._draw_axes(drawing, footer)
-        frame = Box(0.8, footer, drawing.width - 0.8, drawing.height - 0.4)
+        draw_axes(drawing, footer, footer + self.height)
+        frame = Box(0.8, footer, drawing.width - 0.8, footer + self.height - 0.4)
         place(drawing, labels, frame)
 
     def _draw_wall(self, items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
@@ -277,44 +285,48 @@ class _Field:
             Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=f"{vehicle.name} center")
         )
 
-    def _draw_axes(self, drawing: Drawing, footer: float) -> None:
-        """The x and y axes, in the corner of the field with the fewest lines."""
-        segments = list(drawing.segments())
-        best: tuple[int, Box] | None = None
-        side = 9.0
-        for left in (1.0, drawing.width - side - 1.0):
-            for bottom in (footer + 0.5, drawing.height - side - 0.5):
-                box = Box(left, bottom, left + side, bottom + side)
-                crossed = sum(box.crosses(*segment) for segment in segments)
-                if best is None or crossed < best[0]:
-                    best = (crossed, box)
-        assert best is not None
-        box = best[1]
-        origin = (box.left + 1.0, box.bottom + 1.0)
-        for unit, name in (((1.0, 0.0), "x"), ((0.0, 1.0), "y")):
-            end = plus(origin, scaled(unit, 5.5))
-            drawing.items += d.arrow(origin, end, d.GREY, 0.25, head=1.5, role=f"{name} axis")
-            shift = (0.7, -0.7) if name == "x" else (0.6, -0.2)
-            drawing.items.append(
-                Text(
-                    end[0] + shift[0],
-                    end[1] + shift[1],
-                    name,
-                    7,
-                    colour=d.GREY,
-                    role=f"{name} label",
-                )
+
+def draw_axes(drawing: Drawing, bottom: float, top: float) -> None:
+    """The x and y axes, in the corner between ``bottom`` and ``top`` with the fewest lines."""
+    segments = list(drawing.segments())
+    side = 9.0
+    boxes = [
+        Box(left, low, left + side, low + side)
+        for left in (1.0, drawing.width - side - 1.0)
+        for low in (bottom + 0.5, top - side - 0.5)
+    ]
+    box = min(boxes, key=lambda box: sum(box.crosses(*segment) for segment in segments))
+    origin = (box.left + 1.0, box.bottom + 1.0)
+    for unit, name in (((1.0, 0.0), "x"), ((0.0, 1.0), "y")):
+        end = plus(origin, scaled(unit, 5.5))
+        drawing.items += d.arrow(origin, end, d.GREY, 0.25, head=1.5, role=f"{name} axis")
+        shift = (0.7, -0.7) if name == "x" else (0.6, -0.2)
+        drawing.items.append(
+            Text(
+                *plus(end, shift),
+                name,
+                7,
+                colour=d.GREY,
+                role=f"{name} label",
             )
+        )
 
 
-def draw_body(items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
-    """A vehicle's outline, what of it is crushed, and marks that show its front. ``ats`` maps
-    points of the plan to paper."""
+def draw_bodies(items: list[Path | Text], vehicles: Sequence[Vehicle], ats: Any) -> None:
+    """Vehicles' outlines, what of them is crushed, and marks that show their fronts; ``ats`` maps
+    points of the plan to paper. All lines lie over all grounds: what of one vehicle is crushed lies
+    in the other."""
+    for vehicle in vehicles:
+        items.append(Path(ats(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
+    for vehicle in vehicles:
+        _draw_lines(items, vehicle, ats)
+
+
+def _draw_lines(items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
     colour = COLOURS[vehicle.name]
-    items.append(Path(ats(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
     outline = (*vehicle.outline, vehicle.outline[0])
     if vehicle.kept != vehicle.outline:
-        items.append(Path(ats(outline), colour, 0.2, (0.7, 0.7), role=f"{vehicle.name} whole"))
+        items.append(Path(ats(outline), colour, 0.25, (0.7, 0.5), role=f"{vehicle.name} whole"))
     items.append(
         Path(
             ats((*vehicle.kept, vehicle.kept[0])),
@@ -345,10 +357,10 @@ def short(value: float) -> str:
     return (f"{value:.3g}" if "e" in text else text).replace("-", "−")
 
 
-def _notes(shapes: Plan) -> list[str]:
+def _notes(shapes: Plan, units: System) -> list[str]:
     notes = ["Outlines from I/m, L/W = 2.6: not measured."]
-    if any(v.kept != v.outline and not v.wall for v in shapes.vehicles):
-        notes[0] = notes[0][:-1] + "; dashed: crushed."
+    if units is not RULES:
+        notes.append(f"Speeds in {units.label(_SPEED)}, spins in {units.label(_SPIN)}.")
     if shapes.apart:
         notes.append("Point masses: drawn moved apart along n.")
     if any(vehicle.wall for vehicle in shapes.vehicles):
@@ -378,9 +390,14 @@ def _round_below(value: float) -> float:
 
 
 def _legend(
-    drawing: Drawing, shapes: Plan, field: _Field, footer: float, notes: Sequence[str]
+    drawing: Drawing,
+    shapes: Plan,
+    field: _Field,
+    footer: float,
+    notes: Sequence[str],
+    units: System,
 ) -> None:
-    """Key, scale, table and notes below the drawing."""
+    """Key, scales, table and notes below the drawing."""
     items = drawing.items
     left, middle = 2.0, 35.0
     y = footer - _ROW
@@ -406,37 +423,57 @@ def _legend(
         "velocity after",
     )
     if field.speed:
-        amount = _round_below(field.speed * 0.5)
-        run = field.scale * field.per_speed * amount
-        x = middle + 5
-        bar = [
-            Path(((x, y), (x + run, y)), d.BLACK, 0.4, role="scale"),
-            Path(((x, y - 0.7), (x, y + 0.7)), d.BLACK, 0.4),
-            Path(((x + run, y - 0.7), (x + run, y + 0.7)), d.BLACK, 0.4),
-        ]
-        items.extend(bar)
-        items.append(
-            Text(x + run + 1.5, y - 0.8, f"{short(amount)} length/time", _TEXT, role="legend")
-        )
+        per_unit = field.scale * field.per_speed / units.shown(_SPEED, 1.0)
+        _scale(items, middle + 5, y, units.shown(_SPEED, field.speed), per_unit, _SPEED, units)
     y -= _ROW
     if shapes.impulse is not None:
         size = short(math.hypot(*shapes.impulse))
+        unit = "" if units is RULES else " " + units.label("mass·length/time")
         entry(
             left,
             y,
             d.arrow((left, y), (left + sample, y), IMPULSE, 0.9, (), 2.8),
-            f"impulse on A, |P| = {size}; on B its opposite",
+            f"impulse on A, |P| = {size}{unit}; on B its opposite",
         )
+    y -= _ROW
+    if any(v.kept != v.outline and not v.wall for v in shapes.vehicles):
+        crushed = [Path(((left, y), (left + sample, y)), d.GREY, 0.25, (0.7, 0.5))]
+        entry(left, y, crushed, "crushed")
+    per_unit = field.scale / units.shown(_LENGTH, 1.0)
+    _scale(items, middle + 5, y, units.shown(_LENGTH, field.size), per_unit, _LENGTH, units)
     y -= 2.4
     items.append(Path(((left, y), (drawing.width - left, y)), d.GREY, 0.2))
-    y = _table(drawing, shapes, y)
+    y = _table(drawing, shapes, y, units)
     items.append(Path(((left, y + 2.0), (drawing.width - left, y + 2.0)), d.GREY, 0.2))
     for note in notes:
         items.append(Text(left, y - 0.9, note, _TEXT, colour=d.GREY, role="note"))
         y -= _ROW
 
 
-def _table(drawing: Drawing, shapes: Plan, y: float) -> float:
+_SPEED, _LENGTH, _SPIN = "length/time", "length", "rad/time"
+
+
+def _scale(
+    items: list[Path | Text],
+    x: float,
+    y: float,
+    size: float,
+    per_unit: float,
+    rule: str,
+    units: System,
+) -> None:
+    """A bar of a round amount, about half of ``size``, and what it stands for."""
+    amount = _round_below(size * 0.5)
+    end = x + per_unit * amount
+    word = {_SPEED: "speed", _LENGTH: "length"}[rule]
+    items.append(Path(((x, y), (end, y)), d.BLACK, 0.4, role=f"{word} scale"))
+    for tick in (x, end):
+        items.append(Path(((tick, y - 0.7), (tick, y + 0.7)), d.BLACK, 0.4))
+    text = f"{word} {short(amount)}" if units is RULES else f"{short(amount)} {units.label(rule)}"
+    items.append(Text(end + 1.5, y - 0.8, text, _TEXT, role="legend"))
+
+
+def _table(drawing: Drawing, shapes: Plan, y: float, units: System) -> float:
     columns = (21.0, 37.0, 50.0, 67.0, 83.0)
     heads = ("|v| before", "|V| after", "ΔV", "ω before", "Ω after")
     y -= _ROW - 0.3
@@ -447,11 +484,11 @@ def _table(drawing: Drawing, shapes: Plan, y: float) -> float:
         y -= _ROW
         before, after = vehicle.before, vehicle.after
         cells = [
-            short(before.speed),
-            short(after.speed) if after else "–",
-            short(math.dist(after.velocity, before.velocity)) if after else "–",
-            short(before.spin),
-            short(after.spin) if after else "–",
+            short(units.shown(_SPEED, before.speed)),
+            short(units.shown(_SPEED, after.speed)) if after else "–",
+            short(units.shown(_SPEED, _change(vehicle))) if after else "–",
+            short(units.shown(_SPIN, before.spin)),
+            short(units.shown(_SPIN, after.spin)) if after else "–",
         ]
         if shapes.numbers["M"] == 4:
             cells[3:] = "–", "–"
@@ -466,12 +503,22 @@ def _table(drawing: Drawing, shapes: Plan, y: float) -> float:
     return y - _ROW
 
 
-def _description(shapes: Plan) -> str:
+def _change(vehicle: Vehicle) -> float:
+    """The size of a vehicle's change of velocity."""
+    assert vehicle.after is not None
+    return math.dist(vehicle.after.velocity, vehicle.before.velocity)
+
+
+def _description(shapes: Plan, units: System) -> str:
+    def speed(value: float) -> str:
+        unit = "" if units is RULES else " " + units.label(_SPEED)
+        return short(units.shown(_SPEED, value)) + unit
+
     parts = []
     for vehicle in shapes.vehicles:
-        text = f"Vehicle {vehicle.name}: speed {short(vehicle.before.speed)} before"
+        text = f"Vehicle {vehicle.name}: speed {speed(vehicle.before.speed)} before"
         if vehicle.after:
-            change = math.dist(vehicle.after.velocity, vehicle.before.velocity)
-            text += f", {short(vehicle.after.speed)} after, change of velocity {short(change)}"
+            change = speed(_change(vehicle))
+            text += f", {speed(vehicle.after.speed)} after, change of velocity {change}"
         parts.append(text + ".")
     return " ".join(parts)

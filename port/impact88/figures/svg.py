@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from xml.sax.saxutils import escape, quoteattr
 
-from .drawing import FONTS, MM_PER_POINT, Drawing, Path, Text, text_runs
+from .drawing import FONTS, MM_PER_POINT, Drawing, Path, Point, Text, dashes, text_runs
 
 
 def svg(drawing: Drawing) -> str:
@@ -32,15 +32,24 @@ def _role(role: str) -> str:
 
 
 def _path(path: Path, drawing: Drawing) -> str:
-    steps = " L".join(f"{_number(x)} {_number(drawing.height - y)}" for x, y in path.points)
+    # dashes as pieces of their own: some renderers know no stroke-dasharray
+    pieces = dashes(path.points, path.dash) if path.dash and not path.fill else [path.points]
+    steps = " ".join("M" + " L".join(_place(point, drawing) for point in piece) for piece in pieces)
     close = "Z" if path.fill else ""
     look = f'fill="{path.fill or "none"}"'
     if path.stroke:
         look += f' stroke="{path.stroke}" stroke-width="{_number(path.width)}"'
         look += ' stroke-linejoin="round"'
-        if path.dash:
-            look += f' stroke-dasharray="{" ".join(map(_number, path.dash))}"'
-    return f'<path{_role(path.role)} d="M{steps}{close}" {look}/>'
+    return f'<path{_role(path.role)} d="{steps}{close}" {look}/>'
+
+
+def _place(point: Point, drawing: Drawing) -> str:
+    return f"{_number(point[0])} {_number(drawing.height - point[1])}"
+
+
+HALO = "halo"
+"""The class of the white text behind each text. It is a text of its own, because not every renderer
+paints a stroke before the fill (``paint-order``)."""
 
 
 def _text(text: Text, drawing: Drawing) -> str:
@@ -50,7 +59,9 @@ def _text(text: Text, drawing: Drawing) -> str:
         f'font-size="{_number(run.size * MM_PER_POINT)}">{escape(run.text)}</tspan>'
         for run in text_runs(text)
     )
-    return (
-        f'<text{_role(text.role)} fill="{text.colour}"{weight} xml:space="preserve" '
-        f'stroke="#ffffff" stroke-width="0.5" paint-order="stroke">{spans}</text>'
+    space = 'xml:space="preserve"'
+    behind = (
+        f'<text class="{HALO}" aria-hidden="true" fill="#ffffff"{weight} {space} '
+        f'stroke="#ffffff" stroke-width="0.5" stroke-linejoin="round">{spans}</text>'
     )
+    return f'{behind}<text{_role(text.role)} fill="{text.colour}"{weight} {space}>{spans}</text>'
