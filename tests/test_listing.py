@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import compileall
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import captures
+import linetable
 from impact88.checking.captured import left_behind
 from impact88.files import packaged_text
 from impact88.names import SCENE
-from impact88.program import arithmetics, stepping
+from impact88.program import arithmetics
+from impact88.program import linetable as lines
 from impact88.program.run import run
 from impact88.scene import Scene, sample
 
@@ -23,7 +31,19 @@ def test_every_basic_line_stands_there_once_in_order():
         (int(line.split(" ", 1)[0]), line.split(" ", 1)[1])
         for line in packaged_text("impact88.legacy", "impact.bas").splitlines()
     ]
-    assert stepping.basic_lines() == listing
+    assert [(number, text) for _, number, text in linetable.comments()] == listing
+
+
+def test_the_line_table_is_the_one_of_the_comments():
+    """Otherwise: python tests/linetable.py."""
+    spaces = {"namespaces": linetable.table(), "written": Path(lines.__file__).read_text()}
+    values: dict[str, dict[str, object]] = {}
+    for name, text in spaces.items():
+        values[name] = {}
+        exec(text, values[name])
+    names = [name for name in values["written"] if name.isupper()]
+    assert len(names) == 5
+    assert all(values["written"][name] == values["namespaces"][name] for name in names)
 
 
 @pytest.mark.captures
@@ -120,7 +140,7 @@ def test_stopping_after_every_line():
 
 digits = st.text("0123456789", min_size=1, max_size=4)
 typed = st.one_of(
-    st.sampled_from(["0", "-10", "10", ".", "-", "1E38", "-1E38", "1E-38", "1E39", "4", "6", "5"]),
+    st.sampled_from(["0", "-10", "10", ".", "-0", "1E38", "-1E38", "1E-38", "1E39", "4", "6", "5"]),
     st.builds(
         "{}{}.{}{}".format,
         st.sampled_from(["", "-", "+"]),
@@ -175,3 +195,44 @@ def test_momentum_is_conserved(values):
         before = v[ma] * v[ua] + v["MB"] * v[ub]
         after = v[ma] * a[fa] + v["MB"] * a[fb]
         assert abs(after - before) <= 1e-6 * scale
+
+
+SOURCELESS = """
+import gzip, json, sys
+sys.path[:0] = sys.argv[1:2]
+import impact88
+assert impact88.__file__.startswith(sys.argv[1]) and impact88.__file__.endswith(".pyc")
+from impact88.checking.captured import left_behind
+from impact88.program.run import run
+cases = [json.loads(line) for line in gzip.open(sys.argv[2], "rt")]
+for case in cases[:: int(sys.argv[3])]:
+    result = run(case["scene"], dos=False)
+    assert result.printout == case["printout"], case["id"]
+    assert left_behind(result.reals, result.A) == left_behind(case["reals"], case["A"]), case["id"]
+seen = []
+run(cases[0]["scene"], after_line=lambda line, left: seen.append(line))
+assert len(seen) > 50
+error = run({**cases[0]["scene"], "IA": "0"})
+assert error.line == 480 and error.printout.endswith("IN 480"), error.printout
+"""
+
+
+@pytest.mark.captures
+def test_compiled_files_alone_run_the_captures(tmp_path):
+    """A package without its sources, as a freezing installer makes it."""
+    shutil.copytree(
+        captures.ROOT / "port" / "impact88",
+        tmp_path / "impact88",
+        ignore=shutil.ignore_patterns("__pycache__"),
+    )
+    assert compileall.compile_dir(tmp_path, quiet=1, legacy=True)
+    for source in tmp_path.rglob("*.py"):
+        source.unlink()
+    scenes = captures.folder() / "scenes.jsonl.gz"
+    step = max(1, len(CASES) // 60)
+    subprocess.run(
+        [sys.executable, "-S", "-c", SOURCELESS, str(tmp_path), str(scenes), str(step)],
+        check=True,
+        cwd=tmp_path,
+        timeout=120,
+    )

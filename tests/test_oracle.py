@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import subprocess
+import sys
 from collections import Counter
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 
+import mpmath
 import pytest
 
 import captures
+from impact88.accuracy import decimals, digits, reference
 from impact88.bench import populations
 from impact88.bench.populations import POPULATIONS, texts
 from impact88.checking.oracle import answers, decimal_of, look_up
-from impact88.checking.vectors import EDGES, FAILURES, casework, scenes, vectors
+from impact88.checking.vectors import (
+    CLASSES,
+    EDGES,
+    FAILURE,
+    FAILURES,
+    PUBLISHED,
+    PUBLISHED_SEED,
+    casework,
+    published,
+    scenes,
+    vectors,
+)
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.program.run import run
 from impact88.scene import sample
@@ -250,6 +265,87 @@ def test_every_label_occurs_and_failures_fail() -> None:
     assert endings["MA is zero"] == endings["tiny units"] == {"ZERO DETERMINANT"}
     assert endings["overflow"] == {"?OVERFLOW ERROR IN 320"}
     assert endings["random"] == {None}
+
+
+def test_no_scene_comes_twice() -> None:
+    texts = [tuple(scene.values()) for _, _, scene in scenes(1000, 7)]
+    assert len(set(texts)) == 1000
+
+
+def test_a_vector_of_a_class_is_the_one_it_is_among_all() -> None:
+    whole = {one["id"]: one for one in vectors(30, seed=3, reference=False)}
+    for kind in CLASSES:
+        few = list(vectors(5, seed=3, reference=False, only=kind))
+        assert {one["class"] for one in few} == {kind}
+        assert all(one == whole[one["id"]] for one in few)
+    done = impact88("oracle", "--class", "edge")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+
+
+def test_a_stale_row_and_a_singular_friction_go_wrong_without_a_word() -> None:
+    """In every one of them the program prints velocities, and they are far off."""
+    for one in vectors(60, seed=5, only=FAILURE):
+        if one["label"] in ("stale pivot row", "singular friction"):
+            assert one["ending"] is None
+            off = [
+                abs(Fraction(row["decimal"]) - Fraction(row["reference"]))
+                for name in FINAL_VELOCITIES
+                if (row := one["results"][name])["stored"]
+            ]
+            assert max(off) > 1
+
+
+def test_thirty_digits_are_the_same_without_mpmath() -> None:
+    """mpmath against Python's own decimal, and the command with mpmath out of reach."""
+    few = [scene for _, _, scene in scenes(90, seed=7)]
+    few += [{**few[0], "GA": text} for text in ("30", "-45", "1E-30", "12345678.9", "270", "0")]
+    with_mpmath = [digits.thirty_digits(scene) for scene in few]
+    blocked = (
+        "import sys; sys.modules['mpmath'] = None\n"
+        "from impact88.cli import main; sys.exit(main(sys.argv[1:]))"
+    )
+    made = [
+        subprocess.run(
+            [*command, "oracle", "--vectors", "18", "--seed", "7"],
+            capture_output=True, encoding="utf-8", check=True,
+        )
+        for command in ([COMMAND], [sys.executable, "-c", blocked])
+    ]  # fmt: skip
+    assert made[0].stdout == made[1].stdout
+    assert made[0].stderr == made[1].stderr == ""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(digits, "mpmath", decimals)
+        patch.setattr(reference, "mpmath", decimals)
+        without = [digits.thirty_digits(scene) for scene in few]
+    assert without == with_mpmath
+
+
+@pytest.mark.parametrize("text", ["0.1", "1e-25", "123456.789", "-2.5", "0", "1E40", "3.75E-12"])
+def test_decimals_write_and_turn_as_mpmath_does(text: str) -> None:
+    with mpmath.workdps(60), decimals.workdps(60):
+        one, other = mpmath.mpf(text), decimals.mpf(text)
+        assert decimals.nstr(other, 30) == mpmath.nstr(one, 30)
+        for name in ("sinpi", "cospi", "sin", "cos"):
+            a, b = getattr(mpmath, name)(one), getattr(decimals, name)(other)
+            assert abs(mpmath.mpf(str(b)) - a) < mpmath.mpf(10) ** -55, name
+    with pytest.raises(ZeroDivisionError), decimals.workdps(60):
+        decimals.mpf(0) / 0
+
+
+def test_published_vectors_are_those_of_their_seed_and_hash() -> None:
+    """Printed digits, bytes and 30 digits are what is computed today; a bound may be mended."""
+    text = published()
+    whole = list(map(json.loads, text.splitlines()))
+    assert len(whole) == PUBLISHED
+    assert [one["scene"] for one in whole] == [s for *_, s in scenes(PUBLISHED, PUBLISHED_SEED)]
+    readme = (captures.ROOT / "golden" / "README.md").read_text(encoding="utf-8")
+    assert hashlib.sha256(text.encode()).hexdigest() in readme
+    few = whole[::25]
+    for one, today in zip(few, look_up([one["scene"] for one in few]), strict=True):
+        assert (one["printout"], one["ending"]) == (today["printout"], today["ending"])
+        for name, row in one["results"].items():
+            for part in ("printed", "stored", "decimal", "reference"):
+                assert row[part] == today["results"][name][part], (one["id"], name, part)
 
 
 def test_casework_closes_in() -> None:

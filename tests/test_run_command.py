@@ -7,8 +7,10 @@ import json
 import pytest
 
 from impact88.applesoft.console import Console
+from impact88.errors import UserError
+from impact88.program import emulated
 from impact88.program.arithmetics import APPLESOFT
-from impact88.program.run import run
+from impact88.program.run import run, start
 from impact88.scene import sample
 from installed import impact88
 
@@ -22,7 +24,7 @@ def after_ask(stdout: str) -> str:
 
 
 def test_with_no_scene_it_is_the_1988_program():
-    done = impact88("run", input=REPLIES)
+    done = impact88("run", "--raw", input=REPLIES)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == run(sample(1)).printout
 
@@ -42,7 +44,7 @@ def test_with_no_scene_it_is_the_1988_program():
     ],
 )
 def test_inputs_manners(typed, shown):
-    done = impact88("run", input=typed)
+    done = impact88("run", "--raw", input=typed)
     assert done.returncode == 0
     assert after_ask(done.stdout).startswith(shown)
     assert "VAX= -13.263" in done.stdout or "2.904E1" in shown
@@ -58,15 +60,17 @@ def test_input_that_ends_at_a_prompt():
 def test_a_scene_file_and_changes(tmp_path):
     path = tmp_path / "crash.toml"
     path.write_text(sample(3).to_toml())
-    assert impact88("run", str(path)).stdout == run(sample(3)).printout
-    done = impact88("run", str(path), "--set", "MU=-10", "--set", "E = .5")
+    assert impact88("run", str(path), "--raw").stdout == run(sample(3)).printout
+    done = impact88("run", str(path), "--set", "MU=-10", "--set", "E = .5", "--raw")
     assert done.stdout == run(sample(3).replaced({"MU": "-10", "E": ".5"})).printout
     with open(path) as file:
-        assert impact88("run", "-", stdin=file, input=None).stdout == run(sample(3)).printout
+        assert (
+            impact88("run", "-", "--raw", stdin=file, input=None).stdout == run(sample(3)).printout
+        )
 
 
 def test_changed_data_with_prompts():
-    done = impact88("run", "--set", "MU=.5", input=REPLIES)
+    done = impact88("run", "--set", "MU=.5", "--raw", input=REPLIES)
     assert done.stdout == run(sample(1).replaced({"MU": ".5"})).printout
 
 
@@ -104,7 +108,7 @@ def test_unusable_input_is_one_line(arguments, words):
     ],
 )
 def test_exit_status(setting, status, ending):
-    done = impact88("run", "--sample", "1", "--set", setting)
+    done = impact88("run", "--sample", "1", "--set", setting, "--raw")
     assert (done.returncode, done.stderr) == (status, "")
     assert done.stdout.endswith(ending)
 
@@ -113,7 +117,7 @@ def test_json_is_the_captures_form():
     done = impact88("run", "--sample", "1", "--no-dos", "--json")
     shown = json.loads(done.stdout)
     expected = run(sample(1), dos=False)
-    assert list(shown) == ["printout", "error", "line", "reals", "A"]
+    assert list(shown) == ["schema", "version", *expected._fields]
     assert shown["printout"] == expected.printout
     assert shown["reals"] == expected.reals
     assert shown["A"] == expected.A
@@ -128,11 +132,11 @@ def test_json_is_the_captures_form():
 
 def test_the_printer_gets_what_goes_to_slot_1(tmp_path):
     paper = tmp_path / "paper.txt"
-    done = impact88("run", "--sample", "1", "--slot", "1", "--printer", str(paper))
+    done = impact88("run", "--sample", "1", "--slot", "1", "--printer", str(paper), "--raw")
     whole = run(sample(1)).printout
     assert paper.read_text().startswith("\n\nMA= 143.5")
     assert done.stdout + paper.read_text() == whole
-    assert impact88("run", "--sample", "1", "--slot", "1").stdout == whole
+    assert impact88("run", "--sample", "1", "--slot", "1", "--raw").stdout == whole
 
 
 def test_nothing_half_written_when_the_input_ends(tmp_path):
@@ -143,7 +147,7 @@ def test_nothing_half_written_when_the_input_ends(tmp_path):
 
 
 def test_without_dos_its_lines_show():
-    done = impact88("run", "--sample", "1", "--no-dos", "--slot", "3")
+    done = impact88("run", "--sample", "1", "--no-dos", "--slot", "3", "--raw")
     assert "\n\x04PR# 3\n" in done.stdout
     assert done.stdout.endswith("\n\x04PR#0\n")
 
@@ -155,3 +159,51 @@ def test_a_refused_value_has_been_stored_as_far_as_it_is_a_number():
     reply = next(iter(console.input(APPLESOFT.read, APPLESOFT.zero)))
     assert [APPLESOFT.write(reply(None)) for _ in range(3)] == ["1", "12", "0"]
     assert reply.refused
+
+
+def test_the_page_is_for_a_person():
+    """No control character but line ends, and nothing else is missing."""
+    done = impact88("run", "--sample", "1", "--set", "IA=0", "--no-dos")
+    whole = run(sample(1).replaced({"IA": "0"}), dos=False)
+    assert "\a" in whole.printout
+    assert done.stdout == whole.page
+    assert all(character == "\n" or character.isprintable() for character in done.stdout)
+    assert done.stdout == "".join(c for c in whole.printout if c == "\n" or c.isprintable())
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"E": "E"}, ["E = 'E'", "line 280"]),
+        ({"MU": "-"}, ["MU = '-'"]),
+        ({"IA": "E5"}, ["IA", "line 310"]),
+        (
+            dict.fromkeys(("DA", "DB", "GA", "PA", "PB", "TA", "TB"), "1." + "0" * 28),
+            ["290", "239"],
+        ),
+    ],
+)
+def test_values_that_cannot_be_typed_into_the_program(changes, words):
+    settings = [f"--set={name}={text}" for name, text in changes.items()]
+    done = impact88("run", "--sample", "1", *settings)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert all(word in done.stderr for word in words)
+    with pytest.raises(UserError):
+        run(sample(1).replaced(changes))
+    with pytest.raises(UserError):
+        emulated.run(sample(1).replaced(changes))
+
+
+def test_an_empty_reply_is_asked_again():
+    done = impact88("run", input="\n" + REPLIES)
+    assert "?\n?REENTER\n?-29.04,0,0\n" in done.stdout
+
+
+def test_what_a_refused_reply_has_made():
+    """The ROM makes a variable when it looks for its value: UX and UY, then OVERFLOW."""
+    replies = iter(["54.79,$1,-52", "1E100"])
+    console = Console(lambda: next(replies, None), lambda text: None)
+    error, _, left = start(sample(1), console)
+    assert error is not None
+    assert str(error) == "?OVERFLOW ERROR IN 210"
+    assert set(left.reals) == {"UX", "UY"}

@@ -11,6 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from impact88 import sample, solve, solve_for
+from impact88.bench.populations import scenes
 from impact88.errors import UserError
 from impact88.reconstruction.model import initial_velocities
 from impact88.reconstruction.outcome import outcome
@@ -480,3 +481,25 @@ def test_point_masses_are_reconstructed_too(scene: dict[str, float]) -> None:
         tolerance = 1e-12 * float(found.worst) * 100
         assert float(found[name]) == pytest.approx(scene[name], abs=tolerance)
         assert float(closed[name]) == pytest.approx(scene[name], abs=tolerance)
+
+
+def test_a_fit_of_contradictions_does_not_stand_beside_a_solution() -> None:
+    """MU known in size: with one sign the values agree, with the other a least-squares fit does
+    that contradicts them. Only the first is a solution; of fits alone both are given."""
+    columns = scenes("casework", 60, 3)
+    tried = 0
+    for number in range(50, 60):
+        scene = {name: float(values[number]) for name, values in columns.items()}
+        scene["MU"] = abs(scene["MU"])
+        whole = scene | {name: float(v) for name, v in solve(scene, FINAL).items()}
+        known = {n: v for n, v in whole.items() if n not in ("UX", "UY", "WA", "VX", "VY")}
+        try:
+            solutions = solve_for(known)
+        except UnsolvableError:
+            continue
+        tried += 1
+        assert not any(solution.contradictory for solution in solutions)
+        assert any(float(s["UX"]) == pytest.approx(scene["UX"], rel=1e-6) for s in solutions)
+        fits = solve_for({**known, "VAX": known["VAX"] + 5.0})
+        assert all(solution.contradictory for solution in fits)
+    assert tried > 3

@@ -36,6 +36,7 @@ COMMANDS = {
     "oracle": "answer scenes with all that is known of them, for checking other programs",
     "compare": "say where another program's results agree with these, and if not, why",
     "selfcheck": "replay the packaged captures here, and say pass or fail, for the record",
+    "schema": "the forms of what the commands print with --json, and the conventions",
     "witness": "the captures and this project against your own Apple II Plus ROM (extra: witness)",
     "solve": "solve a table of scenes: double precision, or Applesoft's arithmetic, fast",
     "bench": "run time against error of every method, measured on this machine",

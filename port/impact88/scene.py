@@ -23,6 +23,9 @@ LONGEST_ENTRY = 2_000
 VALUE_LIMIT = 70
 """The longest value: three of them and their commas fit the 239 characters INPUT keeps."""
 DATA_LINES = (280, 290, 310)
+REPLY_LINES = (210, 230)
+TYPED_LIMIT = 239
+_NUMBER_BEGINS = tuple("0123456789.")
 M_LINE = 350
 LISTING = "impact.bas"
 
@@ -110,6 +113,26 @@ class Scene(Mapping[str, str]):
         """The values in double precision, for `impact88.solve` and its like. Raises UserError for
         one past the range of doubles."""
         return numbers_of(self)
+
+    def check_typed(self) -> None:
+        """Raises UserError unless the values can be typed into the program's lines and mean there
+        what INPUT takes them for: ``E`` is the variable there, ``-`` alone no number, and a line
+        has at most 239 characters."""
+        for value in SCENE.values():
+            text = self[value.name]
+            if value.line not in REPLY_LINES and text.lstrip(" +-")[:1] not in _NUMBER_BEGINS:
+                raise UserError(
+                    f"{value.name} = {text!r} is a number to INPUT but not in program line "
+                    f"{value.line}; expected one that begins with a digit or a point",
+                    self.source,
+                )
+        for line in self.typed_lines():
+            if len(line) > TYPED_LIMIT:
+                raise UserError(
+                    f"program line {line.split()[0]} has {len(line)} characters with these values; "
+                    f"the Apple takes {TYPED_LIMIT}",
+                    self.source,
+                )
 
     def to_toml(self) -> str:
         """The scene as a commented TOML file."""

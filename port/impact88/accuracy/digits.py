@@ -1,4 +1,4 @@
-"""Every result of a scene to 30 digits (needs mpmath, extra ``bench``).
+"""Every result of a scene to 30 digits.
 
 The impulse comes from Equations 15, 16 (or no slip) and 18, and everything else from the impulse:
 velocities by adding what it changes (Equations 13, 14 and 17), the energy lost as its work. So none

@@ -1,4 +1,4 @@
-"""The reference: Equations 13 to 18 in 50-digit arithmetic (needs mpmath, extra ``bench``).
+"""The reference: Equations 13 to 18 in 50-digit arithmetic: mpmath's, or `decimals` without it.
 
 Two ways that share nothing with the closed form of `closedform.impact`: `equations` writes the
 six equations as lines 370 to 560 do and `exact` solves them, or, where a body is infinite, the
@@ -17,7 +17,6 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..errors import UserError
 from ..names import DEFAULT_M, PIVOT
 from .elimination import ORDER, eliminate, listing_rows
 
@@ -26,10 +25,8 @@ if TYPE_CHECKING:
 else:
     try:
         import mpmath
-    except ImportError as missing:
-        raise UserError(
-            "the 50-digit reference needs mpmath; pip install 'impact88[bench]'"
-        ) from missing
+    except ImportError:
+        from . import decimals as mpmath
 
 DIGITS = 50
 GUARD = 15

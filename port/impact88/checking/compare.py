@@ -21,6 +21,7 @@ from ..doubles import double
 from ..errors import UserError
 from ..files import called
 from ..names import DEFAULT_M, RESULTS, SCENE
+from ..plaintable import plain
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import open_reader
 from .agreement import Slack, Theirs, Verdict, given, judge, read_theirs, slack
@@ -141,26 +142,29 @@ class Comparison:
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 compare --json` prints."""
-        return {
-            "summary": self.summary,
-            "rows": self.rows,
-            "agreeing": self.agreeing,
-            "differing": self.differing,
-            "results": {name: vars(tally) for name, tally in self.tallies.items()},
-            "causes": dict(self.causes.most_common()),
-            "equations": {
-                number: {"checked": checked, "violated": violated}
-                for number, (checked, violated) in self.equations.items()
-            },
-            "worst": [one._asdict() for one in self.worst],
-            "elimination": vars(self.elimination),
-            "not_compared": {
-                reason: {"rows": count, "first": self.places_not_compared[reason]}
-                for reason, count in self.not_compared.items()
-            },
-            "unknown_columns": self.unknown,
-            "bad_rows": [str(bad) for bad in self.bad],
-        }
+        whole: dict[str, Any] = plain(
+            {
+                "summary": self.summary,
+                "rows": self.rows,
+                "agreeing": self.agreeing,
+                "differing": self.differing,
+                "results": {name: vars(tally) for name, tally in self.tallies.items()},
+                "causes": dict(self.causes.most_common()),
+                "equations": {
+                    number: {"checked": checked, "violated": violated}
+                    for number, (checked, violated) in self.equations.items()
+                },
+                "worst": [one._asdict() for one in self.worst],
+                "elimination": vars(self.elimination),
+                "not_compared": {
+                    reason: {"rows": count, "first": self.places_not_compared[reason]}
+                    for reason, count in self.not_compared.items()
+                },
+                "unknown_columns": self.unknown,
+                "bad_rows": [str(bad) for bad in self.bad],
+            }
+        )
+        return whole
 
 
 class _Waiting(NamedTuple):

@@ -2,16 +2,15 @@
 
 For each scene: what the 1988 program prints; each result as Applesoft has it (printed text, the
 five bytes stored, their exact decimal value), in double precision by the closed form, and to 30
-digits where mpmath (extra ``bench``) is installed; how well the scene is conditioned; how far
-rounding may take the final velocities and spins, in doubles and on the Apple (a bound; relative to
-`errorbound.scales`: the largest velocity about, spins to the largest spin or that velocity over the
-longer arm); what is unphysical about it.
+digits; how well the scene is conditioned; how far rounding may take the final velocities and spins,
+in doubles and on the Apple (a bound; relative to `errorbound.scales`: the largest velocity about,
+spins to the largest spin or that velocity over the longer arm); what is unphysical about it.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -20,6 +19,7 @@ from ..accuracy import errorbound
 from ..errors import UserError
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..scene import Scene
+from ..schemas import stamped
 
 BATCH = 256
 """Scenes computed together."""
@@ -72,7 +72,7 @@ class Request:
 def answers(lines: Iterable[str], reference: bool = True) -> Iterator[dict[str, Any]]:
     """An answer for every line that is not blank, in order.
 
-    ``reference``: give 30 digits too, where mpmath is installed. A line that cannot be used gives
+    ``reference``: give 30 digits too. A line that cannot be used gives
     ``{"id", "error": {"line", "message"}}``.
     """
     batch: list[Request] = []
@@ -92,10 +92,12 @@ def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[st
     found = iter(look_up(scenes, reference))
     for request in batch:
         if request.scene is None:
-            yield {"id": request.id, "error": {"line": request.line, "message": request.problem}}
+            error = {"line": request.line, "message": request.problem}
+            yield stamped("oracle", {"id": request.id, "error": error})
         else:
             scene = {name: request.scene[name] for name in SCENE}
-            yield {"id": request.id, **request.extra, "scene": scene, **next(found)}
+            whole = {"id": request.id, **request.extra, "scene": scene, **next(found)}
+            yield stamped("oracle", whole)
 
 
 def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list[dict[str, Any]]:
@@ -103,6 +105,7 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
     if not scenes:
         return []
 
+    from ..accuracy.digits import thirty_digits
     from ..closedform.solve import solve
     from ..program.run import run
     from ..replay import replay
@@ -118,12 +121,11 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
             present, stored = replayed.present(name).tolist(), replayed.reals(name).tolist()
             printed = replayed.printed(name).tolist() if name != "KF" else [""] * len(scenes)
             applesoft[name] = (present, printed, stored)
-    exact = _references(reference)
     double, listing = errorbound.oracle_bounds(scenes, numbers, found)
     out = []
     for index, scene in enumerate(scenes):
         done = run(scene)
-        digits = exact(scene)
+        digits = thirty_digits(scene) if reference else {}
         results: dict[str, dict[str, Any]] = {}
         for name in RESULTS:
             if name in _NO_NUMBERS:
@@ -176,15 +178,3 @@ def decimal_of(value: Fraction) -> str:
 def _json_number(value: float) -> float | None:
     """JSON has no NaN and no infinity."""
     return value if value == value and abs(value) != float("inf") else None
-
-
-def _references(wanted: bool) -> Callable[[Mapping[str, str]], dict[str, str]]:
-    """A function that gives a scene's results to 30 digits; an empty dict without mpmath."""
-    if wanted:
-        try:
-            from ..accuracy.digits import thirty_digits
-        except UserError:
-            pass
-        else:
-            return thirty_digits
-    return lambda scene: {}

@@ -120,8 +120,19 @@ def _solved(matrix: Floats, right: Floats) -> Columns:
         matrix, right = matrix / by_row[:, :, None], right / by_row
         by_column = np.abs(matrix).max(1)
         matrix, columns = matrix / by_column[:, None, :], columns / by_column
-    solution = lapack(matrix, right) * columns
+    solution = _each(matrix, right) * columns
     return {name: solution[:, place] for place, name in enumerate(ORDER)}
+
+
+def _each(matrix: Floats, right: Floats) -> Floats:
+    """The solutions, NaN only where LAPACK finds a zero pivot: it then solves none of those it was
+    given, so they are halved until the matrix stands alone."""
+    solution = lapack(matrix, right)
+    if len(matrix) > 1 and np.isnan(solution).all() and not np.isnan(right).all():
+        middle = len(matrix) // 2
+        halves = (slice(None, middle), slice(middle, None))
+        solution = np.concatenate([_each(matrix[half], right[half]) for half in halves])
+    return solution
 
 
 def _consequences(scene: Columns, found: Columns) -> Columns:

@@ -2,49 +2,73 @@
 
 Three classes, mixed evenly: ``casework`` (scenes as reports hold them), ``edge`` (one limit or
 special case each), ``failure`` (the 1988 program stops, or goes wrong without a word). The label
-says which case. The same count and seed give the same scenes on any machine.
+says which case. Seed and number give the same scene on any machine, and no scene comes twice.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import count as count_from
 from itertools import islice
 from random import Random
 from typing import Any
 
 from ..doubles import doubles_of
+from ..files import packaged_bytes
 from ..names import SCENE
+from ..schemas import stamped
 from .oracle import BATCH, look_up
 
 Texts = dict[str, str]
 
-CASEWORK, EDGE, FAILURE = "casework", "edge", "failure"
+CLASSES = CASEWORK, EDGE, FAILURE = "casework", "edge", "failure"
+
+PUBLISHED, PUBLISHED_SEED = 1000, 1988
 
 
-def vectors(count: int, seed: int = 0, reference: bool = True) -> Iterator[dict[str, Any]]:
-    """``count`` vectors: id, class, label, scene and the oracle's answer."""
-    labelled = scenes(count, seed)
-    for at in range(0, count, BATCH):
-        batch = list(islice(labelled, BATCH))
-        answers = look_up([scene for _, _, scene in batch], reference)
-        for place, ((kind, label, scene), answer) in enumerate(zip(batch, answers, strict=True)):
-            head = {"id": f"{seed}-{at + place:06d}", "class": kind, "label": label}
-            yield {**head, "scene": scene, **answer}
+def vectors(
+    count: int, seed: int = 0, reference: bool = True, only: str | None = None
+) -> Iterator[dict[str, Any]]:
+    """``count`` vectors: id, class, label, scene, the oracle's answer. ``only``: of one class."""
+    labelled = islice(
+        ((index, one) for index, one in enumerate(_endless(seed)) if only in (None, one[0])), count
+    )
+    while batch := list(islice(labelled, BATCH)):
+        answers = look_up([scene for _, (_, _, scene) in batch], reference)
+        for (index, (kind, label, scene)), answer in zip(batch, answers, strict=True):
+            head = {"id": f"{seed}-{index:06d}", "class": kind, "label": label}
+            yield stamped("vectors", {**head, "scene": scene, **answer})
+
+
+def published() -> str:
+    """The vectors that are packaged, an object a line: the first `PUBLISHED` of seed
+    `PUBLISHED_SEED`, as they were when they were published."""
+    import gzip
+
+    return gzip.decompress(packaged_bytes("impact88.golden", "vectors.jsonl.gz")).decode("utf-8")
 
 
 def scenes(count: int, seed: int = 0) -> Iterator[tuple[str, str, Texts]]:
-    """Class, label and scene of each vector."""
+    """Class, label and scene of the first ``count`` vectors."""
+    return islice(_endless(seed), count)
+
+
+def _endless(seed: int) -> Iterator[tuple[str, str, Texts]]:
+    """Class, label and scene of every vector of a seed; no scene comes twice."""
     rng = Random(seed)
-    for index in range(count):
-        kind = (CASEWORK, EDGE, FAILURE)[index % 3]
-        scene = casework(rng)
-        label = "random"
-        if kind != CASEWORK:
-            cases = EDGES if kind == EDGE else FAILURES
-            names = list(cases)
-            label = names[index // 3 % len(names)]
+    seen = set()
+    for index in count_from(0):
+        kind = CLASSES[index % 3]
+        cases = {CASEWORK: {"random": _fixed()}, EDGE: EDGES, FAILURE: FAILURES}[kind]
+        label = list(cases)[index // 3 % len(cases)]
+        while True:
+            scene = casework(rng)
             scene |= cases[label](rng, scene)
-        yield kind, label, {name: scene[name] for name in SCENE}
+            texts = tuple(scene[name] for name in SCENE)
+            if texts not in seen:
+                break
+        seen.add(texts)
+        yield kind, label, dict(zip(SCENE, texts, strict=True))
 
 
 def _between(rng: Random, low: float, high: float, places: int) -> str:
@@ -79,19 +103,20 @@ def casework(rng: Random) -> Texts:
             "WB": rng.choice(("0", _between(rng, -5, 5, 3))),
             "M": "6",
         }
-        if _approaches(scene):
+        if _closing(scene)[0] < 0:
             return scene
 
 
-def _approaches(scene: Texts) -> bool:
-    """Whether the contact points close in, gn < 0."""
+def _closing(scene: Texts) -> tuple[float, float]:
+    """The relative velocity of the contact points before the impact, A minus B, along n and t."""
     from math import cos, radians, sin
 
     g = doubles_of(scene)
     a, b = radians(g["TA"] + g["PA"]), radians(g["TB"] + g["PB"])
     dx = g["UX"] + g["DA"] * sin(a) * g["WA"] - g["VX"] + g["DB"] * sin(b) * g["WB"]
     dy = g["UY"] - g["DA"] * cos(a) * g["WA"] - g["VY"] - g["DB"] * cos(b) * g["WB"]
-    return dx * cos(radians(g["GA"])) + dy * sin(radians(g["GA"])) < 0
+    c, s = cos(radians(g["GA"])), sin(radians(g["GA"]))
+    return dx * c + dy * s, dy * c - dx * s
 
 
 Case = Callable[[Random, Texts], Texts]
@@ -104,6 +129,31 @@ def _fixed(**values: str) -> Case:
 
 def _same_velocity(rng: Random, scene: Texts) -> Texts:
     return {"VX": scene["UX"], "VY": scene["UY"], "WA": "0", "WB": "0"}
+
+
+_STALE = {  # a matrix in which line 1080's RX stays at a row that has been used
+    **{"MA": ".004", "IA": "4E-8", "DA": ".005", "PA": "90", "MB": "2E-11", "IB": "1E-20"},
+    **{"DB": "0", "PB": "0", "GA": "-30", "TA": "0", "TB": "0", "E": ".5", "MU": ".5", "EM": "-1"},
+    **{"WA": "0", "WB": "0", "M": "6"},
+}
+_SINGULAR = {  # the MU that makes the determinant nearly 0
+    **{"E": "0.005", "MU": "3.19214397", "EM": "-0.715", "DA": "7.59", "DB": "3.44"},
+    **{"GA": "-30.0", "PA": "-19.8", "PB": "-38.7", "TA": "0.0", "TB": "60.0"},
+    **{"MA": "143.5", "MB": "95.8", "IA": "3728", "IB": "1961", "M": "6"},
+}
+
+
+def _sliding(values: Texts, *spins: str) -> Case:
+    """A scene with any velocities that slide so that MU keeps the sign typed."""
+
+    def case(rng: Random, scene: Texts) -> Texts:
+        while True:
+            velocities = {name: _between(rng, -40, 40, 3) for name in ("UX", "UY", "VX", "VY")}
+            velocities |= {name: _between(rng, -5, 5, 3) for name in spins}
+            if _closing({**values, **velocities})[1] < 0:
+                return {**values, **velocities}
+
+    return case
 
 
 EDGES: dict[str, Case] = {
@@ -165,52 +215,8 @@ FAILURES: dict[str, Case] = {
     "MU flipped to the pivot's": _fixed(MU="10"),
     "MU below the pivot's": lambda rng, scene: {"MU": str(-rng.randint(11, 20))},
     "point mass with arms left": _fixed(M="4"),
-    "stale pivot row": _fixed(
-        MA=".004",
-        IA="4E-8",
-        DA=".005",
-        PA="90",
-        MB="2E-11",
-        IB="1E-20",
-        DB="0",
-        PB="0",
-        GA="-30",
-        TA="0",
-        TB="0",
-        E=".5",
-        MU=".5",
-        EM="-1",
-        UX="-2",
-        UY="0",
-        WA="0",
-        VX="0",
-        VY="1",
-        WB="0",
-        M="6",
-    ),
-    "singular friction": _fixed(
-        E="0.005",
-        MU="3.19214397",
-        EM="-0.715",
-        DA="7.59",
-        DB="3.44",
-        GA="-30.0",
-        PA="-19.8",
-        PB="-38.7",
-        TA="0.0",
-        TB="60.0",
-        MA="143.5",
-        MB="95.8",
-        IA="3728",
-        IB="1961",
-        UX="-29.04",
-        UY="0",
-        WA="0",
-        VX="14.52",
-        VY="25.15",
-        WB="0",
-        M="6",
-    ),
+    "stale pivot row": _sliding(_STALE),
+    "singular friction": _sliding(_SINGULAR, "WA", "WB"),
     "same velocity": _same_velocity,
 }
 """Label -> what makes a casework scene that failure, or invites it."""

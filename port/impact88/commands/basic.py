@@ -34,6 +34,8 @@ from .run import add_machine_arguments
 LISTING = "impact.bas"
 SLOT_LINE = '190 P$ = "PR# " + "{}"'
 PROGRAM_LIMIT = 1_000_000
+LEAVE = "control-Z and RETURN leave" if sys.platform == "win32" else "control-D leaves"
+BANNER = f"impact88 basic: an Apple II Plus. LIST shows the program, {{}}; {LEAVE}."
 _SHOWN_CONTROLS = "\n\a\b"
 
 
@@ -58,6 +60,7 @@ class Terminal:
 
     def __init__(self) -> None:
         self.typing = sys.stdin.isatty()
+        self.person = self.typing and sys.stdout.isatty()
         self.waiting = False
         self.last = ""
         self._filter = sys.stdout.isatty()
@@ -180,6 +183,8 @@ def _session(machine: Applesoft, terminal: Terminal, args: argparse.Namespace) -
     if args.program:
         status = _run_file(machine, terminal, stay=args.prompt)
     if args.prompt or not args.program:
+        if terminal.person:
+            print(BANNER.format("RUN starts it" if args.program else "RUN starts the 1988 listing"))
         machine.prompt(None if args.no_dos else lambda line: _disk_command(machine, terminal.last))
         print()
     _tell_refused(machine)

@@ -22,6 +22,7 @@ import argparse
 import json
 import sys
 from dataclasses import asdict
+from importlib.util import find_spec
 from typing import Any
 
 from ..bench.populations import BENCHMARK, POPULATIONS
@@ -84,6 +85,8 @@ def main(arguments: argparse.Namespace) -> int:
     from ..bench import figure, measure, tables
     from ..progress import progress
 
+    if find_spec("mpmath") is None:
+        raise UserError("the reference is timed as mpmath; pip install 'impact88[bench]'")
     told = measure.machine()
     finite = [name for name in POPULATIONS if name != "barriers"]
     populations = names_given(arguments.populations, finite, "--populations", "population")

@@ -39,6 +39,7 @@ from typing import TYPE_CHECKING
 from ..errors import UserError
 from ..files import called
 from ..scene import in_base_units, sample, toml_file
+from ..schemas import stamped
 from ..talk import tell
 from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
 from .options import (
@@ -178,5 +179,6 @@ def main(args: argparse.Namespace) -> int:
     from ..uncertainty.boundstable import as_json, table
 
     found = explored(args, args.outputs)
-    print(json.dumps(as_json(found), allow_nan=False) if args.json else table(found))
+    whole = stamped("bounds", as_json(found)) if args.json else None
+    print(json.dumps(whole, allow_nan=False) if whole else table(found))
     return 0

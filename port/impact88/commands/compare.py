@@ -6,6 +6,8 @@ plain elimination in double precision can in that scene, or not. Rows that disag
 hundreds of mistakes and other conventions are made here too, alone and two together, and the one
 that gives their numbers is named. What could not be compared is told on standard error.
 
+Conventions (axes, signs, units, how close is close, vector classes): impact88 schema conventions.
+
 examples:
   impact88 compare theirs.csv
   impact88 compare theirs.jsonl --json
@@ -27,6 +29,7 @@ from ..accuracy.errorbound import DOUBLE
 from ..checking.compare import HARMLESS, Comparison, compare_file
 from ..checking.slipsfilling import EQUATIONS
 from ..errors import UserError, shown
+from ..schemas import stamped
 from ..tables.table import format_of
 from ..talk import tell
 from .options import (
@@ -85,7 +88,7 @@ def main(args: argparse.Namespace) -> int:
 
         write_junit(args.junit, args.theirs, done, args.strict)
     if args.json:
-        print(json.dumps(done.as_json(), ensure_ascii=False))
+        print(json.dumps(stamped("compare", done.as_json()), ensure_ascii=False, allow_nan=False))
     else:
         print("\n".join(_lines(done)))
     for line in _talk(done):

@@ -1,13 +1,19 @@
 """Reads JSON Lines {"id": ..., "scene": {"MA": 143.5, ...}} from a file or standard input, numbers
 or decimal strings, and answers each line with one: the printout; each result as Applesoft has it
-(printed text, five bytes, exact decimal), in double precision, to 30 digits where mpmath is there;
-condition, error bound, STATUS. A line that cannot be used is answered with its number and what is
-wrong. With --vectors it writes labelled test vectors instead, the same for the same seed.
+(printed text, five bytes, exact decimal), in double precision, to 30 digits; condition, error
+bound, STATUS. A line that cannot be used is answered with its number and what is wrong.
+
+With --vectors it writes labelled test vectors instead, the same on any machine for the same seed:
+casework, edge and failure in turn, or one class. --published writes the vectors that golden/README
+tells the hash of, so that two firms can name the same test. Form: impact88 schema oracle, impact88
+schema vectors. Conventions (axes, signs, units, byte order, bounds, what each class means, and that
+a program that refuses a failure is right): impact88 schema conventions.
 
 examples:
   impact88 oracle < scenes.jsonl > answers.jsonl
   echo '{"id": 1, "scene": {"E": 0.1, ...}}' | impact88 oracle
   impact88 oracle --vectors 1000 --seed 7 -o vectors.jsonl
+  impact88 oracle --vectors 100 --class failure
 
 exit status: 0 every line was answered; 1 some lines could not be used; 2 no usable input at all
 """
@@ -22,6 +28,7 @@ from contextlib import nullcontext
 from typing import IO, Any
 
 from ..checking.oracle import Request, answer
+from ..checking.vectors import CLASSES
 from ..errors import UserError
 from ..files import called, open_bytes, replacing
 from .options import whole_number
@@ -38,18 +45,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--vectors", type=whole_number(1, MOST_VECTORS), metavar="N", help="write N test vectors"
     )
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the test vectors")
+    parser.add_argument("--class", dest="only", choices=CLASSES, help="vectors of this class only")
+    parser.add_argument("--published", action="store_true", help="write the published vectors")
 
 
 def main(args: argparse.Namespace) -> int:
     """Answer every line, or write test vectors."""
-    if args.vectors is not None and args.scenes != "-":
-        raise UserError("--vectors makes its own scenes; expected no file beside it")
+    if (args.vectors is not None or args.published) and args.scenes != "-":
+        raise UserError("vectors have their own scenes; expected no file beside them")
+    if args.published and (args.vectors is not None or args.only or args.seed):
+        raise UserError("--published are vectors already made; expected nothing beside it")
+    if args.only and args.vectors is None:
+        raise UserError("--class is of test vectors; expected --vectors N with it")
     counts = {"answered": 0, "refused": 0}
     with nullcontext(sys.stdout) if args.output == "-" else replacing(args.output) as out:
+        if args.published:
+            from ..checking.vectors import published
+
+            out.write(published())
+            return 0
         if args.vectors is not None:
             from ..checking.vectors import vectors
 
-            _write(vectors(args.vectors, args.seed, not args.no_reference), out, counts)
+            _write(vectors(args.vectors, args.seed, not args.no_reference, args.only), out, counts)
         else:
             for batch in _batches(args.scenes):
                 _write(answer(batch, not args.no_reference), out, counts)

@@ -47,6 +47,7 @@ from ..files import called, replacing
 from ..reconstruction.knowable import KNOWABLE
 from ..scene import known_template
 from ..scene import template as scene_template
+from ..schemas import stamped
 from .options import (
     add_solution_arguments,
     known_within_limits,
@@ -136,7 +137,8 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: S
         spread = uncertainty(solution, args.samples, args.seed, wanted)
         tables.append((solution, completed_values(solution, args.contact_time), spread))
     if args.json:
-        print(json.dumps({"solutions": [as_json(*one, units) for one in tables]}, allow_nan=False))
+        whole = stamped("reconstruct", {"solutions": [as_json(*one, units) for one in tables]})
+        print(json.dumps(whole, allow_nan=False))
         return
     for count, one in enumerate(tables, 1):
         if len(tables) > 1:

@@ -7,6 +7,7 @@ examples:
   impact88 run crash.toml --set MU=.5     a scene file, one value changed
   impact88 run --sample 1 --arithmetic float64
   impact88 run --sample 1 --no-dos --json
+  impact88 run --sample 1 --raw > apple.txt   every character, control characters too
 
 exit status: 0 the program ended, ZERO DETERMINANT included; 1 an Applesoft error; 2 bad input
 """
@@ -23,7 +24,7 @@ from ..errors import UserError
 from ..files import replacing, typed_line
 from ..names import VELOCITIES
 from ..program.arithmetics import ARITHMETICS
-from ..program.run import finished, start
+from ..program.run import finished, page, start
 from ..scene import Scene, published_data, sample
 from .options import (
     add_json_argument,
@@ -53,6 +54,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_json_argument(parser, "the run as one JSON object")
     add_output_argument(parser)
     add_machine_arguments(parser)
+    parser.add_argument(
+        "--raw",
+        action="store_true",
+        help="every character as the Apple sends it: form feed, bells, NULs and control-D too",
+    )
 
 
 def add_machine_arguments(parser: argparse.ArgumentParser) -> None:
@@ -107,8 +113,10 @@ def main(args: argparse.Namespace) -> int:
     changes = settings(args.set)
     scene = chosen_scene(args, changes)
     data = scene if scene is not None else published_data() | changes
+    replied = scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")
+    replied.check_typed()
     shown: list[str] = []
-    show = shown.append if args.json else sys.stdout.write
+    show = shown.append if args.json else sys.stdout.write if args.raw else _show_page
     if args.json and scene is None and sys.stdin.isatty():
         show = _prompting(shown)
     with ExitStack() as stack:
@@ -135,21 +143,17 @@ def main(args: argparse.Namespace) -> int:
     if args.json:
         import json
 
+        from ..schemas import stamped
+
         run = finished("".join(shown), error, zero_determinant, left)
-        print(
-            json.dumps(
-                {
-                    "printout": run.printout,
-                    "error": run.error,
-                    "line": run.line,
-                    "reals": run.reals,
-                    "A": run.A,
-                }
-            )
-        )
+        print(json.dumps(stamped("run", run._asdict())))
     elif error is not None and sys.stdout.isatty():
         print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
     return 1 if error else 0
+
+
+def _show_page(text: str) -> None:
+    sys.stdout.write(page(text))
 
 
 def _typed_lines() -> Iterator[str | None]:

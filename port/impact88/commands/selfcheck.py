@@ -15,6 +15,7 @@ import json
 import sys
 
 from ..checking.selfcheck import CHECKS, Check, checks, record
+from ..schemas import stamped
 from .options import add_json_argument, add_output_argument
 
 
@@ -37,7 +38,7 @@ def main(args: argparse.Namespace) -> int:
             print(_line(check), flush=True)
     whole = record(found)
     if args.json:
-        print(json.dumps(whole, indent=2))
+        print(json.dumps(stamped("selfcheck", whole), indent=2))
     else:
         print()
         for group in ("versions", "hashes"):

@@ -14,6 +14,8 @@ and LINE, say which error ended a scene and where.
 A row that cannot be used is reported with its number, its column and the reason on stderr, or in
 the file given with --errors; it is kept, with NaN for results, and all others are solved.
 
+Conventions (axes, signs of angles and spins, units): impact88 schema conventions.
+
 examples:
   impact88 solve cases.csv -o results.csv
   impact88 solve cases.csv -o results.jsonl --outputs VAX,VAY,VBX,VBY,WAF,WBF,STATUS

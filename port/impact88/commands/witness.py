@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UserError
 from ..progress import progress
 from ..scene import SAMPLES, Scene
+from ..schemas import stamped
 from .options import add_json_argument, add_output_argument, add_sample_argument
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def main(args: argparse.Namespace) -> int:
 
         save(args.save, heard)
     if args.json:
-        print(json.dumps(whole, indent=2))
+        print(json.dumps(stamped("witness", whole), indent=2))
     else:
         print("\n".join(_report(image, heard, whole)))
     return 0 if whole["passed"] else 1

@@ -37,6 +37,7 @@ class Emulated:
         text: str | None = None,
     ) -> None:
         scene = scene if isinstance(scene, Scene) else Scene.from_mapping(scene)
+        scene.check_typed()
         # the port's printouts hold what the machine sends, not the columns it skips
         self.machine = Applesoft(dos=dos, blanks=False)
         self.machine.load(text or packaged_text("impact88.legacy", LISTING))

@@ -32,12 +32,15 @@ else:
     _Run = namedtuple("_Run", ("printout", "error", "line", "reals", "A", "zero_determinant"))
 
 BELL = "\a"
+_UNPRINTED = {code: None for code in range(32) if chr(code) not in "\n\b"}
+"""Control-H stays: without it what was typed and taken back would look typed."""
 
 
 class Run(_Run):
     """What a run left behind.
 
-    ``printout``: every character sent, RETURN as newline, control characters kept. ``error``: the
+    ``printout``: every character sent, RETURN as newline, control characters kept (`page` is
+    without them). ``error``: the
     Applesoft error that ended it, or None; ``line``: its line. ``reals``: every real variable that
     was assigned, as five stored bytes in hexadecimal. ``A``: the array's ``dims`` (sizes) and
     ``data``, first subscript fastest; None before line 360. In double precision the values are
@@ -45,6 +48,17 @@ class Run(_Run):
     """
 
     __slots__ = ()
+
+    @property
+    def page(self) -> str:
+        """The printout as a person reads it, without what only a machine acts on: the form feed of
+        line 200, bells, the NULs that INPUT shows for a prompt, control-D."""
+        return page(self.printout)
+
+
+def page(text: str) -> str:
+    """Text for a person: without control characters, line ends excepted."""
+    return text.translate(_UNPRINTED)
 
 
 def start(
@@ -79,7 +93,8 @@ def start(
         names = stepping.names_in(exception.__traceback__)
     left = stepping.variables(names, chosen.unset)
     if error is not None and error.line is not None:
-        begun = stepping.begun_assignment(error.line, left.reals)
+        asked = console.reply.begun if console.reply else None
+        begun = stepping.begun_assignment(error.line, left.reals, asked)
         if begun:
             left = stepping.Variables({**left.reals, begun: chosen.zero}, left.A)
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
@@ -96,9 +111,11 @@ def run(
 ) -> Run:
     """Run the program on a scene and keep everything; with ``after_line``, stop after every line.
 
-    Printer output (``slot`` 1) is part of the printout. Raises UserError for an unknown arithmetic.
+    Printer output (``slot`` 1) is part of the printout. Raises UserError for an unknown arithmetic
+    and for a scene that could not be typed into the program (`Scene.check_typed`).
     """
     scene = scene if isinstance(scene, Scene) else Scene.from_mapping(scene)
+    scene.check_typed()
     characters: list[str] = []
     replies = iter(scene.keyboard())
     console = Console(lambda: next(replies, None), characters.append, dos=dos)

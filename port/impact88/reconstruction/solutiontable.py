@@ -10,6 +10,7 @@ from typing import Any
 from ..errors import UserError
 from ..names import CHAPTER, PIVOT, RESULTS, SCENE, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
+from ..schemas import stamped
 from ..status import sentences
 from ..units import RULES, System
 from .impulse import clock, forces
@@ -228,14 +229,12 @@ def show(
         raise UserError(str(error), source) from None
     tables = [(s, complete(known, s, contact_time)) for s in solutions]
     if as_object:
-        print(
-            json.dumps(
-                {"solutions": [as_json(known, s, v, units) for s, v in tables]}, allow_nan=False
-            )
-        )
+        solved = [as_json(known, s, v, units) for s, v in tables]
+        print(json.dumps(stamped("reconstruct", {"solutions": solved}), allow_nan=False))
         return
     for at, (solution, values) in enumerate(tables):
         if len(tables) > 1:
-            head = f"SOLUTION {at + 1} OF {len(tables)}"
-            print(f"{chr(10) if at else ''}{head}: MU is known in size, and both signs agree\n")
+            head = f"SOLUTION {at + 1} OF {len(tables)}: MU is known in size, and both signs agree"
+            fit = " (each a fit of values that contradict one another)"
+            print(f"{chr(10) if at else ''}{head}{fit if solution.contradictory else ''}\n")
         print(as_text(known, solution, values, units))

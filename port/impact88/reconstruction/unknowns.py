@@ -114,15 +114,18 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     the rest is not (Section VII finds UX and VY from Equations 13 and 14, no coefficient known).
 
     Returns one `Solution`, or two where MU is known in size only and both signs agree with the
-    sliding they lead to. For single scenes only agreeing solutions are returned; for arrays,
-    solutions that agree anywhere, with their mask. An element of an array that is not determined
-    is NaN; a single scene, or an array without any determined element, raises `UnsolvableError`
-    with the reason. Raises UserError for names or numbers that cannot be used.
+    sliding they lead to. For single scenes only agreeing solutions are returned, and of these no
+    least-squares fit of contradictory values (`Solution.contradictory`) beside one without
+    contradiction; for arrays, solutions that agree anywhere, with their mask. An element of an
+    array that is not determined is NaN; a single scene, or an array without any determined element,
+    raises `UnsolvableError` with the reason. Raises UserError for names or numbers that cannot be
+    used.
     """
     problem = _Problem.of(known, unknown)
     solutions = problem.solutions()
     if problem.shape == ():
         kept = [s for s in solutions if s.agrees]
+        kept = [s for s in kept if not s.contradictory] or kept
     else:
         kept = [s for s in solutions if s.agrees.any()]
     if kept or 0 in problem.shape:

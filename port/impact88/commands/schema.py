@@ -1,0 +1,38 @@
+"""The forms of what the commands print with --json, as JSON Schema (draft 2020-12). Each object
+carries the name and number of its form and the version of impact88 that wrote it.
+
+A field that is added leaves the number as it is; anything that could break a reader raises it:
+removing or renaming a field, another type, unit or meaning, null where it could not be.
+
+examples:
+  impact88 schema                    the names, their numbers and what they are of
+  impact88 schema compare            one schema
+  impact88 schema conventions        axes, signs, units, stored bytes, bounds, vector classes
+
+exit status: 0 done; 2 no such schema
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from ..schemas import CONVENTIONS, NUMBERS, text
+from .options import add_output_argument
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 schema`."""
+    parser.add_argument("name", nargs="?", metavar="NAME", help="a form, or conventions")
+    add_output_argument(parser)
+
+
+def main(args: argparse.Namespace) -> int:
+    """Print a schema, the conventions, or the names."""
+    if args.name:
+        print(text(args.name), end="")
+        return 0
+    for name, number in NUMBERS.items():
+        print(f"{name:<12} {number}  {json.loads(text(name))['title']}")
+    print(f"{CONVENTIONS:<12}    axes, signs, units, stored bytes, error bounds, vector classes")
+    return 0

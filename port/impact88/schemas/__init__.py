@@ -1,0 +1,49 @@
+"""The forms of what the commands print with --json: a JSON Schema each, with a number.
+
+Every object carries ``schema`` (``impact88/NAME/NUMBER``) and the package's ``version``.
+
+The rule for changes. A field that is added leaves the number as it is: a reader ignores fields it
+does not know. A field that is removed or renamed, that changes its type, its unit or its meaning,
+or that may be null where it could not, raises the number by one; so does a word added to an
+enumeration. The schema and the number in `NUMBERS` change together, in the same commit as the
+output. Digits that become more accurate are no change of form.
+"""
+
+from __future__ import annotations
+
+from .. import __version__
+from ..errors import UserError
+from ..files import packaged_text
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
+NUMBERS = {
+    "run": 1,
+    "oracle": 1,
+    "vectors": 1,
+    "compare": 1,
+    "verify": 1,
+    "selfcheck": 1,
+    "witness": 1,
+    "bounds": 1,
+    "reconstruct": 1,
+}
+"""Name of a form -> its number. Names are those of the commands, and the oracle's ``vectors``."""
+CONVENTIONS = "conventions"
+
+
+def stamped(name: str, found: Mapping[str, Any]) -> dict[str, Any]:
+    """An object as it is printed: with the name and number of its form, and the version."""
+    return {"schema": f"impact88/{name}/{NUMBERS[name]}", "version": __version__, **found}
+
+
+def text(name: str) -> str:
+    """The schema of a form, or the conventions, as text. Raises UserError for another name."""
+    if name not in (*NUMBERS, CONVENTIONS):
+        raise UserError(
+            f"there is no schema {name}; expected one of {' '.join(NUMBERS)}, or {CONVENTIONS}"
+        )
+    return packaged_text(__name__, f"{name}.md" if name == CONVENTIONS else f"{name}.json")
