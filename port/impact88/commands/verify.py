@@ -31,6 +31,7 @@ from ..casework import wording
 from ..casework.verify import Examined, FieldCheck, Status, Verdict, Verification, examine
 from ..errors import UserError, shown
 from ..files import called
+from ..schemas import stamped
 from .options import add_json_argument, add_output_argument
 
 _ON_REPORT = ("date", "case", "examiner")
@@ -81,7 +82,7 @@ def _tell(one: Examined, args: argparse.Namespace) -> None:
         print(f"impact88 verify: {one.error}", file=sys.stderr)
     if args.json:
         for described in one.as_json():
-            print(json.dumps(described, ensure_ascii=False))
+            print(json.dumps(stamped("verify", described), ensure_ascii=False))
     else:
         for result in one.results:
             print("\n".join(_lines(result, args.brief)))
