@@ -204,9 +204,12 @@ def _in_form(forms: Sequence[Fills], change: Fills) -> Fills:
 _FORMS: dict[str, tuple[tuple[Fills, ...], ...]] = {
     "13": ((), ON_A),
     "14": ((), ON_A),
+    "16": ((), (friction_on_a,)),
     "17": ((), (moment_on_a,)),
+    "18": ((), (moment_on_a,)),
 }
-"""An equation -> the ways to write the others, which are no longer the same once it is wrong."""
+"""An equation -> the ways to write it and the others, which are no longer the same once it is
+wrong."""
 
 
 def _terms() -> Iterator[Slip]:
