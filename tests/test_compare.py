@@ -174,6 +174,49 @@ def test_two_mistakes_in_one_table_are_both_named(tmp_path) -> None:
     assert done.causes[other[1]] == len(ROWS) - half
 
 
+class RestitutionAcross(Program):
+    """Sine and cosine of Γ exchanged, in the restitution alone."""
+
+    def equations(self, g: Numbers) -> list[list[float]]:
+        rows = super().equations(g)
+        rows[2] = super().equations({**g, "GA": 90 - g["GA"]})[2]
+        return rows
+
+
+class SignOfOneTerm(Program):
+    """B's spin with the wrong sign in the angular momentum, on both sides."""
+
+    def equations(self, g: Numbers) -> list[list[float]]:
+        rows = super().equations(g)
+        rows[4][5] *= -1
+        rows[4][6] -= 2 * g["IB"] * g["WB"]
+        return rows
+
+
+class HalfARightSide(Program):
+    """B's initial spin forgotten in the angular momentum."""
+
+    def equations(self, g: Numbers) -> list[list[float]]:
+        rows = super().equations(g)
+        rows[4][6] -= g["IB"] * g["WB"]
+        return rows
+
+
+@pytest.mark.parametrize(
+    ("program", "says"),
+    [
+        (RestitutionAcross(), "Equation 15 (restitution): Γ as a compass heading"),
+        (
+            SignOfOneTerm(),
+            "Equation 17 (angular momentum): terms of WBF and WB with the wrong sign",
+        ),
+        (HalfARightSide(), "Equation 17 (angular momentum): term of WB left out"),
+    ],
+)
+def test_a_mistake_in_one_equation_is_named(tmp_path, program: Program, says: str) -> None:
+    assert main_cause(compared(tmp_path, answered(program, names=FINAL_VELOCITIES))) == says
+
+
 class SquaredInDegrees(Squared):
     def show(self, r: Numbers, g: Numbers) -> Numbers:
         return scaled(r, SPINS, DEGREES)

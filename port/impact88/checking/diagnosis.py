@@ -25,7 +25,8 @@ from ..replay import replay
 from . import otherprograms, residuals
 from .agreement import Slack, Theirs, given
 from .slip import Slip
-from .slips import RARE, SLIPS
+from .slips import RARE, READINGS, SLIPS
+from .slipsfilling import in_one_equation
 from .slipsreading import changing, constant_of, times
 from .slipsshowing import ALL_SPEEDS, ENERGIES, FINAL_SPINS, IMPULSES, scaled
 
@@ -47,6 +48,10 @@ _ENOUGH = 0.9
 """The share of rows explained from which no pairs are tried."""
 _MAIN = 0.5
 """The share of the rows that disagree that makes a cause the table's."""
+_SMALL = 0.2
+"""Below this share of the rows a cause is small."""
+_STRAY = 0.1
+"""The share of rows that violate an equation in which nothing is wrong, at most."""
 _LEAST_SHARE = 0.03
 """A cause of a smaller share of the rows that disagree is not named, where there are many."""
 _MANY = 40
@@ -117,7 +122,7 @@ def diagnose(case: Case) -> Diagnosis:
         return Diagnosis([])
     fits = [*_cuts(case), *_fits(_candidates(case), case)]
     found = np.where(case.wrong, UNKNOWN, "").astype(object)
-    covering = [fits[place] for place in _cover(fits, case)]
+    covering = _worth_naming([fits[place] for place in _cover(fits, case)], case)
     if not covering or (covering[0].rows & case.wrong).sum() < _MAIN * case.wrong.sum():
         _by_precision(found, case)
     for fit in covering:
@@ -129,6 +134,18 @@ def diagnose(case: Case) -> Diagnosis:
         found[case.wrong].tolist(),
         {number: (rows, int((off & case.wrong).sum())) for number, off in violations.items()},
     )
+
+
+def _worth_naming(covering: list[_Fit], case: Case) -> list[_Fit]:
+    """The causes to be named: where most of a table stays unexplained, a cause that explains a
+    small part of it may only happen to say the same there as the one that is not known."""
+    rows = case.wrong.sum()
+    if not covering or rows < _MANY:
+        return covering
+    explained = np.logical_or.reduce([fit.rows for fit in covering]) & case.wrong
+    if explained.sum() >= _MAIN * rows:
+        return covering
+    return [fit for fit in covering if (fit.rows & case.wrong).sum() >= _SMALL * rows]
 
 
 # --- which programs to imagine -------------------------------------------------------------------
@@ -143,7 +160,8 @@ def _candidates(case: Case) -> list[Program]:
     fits: list[_Fit] = []
     chosen: list[Slip] = []
     left = sample.wrong
-    for slips in ((*SLIPS, *_measured(case)), RARE):
+    stages = [(*SLIPS, *_measured(case)), RARE, _in_the_equation(sample)]
+    for slips in stages:
         more = list(_visible(slips, sample))
         seen += [slip for slip, _ in more]
         fits += [measure.fit(slip.says, results) for slip, results in more]
@@ -158,6 +176,14 @@ def _candidates(case: Case) -> list[Program]:
         main = chosen if left.sum() <= (1 - _MAIN) * total else common
         found += _pairs(main, common, sample, left)
     return found
+
+
+def _in_the_equation(sample: Case) -> tuple[Slip, ...]:
+    """Readings in the one equation that the results violate, if it is one."""
+    violations = residuals.violated(sample.scene, sample.theirs, sample.allowed)
+    rows = sample.wrong.sum()
+    broken = [n for n, off in violations.items() if (off & sample.wrong).sum() > _STRAY * rows]
+    return tuple(in_one_equation(broken[0], READINGS)) if len(broken) == 1 else ()
 
 
 def _visible(slips: Sequence[Slip], sample: Case) -> Iterator[tuple[Slip, Columns]]:

@@ -11,3 +11,5 @@ SLIPS: tuple[Slip, ...] = (*READ, *INERTIAS, *CONVERTED, *FILLED, *SHOWN)
 """What is tried first."""
 RARE: tuple[Slip, ...] = TERMS
 """What is tried where those do not explain a table."""
+READINGS: tuple[Slip, ...] = (*READ, *INERTIAS)
+"""What is tried in one equation only, where the results violate that one alone."""

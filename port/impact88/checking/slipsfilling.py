@@ -16,8 +16,8 @@ import numpy as np
 
 from ..accuracy.elimination import ORDER as UNKNOWNS
 from ..reconstruction.geometry import Geometry
-from .otherprograms import used_friction
-from .slip import Columns, Fills, Floats, Slip
+from .otherprograms import matrices, used_friction
+from .slip import Columns, Fills, Floats, Reads, Slip
 
 INITIAL = ("UX", "UY", "VX", "VY", "WA", "WB")
 """The initial velocities in the order of the unknowns."""
@@ -149,8 +149,9 @@ def _term(row: int, column: int, *, factor: float = -1.0) -> Fills:
     return change
 
 
-def _term_throughout(row: int, column: int, factor: float) -> Fills:
-    """The same, with its share of the right-hand side, which holds the initial velocity there."""
+def _term_throughout(row: int, column: int, factor: float, *, left: bool = True) -> Fills:
+    """The same, with its share of the right-hand side, which holds the initial velocity there;
+    ``left``: False for that share alone."""
 
     def change(matrix: Floats, right: Floats, g: Columns) -> None:
         term = matrix[:, row, column].copy()
@@ -160,7 +161,8 @@ def _term_throughout(row: int, column: int, factor: float) -> Fills:
         elif row == _row("18") and column >= 4:
             before = np.sign(column - 4.5) * -g["EM"] * g[INITIAL[column]]
         held = np.where((row == _row("16")) & (g["MU"] == -10), 0.0, before)
-        matrix[:, row, column] *= factor
+        if left:
+            matrix[:, row, column] *= factor
         right[:, row] += (factor - 1) * held
 
     return change
@@ -222,6 +224,9 @@ def _terms() -> Iterator[Slip]:
             for how, factor in (("with the wrong sign", -1.0), ("left out", 0.0)):
                 changes[f"{where}: term of {unknown} {how}"] = _term(row, column, factor=factor)
                 changes[f"{both} {how}"] = _term_throughout(row, column, factor)
+                changes[f"{where}: term of {INITIAL[column]} {how}"] = _term_throughout(
+                    row, column, factor, left=False
+                )
         for says, change in changes.items():
             for forms in _FORMS.get(number, ((),)):
                 yield Slip(says, equations=_in_form(forms, change), common=False)
@@ -242,3 +247,16 @@ FILLED: tuple[Slip, ...] = (
     Slip("Equation 18: the moment's effect on B only", equations=_one_inertia(1)),
 )  # fmt: skip
 TERMS = tuple(_terms())
+
+
+def in_one_equation(number: str, slips: Sequence[Slip]) -> Iterator[Slip]:
+    """Ways of reading the scene, in one equation only."""
+    row = _row(number)
+    for slip in slips:
+
+        def change(matrix: Floats, right: Floats, g: Columns, read: Reads = slip.scene) -> None:
+            other, other_right = matrices({**g, **read(g)})
+            matrix[:, row], right[:, row] = other[:, row], other_right[:, row]
+
+        says = f"Equation {number} ({EQUATIONS[number]}): {slip.says}"
+        yield Slip(says, equations=change, common=False)

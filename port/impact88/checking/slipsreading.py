@@ -116,6 +116,10 @@ READ: tuple[Slip, ...] = (
     Slip("degrees taken as radians: angles are not converted", changing(ANGLES, np.degrees)),
     Slip("angles converted to radians twice", changing(ANGLES, np.radians)),
     Slip("Γ is not converted to radians", changing(("GA",), np.degrees)),
+    *(
+        Slip(f"{name} is not converted to radians", changing((name,), np.degrees), common=False)
+        for name in ANGLES[1:]
+    ),
     Slip("Γ positive the other way round", changing(("GA",), np.negative)),
     Slip("Γ 90 degrees on: the normal's angle for the surface's", changing(("GA",), lambda x: x + 90)),
     Slip("Γ 90 degrees back", changing(("GA",), lambda x: x - 90)),
