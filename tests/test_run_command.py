@@ -117,7 +117,8 @@ def test_json_is_the_captures_form():
     done = impact88("run", "--sample", "1", "--no-dos", "--json")
     shown = json.loads(done.stdout)
     expected = run(sample(1), dos=False)
-    assert list(shown) == ["schema", "version", *expected._fields]
+    assert list(shown) == ["schema", "version", *expected._fields, "floats"]
+    assert shown["floats"] == expected.floats
     assert shown["printout"] == expected.printout
     assert shown["reals"] == expected.reals
     assert shown["A"] == expected.A

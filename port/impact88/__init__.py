@@ -17,6 +17,7 @@ Old printouts and other programs
 
 Today's work, in double precision
     solve               final velocities and the rest, over arrays
+    solve_frame         the same for pandas, polars, pyarrow, xarray, records, lists of dicts
     bounds, Uncertain   what follows from values known within limits
     solve_for           Equations 13-18 for any unknowns, over arrays
     reconstruct, Reconstruction     the same with tolerances: what was measured is adjusted
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
     from .reconstruction.unknowns import Solution, solve_for
     from .replay import Replay, replay
     from .scene import Scene, sample
+    from .tables.frames import solve_frame
     from .uncertainty.bounds import Bounds, bounds
     from .uncertainty.uncertain import Uncertain
 
@@ -87,6 +89,7 @@ _LAZY = {
     "sample": "scene",
     "scene_svg": "figures.sceneview",
     "solve": "closedform.solve",
+    "solve_frame": "tables.frames",
     "solve_for": "reconstruction.unknowns",
     "status": "",
     "verify": "casework.verify",
@@ -123,6 +126,7 @@ __all__ = [  # written out: type checkers read no computed list
     "scene_svg",
     "solve",
     "solve_for",
+    "solve_frame",
     "status",
     "verify",
     "verify_file",

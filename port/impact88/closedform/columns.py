@@ -49,7 +49,10 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
     """
     unknown = [name for name in columns if name not in SCENE]
     if unknown:
-        raise UserError(f"{unknown[0]!r} is no scene name; expected {' '.join(SCENE)}")
+        raise UserError(
+            f"{unknown[0]!r} is no scene name; expected {' '.join(SCENE)} "
+            "(impact88.solve_frame takes further columns)"
+        )
     arrays = {name: _numbers(name, columns[name]) for name in SCENE if name in columns}
     arrays.setdefault("M", np.array(float(DEFAULT_M)))
     if arrays["M"].size and bool((arrays["M"] == 4).all()):
@@ -67,6 +70,15 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
 
 
 def _numbers(name: str, values: object) -> Array:
+    if isinstance(values, np.ma.MaskedArray):
+        if values.dtype.kind not in "fiub":
+            raise UserError(f"holds {values.dtype} values; expected numbers", f"column {name}")
+        return np.ma.filled(values.astype(np.float64), np.nan)
+    if hasattr(values, "__dask_graph__") and values.__dask_graph__() is not None:
+        raise UserError(
+            "is not computed yet; expected .compute(), or impact88.solve within map_blocks",
+            f"column {name}",
+        )
     array = np.asarray(values)
     if array.dtype.kind in "fiub":
         return array

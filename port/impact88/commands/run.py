@@ -18,6 +18,7 @@ import argparse
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from math import isfinite
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
 from ..errors import UserError
@@ -146,7 +147,8 @@ def main(args: argparse.Namespace) -> int:
         from ..schemas import stamped
 
         run = finished("".join(shown), error, zero_determinant, left)
-        print(json.dumps(stamped("run", run._asdict())))
+        floats = {name: x if isfinite(x) else None for name, x in run.floats.items()}
+        print(json.dumps(stamped("run", {**run._asdict(), "floats": floats})))
     elif error is not None and sys.stdout.isatty():
         print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
     return 1 if error else 0

@@ -55,6 +55,26 @@ class Run(_Run):
         line 200, bells, the NULs that INPUT shows for a prompt, control-D."""
         return page(self.printout)
 
+    @property
+    def floats(self) -> dict[str, float]:
+        """The real variables as floats: exactly what the five bytes hold."""
+        return {
+            name: float(Real.from_stored(value))
+            if isinstance(value, str) and len(value) == 10
+            else float(value)
+            for name, value in self.reals.items()
+        }
+
+    def __repr__(self) -> str:
+        ending = self.error or ("ZERO DETERMINANT" if self.zero_determinant else "END")
+        return f"<Run: {ending}; {len(self.printout)} characters, {len(self.reals)} variables>"
+
+    def _repr_html_(self) -> str:
+        """The printout, as a notebook shows it."""
+        from html import escape
+
+        return f"<pre>{escape(self.page)}</pre>"
+
 
 def page(text: str) -> str:
     """Text for a person: without control characters, line ends excepted."""

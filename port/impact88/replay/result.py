@@ -67,6 +67,26 @@ class Replay:
             )
         return messages
 
+    def __len__(self) -> int:
+        return self.count
+
+    def __repr__(self) -> str:
+        ended = int(np.count_nonzero(self.code > ZERO_DETERMINANT))
+        zero = int(np.count_nonzero(self.zero_determinant))
+        return (
+            f"<Replay of {self.count:,} scenes: {ended:,} ended by an error, {zero:,} by a zero "
+            f"determinant; {' '.join(self.names)}>"
+        )
+
+    def to_dict(self) -> dict[str, Floats | Strings | Ints]:
+        """Every result as floats, and how each scene ended (ERROR, LINE): columns of one length,
+        as a DataFrame of any library takes them."""
+        ending = np.where(self.zero_determinant, "ZERO DETERMINANT", self.error)
+        return {name: self.floats(name) for name in self.names} | {
+            "ERROR": ending,
+            "LINE": self.line,
+        }
+
     def present(self, name: str) -> Bools:
         """The scenes that have the result."""
         present = self._unit.reached(listing.ASSIGNED[name]) & (self.code != OTHER_M)

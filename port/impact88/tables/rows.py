@@ -221,7 +221,10 @@ def _is_infinite(text: str) -> bool:
 
 
 def check_scene_columns(
-    names: Sequence[str], given: Sequence[str], optional: Sequence[str]
+    names: Sequence[str],
+    given: Sequence[str],
+    optional: Sequence[str],
+    help_: str = "--set NAME=VALUE",
 ) -> None:
     """Raise UserError unless ``names`` (a file's scene columns) and ``given`` (those given beside
     the file) together are a scene; those ``optional`` may be missing."""
@@ -231,5 +234,5 @@ def check_scene_columns(
     if missing:
         raise UserError(
             f"no column {' '.join(missing)}; expected columns named {' '.join(SCENE)} "
-            "(M may be missing; --set NAME=VALUE gives one value for all rows)"
+            f"(M may be missing; {help_} gives one value for all rows)"
         )
