@@ -6,6 +6,7 @@ import re
 import tomllib
 from fnmatch import fnmatch
 from importlib import import_module
+from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -96,9 +97,12 @@ def test_data_is_found_as_a_resource_of_the_package(package: str, name: str) -> 
     assert files(package).joinpath(name).is_file()
 
 
-def test_version_stands_in_one_number(project: dict[str, Any]) -> None:
-    assert project["project"]["version"] == impact88.__version__
+def test_version_stands_in_one_place(project: dict[str, Any]) -> None:
+    assert "version" in project["project"]["dynamic"]
+    place = project["tool"]["setuptools"]["dynamic"]["version"]["attr"]
+    assert place == "impact88.version.__version__"
     assert re.fullmatch(r"\d+\.\d+\.\d+", impact88.__version__)
+    assert version("impact88") == impact88.__version__
 
 
 @pytest.mark.parametrize("name", sorted(impact88._LAZY))

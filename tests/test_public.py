@@ -24,7 +24,7 @@ def typed_imports() -> dict[str, tuple[str, str]]:
     """Public name -> module and the name there, of the imports that type checkers alone see."""
     imports = {}
     for node in ast.walk(ast.parse(SOURCE.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.level == 1:
+        if isinstance(node, ast.ImportFrom) and node.level == 1 and node.module != "version":
             for alias in node.names:
                 imports[alias.asname or alias.name] = (node.module or "", alias.name)
     return imports

@@ -36,6 +36,8 @@ import sys
 from importlib import import_module
 from types import ModuleType
 
+from .version import __version__
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
@@ -60,8 +62,6 @@ if TYPE_CHECKING:
     from .tables.frames import solve_frame
     from .uncertainty.bounds import Bounds, bounds
     from .uncertainty.uncertain import Uncertain
-
-__version__ = "0.1.0"
 
 _LAZY = {
     "Applesoft": "emulator.emulator",

@@ -18,11 +18,11 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 
-from . import __version__
 from .endings import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
 from .errors import UserError, shown
 from .files import ESCAPED
 from .talk import tell
+from .version import __version__
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

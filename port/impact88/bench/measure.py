@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import __version__
 from ..accuracy.elimination import equilibrated_condition, fill
 from ..accuracy.sensitivity import sensitivity
 from ..processors import processors
 from ..progress import Meter
+from ..version import __version__
 from .methods import (
     METHODS,
     Method,

@@ -7,7 +7,7 @@ import platform
 from functools import lru_cache
 from importlib import metadata, resources
 
-from .. import __version__
+from ..version import __version__
 
 LISTING = "impact.bas"
 CAPTURES = ("scenes.jsonl.gz", "fuzz.jsonl.gz")

@@ -15,8 +15,8 @@ from typing import Any
 from flask import Blueprint, Flask, Response, abort, render_template, request
 from werkzeug.exceptions import HTTPException
 
-from .. import __version__
 from ..errors import UserError
+from ..version import __version__
 from . import collision, page, reconstruction
 from .bench import Bench, BrokenError, SupersededError
 from .guard import HEADERS, LARGEST_BODY, refusal

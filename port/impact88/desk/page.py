@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 from markupsafe import Markup, escape
 
-from .. import __version__
 from ..names import DEFAULT_M, Quantity, quantity
 from ..scene import SAMPLES, sample
+from ..version import __version__
 
 
 class Group(NamedTuple):

@@ -11,9 +11,9 @@ output. Digits that become more accurate are no change of form.
 
 from __future__ import annotations
 
-from .. import __version__
 from ..errors import UserError
 from ..files import packaged_text
+from ..version import __version__
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
