@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from impact88.chapter.deltav import ERROR
 from impact88.chapter.staged import collisions
 from impact88.cli import main
 
@@ -290,9 +291,52 @@ def test_delta_v_says_which_equation_19(capsys: pytest.CaptureFixture[str]) -> N
     assert velocities["estimates"][0]["DVA"] == pytest.approx(39.0981, abs=1e-4)
 
 
+FINALS = "MA=96 MB=145 VAX=-10 VAY=20 VBX=-20 VBY=45"
+
+
+def test_delta_v_finds_the_speeds_of_section_7(capsys: pytest.CaptureFixture[str]) -> None:
+    """-43.6 and 61.5 rest on Table 3's own speeds and loss: an analyst has neither."""
+    known = f"{FINALS} SA=36.667 SB=58.667 LOSS=37.4037"
+    first, repeated = as_json(capsys, "delta-v", *sets(known))["estimates"]
+    change = {"A": 39.1002, "B": 25.8870}
+    assert first["DVA"] == pytest.approx(change["A"], abs=1e-3)
+    assert first["UX"] == pytest.approx(-10 - (change["A"] ** 2 - 20**2) ** 0.5, abs=1e-3)
+    assert round(first["UX"], 1) == -43.6
+    assert first["VY"] == pytest.approx(45 + (change["B"] ** 2 - 20**2) ** 0.5, abs=1e-3)
+    momentum = (96**2 * repeated["UX"] ** 2 + 145**2 * repeated["VY"] ** 2) ** 0.5
+    assert repeated["DVA"] == pytest.approx(2 / 3 * 0.374037**0.5 * momentum / 96, rel=1e-6)
+    assert (repeated["UX"] + 10) ** 2 + 400 == pytest.approx(repeated["DVA"] ** 2)
+    status, out, _ = run(capsys, "delta-v", *sets(f"{FINALS} DT=.4"))
+    assert status == 0
+    assert "those of Equations 13 and 14" in out
+    assert "rms 3.8, largest 8.2 ft/s" in out
+
+
+def test_delta_v_tells_the_loss(capsys: pytest.CaptureFixture[str]) -> None:
+    told = as_json(capsys, "delta-v", *sets(f"{SPEEDS} DVA=39.0981 DVB=25.8856"))["LOSS_from"]
+    assert told["DVA"] == pytest.approx(37.4, abs=1e-3)
+    assert told["DVB"] == pytest.approx(37.4, abs=1e-3)
+    energy = 0.374 * (96 * 36.667**2 + 145 * 58.667**2) / 2
+    (estimate,) = as_json(capsys, "delta-v", *sets(f"{SPEEDS} EL={energy}"))["estimates"]
+    assert estimate["LOSS"] == pytest.approx(37.4)
+    assert estimate["DVA"] == pytest.approx(39.0981, abs=1e-4)
+
+
+def test_the_error_told_of_equation_19_is_table_2_s() -> None:
+    """Predicted minus measured, Table 2's own printed cells."""
+    off = [c.table2[f"dV{v}_pred"] - c.table2[f"dV{v}_exp"] for c in collisions() for v in "ab"]
+    assert len(off) == 22
+    assert round((sum(x * x for x in off) / 22) ** 0.5, 1) == 3.8
+    assert round(max(map(abs, off)), 1) == 8.2
+    assert ERROR.startswith("rms 3.8, largest 8.2 ft/s")
+
+
 @pytest.mark.parametrize(
     ("pairs", "message"),
     [
+        (f"{FINALS} LOSS=5", "less than the final velocity"),
+        (f"{SPEEDS} DVA=3 LOSS=4", "both a loss and a velocity change"),
+        (f"{SPEEDS} EL=1E9", "percent of the initial kinetic energy"),
         ("MA=96", "MB is missing"),
         ("MA=96 MB=145 SA=1", "SB is missing; expected it, or VX and VY"),
         (SPEEDS, "LOSS is missing"),

@@ -50,6 +50,73 @@ def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Arra
     return {"DVA": change / a, "DVB": change / b}
 
 
+ERROR = "rms 3.8, largest 8.2 ft/s over the 22 velocity changes of Table 2"
+"""How far Equation 19 is from the measured velocity changes; a test holds the numbers."""
+
+
+def loss_of(known: Mapping[str, Any], factor: float = AS_USED) -> Array:
+    """Equation 19 the other way: LOSS in percent that a velocity change tells.
+
+    ``known``: MA MB SA SB and DVA or DVB. Raises UserError for a name that is missing.
+    """
+    absent = [name for name in GIVEN[:4] if name not in known]
+    vehicle = next((v for v in "AB" if f"DV{v}" in known), None)
+    if absent or vehicle is None:
+        raise UserError(missing(absent or ["DVA"]))
+    unit = delta_v({**known, "LOSS": 100.0}, factor)[f"DV{vehicle}"]
+    return np.asarray(100 * (np.asarray(known[f"DV{vehicle}"]) / unit) ** 2)
+
+
+def loss_of_energy(known: Mapping[str, Any]) -> Array:
+    """LOSS in percent of the energy EL that crush (or whatever else) has taken: of the kinetic
+    energy of MA MB at SA SB, no spins."""
+    initial = (known["MA"] * known["SA"] ** 2 + known["MB"] * known["SB"] ** 2) / 2
+    return np.asarray(100 * np.asarray(known["EL"], np.float64) / initial)
+
+
+def initial_velocity(change: float, along: float, across: float) -> float:
+    """Equations 20 and 21 solved for the initial velocity of a vehicle that did not swerve.
+
+    ``change``: the size of its velocity change; ``along`` and ``across``: its final velocity along
+    the way it came and across it. Of the two roots the faster. Raises UserError when the final
+    velocity across is larger than the whole change.
+    """
+    square = change**2 - across**2
+    if square < 0:
+        raise UserError(
+            f"a velocity change of {change:.4g} is less than the final velocity {abs(across):.4g} "
+            "across the way the vehicle came"
+        )
+    root = float(np.sqrt(square))
+    return max((along - root, along + root), key=abs)
+
+
+def speeds_before(
+    known: Mapping[str, float], loss: float, factor: float = AS_USED, repeat: bool = False
+) -> dict[str, float]:
+    """Section VII: UX and VY of vehicles that came along x and along y, from their final velocities
+    and the loss in percent, by Equations 19 to 21; with the DVA and DVB they rest on.
+
+    ``known``: MA MB VAX VAY VBX VBY, and SA SB where they are known; else Equation 19 takes those
+    of Equations 13 and 14. ``repeat``: put the speeds found in again until they stay, which can
+    lead far away. Raises UserError where there are none.
+    """
+    ratio = known["MB"] / known["MA"]
+    speed_a = known.get("SA", abs(known["VAX"] + ratio * known["VBX"]))
+    speed_b = known.get("SB", abs(known["VBY"] + known["VAY"] / ratio))
+    masses = {"MA": known["MA"], "MB": known["MB"], "LOSS": loss}
+    for _ in range(500 if repeat else 1):
+        change = delta_v({**masses, "SA": speed_a, "SB": speed_b}, factor)
+        a, b = float(change["DVA"]), float(change["DVB"])
+        ux = initial_velocity(a, known["VAX"], known["VAY"])
+        vy = initial_velocity(b, known["VBY"], known["VBX"])
+        moved = max(abs(abs(ux) - speed_a), abs(abs(vy) - speed_b))
+        speed_a, speed_b = abs(ux), abs(vy)
+        if not repeat or moved <= 1e-12 * max(speed_a, speed_b):
+            return {"UX": ux, "VY": vy, "DVA": a, "DVB": b}
+    raise UserError(f"no speeds agree with a loss of {loss:g} percent and these final velocities")
+
+
 def described(factor: float) -> str:
     """One line for printouts: which Equation 19 this is."""
     if factor == AS_PRINTED:

@@ -2,14 +2,18 @@
 fitted to eleven staged collisions; no impact is solved. By default it has the factor 2/3 with which
 all of Table 2 was computed and which the printed equation lacks; --as-printed leaves it out.
 
-Given are MA MB, the speeds SA SB (or UX UY VX VY) and the loss, LOSS in percent or DT as the
-fraction that the chapter writes; or, instead, --like takes the range of losses of one category of
-Table 2. A scene file (impact88 scene) gives masses and velocities; its other values are not used.
-Units: any consistent set.
+Given are MA MB, the speeds SA SB (or UX UY VX VY) and the loss: LOSS in percent, DT as the fraction
+that the chapter writes, EL as energy (of crush); or --like for the range of losses of one category
+of Table 2. With DVA or DVB in place of the loss, the loss they tell. With the velocities after,
+VAX VAY VBX VBY, the speeds before of an A that came along x and a B along y (Section VII). A scene
+file (impact88 scene) gives masses and velocities; its other values are not used. Units: any
+consistent set.
 
 examples:
   impact88 delta-v --set MA=96 --set MB=145 --set SA=36.667 --set SB=58.667 --set LOSS=37.4
   impact88 delta-v crash.toml --like 90-side
+  impact88 delta-v --set MA=96 --set MB=145 --set VAX=-10 --set VAY=20 --set VBX=-20 --set VBY=45 \
+      --set DT=.374
   impact88 delta-v crash.toml --set LOSS=40 --as-printed --json
 
 exit status: 0 done; 2 bad input
@@ -19,13 +23,14 @@ from __future__ import annotations
 
 import argparse
 import json
-from math import hypot
+from math import hypot, nan
 from typing import Any
 
 from ..errors import UserError
-from ..names import SCENE
+from ..names import FINAL_VELOCITIES, SCENE
 from .options import add_json_argument, add_known_arguments, add_output_argument, known_values
 
+KNOWABLE = (*SCENE, "SA", "SB", "LOSS", "DT", "EL", "DVA", "DVB", *FINAL_VELOCITIES[:4])
 CATEGORIES = {
     "60-side": "60° FRONT TO SIDE",
     "90-side": "90° FRONT TO SIDE",
@@ -53,16 +58,20 @@ def main(args: argparse.Namespace) -> int:
     """Print the estimate, or its range."""
     from ..chapter.deltav import AS_PRINTED, AS_USED, delta_v, described
 
-    known = known_values(args.file, args.set, (*SCENE, "SA", "SB", "LOSS", "DT"))
+    known = known_values(args.file, args.set, KNOWABLE)
     for name in ("MA", "MB"):
         if not known.get(name, 0) > 0:
             raise UserError(f"{name} is missing or not positive; expected a mass", args.file)
+    factor = AS_PRINTED if args.as_printed else AS_USED
+    if set(FINAL_VELOCITIES[:4]) <= set(known) and not {"UX", "VY"} <= set(known):
+        return _speeds(known, args, factor)
     speed_a = _speed(known, "SA", "UX", "UY", args.file)
     speed_b = _speed(known, "SB", "VX", "VY", args.file)
-    factor = AS_PRINTED if args.as_printed else AS_USED
-    losses, source = _losses(known, args)
-    estimates = []
     given = {"MA": known["MA"], "MB": known["MB"], "SA": speed_a, "SB": speed_b}
+    if "DVA" in known or "DVB" in known:
+        return _loss_told(known, given, args, factor)
+    losses, source = _losses({**known, **given}, args)
+    estimates = []
     for loss in losses:
         found = delta_v({**given, "LOSS": loss}, factor)
         estimates.append({"LOSS": loss, **{name: float(v) for name, v in found.items()}})
@@ -79,6 +88,70 @@ def main(args: argparse.Namespace) -> int:
         return 0
     _show(given, estimates, source, described(factor))
     return 0
+
+
+def _speeds(known: dict[str, float], args: argparse.Namespace, factor: float) -> int:
+    """Speeds before from final velocities and the loss, as in Section VII."""
+    from ..chapter.deltav import described, speeds_before
+    from ..names import quantity
+    from ..plaintable import number, plain, table
+
+    losses, source = _losses(known, args)
+    taken = "SA and SB as given" if {"SA", "SB"} <= set(known) else "those of Equations 13 and 14"
+    found: list[dict[str, Any]] = []
+    for loss in losses:
+        for repeat, speeds in ((False, taken), (True, "those found, until they stay")):
+            try:
+                row = speeds_before(known, loss, factor, repeat)
+            except UserError as error:
+                if not repeat:
+                    raise UserError(str(error), args.file) from None
+                row = dict.fromkeys(("UX", "VY", "DVA", "DVB"), nan)
+            found.append({"LOSS": loss, **row, "speeds": speeds})
+    if args.json:
+        whole = {"equation": described(factor), "loss_from": source, "estimates": plain(found)}
+        print(json.dumps(whole, allow_nan=False))
+        return 0
+    names = ("LOSS", "UX", "VY", "DVA", "DVB")
+    heading = [f"{name} [{quantity(name).unit}]" for name in names[1:]]
+    rows = [[number(row[n]) or "none" for n in names] + [row["speeds"]] for row in found]
+    lines = table(rows, ["LOSS [%]", *heading, "speeds in Equation 19"], left=(5,))
+    print("\n".join(lines))
+    print(f"\nA came along x, B along y (UY = VX = 0). loss: {source}. Equations 20 and 21.")
+    _caution(described(factor))
+    return 0
+
+
+def _loss_told(
+    known: dict[str, float], given: dict[str, float], args: argparse.Namespace, factor: float
+) -> int:
+    """The loss that velocity changes tell."""
+    from ..chapter.deltav import described, loss_of
+    from ..plaintable import number, table
+
+    if args.like or {"LOSS", "DT", "EL"} & set(known):
+        raise UserError("both a loss and a velocity change are given; expected one")
+    found = {
+        name: float(loss_of({**given, name: known[name]}, factor))
+        for name in ("DVA", "DVB")
+        if name in known
+    }
+    if args.json:
+        whole = {"equation": described(factor), "given": given, "LOSS_from": found}
+        print(json.dumps(whole, allow_nan=False))
+        return 0
+    rows = [[name, number(known[name]), number(loss)] for name, loss in found.items()]
+    print("\n".join(table(rows, ["from", "velocity change", "loss [percent]"], left=(0,))))
+    print()
+    _caution(described(factor))
+    return 0
+
+
+def _caution(equation: str) -> None:
+    from ..chapter.deltav import ERROR
+
+    print(equation)
+    print(f"An estimate: {ERROR};\nuntested elsewhere (Section VI).")
 
 
 def _speed(known: dict[str, float], speed: str, x: str, y: str, source: str | None) -> float:
@@ -103,6 +176,17 @@ def _losses(known: dict[str, float], args: argparse.Namespace) -> tuple[list[flo
         losses = sorted(c.table2["loss"] for c in alike)
         numbers = ", ".join(str(c.number) for c in alike)
         return [losses[0], losses[-1]], f"Table 2, {category} (collisions {numbers})"
+    if "EL" in known:
+        if "LOSS" in known or "DT" in known:
+            raise UserError("EL and another loss are both given; expected one")
+        from ..chapter.deltav import loss_of_energy
+
+        if not {"SA", "SB"} <= set(known):
+            raise UserError("EL needs the speeds before; expected SA and SB, or LOSS or DT")
+        loss = float(loss_of_energy(known))
+        if not 0 <= loss <= 100:
+            raise UserError(f"EL is {loss:.4g} percent of the initial kinetic energy")
+        return [loss], "the energy EL"
     if "DT" in known:
         if "LOSS" in known:
             raise UserError("LOSS and DT are both given; expected one")
@@ -133,7 +217,4 @@ def _show(
     heading = ["loss [percent]", "DVA [length/time]", "DVB [length/time]"]
     print("\n".join(["", *table(lines, heading, left=())]))
     print(f"\nloss: {source}")
-    print(equation)
-    print(
-        "An estimate: within a few ft/s for the staged collisions, untested elsewhere (Section VI)."
-    )
+    _caution(equation)
