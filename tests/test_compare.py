@@ -27,6 +27,7 @@ from impact88.checking.compare import (
     NO_RESULT,
     NOTHING_HERE,
     NOTHING_THERE,
+    REFUSED,
     Comparison,
     compare_file,
 )
@@ -324,6 +325,16 @@ def test_what_is_not_compared_is_named(tmp_path) -> None:
     assert done.tallies["KI"].missing == 1
     assert len(done.silent) == 5
     assert done.agreeing == 3
+
+
+def test_a_program_may_refuse_a_failure_and_nothing_else(tmp_path) -> None:
+    found = {name: list(column) for name, column in answered(Program()).items()}
+    for name in RESULTS:
+        found[name][0] = found[name][1] = ""
+    kinds = ["failure", "casework", *["edge"] * (len(ROWS) - 2)]
+    done = compared(tmp_path, {**found, "class": kinds})
+    assert done.not_compared == {REFUSED: 1, NOTHING_THERE: 1}
+    assert len(done.silent) == 1
 
 
 def test_strict_makes_silence_a_failure(tmp_path) -> None:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
-from ..doubles import double
+from ..doubles import double, doubles
 from ..errors import quoted
 from ..names import FINAL_VELOCITIES
 from ..tables.rows import Rows
@@ -82,17 +82,20 @@ def read_theirs(rows: Rows, name: str) -> Theirs:
     column = rows.others[name]
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
         return Theirs(column.astype(float), np.zeros(rows.count))
+    texts = ["" if cell is None else str(cell).strip() for cell in column]
+    there = [index for index, text in enumerate(texts) if text.lower() not in _NOTHING]
     values, units = np.full(rows.count, np.nan), np.zeros(rows.count)
-    for index, cell in enumerate(column):
-        text = str(cell).strip() if cell is not None else ""
-        if text.lower() in _NOTHING:
-            continue
-        try:
-            values[index] = double(text)
-        except ValueError:
-            rows.bad.append(rows.cell(index, name, f"{quoted(text)} is no number"))
-            continue
-        written = _WRITTEN.fullmatch(text)
+    try:
+        values[there] = doubles([texts[index] for index in there])
+    except ValueError:
+        for index in there:
+            try:
+                values[index] = double(texts[index])
+            except ValueError:
+                reason = f"{quoted(texts[index])} is no number"
+                rows.bad.append(rows.cell(index, name, reason))
+    for index in there:
+        written = _WRITTEN.fullmatch(texts[index])
         if written:
             decimals, exponent = written.groups(default="")
             power = float(exponent or 0) - len(decimals)

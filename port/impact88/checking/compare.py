@@ -22,10 +22,12 @@ from ..errors import UserError
 from ..files import called
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..plaintable import plain
+from ..progress import progress
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import open_reader
 from .agreement import Slack, Theirs, Verdict, given, judge, read_theirs, slack
 from .diagnosis import UNKNOWN, Case, diagnose
+from .vectors import FAILURE
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -43,8 +45,9 @@ CARRIED = ("id", "class", "label")
 NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"
 NOTHING_HERE = "theirs gives numbers where the equations have no solution"
 NOTHING_THERE = "theirs gives nothing where there is a result"
+REFUSED = "theirs refuses a vector of the class failure, as it may"
 UNREADABLE = "the row could not be read"
-HARMLESS = (NO_RESULT,)
+HARMLESS = (NO_RESULT, REFUSED)
 """Reasons that no program is to be blamed for."""
 
 
@@ -204,10 +207,14 @@ def compare_file(
         scene_names = [name for name in reader.names if name in SCENE]
         check_scene_columns(scene_names, list(values), ("M",))
         done.tallies = {name: Tally() for name in wanted}
-        for rows in reader:
-            kept = _compare_block(rows, values, wanted, done, rtol)
-            if kept is not None:
-                waiting.append(kept)
+        with progress(reader.total, "compare", "B") as meter:
+            before = 0
+            for rows in reader:
+                kept = _compare_block(rows, values, wanted, done, rtol)
+                if kept is not None:
+                    waiting.append(kept)
+                meter.update(reader.position() - before)
+                before = reader.position()
     if not any(tally.compared for tally in done.tallies.values()):
         raise UserError("no result could be compared", where)
     _explain(waiting, done)
@@ -295,11 +302,14 @@ def _count_skipped(
     """Count the rows that were not compared, by reason."""
     solvable = np.logical_or.reduce([np.isfinite(ours[name]) for name in theirs])
     answered = np.logical_or.reduce([np.isfinite(column.values) for column in theirs.values()])
+    kinds = rows.others.get("class")
+    may = np.array([str(kind) == FAILURE for kind in kinds], bool) if kinds is not None else False
     reasons = {
         UNREADABLE: ~readable,
         NO_RESULT: readable & ~solvable & ~answered,
         NOTHING_HERE: readable & ~solvable & answered,
-        NOTHING_THERE: readable & solvable & ~compared,
+        REFUSED: readable & solvable & ~answered & may,
+        NOTHING_THERE: readable & solvable & ~compared & ~(~answered & may),
     }
     for reason, which in reasons.items():
         which &= ~compared
