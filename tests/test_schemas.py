@@ -125,6 +125,10 @@ def test_verify(change: tuple[str, str] | None, tmp_path) -> None:
     check("verify", done.stdout)
 
 
+def test_verify_tells_of_a_file_it_cannot_read() -> None:
+    assert "error" in check("verify", printed("verify", "--json", "-", status=2, text="nothing"))
+
+
 def test_compare_right_wrong_and_incomplete(tmp_path) -> None:
     path = tmp_path / "theirs.jsonl"
     for results in ({"VAX": "-13.263"}, {"VAX": "13.263", "vay": "3"}, {"VAX": "1e999"}):

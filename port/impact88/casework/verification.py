@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..version import __version__
+from ..schemas import stamped
 from .explain import Explanation
 from .judging import FieldCheck, Status, Verdict
 from .printout import Piece
-
-SCHEMA = 2
-"""The number of the JSON objects' form: 1 had three verdicts and no places."""
 
 
 @dataclass
@@ -70,9 +67,7 @@ class Verification:
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
-        return {
-            "schema": SCHEMA,
-            "impact88": __version__,
+        whole = {
             "file": self.file,
             "sha256": self.sha256,
             "printout": self.number,
@@ -93,6 +88,7 @@ class Verification:
             "warnings": self.warnings,
             "remarks": self.remarks,
         }
+        return stamped("verify", whole)
 
 
 @dataclass
@@ -108,12 +104,5 @@ class Examined:
         """The objects `impact88 verify --json` prints for the file."""
         if self.error is None:
             return [result.as_json() for result in self.results]
-        return [
-            {
-                "schema": SCHEMA,
-                "impact88": __version__,
-                "file": self.file,
-                "sha256": self.sha256,
-                "error": self.error,
-            }
-        ]
+        refused = {"file": self.file, "sha256": self.sha256, "error": self.error}
+        return [stamped("verify", refused)]

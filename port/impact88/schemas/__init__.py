@@ -25,7 +25,7 @@ NUMBERS = {
     "oracle": 1,
     "vectors": 1,
     "compare": 1,
-    "verify": 1,
+    "verify": 2,
     "selfcheck": 1,
     "witness": 1,
     "bounds": 1,
