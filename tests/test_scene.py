@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from captures import ROOT
+from impact88.cli import main
+from impact88.closedform.solve import solve
 from impact88.errors import UserError
+from impact88.figures.plan import plan
 from impact88.names import SCENE
-from impact88.scene import Scene, published_data, sample, template
+from impact88.scene import SIGNS, Scene, published_data, sample, template
 
 COMPLETE = sample(1).to_toml()
 
@@ -136,3 +141,33 @@ def test_typed_lines_and_keyboard_are_what_one_would_type():
 def test_a_scene_refuses_numbers_that_are_not_text():
     with pytest.raises(UserError, match="text"):
         Scene.from_mapping({**sample(1), "UX": 1.5})
+
+
+def test_signs_are_told_where_a_scene_is_filled_in(capsys):
+    """In the template, in the command's help and in README, one text."""
+    commented = "".join(f"# {line}".rstrip() + "\n" for line in SIGNS.splitlines())
+    assert commented in template()
+    assert main(["scene", "--help"]) == 0
+    assert SIGNS in capsys.readouterr().out
+    assert SIGNS in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_signs_are_those_of_the_mechanics():
+    """The drawing's scene: GA = 0, A on the +n side facing -x, B facing +x, an approach."""
+    scene = {"GA": 0, "TA": 0, "TB": 0, "PA": 0, "PB": 0, "DA": 6, "DB": 6, "MU": 0.05, "E": 0.1}
+    scene |= {"EM": -0.5, "MA": 1, "MB": 1, "IA": 9, "IB": 9, "WA": 0, "WB": 0}
+    scene |= {"UX": -3, "UY": 1, "VX": 2, "VY": 0}
+    found = solve(scene)
+    assert int(found["STATUS"]) == 0
+    assert found["PN"] > 0  # along n, on A
+    assert found["PT"] < 0  # A slides along t, friction on it against t
+    shapes = plan(scene)
+    a, b = shapes.vehicles
+    assert shapes.normal == (1.0, 0.0)
+    assert a.front == pytest.approx((-1, 0), abs=1e-12)
+    assert b.front == pytest.approx((1, 0), abs=1e-12)
+    assert a.center[0] > 0 > b.center[0]
+    # the contact point is in front of either, at the angle PA from the front
+    left = plan({**scene, "PA": 90})
+    to_contact = np.negative(left.vehicles[0].center)
+    assert np.cross((*left.vehicles[0].front, 0), (*to_contact, 0))[2] > 0

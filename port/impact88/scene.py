@@ -298,11 +298,27 @@ def _syntax_error(
     return UserError(f"not TOML: {message}", where)
 
 
+SIGNS = """\
+   y ^                 ^ t          GA = 0: the contact plane, C its point, along y; n along x
+     |                 |            n = (cos GA, sin GA), t = (-sin GA, cos GA)
+     +---> x    [ B >] C [< A ]     A lies on the +n side of the plane, B on the other
+                       |            TA = TB = 0: B faces TB, A faces TA + 180
+                       +---> n      PA, PB: from the vehicle's front to C, seen from its center
+
+Angles and spins are positive counterclockwise. An approach has A moving against n, towards B.
+The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) opposes the sliding.
+"""
+"""Sides, axes and signs, for people who fill in a scene."""
+
+
 def template(values: Mapping[str, str] | None = None, title: str | None = None) -> str:
     """A commented scene file; without ``values`` the numbers are left to fill in."""
     lines = [
         "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per",
         '# unit of time. The digits are used as written. Write 0.911 or ".911": TOML takes no .911',
+        "#",
+        *(f"# {line}".rstrip() for line in SIGNS.splitlines()),
+        "",
         f"title = {_quoted(title or '')}",
     ]
     heading = None

@@ -1,4 +1,11 @@
-"""examples:
+"""Axes, sides and signs:
+
+{signs}
+A value may have a unit ("-25 mph", "3091 lb", "3.5 ft"), and the file units = "us", "metric", "si"
+or "chapter" for those that have none. CAF CAL, forward and to the left of A's center of gravity, may
+stand for DA PA, and CBF CBL for DB PB.
+
+examples:
 impact88 scene > mine.toml        a template to fill in
 impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
@@ -7,8 +14,10 @@ from __future__ import annotations
 
 import argparse
 
-from ..scene import sample, template
+from ..scene import SIGNS, sample, template
 from .options import add_output_argument, add_sample_argument
+
+__doc__ = (__doc__ or "").format(signs=SIGNS)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
