@@ -156,7 +156,7 @@ def test_signs_are_those_of_the_mechanics():
     """The drawing's scene: GA = 0, A on the +n side facing -x, B facing +x, an approach."""
     scene = {"GA": 0, "TA": 0, "TB": 0, "PA": 0, "PB": 0, "DA": 6, "DB": 6, "MU": 0.05, "E": 0.1}
     scene |= {"EM": -0.5, "MA": 1, "MB": 1, "IA": 9, "IB": 9, "WA": 0, "WB": 0}
-    scene |= {"UX": -3, "UY": 1, "VX": 2, "VY": 0}
+    scene |= {"UX": -3, "UY": 4, "VX": 2, "VY": 0}
     found = solve(scene)
     assert int(found["STATUS"]) == 0
     assert found["PN"] > 0  # along n, on A
