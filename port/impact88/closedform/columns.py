@@ -27,7 +27,7 @@ BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """What a point-mass scene (M = 4) does not look at."""
 
-_LARGE_ANGLE = 720.0
+LARGE_ANGLE = 720.0
 """Angles beyond this, in degrees, are taken modulo 360 (which is exact) before they are added up:
 the sums are then rounded no more coarsely than the angles people give are."""
 
@@ -192,10 +192,10 @@ def _all_finite(column: Floats) -> bool:
 def _angle(column: Floats) -> tuple[Floats, str, bool]:
     """An angle's column with what is large taken modulo 360, its kind, and whether finite."""
     finite = True
-    if not (column.max() <= _LARGE_ANGLE and column.min() >= -_LARGE_ANGLE):  # NaN is neither
+    if not (column.max() <= LARGE_ANGLE and column.min() >= -LARGE_ANGLE):  # NaN is neither
         with np.errstate(invalid="ignore"):
             turned = np.fmod(column, 360.0)
-        column = np.where(np.abs(column) > _LARGE_ANGLE, turned, column)
+        column = np.where(np.abs(column) > LARGE_ANGLE, turned, column)
         finite = bool(np.isfinite(column).all())
     if len(column) > 1:
         return column, "array", finite

@@ -32,7 +32,7 @@ LARGEST = 2.0**40
 _PI = Decimal("3.14159265358979323846264338327950288419716939937510")
 _QUARTER = STEPS // 4
 # adding this leaves the nearest integer in a double's lowest bits
-_INTEGER_IN_LOW_BITS = 1.5 * 2.0**52
+INTEGER_IN_LOW_BITS = 1.5 * 2.0**52
 
 
 @cache
@@ -89,7 +89,8 @@ def _polynomials() -> tuple[float, float, float, float, float]:
         )
 
 
-_S0, _S1, _S2, _C1, _C2 = _polynomials()
+POLYNOMIALS = _polynomials()
+_S0, _S1, _S2, _C1, _C2 = POLYNOMIALS
 
 
 def sine_and_cosine(
@@ -104,11 +105,11 @@ def sine_and_cosine(
     rest, square, small, less = work
     index = square.view(np.int64)
     np.multiply(angle, 1 / STEP, out=small)
-    np.add(small, _INTEGER_IN_LOW_BITS, out=small)
+    np.add(small, INTEGER_IN_LOW_BITS, out=small)
     np.bitwise_and(small.view(np.int64), STEPS - 1, out=index)
     turn.take(index, out=sine, mode="clip")
     turn[_QUARTER:].take(index, out=cosine, mode="clip")
-    np.subtract(small, _INTEGER_IN_LOW_BITS, out=small)
+    np.subtract(small, INTEGER_IN_LOW_BITS, out=small)
     np.multiply(small, STEP, out=small)
     np.subtract(angle, small, out=rest)
     np.multiply(rest, rest, out=square)

@@ -107,7 +107,7 @@ class Plan:
 
     def __init__(self, results: Mapping[str, Expression]) -> None:
         self.results = dict(results)
-        order = _in_order(list(self.results.values()))
+        order = in_order(list(self.results.values()))
         self.columns = [str(e.value) for e in order if e.operation == "column"]
         self.varying = [str(e.value) for e in order if e.operation == "column" and e.varies]
         self._fixed = [e for e in order if not e.varies]
@@ -250,7 +250,7 @@ def _weight(e: Expression) -> int:
     return {"sine_and_cosine": 26, "against": 3, "choose": 2}.get(e.operation, 1)
 
 
-def _in_order(results: Sequence[Expression]) -> list[Expression]:
+def in_order(results: Sequence[Expression]) -> list[Expression]:
     """All that the results depend on, operands before what is made of them."""
     seen: set[int] = set()
     order: list[Expression] = []

@@ -22,10 +22,12 @@ from ..status import Status
 from .columns import Block, Buffers, Source, examine, sources
 from .formulas import Book, Expression
 from .impact import Impact
+from .onescene import solve_one
 from .passes import Plan
 
 Array = NDArray[Any]
 
+ALL = tuple(RESULTS)
 TILE = 16384
 """Scenes a pass works on. Two arrays fit the second-level cache and all of them the third; numpy's
 cost of starting an operation (half a microsecond) is spread over enough scenes not to matter.
@@ -45,6 +47,7 @@ def solve(
     outputs: Sequence[str] | str | None = None,
     *,
     threads: int | None = None,
+    out: Mapping[str, Array] | None = None,
 ) -> dict[str, Array]:
     """Solve the impact of every scene.
 
@@ -56,9 +59,15 @@ def solve(
         outputs: the result names wanted (``impact88.names.RESULTS``), all of them by default. Only
             what they need is computed.
         threads: how many to use; by default as many as there are processors and work.
+        out: result name -> array to write it into, of the broadcast shape, contiguous, float64
+            (STATUS: uint16), apart from all columns; results not in it get arrays of their own. A
+            loop that gives the same arrays again is spared the paging in of fresh memory. Where
+            ``outputs`` is left out, its names are the results wanted.
 
     Returns:
-        name -> array of the broadcast shape, float64 (STATUS: uint16), in the order asked.
+        name -> array of the broadcast shape, float64 (STATUS: uint16), in the order asked. Of one
+        scene, given as plain numbers, the results are numbers too (numpy's float64, which is a
+        float): a few microseconds, the same bits.
 
     M = 4 is the point-mass impact: DA and DB count as 0; EM, angles other than GA and inertias are
     not looked at, spins pass through and stay out of the energies. An infinite body must be at
@@ -79,9 +88,20 @@ def solve(
     more than 1e-12 of KI, SLIDING_REVERSED that the tangential relative velocity at the contact
     point changes its sign; `impact88.status` says all in words.
 
-    Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast.
+    Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast,
+    and arrays in ``out`` that cannot take the results.
     """
-    return _solved(columns, _wanted(outputs), threads)
+    wanted = _wanted(tuple(out) if outputs is None and out is not None else outputs)
+    if out is None:
+        one = solve_one(columns, wanted)
+        if one is not None:
+            return one
+    results = _solved(columns, wanted, threads, out=out)
+    # of one scene: numbers, not arrays without dimensions
+    return {
+        name: array[()] if array.ndim == 0 and out is None else array
+        for name, array in results.items()
+    }
 
 
 def _solved(
@@ -89,12 +109,19 @@ def _solved(
     wanted: tuple[str, ...],
     threads: int | None,
     sign: float | None = None,
+    out: Mapping[str, Array] | None = None,
 ) -> dict[str, Array]:
     given, shape = sources(columns)
     count = int(np.prod(shape, dtype=np.int64))
-    results: dict[str, Array] = {
-        name: np.empty(count, np.uint16 if name == "STATUS" else np.float64) for name in wanted
+    whole = {
+        name: np.empty(shape, np.uint16 if name == "STATUS" else np.float64)
+        for name in wanted
+        if out is None or name not in out
     }
+    if out is not None:
+        _check_room(out, wanted, shape, [source.values for source in given.values()])
+        whole |= {name: out[name] for name in wanted if name in out}
+    results: dict[str, Array] = {name: whole[name].reshape(count) for name in wanted}
     workers = _workers(count, threads)
     if workers == 1:
         _Worker(given, wanted, results, count, TILE, BLOCK, sign)(range(0, count, BLOCK))
@@ -117,7 +144,29 @@ def _solved(
             ]
         for job in jobs:
             job.result()
-    return {name: array.reshape(shape) for name, array in results.items()}
+    return {name: whole[name] for name in wanted}
+
+
+def _check_room(
+    out: Mapping[str, Array],
+    wanted: Sequence[str],
+    shape: tuple[int, ...],
+    columns: Sequence[Array],
+) -> None:
+    """Raises UserError for arrays that cannot take the results."""
+    for name, array in out.items():
+        where = f"out, {name}"
+        if name not in wanted:
+            raise UserError(f"is no result asked for; expected some of {' '.join(wanted)}", where)
+        dtype = np.dtype(np.uint16 if name == "STATUS" else np.float64)
+        if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
+            got = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array)
+            raise UserError(f"is {got}; expected an array of {dtype} {shape}", where)
+        if not (array.flags.c_contiguous and array.flags.writeable):
+            raise UserError("is not contiguous or not writable", where)
+        others = [*columns, *(other for key, other in out.items() if key != name)]
+        if any(np.may_share_memory(array, other) for other in others):
+            raise UserError("shares memory with a column or another result", where)
 
 
 def quantities(
@@ -133,8 +182,14 @@ def quantities(
 
 def _wanted(outputs: Sequence[str] | str | None) -> tuple[str, ...]:
     if outputs is None:
-        return tuple(RESULTS)
-    names = outputs.replace(",", " ").split() if isinstance(outputs, str) else list(outputs)
+        return ALL
+    names = outputs.replace(",", " ").split() if isinstance(outputs, str) else outputs
+    return _known(tuple(names))
+
+
+@lru_cache(maxsize=256)
+def _known(names: tuple[str, ...]) -> tuple[str, ...]:
+    """The names, each once. Raises UserError for one that is no result."""
     for name in names:
         if name not in RESULTS:
             raise UserError(f"{name!r} is no result name; expected some of {' '.join(RESULTS)}")
