@@ -308,3 +308,57 @@ def test_a_terminal_shows_what_is_typed_itself():
     machine.feed("1", "2")
     machine.run()
     assert machine.take_output() == "?\x000" + " " * 15 + "X\n?\x00"
+
+
+@pytest.mark.parametrize(
+    ("program", "name", "value"),
+    [
+        ("10DEF FN  ABX$)=1", "AB%", "0000000000"),
+        ('10 DEF FN A$(X)="Q"', "A%", "0000000000"),
+        ('10 PRINT MDFNE LID$("AABC",0BC",0)', "EL%", "0000000000"),
+        ("10 DEF FN A(X)=FN A(X-1)\n20 PRINT FN A(3)", "X", "83e0000000"),
+    ],
+)
+def test_variables_that_an_error_leaves(program, name, value):
+    """DEF FN with a string's name makes an integer variable; FN keeps its argument."""
+    machine, _ = session(program)
+    assert machine.value(name) == value
+
+
+def test_a_program_may_set_any_window():
+    program = "10 POKE 33,{}:POKE 32,{}:POKE 35,{}:POKE 34,{}:HOME:FOR I=1 TO 60:PRINT I:NEXT"
+    for window in ((40, 0, 24, 24), (0, 200, 255, 250), (255, 255, 0, 255), (33, 39, 1, 0)):
+        machine, shown = session(program.format(*window))
+        assert shown.endswith("60\n")
+        assert machine.screen_text().count("\n") == 24
+
+
+@pytest.mark.parametrize("address", range(2049, 2090))
+def test_a_program_may_poke_itself(address):
+    lines = '10 POKE {0},5:PRINT "X":GOTO 20\n20 FOR I=1 TO 3:PRINT I:NEXT:POKE {0},0\n30 PRINT "Y"'
+    machine, shown = session(lines.format(address), "LIST\nRUN\n20 PRINT\nLIST\nRUN\n")
+    assert shown
+    assert len(machine.machine.program) <= 5
+
+
+def test_errors_that_nobody_clears_away_take_no_memory():
+    machine = Applesoft()
+    machine.load("10 ONERR GOTO 10\n20 GOTO 999")
+    machine.machine.statements_left = 30_000
+    with pytest.raises(TooManyStatements):
+        machine.run()
+    assert len(machine.machine.control.frames) < 10
+
+
+def test_refusals_are_remembered_a_few_times():
+    machine = Applesoft()
+    machine.load("10 ONERR GOTO 20\n20 I=I+1:CALL I")
+    machine.machine.statements_left = 5_000
+    with pytest.raises(TooManyStatements):
+        machine.run()
+    assert len(machine.machine.refused) < 12
+
+
+def test_strings_lie_where_the_program_can_see_them():
+    program = '10 A$="AB"+"C":FOR I=49149 TO 49151:PRINT CHR$(PEEK(I));:NEXT:POKE 49150,90:PRINT A$'
+    assert displayed(program) == "ABCAZC\n"

@@ -6,6 +6,7 @@ bytes stand in a zero). This room knows that way, for `selfcheck` and for the te
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -99,18 +100,28 @@ def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Apple
     Returns the machine and all that was displayed after the echo of RUN up to the final prompt.
     ``blanks``: whether skipped columns are written as blanks.
     """
+    from ..applesoft.console import Keys
     from ..emulator.emulator import Applesoft
 
-    machine = Applesoft(blanks=blanks)
-    for line in program.split("\n"):
-        if line:
-            machine.type_line(line)
-    machine.take_output()
-    machine.feed_keys(keys)
-    machine.machine.statements_left = PLENTY
-    machine.run()
+    lines = deque(filter(None, program.split("\n")))
+    *replies, rest = keys.split("\n")
+    replies += [Keys(rest)] if rest else []
+
+    def keyboard() -> str | None:
+        if lines:
+            return lines.popleft()
+        if not start:
+            return None
+        machine.take_output()
+        machine.machine.statements_left = PLENTY
+        machine.feed(*replies)
+        return start.pop()
+
+    start = ["RUN"]
+
+    machine = Applesoft(keyboard, blanks=blanks)
     machine.prompt()
-    return machine, machine.take_output().removesuffix("\n]")
+    return machine, machine.take_output().removeprefix("RUN\n").removesuffix("\n]")
 
 
 def displayed(program: str, keys: str = "", *, blanks: bool = True) -> str:

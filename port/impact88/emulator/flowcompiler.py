@@ -13,6 +13,7 @@ IF_AT = 4
 ON_AT = 8
 LIMIT_AT = 8
 STEP_AT = 13
+TOO_LARGE = -1
 TO, THEN, STEP, GOTO, GOSUB = (TOKENS[word] for word in ("TO", "THEN", "STEP", "GOTO", "GOSUB"))
 
 
@@ -136,9 +137,8 @@ class FlowCompiler(LineCompiler):
             self._leave("run(None)")
             return
         self._emit("rerun()")
-        number = self._line_number()
-        if number is not None:
-            self._leave(f"run({number}, pc)")
+        number = self.reader.line_number()
+        self._leave(f"run({TOO_LARGE if number is None else number}, pc)")
 
     def _onerr(self) -> None:
         if not self.reader.take(GOTO):

@@ -17,6 +17,7 @@ from ..applesoft.real import Number, rounded
 from . import memory
 from .accumulator import AFTER_TYPING
 from .control import GOSUB_SIZE, Elsewhere
+from .flowcompiler import TOO_LARGE
 from .hardware import Hardware
 from .inputs import InputBreak
 from .linking import DIRECT, Halt, ProgramGone, Steps
@@ -363,7 +364,7 @@ class Machine(Hardware):
         if number is None:
             return 0
         try:
-            return self.code.first[number]
+            return self.code.first[number if number != TOO_LARGE else None]  # type: ignore[index]
         except ApplesoftError as error:
             # to say that a program runs now the machine takes 256 from the line number, also from
             # that of a line that runs already
