@@ -153,23 +153,23 @@ def _integer_in_power(left: Number, right: Number) -> int:
 
 
 def wrapped(accumulator: Accumulator, enter: Callable[[int], object]) -> dict[str, Any]:
-    """The names that careful steps use besides: work done ``at`` so many bytes down the stack,
+    """The names that careful steps use besides: work done so many bytes down the stack,
     which ``enter`` is told, and its result left in the accumulator."""
 
-    def number_at(at: int, function: Callable[..., Any], *operands: Any) -> Any:
-        enter(at)
+    def number_at(depth: int, function: Callable[..., Any], *operands: Any) -> Any:
+        enter(depth)
         result = accumulator.load(function(*operands))
         enter(0)
         return result
 
-    def string_at(at: int, function: Callable[..., Any], *operands: Any) -> Any:
-        enter(at)
+    def string_at(depth: int, function: Callable[..., Any], *operands: Any) -> Any:
+        enter(depth)
         result = accumulator.keep(function(*operands))
         enter(0)
         return result
 
-    def done_at(at: int, function: Callable[..., Any], *operands: Any) -> Any:
-        enter(at)
+    def done_at(depth: int, function: Callable[..., Any], *operands: Any) -> Any:
+        enter(depth)
         result = function(*operands)
         enter(0)
         return result

@@ -62,7 +62,7 @@ class Control:
         self.careful = False
         self.watched = False
         self.depth = 0
-        self.at = 0
+        self.formula_depth = 0
         self.assigned_page = 0
         self._values = variables.values
         self._variables = variables
@@ -84,9 +84,9 @@ class Control:
     def _must_be_careful(self) -> bool:
         return self.watched or self.pointer < self.safe
 
-    def enter(self, at: int) -> None:
-        """A formula is worked out ``at`` bytes down the stack."""
-        self.at = at
+    def enter(self, depth: int) -> None:
+        """A formula is worked out ``depth`` bytes down the stack."""
+        self.formula_depth = depth
 
     def assign(self, slot: int) -> None:
         """A simple variable is about to be assigned; the ROM keeps its address."""
@@ -105,22 +105,22 @@ class Control:
 
     # --- what careful steps ask ---------------------------------------------------------------
 
-    def room(self, at: int) -> None:
-        """Raises OUT OF MEMORY if a formula cannot begin ``at`` bytes down."""
-        self.at = at
-        if self.pointer - self.depth - at < ROOM:
+    def room(self, depth: int) -> None:
+        """Raises OUT OF MEMORY if a formula cannot begin ``depth`` bytes down."""
+        self.formula_depth = depth
+        if self.pointer - self.depth - depth < ROOM:
             raise ApplesoftError("OUT OF MEMORY")
-        self.at = 0
+        self.formula_depth = 0
 
     # --- FOR and NEXT -------------------------------------------------------------------------
 
     def begin_for(self, slot: int) -> None:
         """A loop with the same variable ends, and those inside it. Raises OUT OF MEMORY."""
         for n in range(len(self.frames) - 1, -1, -1):
-            found = self.frames[n].slot
-            if found < 0:
+            loop = self.frames[n].slot
+            if loop < 0:
                 break
-            if found == slot:
+            if loop == slot:
                 self._drop(n)
                 break
         if self.pointer < FOR_ROOM:
@@ -159,10 +159,10 @@ class Control:
         if slot >= 0:
             self._variables.place(slot)
         for n in range(len(self.frames) - 1, -1, -1):
-            found = self.frames[n].slot
-            if found < 0:
+            loop = self.frames[n].slot
+            if loop < 0:
                 break
-            if slot in (-1, found):
+            if slot in (-1, loop):
                 self._drop(n + 1)
                 return
         raise ApplesoftError("NEXT WITHOUT FOR")

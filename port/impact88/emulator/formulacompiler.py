@@ -11,7 +11,7 @@ Where the ROM takes a string for a number it takes what stands in its accumulato
 string just made, or what an earlier number left there. `residue` is the name for it; ``leftovers``
 says that a formula may ask for the latter.
 
-``at`` is how far below the statement's beginning the 6502 stack has come. In a *careful*
+``depth`` is how far below the statement's beginning the 6502 stack has come. In a *careful*
 compilation every formula looks at the stack before it goes deeper, and leaves its number in the
 accumulator.
 
@@ -91,7 +91,7 @@ class FormulaCompiler:
         self.constants: dict[str, Number | str] = {}
         self.deepest = 0
         self.leftovers = False
-        self._at = STATEMENT
+        self._depth = STATEMENT
         self._strings_compared = False
 
     # --- errors -------------------------------------------------------------------------------
@@ -100,7 +100,7 @@ class FormulaCompiler:
         """An operand that computes ``before`` and then raises, ``within`` bytes further down."""
         code = f"bad({kind!r})"
         if self.careful:
-            code = f"done_at({self._at + within}, bad, {kind!r})"
+            code = f"done_at({self._depth + within}, bad, {kind!r})"
         if before:
             code = f"({', '.join(operand.code for operand in before)}, {code})"
         return Operand(code, dead=True)
@@ -117,8 +117,8 @@ class FormulaCompiler:
         """Text for a call that is made where the formula now stands on the stack; ``leaves``: what
         it leaves in the accumulator."""
         if self.careful:
-            at = self._at + WITHIN.get(function, ELSEWHERE)
-            return f"{leaves}({', '.join((str(at), function, *operands))})"
+            depth = self._depth + WITHIN.get(function, ELSEWHERE)
+            return f"{leaves}({', '.join((str(depth), function, *operands))})"
         return f"{function}({', '.join(operands)})"
 
     def to_number(self, function: str, *operands: str) -> str:
@@ -151,7 +151,7 @@ class FormulaCompiler:
     def literal(self) -> Operand:
         """A string in the program, its opening quote read; typed without a line number, it has to
         be copied."""
-        offset = self.reader.at
+        offset = self.reader.position
         text = self.reader.string()
         if self.direct:
             name = f"t_{text.encode('latin-1').hex()}"
@@ -170,32 +170,32 @@ class FormulaCompiler:
 
     # --- formulas -----------------------------------------------------------------------------
 
-    def number(self, at: int) -> Operand:
+    def number(self, depth: int) -> Operand:
         """FRMNUM: a formula that must be a number."""
-        operand = self.formula(at)
+        operand = self.formula(depth)
         if not operand.dead and operand.kind == TEXT:
             return self.fails("TYPE MISMATCH", operand, within=7)
         return operand
 
-    def formula(self, at: int, last: int = 0) -> Operand:
+    def formula(self, depth: int, last: int = 0) -> Operand:
         """FRMEVL: a formula, up to an operator that does not bind closer than ``last``."""
-        before, self._at = self._at, at
-        operand = self._formula(at, last)
-        self._at = before
+        before, self._depth = self._depth, depth
+        operand = self._formula(depth, last)
+        self._depth = before
         return operand
 
-    def _formula(self, at: int, last: int) -> Operand:
-        self.deepest = max(self.deepest, at)
-        if at > STACK - ROOM:
+    def _formula(self, depth: int, last: int) -> Operand:
+        self.deepest = max(self.deepest, depth)
+        if depth > STACK - ROOM:
             return self.fails("OUT OF MEMORY")
-        left = self.element(at)
+        left = self.element(depth)
         self._strings_compared = False
         if self.careful:
-            left.code = f"(room({at}), {left.code})[1]"
+            left.code = f"(room({depth}), {left.code})[1]"
             left.truth = None
         reader = self.reader
         while not left.dead:
-            start = reader.at
+            start = reader.position
             byte = reader.peek()
             relation = 0
             if byte in RELATION_BITS:
@@ -205,7 +205,7 @@ class FormulaCompiler:
                 precedence, operator = RELATIONAL, ""
             elif byte == PLUS and left.kind == TEXT:
                 reader.skip()
-                left = self._join(left, at)
+                left = self._join(left, depth)
                 if self._strings_compared and not left.dead:
                     # the ROM still holds the flags of the comparison, and takes them for another
                     relation = ALL_RELATIONS
@@ -218,7 +218,7 @@ class FormulaCompiler:
             else:
                 break
             if precedence <= last:
-                reader.at = start
+                reader.position = start
                 if relation and left.kind == TEXT:
                     left = self.residue(left)
                     left.text_relation = True
@@ -226,7 +226,7 @@ class FormulaCompiler:
             if operator and left.kind == TEXT:
                 return self.fails("TYPE MISMATCH", left, within=2)
             of_text = left.kind == TEXT or left.text_relation
-            right = self.formula(at + PENDING, precedence)
+            right = self.formula(depth + PENDING, precedence)
             if right.dead:
                 return self.then(left, right)
             if relation:
@@ -270,11 +270,11 @@ class FormulaCompiler:
             return self.truth(f"({left.condition} {operator} {right.condition})")
         return Operand(self.to_number(operator, left.code, right.code))
 
-    def _join(self, left: Operand, at: int) -> Operand:
+    def _join(self, left: Operand, depth: int) -> Operand:
         """left + the next element, whatever operator stands before."""
-        self._at = at + 2
-        right = self.element(at + 2)
-        self._at = at
+        self._depth = depth + 2
+        right = self.element(depth + 2)
+        self._depth = depth
         if right.dead:
             return self.then(left, right)
         if right.kind == NUMBER:
@@ -285,7 +285,7 @@ class FormulaCompiler:
 
     # --- elements -----------------------------------------------------------------------------
 
-    def element(self, at: int) -> Operand:
+    def element(self, depth: int) -> Operand:
         """FRM_ELEMENT: a constant, a variable, a function, a sign or a parenthesis."""
         reader = self.reader
         while reader.take(PLUS):
@@ -294,13 +294,13 @@ class FormulaCompiler:
         if is_digit(byte) or byte == POINT:
             return self._constant()
         if is_letter(byte):
-            return self._variable(at)
+            return self._variable(depth)
         if byte == QUOTE:
             reader.skip()
             return self.literal()
         if byte in (MINUS, NOT):
             reader.skip()
-            operand = self.formula(at + PENDING, HIGHEST)
+            operand = self.formula(depth + PENDING, HIGHEST)
             if operand.dead:
                 return operand
             if operand.kind == TEXT:
@@ -310,16 +310,16 @@ class FormulaCompiler:
                 return Operand(code, rounded=operand.rounded)
             return self.truth(f"(not {operand.condition})")
         if byte == FN:
-            return self._call(at)
+            return self._call(depth)
         if byte >= FIRST_FUNCTION:
             reader.skip()
-            return self._function(byte, at)
-        return self._parenthesis(at + PARENTHESIS)
+            return self._function(byte, depth)
+        return self._parenthesis(depth + PARENTHESIS)
 
     def _constant(self) -> Operand:
         reader = self.reader
         try:
-            value, reader.at = decimaltext.read(reader.number_text, reader.at)
+            value, reader.position = decimaltext.read(reader.number_text, reader.position)
         except ApplesoftError as error:
             return self.fails(error.kind)
         whole = None
@@ -329,15 +329,15 @@ class FormulaCompiler:
         code = self.loaded(self.real(value))
         return Operand(code, rounded=not m & 0xFF, whole=None if self.careful else whole)
 
-    def _parenthesis(self, at: int) -> Operand:
+    def _parenthesis(self, depth: int) -> Operand:
         """PARCHK: a formula in parentheses."""
         if not self.reader.take(OPEN):
-            return self.fails("SYNTAX", within=max(ELSEWHERE, at - self._at))
-        inner = self.formula(at)
+            return self.fails("SYNTAX", within=max(ELSEWHERE, depth - self._depth))
+        inner = self.formula(depth)
         if inner.dead:
             return inner
         if not self.reader.take(CLOSE):
-            return self.fails("SYNTAX", inner, within=at - self._at - 2)
+            return self.fails("SYNTAX", inner, within=depth - self._depth - 2)
         return inner
 
     # --- variables ----------------------------------------------------------------------------
@@ -352,13 +352,13 @@ class FormulaCompiler:
                 return name, kind
         return name, REAL
 
-    def _variable(self, at: int) -> Operand:
-        found = self.variable_name()
-        assert found is not None
-        name, kind = found
+    def _variable(self, depth: int) -> Operand:
+        variable = self.variable_name()
+        assert variable is not None
+        name, kind = variable
         value_kind = TEXT if kind == STRING else NUMBER
         if self.reader.peek() == OPEN:
-            subscripts = self.subscripts(at + 16)
+            subscripts = self.subscripts(depth + 16)
             if isinstance(subscripts, Operand):
                 return subscripts
             function = f"value{len(subscripts)}" if len(subscripts) < 3 else "value"
@@ -370,12 +370,12 @@ class FormulaCompiler:
             code = self.loaded(code)
         return Operand(code, value_kind, rounded=True, variable=kind == STRING)
 
-    def subscripts(self, at: int) -> list[str] | Operand:
+    def subscripts(self, depth: int) -> list[str] | Operand:
         """Text for each subscript, from the parenthesis on; a dead operand if one fails."""
         self.reader.skip()
         subscripts: list[Operand] = []
         while True:
-            operand = self.number(at + 2 * len(subscripts))
+            operand = self.number(depth + 2 * len(subscripts))
             if operand.dead:
                 return self.then(*subscripts, operand)
             if operand.whole is not None:
@@ -405,26 +405,26 @@ class FormulaCompiler:
             return -1, self.fails("TYPE MISMATCH", place)
         return SIMPLE.slot(name, FUNCTION), None
 
-    def _call(self, at: int) -> Operand:
+    def _call(self, depth: int) -> Operand:
         self.reader.skip()
         slot, refused = self.function_name()
         if refused is not None:
             return refused
         place = Operand(f"place({slot})")
-        argument = self._parenthesis(at + 9)
+        argument = self._parenthesis(depth + 9)
         if argument.dead:
             return self.then(place, argument)
         if argument.kind == TEXT:
             return self.fails("TYPE MISMATCH", place, argument)
         name = f"place({slot})[1]"
-        return Operand(self.to_number("call", name, argument.code, str(at + 16)))
+        return Operand(self.to_number("call", name, argument.code, str(depth + 16)))
 
-    def _function(self, token: int, at: int) -> Operand:
+    def _function(self, token: int, depth: int) -> Operand:
         """A function of one argument. Most are worked out before the ROM sees that the argument
         was a string; CHR$, PEEK and those of ANYTHING never look."""
         if token in SLICES:
-            return self._slice(SLICES[token], at)
-        argument = self._parenthesis(at + 8)
+            return self._slice(SLICES[token], depth)
+        argument = self._parenthesis(depth + 8)
         if argument.dead:
             return argument
         if token == TOKENS["FRE"]:
@@ -459,12 +459,12 @@ class FormulaCompiler:
         value = Operand(code, rounded=token == TOKENS["PEEK"])
         return self.fails("TYPE MISMATCH", value) if text and token != TOKENS["PEEK"] else value
 
-    def _slice(self, function: str, at: int) -> Operand:
+    def _slice(self, function: str, depth: int) -> Operand:
         """LEFT$, RIGHT$ and MID$."""
         reader = self.reader
         if not reader.take(OPEN):
             return self.fails("SYNTAX")
-        text = self.formula(at + 6)
+        text = self.formula(depth + 6)
         if text.dead:
             return text
         if not reader.take(COMMA):
@@ -473,7 +473,7 @@ class FormulaCompiler:
             return self.fails("TYPE MISMATCH", text, within=6)
         arguments = [text]
         last = None
-        for place in (at + 12, at + 14):
+        for place in (depth + 12, depth + 14):
             last = self.number(place)
             n = self._as_int("byte", 255, last, within=8)
             if n.dead:
@@ -490,13 +490,13 @@ class FormulaCompiler:
         codes[-1] = self.at_depth("byte_", last.code)
         return Operand(code, TEXT, tracked=self.to_string(function, *codes))
 
-    def byte(self, at: int) -> Operand:
+    def byte(self, depth: int) -> Operand:
         """GETBYT: a number from 0 to 255, as text for an int."""
-        return self._as_int("byte", 255, self.number(at))
+        return self._as_int("byte", 255, self.number(depth))
 
-    def address(self, at: int) -> Operand:
+    def address(self, depth: int) -> Operand:
         """GETADR: a 16-bit address, as text for an int."""
-        return self._as_int("address", 32767, self.number(at))
+        return self._as_int("address", 32767, self.number(depth))
 
     def _as_int(
         self, function: str, limit: int, operand: Operand, *, within: int = ELSEWHERE
@@ -507,5 +507,5 @@ class FormulaCompiler:
             return Operand(str(operand.whole))
         code = f"{function}({operand.code})"
         if self.careful:
-            code = f"done_at({self._at + within}, {function}, {operand.code})"
+            code = f"done_at({self._depth + within}, {function}, {operand.code})"
         return Operand(code)

@@ -47,23 +47,23 @@ class BadReply(ApplesoftError):
         return BAD_REPLY
 
 
-def _blanks(text: str, at: int) -> int:
-    while text[at : at + 1] == " ":
-        at += 1
-    return at
+def _blanks(text: str, position: int) -> int:
+    while text[position : position + 1] == " ":
+        position += 1
+    return position
 
 
-def _string(text: str, at: int) -> tuple[int, int, int]:
-    """Where the string at ``at`` begins and ends, and where what follows it does."""
-    if text[at : at + 1] == '"':
-        start = end = at + 1
+def _string(text: str, position: int) -> tuple[int, int, int]:
+    """Where the string at ``position`` begins and ends, and where what follows it does."""
+    if text[position : position + 1] == '"':
+        start = end = position + 1
         while text[end : end + 1] not in ('"', "", "\0"):
             end += 1
         return start, end, end + 1 if text[end : end + 1] == '"' else end
-    end = at
+    end = position
     while text[end : end + 1] not in (*_ENDS, ","):
         end += 1
-    return at, end, end
+    return position, end, end
 
 
 class Inputs:
@@ -94,11 +94,13 @@ class Inputs:
         """RESTORE: READ begins with the first DATA again."""
         self.pointer = START - 1
 
-    def _take(self, kind: str, place: Place, text: str, at: int, *, literal: bool = False) -> int:
-        """Read a value of a kind at ``at``, store it, and return where it ends, blanks passed."""
+    def _take(
+        self, kind: str, place: Place, text: str, position: int, *, literal: bool = False
+    ) -> int:
+        """Read a value of a kind and store it; return where it ends, blanks passed."""
         values, index = place
         if kind == STRING:
-            start, end, at = _string(text, at)
+            start, end, position = _string(text, position)
             strings = self._strings
             if literal:
                 string = strings.temporary(end - start, START - 1 + start)
@@ -106,9 +108,9 @@ class Inputs:
                 string = strings.made(text[start:end])
             values[index] = strings.kept(string)
         else:
-            number, at = decimaltext.read(text, at)
+            number, position = decimaltext.read(text, position)
             values[index] = whole(number) if kind == INTEGER else rounded(number)
-        return _blanks(text, at)
+        return _blanks(text, position)
 
     # --- READ ---------------------------------------------------------------------------------
 
@@ -118,33 +120,33 @@ class Inputs:
             self._image = self._program.image
             self._text = "\0" + self._image.decode("latin-1")
         text = self._text
-        at = self.pointer - (START - 1)
+        position = self.pointer - (START - 1)
         for kind, where in items:
             place = where()
-            at = _blanks(text, at)
-            if text[at] in _ENDS:
-                at = self._next_data(at)
-            at = self._take(kind, place, text, _blanks(text, at + 1), literal=True)
-            if text[at] not in (*_ENDS, ","):
+            position = _blanks(text, position)
+            if text[position] in _ENDS:
+                position = self._next_data(position)
+            position = self._take(kind, place, text, _blanks(text, position + 1), literal=True)
+            if text[position] not in (*_ENDS, ","):
                 raise ApplesoftError("SYNTAX", self.data_line)
-        self.pointer = at + START - 1
+        self.pointer = position + START - 1
 
-    def _next_data(self, at: int) -> int:
+    def _next_data(self, position: int) -> int:
         """Where the next DATA stands."""
         text = self._text
         while True:
             quoted = False
-            while text[at] != "\0" and (quoted or text[at] != ":"):
-                quoted ^= text[at] == '"'
-                at += 1
-            if text[at] == "\0":
-                if text[at + 2 : at + 3] in ("", "\0"):
+            while text[position] != "\0" and (quoted or text[position] != ":"):
+                quoted ^= text[position] == '"'
+                position += 1
+            if text[position] == "\0":
+                if text[position + 2 : position + 3] in ("", "\0"):
                     raise ApplesoftError("OUT OF DATA")
-                self.data_line = ord(text[at + 3]) + 256 * ord(text[at + 4])
-                at += 4
-            at += 1
-            if text[at] == _DATA:
-                return at
+                self.data_line = ord(text[position + 3]) + 256 * ord(text[position + 4])
+                position += 4
+            position += 1
+            if text[position] == _DATA:
+                return position
 
     # --- INPUT --------------------------------------------------------------------------------
 
@@ -157,23 +159,23 @@ class Inputs:
             raise InputBreak from None
         if text.startswith(CONTROL_C):
             raise InputBreak
-        at = -1
+        position = -1
         for kind, where in items:
             place = where()
-            if at >= 0 and text[at : at + 1] in _ENDS:
+            if position >= 0 and text[position : position + 1] in _ENDS:
                 self._put("??")
                 text = console.read_line()
-                at = -1
+                position = -1
             refused = kind != STRING and not text
             if not refused:
-                at = self._take(kind, place, text, _blanks(text, at + 1))
-                refused = text[at : at + 1] not in (*_ENDS, ",")
+                position = self._take(kind, place, text, _blanks(text, position + 1))
+                refused = text[position : position + 1] not in (*_ENDS, ",")
             if refused:
                 if self._onerr():
                     raise BadReply
                 self._put("?REENTER\n")
                 return True
-        if at < len(text):
+        if position < len(text):
             self._put("?EXTRA IGNORED\n")
         return False
 
@@ -181,17 +183,17 @@ class Inputs:
 
     def get(self, items: Items) -> None:
         """GET. Raises SYNTAX, as if at the prompt, for a key that begins no number."""
-        at = 0
+        position = 0
         key = ""
         for kind, where in items:
             values, index = where()
             key = chr(ord(self._console.read_key()) & 0x7F).rstrip("\0")
             if kind == STRING:
                 values[index] = self._strings.kept(self._strings.made(key))
-                at = len(key)
+                position = len(key)
                 continue
-            at = self._take(kind, (values, index), key, _blanks(key, 0))
-            if key[at : at + 1] not in (*_ENDS, ","):
+            position = self._take(kind, (values, index), key, _blanks(key, 0))
+            if key[position : position + 1] not in (*_ENDS, ","):
                 raise ApplesoftError("SYNTAX", DIRECT_AFTER_GET)
-        if at < len(key):
+        if position < len(key):
             self._put("?EXTRA IGNORED\n")

@@ -50,7 +50,7 @@ class LineCompiler:
     # --- steps --------------------------------------------------------------------------------
 
     def _begin(self, begins: bool) -> None:
-        self.steps.append(Step(begins, self.reader.at - 1))
+        self.steps.append(Step(begins, self.reader.position - 1))
         self.formulas.deepest = 0
 
     def _end_step(self) -> None:
@@ -81,17 +81,17 @@ class LineCompiler:
 
     # --- LET and variables --------------------------------------------------------------------
 
-    def _target(self, at: int = TARGET_AT, *, simple: bool = False) -> tuple[str, str] | Operand:
+    def _target(self, depth: int = TARGET_AT, *, simple: bool = False) -> tuple[str, str] | Operand:
         """PTRGET: kind of the variable that comes next, and text for its place (list and index)."""
-        found = self.formulas.variable_name()
-        if found is None:
+        variable = self.formulas.variable_name()
+        if variable is None:
             return self.formulas.fails("SYNTAX")
-        name, kind = found
+        name, kind = variable
         if simple and kind == INTEGER:
             return self.formulas.fails("SYNTAX")
         if simple or self.reader.peek() != OPEN:
             return kind, f"place({SIMPLE.slot(name, kind)})"
-        subscripts = self.formulas.subscripts(at)
+        subscripts = self.formulas.subscripts(depth)
         if isinstance(subscripts, Operand):
             return subscripts
         function = f"element{len(subscripts)}" if len(subscripts) < 3 else "element"

@@ -77,7 +77,7 @@ class InputBuffer(bytearray):
         """Where the statement ends that goes on at a position."""
         reader = Reader(self.rest(position))
         reader.skip_statement()
-        return position + reader.at
+        return position + reader.position
 
 
 class Steps:
@@ -161,18 +161,18 @@ class Steps:
         """A line's steps; returns how deep they go into the stack. The line's own positions are
         ``shift`` less than those kept."""
         line = compiled(tokens, direct=number == DIRECT)
-        at = len(self.steps)
+        first = len(self.steps)
         count = len(line.begins)
-        self._sources.append((number, tokens, at))
+        self._sources.append((number, tokens, first))
         self.steps += line.functions(self._names)
         self.begins += line.begins
         self.traced += line.traced
         self.lines += [number] * count
-        self.after += [at + count] * count
+        self.after += [first + count] * count
         self.base += [base] * count
         self.position += [position + shift for position in line.positions]
         self.leftovers |= line.leftovers
-        for n, begins in enumerate(line.begins, at):
+        for n, begins in enumerate(line.begins, first):
             self.start.append(n if begins else self.start[-1])
         return max(line.needs)
 

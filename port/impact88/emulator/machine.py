@@ -208,7 +208,7 @@ class Machine(Hardware):
         if self.tracing and code.traced[pc] and not direct:
             self.output.put(f"#{self.line_of(pc)} ")
         steps = code.careful() if self.control.careful else code.steps
-        self.control.at = 0
+        self.control.formula_depth = 0
         entered = self._entered
         following = pc
         try:
@@ -246,7 +246,7 @@ class Machine(Hardware):
 
     def _handle(self, error: ApplesoftError, pc: int) -> int:
         """An error: to ONERR's line, or to the prompt (-1) with a message."""
-        depth, self.control.depth = self.control.depth + self.control.at, 0
+        depth, self.control.depth = self.control.depth + self.control.formula_depth, 0
         actual = self.code.lines[pc]
         line = self.line_of(pc) if error.line is None else error.line
         if self.errors.on:
@@ -445,21 +445,21 @@ class Machine(Hardware):
 
     # --- functions and memory -----------------------------------------------------------------
 
-    def call_function(self, slot: int, argument: Number, at: int) -> Number:
-        """FN, ``at`` bytes down the stack. Raises UNDEF'D FUNCTION and OUT OF MEMORY, and leaves
+    def call_function(self, slot: int, argument: Number, depth: int) -> Number:
+        """FN, ``depth`` bytes down the stack. Raises UNDEF'D FUNCTION and OUT OF MEMORY, and leaves
         the argument as it is then."""
         values, control = self.variables.values, self.control
         function = values[slot]
         if function is None:
             raise ApplesoftError("UNDEF'D FUNCTION")
-        control.depth += at
+        control.depth += depth
         saved = values[function.argument]
         values[function.argument] = rounded(argument)
         if control.pointer - control.depth - function.need < ROOM:
             raise ApplesoftError("OUT OF MEMORY")
         result: Number = function.body()
         values[function.argument] = saved
-        control.depth -= at
+        control.depth -= depth
         return result
 
     def value(self, string: Descriptor) -> Number:

@@ -32,25 +32,25 @@ class Reader:
 
     def __init__(self, tokens: bytes) -> None:
         self.tokens = tokens + b"\0"
-        self.at = 0
+        self.position = 0
         # where a number is read, + and - are tokens
         self.number_text = self.tokens.translate(_NUMBER_TEXT).decode("ascii")
 
     def peek(self) -> int:
         """The next byte that is no blank; 0 at the line's end."""
-        while self.tokens[self.at] == _BLANK:
-            self.at += 1
-        return self.tokens[self.at]
+        while self.tokens[self.position] == _BLANK:
+            self.position += 1
+        return self.tokens[self.position]
 
     def skip(self) -> None:
         """Past the byte that `peek` showed."""
-        self.at += 1
+        self.position += 1
 
     def take(self, byte: int) -> bool:
         """Past ``byte`` if it is next; whether it was."""
         if self.peek() != byte:
             return False
-        self.at += 1
+        self.position += 1
         return True
 
     def at_end(self) -> bool:
@@ -60,16 +60,16 @@ class Reader:
     def skip_statement(self) -> None:
         """DATAN: to the next colon outside quotes, or the line's end."""
         quoted = False
-        while byte := self.tokens[self.at]:
+        while byte := self.tokens[self.position]:
             if byte == COLON and not quoted:
                 return
             if byte == QUOTE:
                 quoted = not quoted
-            self.at += 1
+            self.position += 1
 
     def skip_line(self) -> None:
         """To the line's end."""
-        self.at = len(self.tokens) - 1
+        self.position = len(self.tokens) - 1
 
     def line_number(self) -> int | None:
         """LINGET: the digits that come next, 0 if none; None past 63999."""
@@ -85,19 +85,19 @@ class Reader:
         """The letters and digits of a name, None if no letter comes next."""
         if not is_letter(self.peek()):
             return None
-        start = self.at
+        start = self.position
         self.skip()
         while is_letter(byte := self.peek()) or is_digit(byte):
             self.skip()
-        return self.tokens[start : self.at].replace(b" ", b"").decode("ascii")
+        return self.tokens[start : self.position].replace(b" ", b"").decode("ascii")
 
     def string(self) -> str:
         """The text of a string after its opening quote, past the closing one if there is one."""
-        end = self.tokens.find(b'"', self.at)
+        end = self.tokens.find(b'"', self.position)
         if end < 0:
-            text = self.tokens[self.at : -1]
+            text = self.tokens[self.position : -1]
             self.skip_line()
         else:
-            text = self.tokens[self.at : end]
-            self.at = end + 1
+            text = self.tokens[self.position : end]
+            self.position = end + 1
         return text.decode("latin-1")

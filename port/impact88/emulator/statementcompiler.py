@@ -34,7 +34,7 @@ class StatementCompiler(FlowCompiler, DeviceCompiler):
             self._begin(True)
             self._statement()
             self._end_step()
-            if self._over or not reader.tokens[reader.at :].strip(b" \0"):
+            if self._over or not reader.tokens[reader.position :].strip(b" \0"):
                 return
             if not reader.at_end():
                 self._begin(True)
@@ -73,11 +73,11 @@ class StatementCompiler(FlowCompiler, DeviceCompiler):
     def _dim(self) -> None:
         reader = self.reader
         while True:
-            found = self.formulas.variable_name()
-            if found is None:
+            variable = self.formulas.variable_name()
+            if variable is None:
                 self._fail("SYNTAX")
                 return
-            name, kind = found
+            name, kind = variable
             if reader.peek() == OPEN:
                 sizes = self.formulas.subscripts(TARGET_AT)
                 if isinstance(sizes, Operand):
@@ -124,13 +124,13 @@ class StatementCompiler(FlowCompiler, DeviceCompiler):
     def _body(self, slot: int, argument: int) -> None:
         """The formula of DEF FN. It is read when the function is called, so errors show then."""
         reader, formulas = self.reader, self.formulas
-        start, depth = reader.at, formulas.deepest
+        start, depth = reader.position, formulas.deepest
         formulas.deepest = 0
         body = formulas.number(0)
         if not body.dead and not reader.at_end():
             body = formulas.fails("SYNTAX", body)
         self._emit(f"V[{slot}] = Function({argument}, lambda: {body.code}, {formulas.deepest})")
-        reader.at, formulas.deepest = start, depth
+        reader.position, formulas.deepest = start, depth
         reader.skip_statement()
 
     def _data(self) -> None:

@@ -46,17 +46,17 @@ _QUOTE = '"'
 def _keyword(text: str, start: int) -> tuple[int, int] | None:
     """Token and end of the keyword at ``start``, blanks passed over, or None."""
     for word, token in _BY_LETTER.get(text[start], ()):
-        at = start
+        position = start
         for letter in word:
-            while text[at : at + 1] == " ":
-                at += 1
-            if text[at : at + 1] != letter:
+            while text[position : position + 1] == " ":
+                position += 1
+            if text[position : position + 1] != letter:
                 break
-            at += 1
+            position += 1
         else:
-            if token == AT and text[at : at + 1] in ("N", "O"):
+            if token == AT and text[position : position + 1] in ("N", "O"):
                 continue
-            return token, at
+            return token, position
     return None
 
 
@@ -64,39 +64,39 @@ def _keyword(text: str, start: int) -> tuple[int, int] | None:
 def tokenise(text: str) -> bytes:
     """The bytes of a line's statements as the ROM's parser leaves them, without the final zero."""
     out = bytearray()
-    at = 0
+    position = 0
     in_data = False
-    while at < len(text):
-        character = text[at]
+    while position < len(text):
+        character = text[position]
         if character == " " and not in_data:
-            at += 1
+            position += 1
         elif character == _QUOTE:
-            at = _copy(text, at, _QUOTE, out)
+            position = _copy(text, position, _QUOTE, out)
         elif in_data or "0" <= character <= ";":
             out.append(ord(character) & 0x7F)
-            at += 1
+            position += 1
             if character == ":":
                 in_data = False
         elif character == "?":
             out.append(PRINT)
-            at += 1
-        elif found := _keyword(text, at):
-            token, at = found
+            position += 1
+        elif keyword := _keyword(text, position):
+            token, position = keyword
             out.append(token)
             in_data = token == DATA
             if token == REM:
-                at = _copy(text, at, "", out)
+                position = _copy(text, position, "", out)
         else:
             out.append(ord(character) & 0x7F)
-            at += 1
+            position += 1
     return bytes(out)
 
 
-def _copy(text: str, at: int, until: str, out: bytearray) -> int:
-    """Copy up to and including the ``until`` after ``at``, or to the end; return where that is."""
-    end = text.find(until, at + 1) + 1 if until else 0
+def _copy(text: str, position: int, until: str, out: bytearray) -> int:
+    """Copy up to and including the next ``until``, or to the end; return where that is."""
+    end = text.find(until, position + 1) + 1 if until else 0
     end = end or len(text)
-    out += bytes(ord(character) & 0x7F for character in text[at:end])
+    out += bytes(ord(character) & 0x7F for character in text[position:end])
     return end
 
 
@@ -106,11 +106,11 @@ def split_number(text: str) -> tuple[int, str] | None:
     Blanks before and within the number do not count. Raises ValueError past 63999.
     """
     number = None
-    for at, character in enumerate(text):
+    for position, character in enumerate(text):
         if character == " ":
             continue
         if not "0" <= character <= "9":
-            return None if number is None else (number, text[at:])
+            return None if number is None else (number, text[position:])
         if (number or 0) >= (LAST_LINE + 1) // 10:
             raise ValueError("a line number goes up to 63999")
         number = 10 * (number or 0) + int(character)

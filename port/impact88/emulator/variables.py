@@ -61,7 +61,7 @@ class Variables:
         self.order: list[int] = []
         self.array_order: list[int] = []
         self.start = 0
-        self.found: int | None = None
+        self.found_slot: int | None = None
         self._end = 0
         self._arrays_size = 0
         self.strings = StringArea(ram, TOP_OF_MEMORY, self.end_of_arrays, self._held)
@@ -143,14 +143,14 @@ class Variables:
 
     def find(self, slot: int) -> int:
         """A simple variable is looked up; the ROM keeps its address."""
-        self.found = slot
+        self.found_slot = slot
         return slot
 
     def found_address(self) -> int:
         """The address of the value of the variable found last."""
-        if self.found is None or not self.made[self.found]:
+        if self.found_slot is None or not self.made[self.found_slot]:
             return EMPTY.address
-        return self.address_of(self.found)
+        return self.address_of(self.found_slot)
 
     def address_of(self, slot: int) -> int:
         """Where a simple variable's value lies."""
@@ -233,17 +233,17 @@ class Variables:
         sizes = array[0]
         if len(sizes) != len(subscripts):
             raise ApplesoftError("BAD SUBSCRIPT")
-        at = 0
+        index = 0
         for i, size in zip(reversed(subscripts), reversed(sizes), strict=True):
             if i >= size:
                 raise ApplesoftError("BAD SUBSCRIPT")
-            at = at * size + i
-        return array[1], at
+            index = index * size + i
+        return array[1], index
 
     def value1(self, slot: int, i: int) -> Any:
         """The value of an element with one subscript."""
-        data, at = self.element1(slot, i)
-        return data[at]
+        data, index = self.element1(slot, i)
+        return data[index]
 
     def value2(self, slot: int, i: int, j: int) -> Any:
         """The value of an element with two subscripts."""
@@ -257,8 +257,8 @@ class Variables:
 
     def value(self, slot: int, *subscripts: int) -> Any:
         """The value of any element."""
-        data, at = self.element(slot, *subscripts)
-        return data[at]
+        data, index = self.element(slot, *subscripts)
+        return data[index]
 
 
 def whole(x: Number) -> Number:

@@ -111,14 +111,14 @@ def start(
             raise
         error.line = stepping.line_of(exception.__traceback__)
         names = stepping.names_in(exception.__traceback__)
-    left = stepping.variables(names, chosen.unset)
+    values = stepping.variables(names, chosen.unset)
     if error is not None and error.line is not None:
         asked = console.reply.begun if console.reply else None
-        begun = stepping.begun_assignment(error.line, left.reals, asked)
+        begun = stepping.begun_assignment(error.line, values.reals, asked)
         if begun:
-            left = stepping.Variables({**left.reals, begun: chosen.zero}, left.A)
+            values = stepping.Variables({**values.reals, begun: chosen.zero}, values.A)
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
-    return error, zero_determinant, left
+    return error, zero_determinant, values
 
 
 def run(
@@ -139,25 +139,25 @@ def run(
     characters: list[str] = []
     replies = iter(scene.keyboard())
     console = Console(lambda: next(replies, None), characters.append, dos=dos)
-    error, zero_determinant, left = start(scene, console, arithmetic, str(slot), after_line)
-    return finished("".join(characters), error, zero_determinant, left)
+    error, zero_determinant, values = start(scene, console, arithmetic, str(slot), after_line)
+    return finished("".join(characters), error, zero_determinant, values)
 
 
 def finished(
     printout: str,
     error: ApplesoftError | None,
     zero_determinant: bool,
-    left: stepping.Variables,
+    values: stepping.Variables,
 ) -> Run:
     """The Run that `start`'s results amount to, its numbers in the captures' form."""
     return Run(
         printout,
         error.message if error else None,
         error.line if error else None,
-        {name: _shown(value) for name, value in left.reals.items()},
+        {name: _shown(value) for name, value in values.reals.items()},
         None
-        if left.A is None
-        else {"dims": left.A.sizes, "data": [_shown(value) for value in left.A.data]},
+        if values.A is None
+        else {"dims": values.A.sizes, "data": [_shown(value) for value in values.A.data]},
         zero_determinant,
     )
 
