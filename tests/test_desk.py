@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import json
+import re
 import signal
 import socket
 import subprocess
@@ -17,6 +19,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from impact88 import schemas
 from impact88.errors import UserError
 from impact88.names import SCENE, VELOCITIES
 from impact88.program.run import run
@@ -27,7 +30,7 @@ from installed import impact88 as command
 pytest.importorskip("flask", reason="the desk's extra is not installed")
 pytest.importorskip("waitress", reason="the desk's extra is not installed")
 
-from impact88.desk import app, bench, collision, guard, reconstruction, serving
+from impact88.desk import app, bench, collision, guard, paper, reconstruction, serving
 
 PORT, TOKEN = 8088, "a-token"
 OWN = f"http://127.0.0.1:{PORT}"
@@ -159,9 +162,9 @@ def test_a_published_run_is_answered_with_the_programs_own_printout(number: int)
     assert told["problems"] == {}
     assert told["missing"] == told["ranges"] == []
     assert told["oracle"]["printout"] == run(sample(number)).printout
+    assert told["page"] == command("run", "--sample", str(number)).stdout
     printed = {row["name"]: row["printed"] for row in told["results"]}
     assert all(text in told["page"] for text in printed.values())
-    assert all(character == "\n" or character >= " " for character in told["page"])
 
 
 @pytest.mark.parametrize(
@@ -201,6 +204,39 @@ def test_a_range_goes_to_the_bounds_and_its_middle_to_the_program() -> None:
         collision.bounds_answer(dict(sample(1)))
 
 
+def test_units_are_the_commands_units(client: Client, tmp_path: Path) -> None:
+    values = {**sample(1), "UX": "-19.8 mph"}
+    mixed = collision.answer(values)
+    assert list(mixed["problems"]) == ["units"]
+    assert "has no unit" in mixed["problems"]["units"]
+    values = {**sample(1), "UX": "-19.8", "VX": "9.9", "VY": "17 +- 1"}
+    told = collision.answer(values, "us")
+    assert told["problems"] == {}
+    assert told["units"]["base"] == "ft, slug, s"
+    assert told["units"]["labels"]["length/time"] == "mph"
+    assert told["oracle"]["scene"]["UX"] == "-29.04"
+    shown = {row["name"]: row["shown"] for row in told["results"]}
+    exact = {row["name"]: float(row["exact"]) for row in told["results"]}
+    amount, unit = shown["VAX"].split()
+    assert unit == "mph"
+    assert float(amount) == pytest.approx(exact["VAX"] * 3600 / 5280, rel=1e-5)
+    plain = {**values, "VY": "17"}
+    saved = client.post("scene-file", {"values": plain, "title": "", "units": "us"})
+    (tmp_path / "scene.toml").write_bytes(saved.data)
+    printed = command("run", "scene.toml", cwd=tmp_path).stdout
+    assert printed == collision.answer(plain, "us")["page"]
+    assert client.post("scene?name=s", saved.data).json["units"] == "us"
+    wrong = collision.answer({**values, "MA": "3 ft"}, "us")
+    assert list(wrong["problems"]) == ["MA"]
+
+
+def test_a_contact_point_in_a_vehicles_own_axes_is_worked_out(client: Client) -> None:
+    text = "".join(f'{n} = "{t}"\n' for n, t in sample(1).items() if n not in ("DA", "PA"))
+    read = client.post("scene?name=s", (text + "CAF = 3\nCAL = 4\n").encode()).json
+    assert float(read["values"]["DA"]) == 5
+    assert float(read["values"]["PA"]) == pytest.approx(53.13010235)
+
+
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_a_scene_saved_is_the_commands_own_file(client: Client, number: int) -> None:
     scene = client.post(f"sample/{number}").json
@@ -215,7 +251,7 @@ def test_a_scene_file_with_ranges_is_read_again(client: Client) -> None:
     title = "box 7, \"the\" \\ '''file''' # 3"
     saved = client.post("scene-file", {"values": values, "title": title})
     again = client.post("scene?name=s", saved.data).json
-    assert again == {"values": values, "title": title}
+    assert again == {"values": values, "title": title, "units": ""}
 
 
 @pytest.mark.parametrize(
@@ -241,6 +277,24 @@ def test_the_figure_is_the_commands_own(client: Client, tmp_path: Any) -> None:
     assert drawn.get_data(as_text=True) == element
 
 
+def test_what_the_page_is_answered_follows_the_published_schemas() -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+
+    def check(name: str, whole: Any) -> None:
+        assert whole["schema"] == f"impact88/{name}/{schemas.NUMBERS[name]}"
+        jsonschema.validate(json.loads(json.dumps(whole)), json.loads(schemas.text(name)))
+
+    ranged = {**sample(1), "MU": "0.7 .. 0.9"}
+    known = reconstruction.known_of_sample(1)["values"]
+    check("oracle", collision.answer(ranged)["oracle"])
+    check("bounds", collision.bounds_answer(ranged))
+    check("reconstruct", reconstruction.answer(known)["object"])
+    check("reconstruct", reconstruction.answer({**known, "VAX": "-13 +- 1"})["object"])
+    for data in (RUN1, RUN1.replace(b"3.449", b"3.549"), RUN1[:300], b"nothing"):
+        for whole in paper.judged("page.txt", coded(data))["objects"]:
+            check("verify", whole)
+
+
 # --- the reconstruction -------------------------------------------------------------------------
 
 
@@ -257,8 +311,7 @@ def test_a_reconstruction_is_the_commands_own(changes: dict[str, str], tmp_path:
     printed = command("reconstruct", "known.toml", cwd=tmp_path)
     assert [one["printed"] for one in told["solutions"]] == [printed.stdout.rstrip("\n")]
     theirs = json.loads(command("reconstruct", "--json", "known.toml", cwd=tmp_path).stdout)
-    whole = [one["object"] for one in told["solutions"]]
-    assert json.loads(json.dumps(whole)) == theirs["solutions"]
+    assert json.loads(json.dumps(told["object"])) == theirs
     assert bool(told["solutions"][0]["adjusted"]) == bool(changes)
 
 
@@ -290,11 +343,28 @@ def test_each_known_value_is_judged_alone(name: str, text: str, problem: str | N
     assert bool(told["solutions"]) == (problem is None)
 
 
+def test_a_reconstruction_answers_in_its_units(tmp_path: Path) -> None:
+    known = {**reconstruction.known_of_sample(3)["values"], "VAX": "-5.1 +- 1"}
+    told = reconstruction.answer(known, "us")
+    (tmp_path / "known.toml").write_text('units = "us"\n' + toml(known), encoding="utf-8")
+    printed = command("reconstruct", "known.toml", cwd=tmp_path).stdout
+    assert [one["printed"] for one in told["solutions"]] == [printed.rstrip("\n")]
+    rows = {row["name"]: row for row in told["solutions"][0]["rows"]}
+    assert rows["UX"]["unit"] == "mph"
+    deviation = re.search(r"^VX +(\S+) ", printed[printed.index("first order") :], re.M)
+    assert deviation
+    assert rows["VX"]["columns"]["±"] == deviation[1]
+
+
 def test_what_is_known_is_saved_as_the_commands_file(client: Client, tmp_path: Path) -> None:
     known = {**client.post("known/1").json["values"], "VAX": "-13.26 +- 0.5", "UY": "0"}
     saved = client.post("known-file", {"values": known})
     assert saved.status_code == 200
-    assert client.post("known?name=k.toml", saved.data).json == {"values": known, "title": ""}
+    assert client.post("known?name=k.toml", saved.data).json == {
+        "values": known,
+        "title": "",
+        "units": "",
+    }
     (tmp_path / "known.toml").write_bytes(saved.data)
     printed = command("reconstruct", "known.toml", cwd=tmp_path).stdout
     assert printed.rstrip("\n") == reconstruction.answer(known)["solutions"][0]["printed"]
@@ -309,6 +379,62 @@ def test_why_there_is_no_solution_is_told() -> None:
     told = reconstruction.answer({name: text for name, text in known.items() if name != "E"})
     assert told["solutions"] == []
     assert "give at least 1 more" in told["waiting"]
+
+
+# --- the paper ----------------------------------------------------------------------------------
+
+RUN1 = resources.files("impact88.legacy").joinpath("run1-as-printed.txt").read_bytes()
+
+
+def coded(data: bytes) -> str:
+    return base64.b64encode(data).decode()
+
+
+@pytest.mark.parametrize(
+    "data", [RUN1, RUN1.replace(b"3.449", b"3.549"), RUN1[:300], b"nothing", b"%PDF-1.4", b""]
+)
+def test_a_paper_is_judged_as_the_command_judges_it(data: bytes, tmp_path: Path) -> None:
+    (tmp_path / "page.txt").write_bytes(data)
+    theirs = command("verify", "--json", "page.txt", cwd=tmp_path)
+    told = paper.judged("page.txt", coded(data))
+    objects = [json.loads(line) for line in theirs.stdout.splitlines()]
+    assert json.loads(json.dumps(told["objects"])) == objects
+    if told["problem"] is not None:
+        assert theirs.stderr == f"impact88 verify: {told['problem']}\n"
+    shown = command("verify", "page.txt", cwd=tmp_path).stdout
+    for words in told["printouts"]:
+        assert f": {words['title']}\n" in shown
+        lines = [*words["summary"], *(line for part in words["parts"] for line in part["items"])]
+        for line in lines:
+            # where to look is told with the explanations, and there only of what they change
+            assert line.strip() in shown or line in words["parts"][0]["items"]
+
+
+@pytest.mark.parametrize(
+    ("name", "base"),
+    [
+        ("box 7/page 1.txt", "page 1.txt"),
+        ("C:\\case\\page.txt", "page.txt"),
+        ("../../etc/passwd", "passwd"),
+        ("<b>.txt", "<b>.txt"),
+        ("-", "pasted.txt"),
+        ("..", "pasted.txt"),
+        ("", "pasted.txt"),
+        ("a\x1b[2Jb.txt", "a[2Jb.txt"),
+        ("n" * 300, "n" * 200),
+    ],
+)
+def test_a_papers_name_is_a_name_and_nothing_else(name: str, base: str) -> None:
+    assert paper.base_name(name) == base
+
+
+def test_what_is_no_file_is_refused_before_it_is_read() -> None:
+    with pytest.raises(UserError, match="is larger than"):
+        paper.judged("page.txt", coded(b" " * (paper.LARGEST_FILE + 1)))
+    with pytest.raises(UserError, match="nothing to report"):
+        paper.report([], {})
+    with pytest.raises(UserError, match=r"^case: has more than 200"):
+        paper.report([{"name": "x", "data": coded(RUN1)}], {"case": "x" * 201})
 
 
 # --- processes ---------------------------------------------------------------------------------

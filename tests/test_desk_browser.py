@@ -59,16 +59,12 @@ def collision(page: Page) -> Page:
 # --- collision ---------------------------------------------------------------------------------
 
 
-def without_controls(text: str) -> str:
-    return re.sub(r"[\0-\x09\x0b-\x1f]", "", text).strip("\n")
-
-
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_a_published_run_shows_its_printout_and_the_figure(page: Page, number: int) -> None:
     page.run("location.hash = '#collision'")
     page.choose("collision-sample", str(number))
-    printed = without_controls(run(sample(number)).printout)
-    until(lambda: page.text("collision-screen").strip("\n") == printed, "the printout")
+    printed = run(sample(number)).page
+    until(lambda: page.text("collision-screen") == printed, "the printout")
     results = re.sub(r"[\s*]", "", printed[printed.index("MA=") :])
     published = (LEGACY / PUBLISHED[number - 1]).read_text(encoding="utf-8")
     assert results == re.sub(r"[\s*]", "", published[published.index("MA=") :])
@@ -93,8 +89,8 @@ def test_typing_is_answered_and_a_bad_number_is_told_at_its_field(collision: Pag
     until(lambda: not problem.is_displayed(), "the message's end")
     assert field.get_attribute("aria-invalid") is None
     field.send_keys("\b\b\b5")
-    again = without_controls(run(sample(1).replaced({"MU": "0.5"})).printout)
-    until(lambda: collision.text("collision-screen").strip("\n") == again, "the new answer")
+    again = run(sample(1).replaced({"MU": "0.5"})).page
+    until(lambda: collision.text("collision-screen") == again, "the new answer")
 
 
 def test_a_range_shows_bounds_around_the_result(collision: Page) -> None:
@@ -139,6 +135,95 @@ def test_the_scene_saved_is_the_commands_own_and_opens_again(
     assert collision.at("collision-UX").get_attribute("value") == "-31.5"
 
 
+# --- paper -------------------------------------------------------------------------------------
+
+
+def words(page: Page) -> list[str]:
+    """The verdicts shown for the paper that lies open."""
+    return page.texts("#paper-verdict .word")
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_a_published_run_pasted_is_identical_and_one_digit_changed_is_not(
+    page: Page, name: str
+) -> None:
+    text = (LEGACY / name).read_text(encoding="utf-8")
+    page.put("paper-text", text)
+    until(lambda: words(page) == ["IDENTICAL"], f"the verdict on {name}")
+    assert page.count("#paper-marks mark.contradicted") == 0
+    printed = re.search(r"VAY= ([-.\d]+)", text)
+    assert printed
+    at = printed.end() - 1
+    digit = str((int(text[at]) + 4) % 10)
+    page.put("paper-text", text[:at] + digit + text[at + 1 :])
+    until(lambda: words(page) == ["DIFFERS"], f"the verdict on {name}, changed")
+    assert page.texts("#paper-marks mark.contradicted") == [printed[1][:-1] + digit]
+    place = page.driver.find_element("css selector", "#paper-printouts .part .to-place")
+    line = text[:at].count("\n") + 1
+    assert f"line {line}, column" in place.text
+    place.click()
+    start, stop = page.run(
+        "const text = document.activeElement; return [text.selectionStart, text.selectionEnd]"
+    )
+    assert start <= at < stop
+
+
+def test_files_dropped_together_are_told_apart_and_hostile_text_stays_text(
+    page: Page, tmp_path: Path
+) -> None:
+    good = tmp_path / "good.txt"
+    good.write_bytes((LEGACY / PUBLISHED[0]).read_bytes())
+    hostile = tmp_path / "<img src=x onerror=alert(1)>.txt"
+    text = (LEGACY / PUBLISHED[2]).read_text(encoding="utf-8").replace("25.994", "26.994")
+    # a car's picture is two units of text to the browser and one character to the program
+    hostile.write_text(f"<script>document.title = 'taken'</script>🚗\n{text}", encoding="utf-8")
+    nothing = tmp_path / "nothing.txt"
+    nothing.write_text("<b>no printout</b>", encoding="utf-8")
+    page.at("paper-files").send_keys("\n".join(map(str, (good, hostile, nothing))))
+    until(lambda: "NOT JUDGED" in page.text("paper-summary"), "the last verdict")
+    assert page.count("#paper-list li") == 3
+    shown = page.text("paper-list")
+    assert "<img src=x onerror=alert(1)>.txt" in shown
+    assert re.search(r"good\.txt IDENTICAL(?! AS)", shown)
+    assert page.count("#paper img") == page.count("#paper script") == page.count("#paper b b") == 0
+    for button in page.driver.find_elements("css selector", ".paper-name"):
+        button.click()
+        if "<img" in button.text:
+            assert page.texts("#paper-marks mark.contradicted") == ["26.994"]
+    assert page.driver.title == "Paper · impact88 desk"
+    assert page.text("paper-verdict").startswith("NOT JUDGED")
+
+
+def test_the_report_is_the_commands_own(page: Page, tmp_path: Path) -> None:
+    paths = [tmp_path / name for name in ("one.txt", "two.txt")]
+    text = (LEGACY / PUBLISHED[0]).read_text(encoding="utf-8")
+    paths[0].write_text(text, encoding="utf-8")
+    paths[1].write_text(text.replace("3.449", "3.549"), encoding="utf-8")
+    names = [path.name for path in paths]
+    options = ("--report", "theirs.html", "--date", "1988-05-17")
+    assert command("verify", "--brief", *names, *options, cwd=tmp_path).returncode == 1
+    page.at("paper-files").send_keys("\n".join(map(str, paths)))
+    until(lambda: "1 DIFFERS" in page.text("paper-summary"), "the verdicts")
+    page.driver.find_element("css selector", ".report summary").click()
+    page.put("paper-date", "1988-05-17")
+    page.at("paper-report").click()
+    assert page.saved("report.html") == (tmp_path / "theirs.html").read_bytes()
+
+
+def test_a_scan_lies_beside_the_text(page: Page, tmp_path: Path) -> None:
+    scan = tmp_path / "scan.png"
+    pixel = "89504e470d0a1a0a0000000d4948445200000001000000010806000000 1f15c489".replace(" ", "")
+    rest = "0000000d49444154789c6360606060000000050001a5f645400000000049454e44ae426082"
+    scan.write_bytes(bytes.fromhex(pixel + rest))
+    page.at("paper-scan-file").send_keys(str(scan))
+    picture = until(
+        lambda: page.driver.find_elements("css selector", "#paper-scan-frame img"), "the scan"
+    )[0]
+    until(lambda: page.run("return arguments[0].naturalWidth", picture) == 1, "its pixel")
+    page.at("paper-scan-away").click()
+    assert not page.at("paper-scan").is_displayed()
+
+
 # --- reconstruction -----------------------------------------------------------------------------
 
 
@@ -170,10 +255,10 @@ def test_every_field_has_a_label_and_every_view_is_reached_by_keys(page: Page) -
         ".map((field) => field.id)"
     )
     assert unlabelled == []
-    page.run("document.querySelector('nav a[href=\"#reconstruction\"]').focus()")
+    page.run("document.querySelector('nav a[href=\"#collision\"]').focus()")
     page.driver.switch_to.active_element.send_keys("\ue007")
-    until(lambda: page.at("reconstruction").is_displayed(), "the view")
-    assert page.driver.title == "Reconstruction · impact88 desk"
+    until(lambda: page.at("collision").is_displayed(), "the view")
+    assert page.driver.title == "Collision · impact88 desk"
     assert page.run("return document.activeElement.id") == "main"
 
 
@@ -183,7 +268,7 @@ def test_nothing_is_wider_than_the_window(collision: Page, width: int) -> None:
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
-        for view in ("collision", "reconstruction"):
+        for view in ("paper", "collision", "reconstruction"):
             collision.run("location.hash = arguments[0]", f"#{view}")
             until(lambda view=view: collision.at(view).is_displayed(), view)
             assert collision.run("return document.documentElement.scrollWidth") <= width

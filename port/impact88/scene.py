@@ -311,8 +311,11 @@ The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) op
 """Sides, axes and signs, for people who fill in a scene."""
 
 
-def template(values: Mapping[str, str] | None = None, title: str | None = None) -> str:
-    """A commented scene file; without ``values`` the numbers are left to fill in."""
+def template(
+    values: Mapping[str, str] | None = None, title: str | None = None, units: str | None = None
+) -> str:
+    """A commented scene file; without ``values`` the numbers are left to fill in; ``units``: the
+    system of its bare numbers (`impact88.units`)."""
     lines = [
         "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per",
         '# unit of time. The digits are used as written. Write 0.911 or ".911": TOML takes no .911',
@@ -321,6 +324,8 @@ def template(values: Mapping[str, str] | None = None, title: str | None = None) 
         "",
         f"title = {_quoted(title or '')}",
     ]
+    if units:
+        lines.append(f"units = {_quoted(units)}")
     heading = None
     for row in SCENE.values():
         if row.line != heading:
@@ -333,10 +338,15 @@ def template(values: Mapping[str, str] | None = None, title: str | None = None) 
     return "\n".join(lines) + "\n"
 
 
-def known_template(names: Sequence[str], values: Mapping[str, str] | None = None) -> str:
-    """A file to fill in with what is known of ``names``; ``values``: what is known already."""
+def known_template(
+    names: Sequence[str], values: Mapping[str, str] | None = None, units: str | None = None
+) -> str:
+    """A file to fill in with what is known of ``names``; ``values``: what is known already;
+    ``units``: the system of its bare numbers (`impact88.units`)."""
     known = {"M": DEFAULT_M} if values is None else values
     lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
+    if units:
+        lines.append(f"units = {_quoted(units)}")
     for name in names:
         row = quantity(name)
         meaning = "signed P_t/P_n, in place of MU" if name == "MUP" else row.meaning

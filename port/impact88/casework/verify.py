@@ -40,10 +40,17 @@ __all__ = [
 
 def examine(path: str, given: Mapping[str, str] | None = None) -> Examined:
     """A file (``-``: standard input), every printout in it judged; what cannot be read is told."""
-    digest = None
     try:
         data = files.read_bytes(path, LARGEST_FILE)
-        digest = provenance.sha256(data)
+    except UserError as error:
+        return Examined(path, None, error=str(error))
+    return examine_bytes(path, data, given)
+
+
+def examine_bytes(path: str, data: bytes, given: Mapping[str, str] | None = None) -> Examined:
+    """The same of a file's bytes; ``path`` is what it is called."""
+    digest = provenance.sha256(data)
+    try:
         results = list(_verified(path, data, digest, given))
     except UserError as error:
         return Examined(path, digest, error=str(error))

@@ -1,7 +1,7 @@
 """A page opens in your browser, served by this machine to itself; nothing leaves it, and nothing is
-kept when it ends. Collision: a scene as a form, answered while you type. Reconstruction: what is
-known, ticked. Control-C ends it. The address holds a random word: who does not have it gets
-nothing.
+kept when it ends. Paper: printouts judged as by impact88 verify, with the text to correct beside
+the scan. Collision: a scene as a form, answered while you type. Reconstruction: what is known,
+ticked. Control-C ends it. The address holds a random word: who does not have it gets nothing.
 
 Needs pip install 'impact88[desk]'.
 

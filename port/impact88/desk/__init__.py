@@ -13,7 +13,7 @@ bodies and headers of its own.
 - `app`: addresses and what answers them
 - `bench`: processes for what takes long, so that a newer question can end an older one;
   `bench_process` is what runs in them
-- `collision`, `reconstruction`: what the views are answered
+- `paper`, `collision`, `reconstruction`: what the views are answered
 - `page`: what the template is given
 - ``templates/``, ``static/``: the page, one style sheet, JavaScript modules
 

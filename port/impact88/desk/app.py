@@ -10,22 +10,26 @@ from __future__ import annotations
 
 import json
 import threading
+from base64 import b64encode
 from typing import Any
 
 from flask import Blueprint, Flask, Response, abort, render_template, request
 from werkzeug.exceptions import HTTPException
 
 from ..errors import UserError
+from ..files import packaged_text
 from ..version import __version__
 from . import collision, page, reconstruction
 from .bench import Bench, BrokenError, SupersededError
 from .guard import HEADERS, LARGEST_BODY, refusal
 
 BENCHES = {
+    "edit": "paper",
+    "paper": "paper",
     "bounds": "collision",
     "reconstruction": "reconstruction",
 }
-"""What takes long, and the module that does it."""
+"""What takes long, and the module that does it; the text being edited overtakes papers waiting."""
 
 
 class Desk:
@@ -103,21 +107,41 @@ def _addresses(desk: Desk) -> Blueprint:
         desk.warm()  # the page is on its way meanwhile
         return render_template("desk.html", **page.contents())
 
+    @routes.post("/judge")
+    def judge() -> Any:
+        bench = "edit" if request.args.get("bench") == "edit" else "paper"
+        data = b64encode(request.get_data()).decode()
+        return asked(bench, "judge", name=request.args.get("name", ""), data=data)
+
+    @routes.post("/published/<name>")
+    def published(name: str) -> Response:
+        if name not in page.PUBLISHED:
+            abort(404)
+        return _saved(packaged_text("impact88.legacy", name), "text/plain", name)
+
+    @routes.post("/report")
+    def report() -> Response:
+        told = _object()
+        written = asked("edit", "report", papers=told.get("papers"), words=told.get("words"))
+        return _saved(written, "text/html", "report.html")
+
     @routes.post("/collision")
     def collision_answer() -> Any:
-        return collision.answer(_texts("values"))
+        return collision.answer(_texts("values"), _units())
 
     @routes.post("/figure")
     def figure() -> Response:
-        return Response(collision.figure(_texts("values"), _title()), content_type="image/svg+xml")
+        return Response(
+            collision.figure(_texts("values"), _title(), _units()), content_type="image/svg+xml"
+        )
 
     @routes.post("/bounds")
     def bounds() -> Any:
-        return asked("bounds", "bounds", values=_texts("values"))
+        return asked("bounds", "bounds", values=_texts("values"), units=_units())
 
     @routes.post("/scene-file")
     def scene_file() -> Response:
-        text = collision.scene_file(_texts("values"), _title())
+        text = collision.scene_file(_texts("values"), _title(), _units())
         return _saved(text, "application/toml", "scene.toml")
 
     @routes.post("/scene")
@@ -130,11 +154,13 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
-        return asked("reconstruction", "reconstruct", values=_texts("values"))
+        return asked("reconstruction", "reconstruct", values=_texts("values"), units=_units())
 
     @routes.post("/known-file")
     def known_file() -> Response:
-        return _saved(reconstruction.known_file(_texts("values")), "application/toml", "known.toml")
+        return _saved(
+            reconstruction.known_file(_texts("values"), _units()), "application/toml", "known.toml"
+        )
 
     @routes.post("/known")
     def read_known() -> Any:
@@ -181,6 +207,11 @@ def _name() -> str:
 
 def _title() -> str:
     return str(_object().get("title") or "")
+
+
+def _units() -> str:
+    """The system of units chosen; nothing for any consistent ones."""
+    return str(_object().get("units") or "")
 
 
 def _texts(name: str) -> dict[str, str]:

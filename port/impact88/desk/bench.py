@@ -8,12 +8,20 @@ lines of JSON over its standard input and output (`bench_process`).
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import threading
 from typing import Any
 
 from ..errors import UserError
+
+_INSTALLED_IN = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+_START = (
+    "import sys; sys.path.append(sys.argv.pop()); "
+    f"from {__package__}.bench_process import main; main()"
+)
+"""The process finds the package where this one did, even where it is not installed."""
 
 
 class SupersededError(Exception):
@@ -105,7 +113,7 @@ class Bench:
         if self._process is None or self._process.poll() is not None:
             self._process = subprocess.Popen(
                 # -P: a file of the user's in the current folder is no module of ours
-                [sys.executable, "-P", "-m", f"{__package__}.bench_process", self._module],
+                [sys.executable, "-P", "-c", _START, self._module, _INSTALLED_IN],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 encoding="utf-8",

@@ -16,6 +16,8 @@ from typing import Any
 
 TASKS = {
     "bounds": ("collision", "bounds_answer"),
+    "judge": ("paper", "judged"),
+    "report": ("paper", "report"),
     "reconstruct": ("reconstruction", "answer"),
 }
 """Task -> module of this room and function."""
@@ -47,8 +49,3 @@ def main() -> None:
         reply = answer(json.loads(line))
         replies.write(json.dumps(reply) + "\n")
         replies.flush()
-
-
-if __name__ == "__main__":
-    main()
-    sys.exit(0)

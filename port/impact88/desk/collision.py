@@ -14,10 +14,14 @@ from typing import Any, NamedTuple
 
 from ..doubles import double, is_number
 from ..errors import UserError
+from ..files import decode
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names
 from ..plaintable import number
 from ..scene import Scene, check_value, sample, template
+from ..schemas import stamped
 from ..uncertainty import uncertain
+from .entries import entries
+from .entries import told as told_units
 from .files import small_toml
 
 DRAWS = 20_000
@@ -26,14 +30,21 @@ _NOMINAL_DIGITS = 9
 """Digits of a range's nominal value, as many as Applesoft prints."""
 _DIGITS = 12
 """Digits of an exact result, as many as double precision is sure of."""
+_OWN_AXES = frozenset(("CAF", "CAL", "CBF", "CBL"))
+"""The contact point in a vehicle's own axes, which the form has as DA PA, DB PB."""
+_WHOSE_BASE = {"us": "chapter", "metric": "si"}
+"""The system whose bare numbers are another's base units."""
 _NOT_SHOWN = ("STATUS",)
 
 
 class Form(NamedTuple):
-    """The form as read: the ``texts`` for the program, the names given as ``ranges``, and what is
-    wrong: ``problems`` by name, and the names still ``missing``."""
+    """The form as read: the ``texts`` for the program and the ``entries`` they were made of, in the
+    base units of the system ``units``; the names given as ``ranges``; what is wrong: ``problems``
+    by name, and the names still ``missing``."""
 
     texts: dict[str, str]
+    entries: dict[str, str]
+    units: str | None
     ranges: list[str]
     problems: dict[str, str]
     missing: list[str]
@@ -50,14 +61,16 @@ def warm() -> None:
     figure(dict(sample(1)))
 
 
-def read(values: Mapping[str, str]) -> Form:
-    """The form's texts, each judged alone so that one bad number hides nothing of the others."""
-    form = Form({}, [], {}, [])
+def read(values: Mapping[str, str], units: str = "") -> Form:
+    """The form's texts; ``units``: the system of bare numbers, or nothing."""
+    given = entries({name: values.get(name, "") for name in SCENE}, units)
+    form = Form({}, given.texts, given.units, [], given.problems, [])
     for name in SCENE:
-        text = values.get(name, "").strip()
-        if not text:
-            form.missing.append(name)
+        if name not in given.texts:
+            if name not in given.problems:
+                form.missing.append(name)
             continue
+        text = given.texts[name]
         try:
             form.texts[name] = _number_text(name, text, form.ranges)
         except UserError as error:
@@ -78,40 +91,47 @@ def _number_text(name: str, text: str, ranges: list[str]) -> str:
     return text
 
 
-def answer(values: Mapping[str, str]) -> dict[str, Any]:
+def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     """What is known of the form's collision.
 
-    ``problems``, ``missing``, ``ranges``: see `Form`. Where there is a scene, ``oracle`` is what
-    `impact88 oracle` answers for it, ``results`` the rows of a table and ``warnings`` sentences.
+    ``problems``, ``missing``, ``ranges``: see `Form`; ``units``: see `entries.told`. Where there is
+    a scene, ``oracle`` is what `impact88 oracle` answers for it, ``page`` its printout as a screen
+    shows it, ``results`` the rows of a table and ``warnings`` sentences.
     """
     from ..casework import beside
     from ..checking.oracle import look_up
+    from ..program.run import page
 
-    form = read(values)
+    form = read(values, units)
     told: dict[str, Any] = {
         "problems": form.problems,
         "missing": form.missing,
         "ranges": form.ranges,
+        "units": told_units(form.units),
     }
     if form.whole:
         scene = Scene(form.texts, source="the form")
         known = look_up([scene], reference=False)[0]
         told |= {
-            "oracle": {"scene": dict(scene), **known},
-            "page": _page(known["printout"]),
-            "results": _rows(known["results"]),
+            "oracle": stamped("oracle", {"id": None, "scene": dict(scene), **known}),
+            "page": page(known["printout"]),
+            "results": _rows(known["results"], form.units),
             "warnings": beside.warnings(scene),
         }
     return told
 
 
-def _page(printout: str) -> str:
-    """The printout without the control characters that no screen shows."""
-    return "".join(c for c in printout if c == "\n" or c >= " ").strip("\n") + "\n"
+def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[dict[str, str]]:
+    """The results as a table's rows, the names and meanings from the one table; ``shown``: in the
+    units of the form where those are not the base."""
+    from ..units import system_of
 
+    system = system_of(units)
 
-def _rows(results: Mapping[str, Mapping[str, Any]]) -> list[dict[str, str]]:
-    """The results as a table's rows, the names and meanings from the one table."""
+    def shown(rule: str, value: float) -> str:
+        converted = units is not None and float(system.scale(rule)) != 0
+        return f"{number(system.shown(rule, value))} {system.label(rule)}" if converted else ""
+
     return [
         {
             "name": name,
@@ -120,19 +140,20 @@ def _rows(results: Mapping[str, Mapping[str, Any]]) -> list[dict[str, str]]:
             "unit": quantity.unit,
             "printed": results[name]["printed"] or "",
             "exact": number(results[name]["double"], _DIGITS),
+            "shown": shown(quantity.unit, results[name]["double"]),
         }
         for name, quantity in RESULTS.items()
         if name in results and name not in _NOT_SHOWN and results[name]["double"] is not None
     ]
 
 
-def figure(values: Mapping[str, str], title: str = "") -> str:
+def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     """The scene from above as SVG, as `impact88 figure scene` draws it. Raises UserError."""
     from ..casework import beside
     from ..figures.sceneview import scene_drawing
     from ..figures.svg import svg
 
-    form = read(values)
+    form = read(values, units)
     if not form.whole:
         raise UserError("there is no whole scene to draw")
     scene = Scene(form.texts, source="the form")
@@ -140,7 +161,7 @@ def figure(values: Mapping[str, str], title: str = "") -> str:
     return svg(scene_drawing(scene, result, title=title or "Scene from above"))
 
 
-def bounds_answer(values: dict[str, str]) -> dict[str, Any]:
+def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     """What `impact88 bounds --json` prints for the form's ranges, with fewer draws.
 
     Raises UserError for a form that has no ranges, and as `uncertainty.bounds.bounds` does.
@@ -149,36 +170,36 @@ def bounds_answer(values: dict[str, str]) -> dict[str, Any]:
     from ..uncertainty.boundstable import as_json
     from ..uncertainty.ranges import read_inputs
 
-    form = read(values)
+    form = read(values, units)
     if not form.whole or not form.ranges:
         raise UserError("there are no ranges to explore")
-    inputs = read_inputs(_entries(values), {}, source="the form")
-    return as_json(bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS))
+    inputs = read_inputs(form.entries, {}, source="the form")
+    found = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
+    return stamped("bounds", as_json(found))
 
 
-def _entries(values: Mapping[str, str]) -> dict[str, str]:
-    """The form's texts that are no blanks, the scene's names only."""
-    return {name: values[name].strip() for name in SCENE if values.get(name, "").strip()}
-
-
-def scene_file(values: Mapping[str, str], title: str) -> str:
-    """The form as the scene file that the commands read. Raises UserError naming what is wrong."""
-    form = read(values)
-    for problem in form.problems.values():
+def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
+    """The form as the scene file that the commands read, its texts as they were typed. Raises
+    UserError naming what is wrong."""
+    for problem in read(values, units).problems.values():
         raise UserError(problem)
-    entries = _entries(values)
-    return template({name: entries.get(name, "") for name in SCENE}, title)
+    return template({name: values.get(name, "").strip() for name in SCENE}, title, units)
 
 
 def read_scene_file(data: bytes, name: str) -> dict[str, Any]:
-    """The ``values`` and the ``title`` of a scene file. Raises UserError naming file and line."""
+    """The ``values``, the ``title`` and the ``units`` of a scene file. Raises UserError naming file
+    and line."""
     texts = small_toml(data, name)
-    title = texts.pop("title", "")
+    title, units = texts.pop("title", ""), texts.pop("units", "").lower()
+    if _OWN_AXES.intersection(texts):
+        scene = Scene.from_toml_text(decode(data, name), name)
+        units = _WHOSE_BASE.get(scene.units or "", scene.units or "")
+        return {"values": dict(scene), "title": title, "units": units}
     check_names(texts, SCENE, "value of a scene", name)
-    return {"values": texts, "title": title}
+    return {"values": texts, "title": title, "units": units}
 
 
 def sample_scene(which: int) -> dict[str, Any]:
     """The same of a published run. Raises UserError."""
     scene = sample(which)
-    return {"values": dict(scene), "title": scene.title or ""}
+    return {"values": dict(scene), "title": scene.title or "", "units": ""}

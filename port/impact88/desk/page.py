@@ -51,6 +51,16 @@ MORE_GROUPS = (
 ALWAYS_KNOWN = frozenset("MA IA DA PA TA MB IB DB PB TB GA M".split())
 """What a reconstruction cannot do without."""
 
+SYSTEMS = (
+    ("us", "lb, mph, ft"),
+    ("chapter", "slug, ft/s, ft"),
+    ("metric", "kg, km/h, m"),
+    ("si", "kg, m/s, m"),
+)
+"""The systems of units (`impact88.units`), and what bare numbers are in them."""
+PUBLISHED = ("run1-as-printed.txt", "run2-as-printed.txt", "table3-as-printed.txt")
+"""The published printouts, as they stand in the chapter."""
+
 
 def symbol(text: str) -> Markup:
     """A symbol of the chapter as HTML: what follows ``_`` is a subscript."""
@@ -70,6 +80,9 @@ def contents() -> dict[str, Any]:
         "known_groups": KNOWN_GROUPS,
         "more_groups": MORE_GROUPS,
         "always_known": ALWAYS_KNOWN,
+        "report_fields": [("case", "Case"), ("examiner", "Examiner"), ("date", "Date")],
+        "published": PUBLISHED,
+        "systems": SYSTEMS,
         "default_m": DEFAULT_M,
         "samples": [(number, sample(number).title) for number in SAMPLES],
     }

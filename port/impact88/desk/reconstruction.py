@@ -14,11 +14,15 @@ from ..names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
 from ..plaintable import number
 from ..reconstruction.knowable import KNOWABLE
 from ..scene import known_template, sample
+from ..schemas import stamped
 from ..uncertainty import uncertain
+from .entries import Entries, entries
+from .entries import told as told_units
 from .files import small_toml
 
 if TYPE_CHECKING:
     from ..uncertainty.uncertain import Uncertain
+    from ..units import System
 
 DRAWS = 20_000
 """Random draws for the quantiles."""
@@ -36,50 +40,56 @@ def warm() -> None:
     answer(known_of_sample(1)["values"])
 
 
-def answer(values: dict[str, str]) -> dict[str, Any]:
+def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     """The solutions for what is known.
 
+    ``units``: the system of bare numbers, or nothing; in the answer see `entries.told`.
     ``problems``: by name, what is wrong with a value; ``waiting``: why there is no solution;
-    ``solutions``: for each ``object``, what `impact88 reconstruct --json` prints of it, ``printed``
-    what it prints as text, and made of the object the ``rows`` and ``columns`` of a table,
-    ``adjusted`` values, ``warnings`` and the ``scene`` (texts by name, or None).
+    ``object``: what `impact88 reconstruct --json` prints; ``solutions``: for each ``printed``, what
+    the command prints as text, and the ``rows`` and ``columns`` of a table, ``adjusted`` values,
+    ``warnings`` and the ``scene`` (texts by name, or None).
     """
+    given = entries(values, units)
     known: dict[str, Uncertain] = {}
-    problems: dict[str, str] = {}
-    for name, text in values.items():
+    problems = given.problems
+    for name, text in given.texts.items():
         try:
             known[name] = _read(name, text)
         except UserError as error:
             problems[name] = str(error)
-    told: dict[str, Any] = {"problems": problems, "waiting": "", "solutions": []}
+    told: dict[str, Any] = {"problems": problems, "waiting": "", "object": None, "solutions": []}
+    told["units"] = told_units(given.units)
     if problems:
         told["waiting"] = f"To be corrected: {' '.join(problems)}."
         return told
     try:
-        solutions = _solved(known)
+        solutions = _solved(known, given.units)
     except UserError as error:
         told["waiting"] = str(error)
         return told
-    told["solutions"] = [_told(values, found, printed) for found, printed in solutions]
+    told["object"] = stamped("reconstruct", {"solutions": [found for found, _ in solutions]})
+    told["solutions"] = [_told(given, found, printed) for found, printed in solutions]
     return told
 
 
-def _solved(known: Mapping[str, Uncertain]) -> list[tuple[dict[str, Any], str]]:
+def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dict[str, Any], str]]:
     """Each solution as the command gives it, as an object and as text. Raises UserError."""
     from ..reconstruction import adjustment, solutiontable, unknowns
     from ..uncertainty import reconstructedtable
+    from ..units import system_of
 
+    units = system_of(named)
     if adjustment.needs_adjustment(known):
         found = []
         for impact in adjustment.reconstruct(known):
             spread = reconstructedtable.uncertainty(impact, DRAWS)
-            one = (impact, reconstructedtable.completed_values(impact, None), spread)
+            one = (impact, reconstructedtable.completed_values(impact, None), spread, units)
             found.append((reconstructedtable.as_json(*one), reconstructedtable.as_text(*one)))
         return found
     numbers = {name: item.nominal for name, item in known.items()}
     tables = []
     for solution in unknowns.solve_for(numbers):
-        whole = (numbers, solution, solutiontable.complete(numbers, solution, None))
+        whole = (numbers, solution, solutiontable.complete(numbers, solution, None), units)
         tables.append((solutiontable.as_json(*whole), solutiontable.as_text(*whole)))
     return tables
 
@@ -89,35 +99,43 @@ def _read(name: str, text: str) -> Uncertain:
     return uncertain.read(text, name)
 
 
-def _told(texts: Mapping[str, str], found: Mapping[str, Any], printed: str) -> dict[str, Any]:
-    rows = [_row(name, value, found) for name, value in found["values"].items()]
+def _told(given: Entries, found: Mapping[str, Any], printed: str) -> dict[str, Any]:
+    from ..units import system_of
+
+    system = system_of(given.units)
+    rows = [_row(name, value, found, system) for name, value in found["values"].items()]
     named = (_DEVIATION, "5 %", "95 %", _LOWER, _UPPER, _AMPLIFIED)
     return {
-        "object": found,
         "printed": printed,
         "rows": rows,
         "columns": [name for name in named if any(row["columns"].get(name) for row in rows)],
-        "adjusted": [_adjusted(one) for one in found.get("adjusted", ()) if found["redundancy"]],
+        "adjusted": [
+            _adjusted(one, system) for one in found.get("adjusted", ()) if found["redundancy"]
+        ],
         "warnings": found["warnings"],
-        "scene": _scene(texts, found["values"]),
+        "scene": None if given.units else _scene(given.texts, found["values"]),
     }
 
 
-def _row(name: str, value: float | None, found: Mapping[str, Any]) -> dict[str, Any]:
+def _row(
+    name: str, value: float | None, found: Mapping[str, Any], system: System
+) -> dict[str, Any]:
+    # the object has uncertainties in base units
+    factor = system.shown(quantity(name).unit, 1.0)
     spread = found.get("uncertainty", {}).get(name, {})
     quantiles = spread.get("quantiles", {})
     columns = {
-        _DEVIATION: spread.get("first_order"),
+        _DEVIATION: _times(factor, spread.get("first_order")),
         _AMPLIFIED: found.get("amplification", {}).get(name),
     }
     bounds = {
-        "5 %": quantiles.get("0.05"),
-        "95 %": quantiles.get("0.95"),
-        _LOWER: spread.get("lower"),
-        _UPPER: spread.get("upper"),
+        "5 %": _times(factor, quantiles.get("0.05")),
+        "95 %": _times(factor, quantiles.get("0.95")),
+        _LOWER: _times(factor, spread.get("lower")),
+        _UPPER: _times(factor, spread.get("upper")),
     }
     return {
-        **_what(name),
+        **_what(name, system),
         "text": _text(value, _DIGITS),
         "known": name in found["known"],
         "solved": name in found.get("solved_for", _SOUGHT) and name not in found["known"],
@@ -131,21 +149,27 @@ def _row(name: str, value: float | None, found: Mapping[str, Any]) -> dict[str, 
 _SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
 
 
-def _what(name: str) -> dict[str, str]:
+def _what(name: str, system: System) -> dict[str, str]:
     what = quantity(name)
-    return {"name": name, "symbol": what.symbol, "meaning": what.meaning, "unit": what.unit}
+    unit = system.label(what.unit)
+    return {"name": name, "symbol": what.symbol, "meaning": what.meaning, "unit": unit}
+
+
+def _times(factor: float, value: float | None) -> float | None:
+    return None if value is None else factor * value
 
 
 def _text(value: float | None, digits: int) -> str:
     return "" if value is None else number(value, digits)
 
 
-def _adjusted(one: Mapping[str, Any]) -> dict[str, Any]:
+def _adjusted(one: Mapping[str, Any], system: System) -> dict[str, Any]:
+    factor = system.shown(quantity(one["name"]).unit, 1.0)
     return {
-        **_what(one["name"]),
-        "measured": _text(one["measured"], _DIGITS),
-        "tolerance": _text(one["tolerance"], _DIGITS_OF_A_SPREAD),
-        "adjusted": _text(one["adjusted"], _DIGITS),
+        **_what(one["name"], system),
+        "measured": _text(factor * one["measured"], _DIGITS),
+        "tolerance": _text(factor * one["tolerance"], _DIGITS_OF_A_SPREAD),
+        "adjusted": _text(factor * one["adjusted"], _DIGITS),
         "moved": f"{one['moved'] + 0.0:.2f}",
     }
 
@@ -163,20 +187,24 @@ def _scene(texts: Mapping[str, str], values: Mapping[str, float | None]) -> dict
     return found
 
 
-def known_file(values: Mapping[str, str]) -> str:
+def known_file(values: Mapping[str, str], units: str = "") -> str:
     """What is known as the file that `impact88 reconstruct` reads. Raises UserError."""
-    texts = {name: text.strip() for name, text in values.items()}
-    for name, text in texts.items():
+    given = entries(values, units)
+    for problem in given.problems.values():
+        raise UserError(problem)
+    for name, text in given.texts.items():
         _read(name, text)
-    return known_template(KNOWABLE, texts) + "\n"
+    texts = {name: text.strip() for name, text in values.items()}
+    return known_template(KNOWABLE, texts, units) + "\n"
 
 
 def read_known_file(data: bytes, name: str) -> dict[str, Any]:
     """The ``values`` in such a file. Raises UserError naming file and line."""
     texts = small_toml(data, name)
-    title = texts.pop("title", "")
+    title, units = texts.pop("title", ""), texts.pop("units", "").lower()
     check_names(texts, KNOWABLE, "value here", name)
-    return {"values": {entry: text for entry, text in texts.items() if text}, "title": title}
+    values = {entry: text for entry, text in texts.items() if text}
+    return {"values": values, "title": title, "units": units}
 
 
 def known_of_sample(which: int) -> dict[str, Any]:
@@ -192,4 +220,4 @@ def known_of_sample(which: int) -> dict[str, Any]:
     }
     values = {name: text for name, text in scene.items() if name not in (*VELOCITIES, "MU")}
     values["MUP"] = number(results["MUP"]["double"], _DIGITS_TO_GO_ON)
-    return {"values": {**values, **after}, "title": scene.title or ""}
+    return {"values": {**values, **after}, "title": scene.title or "", "units": ""}

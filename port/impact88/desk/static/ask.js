@@ -1,7 +1,7 @@
 // Asking the desk: questions to the program on this machine, and small helpers for its answers.
 
 const ID = crypto.randomUUID();
-const STOPPABLE = ["bounds", "reconstruction"];
+const STOPPABLE = ["paper", "edit", "bounds", "reconstruction"];
 
 /** Input that cannot be used, or a fault; the message is the program's sentence. */
 export class Problem extends Error {}
@@ -139,6 +139,14 @@ export function fill(table, heads, rows, classOf = () => "") {
 /** A number for a table, to so many significant digits; nothing for none. */
 export function shown(value, digits = 5) {
   return value === null || value === undefined ? "" : String(Number(value.toPrecision(digits)));
+}
+
+/** Name the units that a form's bare numbers are in, at its fields. */
+export function showUnits(form, units) {
+  for (const place of form.querySelectorAll("[data-rule]")) {
+    const { rule } = place.dataset;
+    place.textContent = rule === "1" ? "" : units.labels[rule] ?? rule;
+  }
 }
 
 /** Show an error's sentence in a place, or hide the place. */

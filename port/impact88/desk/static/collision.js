@@ -1,13 +1,15 @@
 // The Collision view: 21 values, answered while one types.
-import { ask, asked, element, fill, newest, page, save, settled, shown, stop, tell, what } from "./ask.js";
+import { ask, asked, element, fill, newest, page, save, settled, showUnits, shown, stop, tell, what } from "./ask.js";
 
 const form = () => page("collision-form");
 const inputs = () => [...form().querySelectorAll("fieldset input")];
 const values = () => Object.fromEntries(inputs().map((input) => [input.name, input.value]));
+const question = () => ({ values: values(), title: page("collision-title").value, units: page("collision-units").value });
 const trouble = (error) => tell(page("collision-trouble"), error);
 
 /** What is wrong with each value, at its field. */
 function showProblems(problems, ranges) {
+  tell(page("collision-units-problem"), problems.units && { message: problems.units });
   for (const input of inputs()) {
     const problem = problems[input.name];
     tell(page(`collision-${input.name}-problem`), problem && { message: problem });
@@ -38,8 +40,9 @@ function showAnswer(answer) {
   page("collision-warnings").querySelector("ul")
     .replaceChildren(...answer.warnings.map((text) => element("li", {}, text)));
   page("collision-warnings").hidden = !answer.warnings.length;
-  fill(page("collision-results"), ["", "", "printed", "exact"], answer.results.map((row) =>
-    [row.name, what(row), row.printed, row.exact]));
+  const shownToo = answer.results.some((row) => row.shown);
+  fill(page("collision-results"), ["", "", "printed", "exact", ...(shownToo ? ["that is"] : [])],
+    answer.results.map((row) => [row.name, what(row), row.printed, row.exact, ...(shownToo ? [row.shown] : [])]));
 }
 
 let latest = null;
@@ -54,7 +57,7 @@ const draw = newest(async () => {
   const picture = page("collision-figure");
   let response = null;
   try {
-    response = await ask("figure", { values: values(), title: page("collision-title").value });
+    response = await ask("figure", question());
   } catch {
     // the answer has said what is wrong with the values
   }
@@ -100,18 +103,18 @@ function showBounds(found) {
 
 const explore = settled(async () => {
   const note = page("collision-bounds-note");
-  const sent = JSON.stringify(values());
+  const sent = JSON.stringify(question());
   note.textContent = "Computing …";
   page("collision-bounds-stop").hidden = false;
   page("collision-bounds-table").classList.add("stale");
   let found = null;
   let problem = "Stopped.";
   try {
-    found = await asked("bounds", { values: JSON.parse(sent) });
+    found = await asked("bounds", JSON.parse(sent));
   } catch (error) {
     problem = error.message;
   }
-  if (sent !== JSON.stringify(values())) return; // a newer one is on its way
+  if (sent !== JSON.stringify(question())) return; // a newer one is on its way
   page("collision-bounds-stop").hidden = true;
   page("collision-bounds-table").classList.remove("stale");
   if (found) {
@@ -126,13 +129,15 @@ let exploring = false;
 const answer = newest(async () => {
   let told;
   try {
-    told = await asked("collision", { values: values() });
+    told = await asked("collision", question());
   } catch (error) {
     trouble(error);
     return;
   }
   trouble(null);
   showProblems(told.problems, told.ranges);
+  showUnits(form(), told.units);
+  page("collision-base").textContent = told.units.base;
   const ranged = told.ranges.length > 0 && Boolean(told.oracle);
   if (exploring && !ranged) {
     explore.forget();
@@ -154,6 +159,7 @@ const answer = newest(async () => {
 function load(scene) {
   for (const input of inputs()) input.value = scene.values[input.name] ?? "";
   page("collision-title").value = scene.title;
+  page("collision-units").value = scene.units ?? "";
   answer();
 }
 
@@ -177,6 +183,7 @@ export function collision() {
     event.target.value = "";
     if (number) doing(async () => load(await asked(`sample/${number}`)));
   });
+  page("collision-units").addEventListener("change", answer);
   page("collision-open").addEventListener("click", () => page("collision-file").click());
   page("collision-file").addEventListener("change", (event) => {
     const [file] = event.target.files;
@@ -188,7 +195,7 @@ export function collision() {
     }
   });
   page("collision-save").addEventListener("click", () => doing(async () =>
-    save(await ask("scene-file", { values: values(), title: page("collision-title").value }))));
+    save(await ask("scene-file", question()))));
   page("collision-print").addEventListener("click", () => print());
   addEventListener("desk-scene", (event) => load(event.detail));
   page("collision-bounds-stop").addEventListener("click", () => stop("bounds"));

@@ -1,9 +1,10 @@
 // The page: which view is shown, and the views themselves.
 import { page, stopAll } from "./ask.js";
 import { collision } from "./collision.js";
+import { paper } from "./paper.js";
 import { reconstruction } from "./reconstruction.js";
 
-const VIEWS = ["collision", "reconstruction"];
+const VIEWS = ["paper", "collision", "reconstruction"];
 
 function show() {
   const wanted = location.hash.slice(1);
@@ -29,5 +30,6 @@ addEventListener("hashchange", () => {
 });
 addEventListener("pagehide", stopAll);
 show();
+paper();
 collision();
 reconstruction();

@@ -1,5 +1,5 @@
 // The Reconstruction view: what is known is ticked, the rest is solved for while one types.
-import { ask, asked, element, fill, page, save, settled, tell, what } from "./ask.js";
+import { ask, asked, element, fill, page, save, settled, showUnits, tell, what } from "./ask.js";
 
 const form = () => page("reconstruction-form");
 const inputs = () => [...form().querySelectorAll("input[name]")];
@@ -7,6 +7,7 @@ const ticks = () => [...form().querySelectorAll("input[data-for]")];
 const tickOf = (input) => page(`${input.id}-known`);
 const toleranceOf = (input) => page(`${input.id}-tolerance`);
 const WITHIN = /^(.*\S)\s*(?:\+-|±)\s*(\S.*)$/;
+const question = () => ({ values: values(), units: page("reconstruction-units").value });
 const trouble = (error) => tell(page("reconstruction-trouble"), error);
 
 /** The values that count: those always known, and those ticked. */
@@ -33,6 +34,7 @@ function showTicks() {
 
 /** What is wrong with each value, at its field. */
 function showProblems(problems) {
+  tell(page("reconstruction-units-problem"), problems.units && { message: problems.units });
   for (const input of inputs()) {
     const problem = problems[input.name];
     tell(page(`${input.id}-problem`), problem && { message: problem });
@@ -99,7 +101,7 @@ const solve = settled(async () => {
   page("reconstruction-waiting").textContent = "Computing …";
   let told;
   try {
-    told = await asked("reconstruct", { values: values() });
+    told = await asked("reconstruct", question());
   } catch (error) {
     page("reconstruction-waiting").textContent = "";
     trouble(error);
@@ -108,6 +110,7 @@ const solve = settled(async () => {
   if (!told) return;
   trouble(null);
   showProblems(told.problems);
+  showUnits(form(), told.units);
   latest = told.solutions;
   const whole = told.solutions.length > 0;
   page("reconstruction-waiting").textContent = told.waiting;
@@ -131,6 +134,7 @@ function load(given) {
     const tick = tickOf(input);
     if (tick) tick.checked = Boolean(input.value);
   }
+  page("reconstruction-units").value = given.units ?? "";
   const more = page("reconstruction-more");
   more.open ||= inputs().some((input) => more.contains(input) && input.value);
   answer();
@@ -159,6 +163,7 @@ export function reconstruction() {
     event.target.value = "";
     if (number) doing(async () => load(await asked(`known/${number}`)));
   });
+  page("reconstruction-units").addEventListener("change", answer);
   page("reconstruction-open").addEventListener("click", () => page("reconstruction-file").click());
   page("reconstruction-file").addEventListener("change", (event) => {
     const [file] = event.target.files;
@@ -169,7 +174,7 @@ export function reconstruction() {
     });
   });
   page("reconstruction-save").addEventListener("click", () => doing(async () =>
-    save(await ask("known-file", { values: values() }))));
+    save(await ask("known-file", question()))));
   page("reconstruction-print").addEventListener("click", () => print());
   showTicks();
 }

@@ -1,0 +1,111 @@
+"""What the Paper view is answered: the verdicts that `impact88 verify` gives, and its report.
+
+A paper is a name and the bytes of its file, or of what has become of its text on the page.
+"""
+
+from __future__ import annotations
+
+from base64 import b64decode, b64encode
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from ..casework import pasted, wording
+from ..casework.judging import Verdict
+from ..casework.printout import LARGEST_FILE
+from ..casework.report import report as report_page
+from ..casework.verification import Examined, Verification
+from ..casework.verify import examine_bytes
+from ..errors import UserError
+from ..files import packaged_bytes
+
+LONGEST_NAME = 200
+UNNAMED = "pasted.txt"
+LONGEST_WORDS = 200
+"""Characters of a date, a case or a name on the report."""
+WORDS = ("date", "case", "examiner")
+"""What stands on a report as given."""
+
+
+def warm() -> None:
+    """Load what the first answer needs."""
+    judged("run1", b64encode(packaged_bytes("impact88.legacy", "run1-as-printed.txt")).decode())
+
+
+def judged(name: str, data: str) -> dict[str, Any]:
+    """The verdicts on one paper; ``data`` is its file in base 64.
+
+    ``text``: the paper as text, which the places below count in, or None where it is none;
+    ``problem``: why it cannot be judged, or None; ``objects``: what `impact88 verify --json` prints
+    for it; ``printouts``: the words of each of its verdicts.
+    """
+    content = b64decode(data)
+    examined = _examined(name, content)
+    return {
+        "name": examined.file,
+        "text": _text(examined, content),
+        "problem": examined.error,
+        "objects": examined.as_json(),
+        "printouts": [_words(result) for result in examined.results],
+    }
+
+
+def _examined(name: str, data: bytes) -> Examined:
+    name = base_name(name)
+    if len(data) > LARGEST_FILE:
+        raise UserError(f"is larger than {LARGEST_FILE:,} bytes, the most that is read here", name)
+    return examine_bytes(name, data)
+
+
+def base_name(name: str) -> str:
+    """A file's name without folders, of bounded length, never one that a command takes for more."""
+    last = name.replace("\\", "/").rpartition("/")[2].strip()
+    shown = "".join(character for character in last if character.isprintable())
+    return shown[:LONGEST_NAME] if shown.strip(".-") else UNNAMED
+
+
+def _text(examined: Examined, data: bytes) -> str | None:
+    try:
+        return pasted.decoded(data, examined.file)
+    except UserError:
+        return None
+
+
+def _words(result: Verification) -> dict[str, Any]:
+    """A verdict in words: its title, what it says, what it rests on, and what stands under it."""
+    says = wording.says(result.verdict)
+    return {
+        "title": wording.title(result.verdict),
+        "says": says,
+        "summary": [line for line in wording.summary(result) if line != says],
+        "parts": [
+            {"heading": heading, "items": items} for heading, items in _parts(result) if items
+        ],
+    }
+
+
+def _parts(result: Verification) -> Iterable[tuple[str, list[str]]]:
+    """What stands under a verdict, in the command's order and words: headings and sentences."""
+    contradicted = [check for check in [*result.fields, *result.replies] if check.same is False]
+    yield "Where to look", [line for check in contradicted for line in wording.look(check)]
+    yield "Doubtful", [line for check in result.doubtful for line in wording.doubts(check)]
+    if result.verdict is Verdict.DIFFERS:
+        first, *rest = wording.explained(result)
+        heading = first.rstrip(":")
+        yield (heading[:1].upper() + heading[1:], rest or [first])
+    yield "The page cannot show", result.unseen
+    yield "What the page shows besides", result.findings
+    yield "Beside the verdict", result.warnings
+    yield "Notes on the reading", [*result.remarks, *wording.left_over(result.left_over)]
+
+
+def report(papers: Sequence[Mapping[str, str]], words: Mapping[str, str]) -> str:
+    """The page that `impact88 verify --report` writes for some papers, each with ``name`` and
+    ``data`` (base 64); ``words``: what is to stand on it as given. Raises UserError."""
+    given = {name: str(words.get(name) or "").strip() or None for name in WORDS}
+    for name, text in given.items():
+        if text and len(text) > LONGEST_WORDS:
+            raise UserError(f"has more than {LONGEST_WORDS} characters", name)
+    if not papers:
+        raise UserError("there is nothing to report on")
+    examined = [_examined(one["name"], b64decode(one["data"])) for one in papers]
+    return report_page(examined, given["date"], given["case"], given["examiner"])
