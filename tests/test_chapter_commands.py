@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -395,7 +396,26 @@ def test_example_step_by_step(capsys: pytest.CaptureFixture[str]) -> None:
     for text in ("-40.21", "58.24", "36.2", "24.0", "39.1", "25.9", "-43.6", "61.5"):
         assert text in out
     assert "DIFFERS" not in out
-    assert len(as_json(capsys, "example")["steps"]) == 6
+    steps = as_json(capsys, "example")["steps"]
+    assert len(steps) == 7
+    last = {n["name"]: n["value"] for n in steps[-1]["numbers"]}
+    # Equations 15 and 16 over the estimates by hand: contact velocities along x, impulse on A
+    beta = 50 * 3.14159265358979 / 180
+    d1 = 4 * math.sin(beta)
+    closing = -40.2083333333 - 0.0
+    opening = (-10 - 0.0) - (-20 - d1 * -0.9)
+    assert last["E"] == pytest.approx(-opening / closing, rel=1e-9)
+    assert last["MUP"] == pytest.approx(20 / 30.2083333333, rel=1e-9)
+    d2 = 4 * math.cos(beta)
+    missed = 3770 * -0.9 + 1970 * -2.9 + 145 * d1 * -20 + 96 * (d2 + 4.5) * 20
+    assert last["17"] == pytest.approx(missed, rel=1e-9)
+
+
+def test_claims_of_the_chapter(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = run(capsys, "staged", "--claims")
+    assert status == 0
+    assert "-35.5 ... 23.3" in out
+    assert "false for the side impacts" in out
 
 
 @pytest.mark.parametrize(

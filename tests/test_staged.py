@@ -11,6 +11,7 @@ import pytest
 
 from captures import ROOT
 from impact88 import solve
+from impact88.chapter.claims import claims
 from impact88.chapter.staged import (
     COLUMNS_1,
     COLUMNS_2,
@@ -256,3 +257,56 @@ def test_the_measured_view_has_all_eleven(capsys):
     out = capsys.readouterr().out
     assert "64.3        57.5  2398  2042" in out
     assert "lost" in out
+
+
+def test_claims_by_hand():
+    """Γ by 10 degrees, from Equations 13-18 in mpmath-free plain form: the impulse along n and t
+    of friction with Table 2's sign, by the closed form written out in one line each."""
+    lowest, highest = [], []
+    for collision in collisions():
+        if "SIDE" not in collision.category:
+            continue
+        sizes = []
+        for turn in (0.0, -10.0, 10.0):
+            s = collision.scene | collision.coefficients
+            g, a, b = (
+                np.radians(x) for x in (s["GA"] + turn, s["TA"] + s["PA"], s["TB"] + s["PB"])
+            )
+            n, t = np.array([np.cos(g), np.sin(g)]), np.array([-np.sin(g), np.cos(g)])
+            from_a = -s["DA"] * np.array([np.cos(a), np.sin(a)])
+            from_b = s["DB"] * np.array([np.cos(b), np.sin(b)])
+            # unknown P_n and M with P = P_n (n + mu t): Equations 15 and 18
+            p = n + s["MUP"] * t
+
+            def cross(r, f):
+                return r[0] * f[1] - r[1] * f[0]
+
+            # spins by P_n and M; then the contact points' relative velocity along n
+            spins = np.array(
+                [
+                    [cross(from_a, p) / s["IA"], 1 / s["IA"]],
+                    [-cross(from_b, p) / s["IB"], -1 / s["IB"]],
+                ]
+            )
+            normal = np.array([p @ n * (1 / s["MA"] + 1 / s["MB"]), 0.0])
+            normal += cross(from_a, n) * -1 * -spins[0] - cross(from_b, n) * spins[1]
+            approach = n @ np.array([s["UX"] - s["VX"], s["UY"] - s["VY"]])
+            relative = spins[0] - spins[1]
+            reduced = s["IA"] * s["IB"] / (s["IA"] + s["IB"])
+            moment = (1 - s["EM"]) * relative - np.array([0.0, s["EM"] / reduced])
+            pn, _ = np.linalg.solve([normal, moment], [-(1 + s["E"]) * approach, 0.0])
+            sizes.append(abs(pn) * np.hypot(1, s["MUP"]))
+        lowest.append(min(sizes[1:]) / sizes[0])
+        highest.append(max(sizes[1:]) / sizes[0])
+    plane = next(claim for claim in claims() if "Γ" in claim.claim)
+    assert plane.sides == pytest.approx((100 * min(lowest) - 100, 100 * max(highest) - 100))
+    assert (round(plane.sides[0]), round(plane.sides[1])) == (-35, 23)
+
+
+def test_claims_hold_what_they_say():
+    found = {claim.claim: claim for claim in claims()}
+    assert len(found) == 6
+    em = next(c for c in found.values() if "ΔV not very sensitive to e_m" in c.claim)
+    assert max(map(abs, (*em.sides, *em.others))) < 6
+    force = next(c for c in found.values() if "weight" in c.claim)
+    assert force.sides[0] < 5 < 10 < force.sides[1]

@@ -5,6 +5,7 @@ cell by cell beside its recomputation, the differences explained. Units: ft, s, 
             little the data fix e_m
   --cells   every cell of both tables that is not as printed or is doubtful, with the evidence
   --measured  energy and momentum of the measured velocities themselves, nothing fitted
+  --claims  what the text says of its method, checked on the eleven collisions
   --table 1 or 2   the table itself, emended
 
 FILE.toml is a staged collision of one's own, with the listing's names: vehicles and geometry, the
@@ -48,6 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     views.add_argument(
         "--measured", action="store_true", help="energy and momentum as measured, beside Table 2"
     )
+    views.add_argument("--claims", action="store_true", help="the chapter's claims, checked")
     views.add_argument("--table", type=int, choices=(1, 2), help="print a table, emended")
     add_json_argument(parser, "everything as one JSON object")
     add_output_argument(parser)
@@ -70,6 +72,8 @@ def main(args: argparse.Namespace) -> int:
         print(_fits())
     elif args.measured:
         print(_measured())
+    elif args.claims:
+        print(_claims())
     elif args.cells:
         print(_cells())
     elif args.table:
@@ -87,7 +91,7 @@ def _own(args: argparse.Namespace) -> int:
     from ..plaintable import fixed, paragraph, plain, table
     from ..reconstruction.geometry import NAMES, Geometry
 
-    if args.fit or args.cells or args.measured or args.table:
+    if args.fit or args.cells or args.measured or args.claims or args.table:
         raise UserError("a collision of one's own is fitted; --fit and the like are the chapter's")
     known = known_values(args.file, [], (*NAMES, *VELOCITIES, *FINAL_STATE))
     absent = [n for n in (*NAMES, *VELOCITIES, *FINAL_STATE) if n not in known]
@@ -140,6 +144,21 @@ def _measured() -> str:
             ),
         ]
     )
+
+
+def _claims() -> str:
+    from ..chapter.claims import claims
+    from ..plaintable import paragraph, table
+
+    def extent(values: tuple[float, float]) -> str:
+        return f"{values[0] + 0.0:.1f} ... {values[1]:.1f}"
+
+    lines = ["What the chapter says of its method, on the eleven staged collisions", ""]
+    for claim in claims():
+        lines += paragraph(f"Section {claim.where}: {claim.claim}: {claim.verdict}")
+        rows = [[claim.varied, extent(claim.sides), extent(claim.others), claim.unit]]
+        lines += ["", *table(rows, ["  varied", "front to side", "others", ""], left=(0, 3)), ""]
+    return "\n".join(lines[:-1])
 
 
 def _closures(closures: list[Any], calculated: dict[int, float] | None = None) -> list[str]:
