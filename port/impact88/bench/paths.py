@@ -25,6 +25,8 @@ from .measure import enlarged
 from .populations import Columns, scenes
 
 GENERAL = "general"
+CALLS = 200
+"""Calls with one scene that are timed together."""
 
 PATHS: dict[str, dict[str, float]] = {
     GENERAL: {},
@@ -135,14 +137,21 @@ def _solving(columns: Any, outputs: Sequence[str]) -> Callable[[], object]:
     return lambda: solve(columns, outputs, threads=1)
 
 
+def _solving_into(columns: Any, room: dict[str, Any]) -> Callable[[], object]:
+    return lambda: solve(columns, out=room, threads=1)
+
+
 @dataclass
 class Floor:
     """Nanoseconds a scene: the six velocities, and six sines and cosines of three angles alone, by
-    numpy and by `closedform.degrees`."""
+    numpy and by `closedform.degrees`; and a call of `solve` with one scene, as plain numbers and as
+    arrays of one."""
 
     solve: float
     numpy_sines: float
     own_sines: float
+    one_scene: float
+    array_of_one: float
 
 
 def floor(count: int, repeats: int) -> Floor:
@@ -164,15 +173,25 @@ def floor(count: int, repeats: int) -> Floor:
                 sine_and_cosine(angle, out[0], out[1], (out[2], out[3], out[4], out[5]))
 
     times = _rounds([_solving(general, ORDER), numpy_sines, own_sines], repeats)
-    return Floor(*(1e9 * t / count for t in times))
+    lone = {name: float(values[0]) for name, values in general.items()}
+    one = _solving(lone, ORDER)
+    arrays = _solving({name: np.array([value]) for name, value in lone.items()}, ORDER)
+
+    def calls(work: Callable[[], object]) -> Callable[[], object]:
+        return lambda: [work() for _ in range(CALLS)]
+
+    alone = _rounds([calls(one), calls(arrays)], repeats)
+    return Floor(*(1e9 * t / count for t in times), *(1e9 * t / CALLS for t in alone))
 
 
 @dataclass
 class Size:
-    """How the closed form grows: seconds for ``scenes``, and bytes allocated beside the results."""
+    """How the closed form grows: seconds for ``scenes``, the same into arrays given again and again
+    (``out``), and bytes allocated beside the results."""
 
     scenes: int
     seconds: float
+    seconds_out: float
     extra_bytes: int
 
 
@@ -182,11 +201,14 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Size]:
     base = _moving()
     for count in counts:
         columns = enlarged(base, count)
-        seconds = _rounds([_solving(columns, ORDER)], repeats if count < 5_000_000 else 1)[0]
+        room = {name: np.zeros(count) for name in ORDER}
+        works = [_solving(columns, ORDER), _solving_into(columns, room)]
+        seconds, seconds_out = _rounds(works, repeats if count < 5_000_000 else 1)
+        del room, works
         tracemalloc.start()
         solve(columns, ORDER, threads=1)
         extra = tracemalloc.get_traced_memory()[1] - 6 * 8 * count
         tracemalloc.stop()
-        out.append(Size(count, seconds, extra))
+        out.append(Size(count, seconds, seconds_out, extra))
         del columns
     return out

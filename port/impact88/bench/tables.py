@@ -131,7 +131,9 @@ def floor(found: Floor) -> str:
     return (
         f"six velocities: {found.solve:.0f} ns a scene on one core; six sines and cosines alone: "
         f"{found.numpy_sines:.0f} ns by numpy,\n{found.own_sines:.0f} ns by closedform.degrees "
-        f"({found.solve / found.own_sines:.1f} times that floor)"
+        f"({found.solve / found.own_sines:.1f} times that floor)\n"
+        f"six velocities of one scene: {found.one_scene / 1e3:.0f} microseconds a call as plain "
+        f"numbers, {found.array_of_one / 1e3:.0f} as arrays of one"
     )
 
 
@@ -141,11 +143,14 @@ def sizes(found: Sequence[Size]) -> str:
             f"{size.scenes:,}",
             f"{size.seconds:.4f}",
             f"{1e9 * size.seconds / size.scenes:.0f}",
+            f"{1e9 * size.seconds_out / size.scenes:.0f}",
             f"{size.extra_bytes / 2**20:.1f}",
         ]
         for size in found
     ]
-    return "\n".join(table(lines, ["scenes", "seconds", "ns/scene", "MiB beside the results"]))
+    return "\n".join(
+        table(lines, ["scenes", "seconds", "ns/scene", "with out=", "MiB beside the results"])
+    )
 
 
 def machine(told: dict[str, Any]) -> str:
