@@ -20,6 +20,7 @@ from typing import Any
 from ..applesoft import decimaltext, functions
 from ..applesoft.real import (
     INTEGER_EXPONENT,
+    ZERO,
     Number,
     absolute,
     floor,
@@ -45,7 +46,8 @@ class Accumulator:
     def __init__(self, variables: Variables, ram: bytearray) -> None:
         self.number: Number = AFTER_TYPING
         self.extension = 0
-        self._low_byte: Callable[[], int] = int
+        self._last_integer: Number = ZERO
+        self._last_power: tuple[Number, ...] = ()
         self._variables = variables
         self._strings = variables.strings
         self._ram = ram
@@ -122,13 +124,14 @@ class Accumulator:
         """INT."""
         whole = floor(x)
         if x[0] < INTEGER_EXPONENT:
-            self._low_byte = lambda: to_integer(whole) & 0xFF
+            self._last_integer = whole
+            self._last_power = ()
         return whole
 
     def exponential(self, x: Number) -> Number:
         """EXP."""
         result = functions.exponential(x)
-        self._low_byte = lambda: functions.exponential_integer(x) & 0xFF
+        self._last_power = (x,)
         return result
 
     def square_root(self, x: Number) -> Number:
@@ -140,16 +143,18 @@ class Accumulator:
         result = functions.power(left, right)
         if left[2] and rounded(right)[0] >= INTEGER_EXPONENT:
             result = negate(absolute(result)) if self._low_byte() & 1 else absolute(result)
-        self._low_byte = lambda: _integer_in_power(left, right) & 0xFF
+        self._last_power = (left, right)
         return result
 
-
-def _integer_in_power(left: Number, right: Number) -> int:
-    """What INT finds within EXP when ^ is worked out."""
-    if not left[0] or not right[0]:
-        return 0
-    logarithm = functions.logarithm(absolute(rounded(left)))
-    return functions.exponential_integer(multiply(rounded(right), logarithm))
+    def _low_byte(self) -> int:
+        """Of what INT found last, be it within EXP or ^."""
+        if not self._last_power:
+            return to_integer(self._last_integer) & 0xFF
+        *base, x = self._last_power
+        if base:
+            left = absolute(rounded(base[0]))
+            x = multiply(rounded(x), functions.logarithm(left)) if left[0] and x[0] else ZERO
+        return functions.exponential_integer(x) & 0xFF
 
 
 def wrapped(accumulator: Accumulator, enter: Callable[[int], object]) -> dict[str, Any]:

@@ -13,24 +13,25 @@ from typing import Any, NamedTuple
 from .statementcompiler import StatementCompiler
 
 Namespace = dict[str, Any]
-_LOOK_AROUND = ("PEEK(", "POKE(", "CALL(")
+_LOOK_AROUND = ("PEEK", "POKE(", "CALL(")
 """Code that may ask where the program is."""
 
 
 class Line(NamedTuple):
     """A compiled line.
 
-    ``codes`` are the bodies of its steps; ``constants`` the names they use; ``begins``, ``traced``,
-    ``positions`` and ``needs`` are what `linecompiler.Step` tells of each. ``leftovers``: whether a
-    formula may ask what an earlier one left in the accumulator.
+    ``codes`` are the bodies of its steps; ``constants`` the names they use; ``traced`` and
+    ``positions`` are what `linecompiler.Step` tells of each; ``starts``: the step with which its
+    statement begins; ``need``: how deep the line's formulas go into the stack. ``leftovers``:
+    whether a formula may ask what an earlier one left in the accumulator.
     """
 
     codes: tuple[CodeType, ...]
     constants: dict[str, Any]
-    begins: tuple[bool, ...]
     traced: tuple[bool, ...]
     positions: tuple[int, ...]
-    needs: tuple[int, ...]
+    starts: tuple[int, ...]
+    need: int
     leftovers: bool
 
     def functions(self, names: Namespace) -> list[Any]:
@@ -56,12 +57,15 @@ def compiled(tokens: bytes, *, careful: bool = False, direct: bool = False) -> L
     except (RecursionError, MemoryError, SyntaxError):  # nested past what Python takes
         text = [f"def step{n}(pc): bad('OUT OF MEMORY')" for n in range(len(line.steps))]
         code = compile("\n".join(text), "<basic>", "exec")
+    starts: list[int] = []
+    for number, step in enumerate(line.steps):
+        starts.append(number if step.begins else starts[-1])
     return Line(
         tuple(each for each in code.co_consts if isinstance(each, CodeType)),
         line.formulas.constants,
-        tuple(step.begins for step in line.steps),
         tuple(step.traced for step in line.steps),
         tuple(step.position for step in line.steps),
-        tuple(step.need for step in line.steps),
+        tuple(starts),
+        max(step.need for step in line.steps),
         line.formulas.leftovers,
     )

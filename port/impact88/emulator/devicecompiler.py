@@ -53,6 +53,10 @@ class DeviceCompiler(LineCompiler):
                 if value.dead:
                     self._stop(value)
                     return
+                if value.text is not None and not formulas.careful:
+                    self._emit(f"out_literal({value.text!r})")
+                    newline = True
+                    continue
                 self._emit(f"{'out_string' if value.kind == TEXT else 'out_number'}({value.code})")
                 newline = True
         if newline:

@@ -159,7 +159,7 @@ class FormulaCompiler:
             return Operand(self.to_string("made", name), TEXT)
         place = (f"base[pc] + {offset}", str(len(text)))
         code, tracked = (self.to_string(name, *place) for name in ("literal", "literal_"))
-        return Operand(code, TEXT, tracked=tracked)
+        return Operand(code, TEXT, tracked=tracked, text=text)
 
     def residue(self, string: Operand) -> Operand:
         """The number that the accumulator holds when a string has been found."""

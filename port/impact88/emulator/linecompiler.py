@@ -1,6 +1,6 @@
 """Compiling a line's steps: what statements have in common, LET, and the variables they name.
 
-A step is what runs between two looks at the program: one statement, or for ``NEXT J,I`` one of its
+A step is what runs without interruption: one statement, or for ``NEXT J,I`` one of its
 variables. It becomes the body of a Python function ``(pc) -> next pc``. The names used in the text
 made here (``V``, ``first``, ``out`` ...) are supplied by the machine (`machine.Machine`). Errors of
 syntax become code that raises, in the place where the ROM would stumble: after everything before it

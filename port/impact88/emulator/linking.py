@@ -81,10 +81,13 @@ class InputBuffer(bytearray):
 
 
 class Steps:
-    """The row, and of each step: whether a statement ``begins`` with it, whether it is ``traced``,
-    its line (``lines``), where the next line begins (``after``), where its statement does
-    (``start``), the ``base`` address of its line's tokens, and its ``position`` among them.
-    ``first`` finds a line's first step; ``end`` is the step after the program's last."""
+    """The row of steps, and lists beside it with an entry for each.
+
+    ``traced``: whether TRACE shows it. ``lines``: the number of its line. ``after``: where the next
+    line begins. ``start``: where its statement begins. ``base``: the address of its line's tokens,
+    ``position``: where among them the ROM stands before the step. ``first`` finds a line's first
+    step; ``end`` is the step after the program's last.
+    """
 
     def __init__(self, program: ProgramText, control: Control, names: Namespace) -> None:
         self._program = program
@@ -94,7 +97,6 @@ class Steps:
         self._careful: list[Any] = []
         self.buffer = InputBuffer()
         self.steps: list[Any] = []
-        self.begins: list[bool] = []
         self.traced: list[bool] = []
         self.lines: list[int] = []
         self.after: list[int] = []
@@ -123,7 +125,6 @@ class Steps:
     def _tables(self) -> tuple[MutableSequence[Any], ...]:
         return (
             self.steps,
-            self.begins,
             self.traced,
             self.lines,
             self.after,
@@ -142,8 +143,24 @@ class Steps:
         for table in self._tables():
             table.clear()
         deepest = 0
-        places: dict[int, int] = {}
         lines = self._program.flow()
+        if self._program.as_stored:
+            for line in lines:
+                self.first[line.number] = len(self.steps)
+                deepest = max(deepest, self._append(line.tokens, line.number, line.text))
+        else:
+            deepest = self._append_poked(lines)
+        self.end = len(self.steps)
+        last = lines[-1] if lines else NO_LINE
+        self._append_end(last.number, last.text, len(last.tokens))
+        self._append_step(wild, last.number, last.text, 0)
+        self._control.safe = ROOM + deepest
+
+    def _append_poked(self, lines: list[Line]) -> int:
+        """The steps of a program that poked into itself, in which links may lead anywhere; returns
+        how deep they go into the stack."""
+        deepest = 0
+        places: dict[int, int] = {}
         for line in lines:
             places[line.address] = len(self.steps)
             deepest = max(deepest, self._append(line.tokens, line.number, line.text))
@@ -151,37 +168,31 @@ class Steps:
                 self._append_end(line.number, line.text, len(line.tokens))
         for line in self._program.lines:
             self.first.setdefault(line.number, places.get(line.address, len(self.steps) + 1))
-        self.end = len(self.steps)
-        last = lines[-1] if lines else NO_LINE
-        self._append_end(last.number, last.text, len(last.tokens))
-        self._append_step(wild, last.number, last.text, 0)
-        self._control.safe = ROOM + deepest
+        return deepest
 
     def _append(self, tokens: bytes, number: int, base: int, shift: int = 0) -> int:
         """A line's steps; returns how deep they go into the stack. The line's own positions are
         ``shift`` less than those kept."""
         line = compiled(tokens, direct=number == DIRECT)
         first = len(self.steps)
-        count = len(line.begins)
+        count = len(line.traced)
         self._sources.append((number, tokens, first))
         self.steps += line.functions(self._names)
-        self.begins += line.begins
         self.traced += line.traced
         self.lines += [number] * count
         self.after += [first + count] * count
         self.base += [base] * count
-        self.position += [position + shift for position in line.positions]
+        self.position += [n + shift for n in line.positions] if shift else line.positions
         self.leftovers |= line.leftovers
-        for n, begins in enumerate(line.begins, first):
-            self.start.append(n if begins else self.start[-1])
-        return max(line.needs)
+        self.start += [first + n for n in line.starts]
+        return line.need
 
     def _append_end(self, number: int, base: int, position: int) -> None:
         self._append_step(halt, number, base, position)
 
     def _append_step(self, step: Any, number: int, base: int, position: int) -> None:
         pc = len(self.steps)
-        values = (step, False, False, number, pc, pc, base, position)
+        values = (step, False, number, pc, pc, base, position)
         for table, value in zip(self._tables(), values, strict=True):
             table.append(value)
 

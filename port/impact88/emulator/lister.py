@@ -15,7 +15,7 @@ INDENT = 5
 
 
 def pieces(number: int, tokens: bytes) -> Iterator[str]:
-    """What the ROM writes between two looks at the cursor: the number, then each character, and
+    """What the ROM writes before it asks where the cursor is: the number, then each character, and
     each keyword with its blanks."""
     yield f"{number} "
     for byte in tokens:

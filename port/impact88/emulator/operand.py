@@ -54,7 +54,8 @@ class Operand:
     ``rounded``: it has no extension. ``truth``: text for a bool, whether it is not zero.
     ``variable``: the bare value of a string variable. ``whole``: the number itself when it is a
     constant 0 ... 32767. ``dead``: it ends in an error. ``tracked``: text for a string that
-    follows the accumulator's extension. ``text_relation``: a relation comes next that takes this
+    follows the accumulator's extension, ``text``: its characters if it stands in the program.
+    ``text_relation``: a relation comes next that takes this
     number for a string.
     """
 
@@ -63,6 +64,7 @@ class Operand:
         "dead",
         "kind",
         "rounded",
+        "text",
         "text_relation",
         "tracked",
         "truth",
@@ -82,6 +84,7 @@ class Operand:
         whole: int | None = None,
         text_relation: bool = False,
         tracked: str | None = None,
+        text: str | None = None,
     ) -> None:
         self.code = code
         self.kind = kind
@@ -92,6 +95,7 @@ class Operand:
         self.whole = whole
         self.text_relation = text_relation
         self.tracked = tracked
+        self.text = text
 
     @property
     def condition(self) -> str:

@@ -43,7 +43,8 @@ class ProgramText:
         self._ram = ram
         self._image: bytes | None = None
         self._lines: list[Line] = []
-        self._as_stored = True
+        self.as_stored = True
+        """Whether links and lines agree: nothing was poked into the program."""
         self.spare = 0
         """NEW, typed, leaves one byte more than the program takes, for good."""
 
@@ -90,7 +91,7 @@ class ProgramText:
         """The bytes from `START` on, the two zeros at the end included."""
         if self._image is None:
             out = bytearray()
-            self._as_stored = True
+            self.as_stored = True
             self._lines = []
             for number in self.numbers:
                 line = Line(START + len(out), number, self.tokens[number])
@@ -130,7 +131,7 @@ class ProgramText:
         before = self.flow()
         followed = self._lines, self._followed()
         self._lines = followed[1]
-        self._as_stored = False
+        self.as_stored = False
         self.numbers = [line.number for line in self._lines]
         self.tokens = {line.number: line.tokens for line in reversed(self._lines)}
         return before != self.flow() or followed[0] != followed[1]
@@ -157,7 +158,7 @@ class ProgramText:
         """The lines in the order in which a program runs through them: each begins behind the zero
         of the one before, whatever the addresses say."""
         image = self.image
-        if self._as_stored:
+        if self.as_stored:
             return self._lines
         lines = []
         offset = 0

@@ -131,6 +131,13 @@ class StringArea:
         self.free(string)
         return text
 
+    def shown(self, text: str) -> str:
+        """The characters of a string in the program that is used at once. Raises FORMULA TOO
+        COMPLEX if there is no place for it."""
+        if len(self.temporaries) == PLACES:
+            raise ApplesoftError("FORMULA TOO COMPLEX")
+        return text
+
     # --- operations that make a string --------------------------------------------------------
 
     def new(self, text: str) -> Descriptor:

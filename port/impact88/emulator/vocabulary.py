@@ -127,6 +127,7 @@ def _outside(hardware: Hardware) -> dict[str, Any]:
     output, inputs, strings = hardware.output, hardware.inputs, hardware.variables.strings
     return {
         "out": output.out,
+        "out_literal": lambda text: output.out(strings.shown(text)),
         "out_string": lambda string: output.out(strings.used(string)),
         "out_number": lambda x: output.out(hardware.accumulator.printed(x)),
         "newline": output.newline,
