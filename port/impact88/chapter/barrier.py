@@ -32,6 +32,7 @@ RESULTS = (
 """The results a barrier leaves: B's stay as they were."""
 
 
+@np.errstate(all="ignore")  # what is not finite is said in words
 def barrier(columns: Mapping[str, Any], outputs: Sequence[str] | None = None) -> dict[str, Any]:
     """The impact of vehicle A on a rigid barrier whose surface makes the angle GA with the y axis.
 

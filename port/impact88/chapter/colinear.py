@@ -23,6 +23,7 @@ INITIAL = ("UN", "UT", "VN", "VT")
 FINAL = ("VAN", "VAT", "VBN", "VBT")
 
 
+@np.errstate(all="ignore")  # what is not finite is said in words
 def colinear(known: Mapping[str, Any]) -> dict[str, Array]:
     """Final velocities VAN VAT VBN VBT by Equations 9-12, and what `report` adds.
 
@@ -35,6 +36,7 @@ def colinear(known: Mapping[str, Any]) -> dict[str, Array]:
     return report(ma, mb, e, mu, initial, final)
 
 
+@np.errstate(all="ignore")  # what is not finite is said in words
 def colinear_inverse(known: Mapping[str, Any]) -> dict[str, Array]:
     """Initial velocities UN UT VN VT from the final ones, and what `report` adds.
 

@@ -33,6 +33,7 @@ GIVEN = ("MA", "MB", "SA", "SB", "LOSS")
 """What Equation 19 asks for."""
 
 
+@np.errstate(all="ignore")  # what is not finite is said in words
 def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Array]:
     """DVA and DVB by Equation 19, by default with the factor 2/3 that Table 2 has.
 

@@ -385,6 +385,7 @@ def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | Non
     return any(bool(solution.contradictory) for solution in solutions)
 
 
+@np.errstate(all="ignore")  # what is not finite is said in words
 def reconstruct(known: Mapping[str, Uncertain | float]) -> list[Reconstruction]:
     """Every impact found that agrees with what is ``known`` (`KNOWABLE` names; M 6 where left out).
 

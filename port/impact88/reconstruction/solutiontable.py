@@ -7,6 +7,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from ..errors import UserError
 from ..names import CHAPTER, PIVOT, RESULTS, SCENE, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
@@ -213,6 +215,7 @@ def as_json(
     return whole
 
 
+@np.errstate(all="ignore")  # what is not finite is said in words
 def show(
     known: Mapping[str, float],
     wanted: list[str] | None,
@@ -227,6 +230,8 @@ def show(
         solutions = solve_for(known, wanted)
     except UserError as error:
         raise UserError(str(error), source) from None
+    except np.linalg.LinAlgError:  # a matrix that holds what is not finite
+        raise UserError("the values known lead beyond the range of doubles", source) from None
     tables = [(s, complete(known, s, contact_time)) for s in solutions]
     if as_object:
         solved = [as_json(known, s, v, units) for s, v in tables]

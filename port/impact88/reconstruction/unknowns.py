@@ -103,6 +103,7 @@ class Solution:
         return self.mismatch > 1e-9 * np.max(speeds, axis=0)
 
 
+@np.errstate(all="ignore")  # what is not finite is said in words
 def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) -> list[Solution]:
     """Solve Equations 13-18 for what ``known`` leaves out.
 
