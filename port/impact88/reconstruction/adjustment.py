@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from ..errors import UserError
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 from ..uncertainty.uncertain import Uncertain, fixed
+from .doublerange import within_doubles
 from .geometry import NAMES as GEOMETRY
 from .geometry import Geometry
 from .knowable import OTHERS
@@ -385,7 +386,7 @@ def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | Non
     return any(bool(solution.contradictory) for solution in solutions)
 
 
-@np.errstate(all="ignore")  # what is not finite is said in words
+@within_doubles
 def reconstruct(known: Mapping[str, Uncertain | float]) -> list[Reconstruction]:
     """Every impact found that agrees with what is ``known`` (`KNOWABLE` names; M 6 where left out).
 

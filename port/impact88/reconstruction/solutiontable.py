@@ -7,14 +7,13 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from ..errors import UserError
 from ..names import CHAPTER, PIVOT, RESULTS, SCENE, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..schemas import stamped
 from ..status import sentences
 from ..units import RULES, System
+from .doublerange import within_doubles
 from .impulse import clock, forces
 from .outcome import moment_ratio, outcome
 from .state import CHANGES
@@ -215,7 +214,7 @@ def as_json(
     return whole
 
 
-@np.errstate(all="ignore")  # what is not finite is said in words
+@within_doubles
 def show(
     known: Mapping[str, float],
     wanted: list[str] | None,
@@ -228,11 +227,9 @@ def show(
     the known values come from in errors, ``units`` how values are written."""
     try:
         solutions = solve_for(known, wanted)
+        tables = [(s, complete(known, s, contact_time)) for s in solutions]
     except UserError as error:
         raise UserError(str(error), source) from None
-    except np.linalg.LinAlgError:  # a matrix that holds what is not finite
-        raise UserError("the values known lead beyond the range of doubles", source) from None
-    tables = [(s, complete(known, s, contact_time)) for s in solutions]
     if as_object:
         solved = [as_json(known, s, v, units) for s, v in tables]
         print(json.dumps(stamped("reconstruct", {"solutions": solved}), allow_nan=False))

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 from ..closedform.solve import solve
 from ..errors import UserError
 from ..names import COEFFICIENTS, IMPULSES, PIVOT, RESULTS, SCENE, check_names, missing, quantity
+from .doublerange import within_doubles
 from .equations import FINAL, INITIAL, SPINS, Equations, Found
 from .geometry import NAMES as GEOMETRY
 from .geometry import with_point_masses
@@ -103,7 +104,7 @@ class Solution:
         return self.mismatch > 1e-9 * np.max(speeds, axis=0)
 
 
-@np.errstate(all="ignore")  # what is not finite is said in words
+@within_doubles
 def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) -> list[Solution]:
     """Solve Equations 13-18 for what ``known`` leaves out.
 

@@ -1,0 +1,29 @@
+"""What lies beyond the range of doubles: computed without remarks, and said in words at the end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
+import numpy as np
+
+from ..errors import UserError
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def within_doubles(function: Callable[P, R]) -> Callable[P, R]:
+    """``function`` without numpy's warnings; a matrix that holds what is not finite, and so has no
+    decomposition, is a UserError."""
+
+    @wraps(function)
+    def quiet(*arguments: P.args, **options: P.kwargs) -> R:
+        with np.errstate(all="ignore"):
+            try:
+                return function(*arguments, **options)
+            except np.linalg.LinAlgError:
+                raise UserError("the values known lead beyond the range of doubles") from None
+
+    return quiet
