@@ -7,7 +7,7 @@ from .slipsfilling import FILLED, TERMS
 from .slipsreading import CONVERTED, INERTIAS, READ
 from .slipsshowing import SHOWN
 
-SLIPS: tuple[Slip, ...] = (*READ, *INERTIAS, *CONVERTED, *FILLED, *SHOWN)
+SLIPS: tuple[Slip, ...] = (*READ, *CONVERTED, *FILLED, *SHOWN, *INERTIAS)
 """What is tried first."""
 RARE: tuple[Slip, ...] = TERMS
 """What is tried where those do not explain a table."""
