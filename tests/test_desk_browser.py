@@ -168,6 +168,16 @@ def test_a_published_run_pasted_is_identical_and_one_digit_changed_is_not(
     assert start <= at < stop
 
 
+def test_a_page_read_by_a_scanner_has_its_doubts_marked(page: Page) -> None:
+    """A page of 36 numbers as an OCR engine read it: three of them not as they were printed."""
+    page.put("paper-text", (ROOT / "golden/printouts/ocr-page.txt").read_text(encoding="utf-8"))
+    until(lambda: words(page) == ["IDENTICAL AS FAR AS READ"], "the verdict")
+    assert "e491" in page.texts("#paper-marks mark.doubtful")
+    assert page.count("#paper-marks mark.doubtful b") > 0
+    sentences = page.texts("#paper-printouts .part .to-place")
+    assert any("VBY" in sentence and "(-8.491)" in sentence for sentence in sentences)
+
+
 def test_files_dropped_together_are_told_apart_and_hostile_text_stays_text(
     page: Page, tmp_path: Path
 ) -> None:
