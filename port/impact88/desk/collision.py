@@ -129,8 +129,8 @@ def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[d
     system = system_of(units)
 
     def shown(rule: str, value: float) -> str:
-        converted = units is not None and float(system.scale(rule)) != 0
-        return f"{number(system.shown(rule, value))} {system.label(rule)}" if converted else ""
+        label = system.label(rule)
+        return f"{number(system.shown(rule, value))} {label}" if label != rule else ""
 
     return [
         {

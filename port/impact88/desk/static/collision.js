@@ -81,7 +81,7 @@ function boundsRow([name, bound]) {
     .map(([input, drive]) => [input, (drive.highest ?? 0) - (drive.lowest ?? 0)])
     .filter(([, swing]) => swing > 1e-9 * width)
     .sort((one, other) => other[1] - one[1])
-    .slice(0, 3)
+    .slice(0, 2)
     .map(([input, swing]) => `${input} ${shown(swing, 3)}`);
   const quantiles = SHARES.map((share) => shown(bound.quantiles[share], 4));
   return [

@@ -235,7 +235,8 @@ const STATUS_MARK = { read: "✓", doubtful: "?", contradicted: "✗", "not read
 
 function numbersTable({ verification }) {
   const table = element("table", { className: "checks" });
-  const checks = [...verification.fields, ...verification.replies.filter((one) => one.same !== true)];
+  const replies = verification.replies.filter((one) => one.same !== true);
+  const checks = [...verification.fields, ...replies];
   fill(table, ["", "", "printed", "recomputed", "exact", "printed − exact"], checks.map((check) => {
     const name = check.start === null || check.start === undefined ? check.name
       : element("button", { type: "button", className: "to-place", title: "Show it in the text" }, check.name);
@@ -247,7 +248,8 @@ function numbersTable({ verification }) {
     }
     const status = element("span", { className: `status ${check.status.replace(" ", "-")}` },
       element("span", { "aria-hidden": "true" }, `${STATUS_MARK[check.status]} `), check.status);
-    return [name, status, check.printed ?? "–", check.recomputed ?? "–", check.exact ?? "", check.difference ?? ""];
+    const named = replies.includes(check) ? element("span", {}, name, " typed") : name;
+    return [named, status, check.printed ?? "–", check.recomputed ?? "–", check.exact ?? "", check.difference ?? ""];
   }), (place) => checks[place].status.replace(" ", "-"));
   return table;
 }
