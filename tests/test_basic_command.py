@@ -177,7 +177,7 @@ def test_on_a_terminal(program):
                 seen += os.read(leader, 4096).decode()
         assert text in seen
 
-    wait_for("]")
+    wait_for("control-D leaves.\r\n\r\n]")
     os.write(leader, b"print 6*7\r")
     wait_for("\n42")
     os.write(leader, b"10 ?5:goto 10\rrun\r")

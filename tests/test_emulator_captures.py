@@ -28,7 +28,7 @@ PROGRAMS = [
 ]
 FUZZ = [
     case
-    for name in ("fuzz", "corners/fuzz")
+    for name in ("fuzz", "corners/fuzz", "corners/witnessed")
     if (captures.folder() / f"{name}.jsonl.gz").exists()
     for case in captures.jsonl(name)
 ]

@@ -19,6 +19,7 @@ from pathlib import Path
 from types import FrameType
 
 from impact88 import cli
+from impact88.errors import UserError
 from impact88.program.run import run
 from impact88.scene import Scene
 
@@ -162,7 +163,10 @@ def _replay_faults(case: Case) -> list[str]:
         return [f"replay: {traceback.format_exc()}"]
     wrong = []
     for index, scene in enumerate(scenes):
-        done = run(Scene(scene))
+        try:
+            done = run(Scene(scene))
+        except UserError:  # it cannot be typed into the program's lines; replay takes it as INPUT
+            continue
         error = str(found.error[index])
         if (error or None) != done.error or bool(found.zero_determinant[index]) != (
             done.zero_determinant
