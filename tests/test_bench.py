@@ -109,3 +109,15 @@ def test_populations_of_the_table_can_be_typed():
         columns = scenes(name, 20, 1)
         for key, column in texts(columns).items():
             assert [float(text) for text in column] == columns[key].tolist()
+
+
+def test_files_are_timed_beside_the_computation(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("impact88.commands.bench.FILE_ROWS", 300)
+    assert main(["bench", "--files", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["files"]
+    assert found["rows"] == 300
+    names = [door["name"] for door in found["doors"]]
+    assert names[0] == "computation alone"
+    assert any(name.startswith("CSV to CSV") for name in names)

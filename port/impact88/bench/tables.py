@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..plaintable import table
+from .files import Door
 from .measure import Measured
 from .paths import GENERAL, Floor, Path, Size
 from .populations import POPULATIONS
@@ -151,6 +152,17 @@ def sizes(found: Sequence[Size]) -> str:
     return "\n".join(
         table(lines, ["scenes", "seconds", "ns/scene", "with out=", "MiB beside the results"])
     )
+
+
+def doors(rows: int, found: Sequence[Door]) -> str:
+    """Files beside the computation alone."""
+    alone = found[0].seconds
+    lines = [
+        [d.name, f"{d.seconds:.2f}", f"{d.processor:.2f}", f"{d.seconds / alone:.1f}"]
+        for d in found
+    ]
+    heading = [f"{rows:,} rows, all results", "seconds", "of processors", "times the computation"]
+    return "\n".join(table(lines, heading))
 
 
 def machine(told: dict[str, Any]) -> str:

@@ -11,6 +11,7 @@ examples:
   impact88 bench --scenes 300 --quick        a quick look
   impact88 bench --figure work-precision.pdf --json > bench.json
   impact88 bench --paths                     what skipping saves, path by path (processor time)
+  impact88 bench --files                     a million rows from file to file
   impact88 bench --sizes                     growth to ten million scenes (takes 2 GB)
 
 exit status: 0 done; 2 bad input
@@ -42,6 +43,7 @@ __doc__ = (__doc__ or "").format(
 
 QUICK = 0.05
 PATH_SCENES = 500_000
+FILE_ROWS = 1_000_000
 MOST_SCENES = 10_000_000
 SIZES = (1_000, 10_000, 100_000, 1_000_000, 10_000_000)
 
@@ -67,6 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--paths", action="store_true", help="what skipping saves, instead")
     parser.add_argument("--sizes", action="store_true", help="growth with the scenes, instead")
+    parser.add_argument("--files", action="store_true", help="tables from file to file, instead")
     add_json_argument(parser, "JSON instead of tables")
     add_output_argument(parser)
     parser.add_argument("--figure", metavar="FILE", help="draw error against time: .svg .png .pdf")
@@ -80,7 +83,7 @@ def main(arguments: argparse.Namespace) -> int:
         from ..figures.canvas import check_ending
 
         check_ending(arguments.figure)
-    if arguments.paths or arguments.sizes:
+    if arguments.paths or arguments.sizes or arguments.files:
         return _skipping(arguments)
     from ..bench import figure, measure, tables
     from ..progress import progress
@@ -116,7 +119,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _skipping(arguments: argparse.Namespace) -> int:
-    from ..bench import measure, paths, tables
+    from ..bench import files, measure, paths, tables
 
     found: dict[str, Any] = {"machine": measure.machine()}
     texts = [tables.machine(found["machine"])]
@@ -127,6 +130,10 @@ def _skipping(arguments: argparse.Namespace) -> int:
         found["outputs"] = [asdict(path) for path in by_output]
         found["floor"] = asdict(floor)
         texts += [tables.paths(by_kind, by_output), tables.floor(floor)]
+    if arguments.files:
+        doors = files.files(FILE_ROWS, _solve_file)
+        found["files"] = {"rows": FILE_ROWS, "doors": [asdict(door) for door in doors]}
+        texts.append(tables.doors(FILE_ROWS, doors))
     if arguments.sizes:
         grown = paths.sizes(SIZES, arguments.repeats)
         found["sizes"] = [asdict(size) for size in grown]
@@ -136,6 +143,13 @@ def _skipping(arguments: argparse.Namespace) -> int:
     else:
         print("\n\n".join(texts))
     return 0
+
+
+def _solve_file(path: str, to: str) -> None:
+    """`impact88 solve`, as the command line does it."""
+    from ..cli import main as command_line
+
+    command_line(["solve", path, "-o", to])
 
 
 def _print_json(found: dict[str, Any]) -> None:
