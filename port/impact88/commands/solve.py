@@ -3,8 +3,8 @@ missing and is 6 then): CSV (.csv .tsv .txt, also .csv.gz), JSON Lines (.jsonl .
 impact88[arrow] .parquet and .feather; with impact88[excel] .xlsx. Names in small letters or with a
 unit behind them (ma [slug]), semicolons and decimal commas are understood. All its columns are
 passed through, and the results follow. Rows are read and written in blocks: memory does not
-grow with the file (.npz and .xlsx excepted). A scene file (.toml) is a table of one row, or with --sweep of
-as many as the ranges LOW:HIGH:COUNT have combinations.
+grow with the file (.npz and .xlsx excepted). A scene file (.toml) is a table of one row, or with
+--sweep of as many as the ranges LOW:HIGH:COUNT have combinations.
 
 Results, all by default:
 {results}

@@ -112,5 +112,5 @@ def texts_of(values: NDArray[Any]) -> Any:
     return texts
 
 
-_POINT_FROM, _POINT_TO = 1e-3, 1e15
-"""Between these both write a number without an exponent."""
+_POINT_FROM, _POINT_TO = 1e-3, 1e10
+"""Between these every version of it writes a number without an exponent, as Python does."""
