@@ -8,8 +8,8 @@ takes its parity from there.
 
 They are followed as far as programs can see them without effort: the number in careful steps only
 (`linking.Steps.careful`), the extension within one formula, the low byte through INT, EXP and ^.
-Line numbers and string constants, which the ROM reads through the same low byte, are taken not to
-change it.
+Looking for the end of a string, a statement or a line the ROM uses the same low byte; that is
+followed in careful steps, which a program with a constant power of 2^32 or more is made of.
 """
 
 from __future__ import annotations
@@ -77,6 +77,7 @@ class Accumulator:
     def printed(self, x: Number) -> str:
         """PRINT's characters; the number is taken apart, its sign is lost."""
         text = decimaltext.write(x)
+        self.scan()
         self.number = (max(x[0], 1), x[1], 0) if x[0] else x
         return text
 
@@ -92,6 +93,11 @@ class Accumulator:
     def character(self, x: Number) -> Descriptor:
         """CHR$."""
         return self._strings.made(chr(self.byte(x)))
+
+    def digits(self, x: Number) -> Descriptor:
+        """STR$."""
+        self.scan()
+        return self._strings.made(decimaltext.write(x))
 
     def literal(self, address: int, length: int) -> Descriptor:
         """A string in the program; the extension is the high byte of its address."""
@@ -145,6 +151,15 @@ class Accumulator:
             result = negate(absolute(result)) if self._low_byte() & 1 else absolute(result)
         self._last_power = (left, right)
         return result
+
+    def scan(self) -> None:
+        """The ROM looks for the end of a string, a statement or a line, by even characters."""
+        self._last_integer, self._last_power = ZERO, ()
+
+    def scanned(self, string: Descriptor) -> Descriptor:
+        """A string for whose end the ROM has looked."""
+        self.scan()
+        return string
 
     def _low_byte(self) -> int:
         """Of what INT found last, be it within EXP or ^."""

@@ -24,12 +24,19 @@ class FlowCompiler(LineCompiler):
         """The statement that comes next."""
         raise NotImplementedError
 
+    def _scan(self) -> None:
+        """The ROM looks for the end of the statement or the line."""
+        if self.formulas.careful:
+            self._emit("scan()")
+
     def _goto(self) -> None:
         number = self._line_number()
         if number is not None:
+            self._scan()
             self._leave(f"enter(first[{number}])" if self.direct else f"first[{number}]")
 
     def _gosub(self) -> None:
+        self._scan()
         self._emit(f"return gosub(pc, {self.reader.line_number()})")
         self.reader.skip_statement()
 
@@ -75,7 +82,8 @@ class FlowCompiler(LineCompiler):
             return
         # of a string the ROM sees the accumulator's number, and leaves a temporary in its place
         number = value if value.kind == NUMBER else formulas.residue(value)
-        self._emit(f"if not {number.condition}: return after[pc]")
+        scan = "scan(); " if formulas.careful else ""
+        self._emit(f"if not {number.condition}: {scan}return after[pc]")
         if is_digit(reader.peek()):
             self._goto()
         else:
@@ -107,6 +115,7 @@ class FlowCompiler(LineCompiler):
                 self._stop(step)
                 return
             by = step.stored
+        self._scan()
         self._emit(f"return push_for({slot}, pc + 1, limit, {by})")
 
     def _next(self) -> None:
@@ -130,6 +139,7 @@ class FlowCompiler(LineCompiler):
 
     def _return(self) -> None:
         if self.reader.at_end():
+            self._scan()
             self._leave("return_(pc)")
 
     def _run(self) -> None:

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from ..applesoft import decimaltext
 from ..applesoft.errors import ApplesoftError
-from ..applesoft.real import Number
+from ..applesoft.real import INTEGER_EXPONENT, Number
 from .operand import (
     ALL_RELATIONS,
     CLOSE,
@@ -156,9 +156,12 @@ class FormulaCompiler:
         if self.direct:
             name = f"t_{text.encode('latin-1').hex()}"
             self.constants[name] = text
-            return Operand(self.to_string("made", name), TEXT)
+            code = self.to_string("made", name)
+            return Operand(f"scanned({code})" if self.careful else code, TEXT)
         place = (f"base[pc] + {offset}", str(len(text)))
         code, tracked = (self.to_string(name, *place) for name in ("literal", "literal_"))
+        if self.careful:
+            code, tracked = f"scanned({code})", f"scanned({tracked})"
         return Operand(code, TEXT, tracked=tracked, text=text)
 
     def residue(self, string: Operand) -> Operand:
@@ -266,6 +269,8 @@ class FormulaCompiler:
         return self.truth(truth)
 
     def _operated(self, left: Operand, operator: str, right: Operand) -> Operand:
+        if operator == "power" and right.huge:
+            self.leftovers = True
         if operator in "&|":
             return self.truth(f"({left.condition} {operator} {right.condition})")
         return Operand(self.to_number(operator, left.code, right.code))
@@ -327,7 +332,8 @@ class FormulaCompiler:
         if not s and e <= 143 and not m & (1 << 168 - e) - 1:
             whole = m >> 168 - e
         code = self.loaded(self.real(value))
-        return Operand(code, rounded=not m & 0xFF, whole=None if self.careful else whole)
+        whole = None if self.careful else whole
+        return Operand(code, rounded=not m & 0xFF, whole=whole, huge=e >= INTEGER_EXPONENT)
 
     def _parenthesis(self, depth: int) -> Operand:
         """PARCHK: a formula in parentheses."""

@@ -52,16 +52,17 @@ class Operand:
     """Python text for a value: a triple of `real`, or a `strings.Descriptor`.
 
     ``rounded``: it has no extension. ``truth``: text for a bool, whether it is not zero.
-    ``variable``: the bare value of a string variable. ``whole``: the number itself when it is a
-    constant 0 ... 32767. ``dead``: it ends in an error. ``tracked``: text for a string that
-    follows the accumulator's extension, ``text``: its characters if it stands in the program.
-    ``text_relation``: a relation comes next that takes this
-    number for a string.
+    ``whole``: the number itself when it is a constant 0 ... 32767; ``huge``: it is a constant of
+    more than 32 bits. ``variable``: the bare value of a string variable. ``text``: its characters
+    if it stands in the program; ``tracked``: text for a string that follows the accumulator's
+    extension. ``text_relation``: a relation comes next that takes this number for a string.
+    ``dead``: it ends in an error.
     """
 
     __slots__ = (
         "code",
         "dead",
+        "huge",
         "kind",
         "rounded",
         "text",
@@ -85,6 +86,7 @@ class Operand:
         text_relation: bool = False,
         tracked: str | None = None,
         text: str | None = None,
+        huge: bool = False,
     ) -> None:
         self.code = code
         self.kind = kind
@@ -96,6 +98,7 @@ class Operand:
         self.text_relation = text_relation
         self.tracked = tracked
         self.text = text
+        self.huge = huge
 
     @property
     def condition(self) -> str:

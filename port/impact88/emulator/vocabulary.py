@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..applesoft import decimaltext, functions
+from ..applesoft import functions
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import (
     ZERO,
@@ -85,6 +85,8 @@ def _values(hardware: Hardware) -> dict[str, Any]:
         "literal_": accumulator.literal,
         "left_operand": accumulator.left_operand,
         "load": accumulator.load,
+        "scan": accumulator.scan,
+        "scanned": accumulator.scanned,
         "keep": accumulator.keep,
         "residue": accumulator.residue,
         "left_over": accumulator.left_over,
@@ -101,7 +103,7 @@ def _values(hardware: Hardware) -> dict[str, Any]:
         "kept": strings.kept,
         "strcmp": strings.compare,
         "CHR": lambda x: strings.made(chr(byte(x))),
-        "STR": lambda x: strings.made(decimaltext.write(x)),
+        "STR": accumulator.digits,
         "LEN": lambda string: integer(strings.free(string).length),
         "ASC": lambda string: integer(strings.code(string)),
         "FRE": lambda number: variables.free(),
