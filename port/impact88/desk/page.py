@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup, escape
 
 from ..names import DEFAULT_M, Quantity, quantity
-from ..scene import SAMPLES, sample
+from ..scene import SAMPLES, SIGNS, sample
 from ..version import __version__
 
 
@@ -84,5 +84,6 @@ def contents() -> dict[str, Any]:
         "published": PUBLISHED,
         "systems": SYSTEMS,
         "default_m": DEFAULT_M,
+        "signs": SIGNS,
         "samples": [(number, sample(number).title) for number in SAMPLES],
     }
