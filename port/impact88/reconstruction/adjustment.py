@@ -44,7 +44,7 @@ _SPINS = ("WA", "WB", "WAF", "WBF")
 _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES)
 """Quantities that more than one impact may have: solutions are sought from several starts."""
 _STARTS = 12
-_STEPS = 80
+_STEPS = 50
 _TINY = 1e-30
 """Of a scaled variable: the imaginary step whose derivative has no error."""
 _RANK = 1e-10
@@ -184,8 +184,14 @@ class System:
         self, x: Array, rows: Any, data: Mapping[str, Array] | None = None
     ) -> NDArray[np.float64]:
         """Derivatives of ``rows(state)`` over the scaled variables: rows, variables, impacts."""
+        size = len(self.variables)
+        if x.shape[1] == 1 and not data:
+            # all derivatives of the one impact at once, a column each
+            left = rows(self.state(x + 1j * _TINY * np.eye(size)))
+            slopes = np.imag(np.broadcast_to(left, (len(left), size))) / _TINY
+            return np.asarray(slopes, np.float64)[:, :, None]
         columns = []
-        for i in range(len(self.variables)):
+        for i in range(size):
             moved = x.astype(complex)
             moved[i] += 1j * _TINY
             columns.append(np.imag(rows(self.state(moved, data))) / _TINY)
