@@ -10,8 +10,6 @@ from impact88.program import emulated
 
 NOT_FOLLOWED = {
     "fresh_list_451": "graphics",
-    "fresh_list_483": "graphics",
-    "fresh_list_484": "graphics",
     "fresh_list_489": "graphics",
     "fresh_list_491": "tape and shapes",
     "fresh_list_495": "graphics",

@@ -122,6 +122,10 @@ class Machine(Hardware):
             "CALL": self.call,
             "refuse": self.refuse,
             "speed": self.speed,
+            "color": lambda n: self.set_byte(memory.COLOR, (n & 15) * 17),
+            "hcolor": self.hcolor,
+            "rot": lambda n: self.set_byte(memory.ROTATION, n),
+            "scale": lambda n: self.set_byte(memory.SCALE, n),
             "himem": self.himem,
             "lomem": self.lomem,
         }
@@ -528,6 +532,16 @@ class Machine(Hardware):
     def speed(self, n: int) -> None:
         """SPEED=, kept for PEEK; output is always at full speed."""
         self.ram[memory.SPEED] = -n & 0xFF
+
+    def set_byte(self, place: int, n: int) -> None:
+        """COLOR=, ROT= and SCALE=: a byte for drawing, which is not done here, and for PEEK."""
+        self.ram[place] = n
+
+    def hcolor(self, n: int) -> None:
+        """HCOLOR=. Raises ILLEGAL QUANTITY past 7."""
+        if n >= len(memory.HIGH_COLORS):
+            raise ApplesoftError("ILLEGAL QUANTITY")
+        self.set_byte(memory.HIGH_COLOR, memory.HIGH_COLORS[n])
 
     def himem(self, place: int) -> None:
         """HIMEM:. Raises OUT OF MEMORY below the arrays."""

@@ -20,6 +20,8 @@ COLUMN, ROW, MASK = 36, 37, 50
 ERROR_FLAG, ERROR_CODE = 216, 222
 FLASH_BIT, SPEED, TRACE_FLAG = 243, 241, 242
 LOCK = 214
+COLOR, HIGH_COLOR, SCALE, ROTATION = 0x30, 0xE4, 0xE7, 0xF9
+HIGH_COLORS = bytes.fromhex("00 2A 55 7F 80 AA D5 FF")
 SCREEN = range(BASE, END)
 APPLE_II_PLUS = {0xFBB3: 0xEA}
 """The byte of the monitor by which programs tell the machines apart."""

@@ -15,10 +15,10 @@ from .symbols import ARRAYS, SIMPLE, STRING
 from .tokens import KEYWORDS, LAST_STATEMENT
 
 REFUSED = (
-    *"GR PLOT HLIN VLIN HGR2 HGR HCOLOR= HPLOT DRAW XDRAW ROT= SCALE= COLOR=".split(),
+    *"GR PLOT HLIN VLIN HGR2 HGR HPLOT DRAW XDRAW".split(),
     *"SHLOAD RECALL STORE LOAD SAVE &".split(),
 )
-"""Graphics, shapes, tape and machine-code hooks: tokenised and listed, but not done."""
+"""Drawing, shapes, tape and machine-code hooks: tokenised and listed, but not done."""
 
 
 class StatementCompiler(FlowCompiler, DeviceCompiler):
@@ -161,6 +161,10 @@ _WITH_BYTE = {
     "HTAB": "htab",
     "VTAB": "vtab",
     "SPEED=": "speed",
+    "COLOR=": "color",
+    "HCOLOR=": "hcolor",
+    "ROT=": "rot",
+    "SCALE=": "scale",
 }
 _ALONE = {
     "END": "end(pc)",
