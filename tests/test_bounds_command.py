@@ -176,3 +176,11 @@ def test_examples_of_the_help_run(capsys, line):
     assert words[:2] == ["impact88", "bounds"]
     assert main([*words[1:], "--samples", "300"]) == 0
     assert "Bounds" in capsys.readouterr().out
+
+
+def test_a_reconstruction_takes_friction_within_limits(capsys):
+    """MUP "+- D" is around the forward solution's signed value."""
+    options = ["--sample", "3", "--reconstruct", "--range", "MUP=+- .05", "--outputs", "UX"]
+    assert main(["bounds", *options, "--samples", "200"]) == 0
+    (line,) = [x for x in capsys.readouterr().out.splitlines() if x.startswith("MUP")]
+    assert line.split()[1:4] == ["0.84", "0.94", "0.89"]

@@ -118,6 +118,7 @@ def _wanted(args: argparse.Namespace) -> list[str] | None:
 
 
 def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: System) -> None:
+    from ..progress import progress
     from ..reconstruction.adjustment import reconstruct
     from ..reconstruction.state import QUANTITIES
     from ..uncertainty.reconstructedtable import as_json, as_text, completed_values, uncertainty
@@ -134,7 +135,8 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: S
         _write_scene(solutions, args)
     tables = []
     for solution in solutions:
-        spread = uncertainty(solution, args.samples, args.seed, wanted)
+        with progress(args.samples, "reconstruct", "draws") as meter:
+            spread = uncertainty(solution, args.samples, args.seed, wanted, meter.update)
         tables.append((solution, completed_values(solution, args.contact_time), spread))
     if args.json:
         whole = stamped("reconstruct", {"solutions": [as_json(*one, units) for one in tables]})

@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 
 CHUNK = 1 << 14
 CHORDS = 24
-NEWTONS = 25
+NEWTONS = 12
 SETTLED = 1e-11
 """Scaled conditions below count as met by a draw."""
 ADJUSTMENTS = 12
