@@ -25,7 +25,7 @@ def project() -> dict[str, Any]:
     return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
-FOR_TESTS = {"corners", "vectors.jsonl.gz", "reference-cases.json"}
+FOR_TESTS = {"corners", "vectors.jsonl.gz", "reference-cases.json", "scans.jsonl.gz"}
 """What of golden/ no installation needs: selfcheck reads the rest."""
 
 

@@ -37,7 +37,7 @@ def cut_in_five(region: Region, most: int = _CUTS) -> list[tuple[tuple[str, ...]
         uncut = sum(_UNCUT[glyph.gap] for glyph in part[1:] if not glyph.wrapped)
         if uncut > 4 or len(part) > 24:
             return ()
-        return tuple((text, cost + uncut) for text, cost in candidates(part, 6) if cost < 4)
+        return tuple((text, cost + uncut) for text, cost in candidates(part, 14) if cost < 4)
 
     def price(place: int) -> float:
         if place == 0 or not region[place].joined:

@@ -125,6 +125,13 @@ def _input_may_be_wrong(base: frozenset[str]) -> bool:
     return bool(base)
 
 
+def look_past(shown: Printout, recovered: Recovered) -> Rejudged | None:
+    """The printout judged with its reader's slips put right; None where they are not its alone."""
+    if recovered.missing or not machine_read(shown):
+        return None
+    return _looked_past(shown, recovered, Rereading(recovered).best(deep=True))
+
+
 def _looked_past(
     shown: Printout, recovered: Recovered, reread: Sequence[Reread]
 ) -> Rejudged | None:

@@ -151,6 +151,8 @@ def _hardly_read(match: Match, region: Region, text: str) -> bool:
     if any(spot.doubt is Doubt.RETYPED for spot in match.spots):
         return False
     alike = sum(spot.doubt in (Doubt.LOOK_ALIKE, Doubt.BLANK) for spot in match.spots)
+    if not match.exact and not alike:
+        return True
     if len(text) <= 2:
         return len(region) > len(text) + 2 and match.exact + alike == 0
     return 2 * match.exact + alike < len(text)
@@ -273,12 +275,20 @@ def beside(shown: Printout) -> bool:
 MACHINE_READ = 3
 """So many letters of labels misread, and a machine read the page: people do not type PE for PB."""
 _READ_WELL = 0.6
+_TYPED = frozenset("0123456789.,-+EOILQ?")
 
 
 def machine_read(shown: Printout) -> bool:
     """Whether the text bears the marks of an optical reader: letters of labels and asterisks that
-    nobody would type so."""
-    return shown.misread_letters >= MACHINE_READ
+    nobody would type so, foreign glyphs and blanks within numbers, specks beside them."""
+    damaged = sum(not _typed_so(reading) for reading in shown.fields.values())
+    specks = sum(piece.beside and len(piece.text) <= 3 for piece in shown.left_over)
+    return shown.misread_letters + damaged + specks >= MACHINE_READ
+
+
+def _typed_so(reading: Reading) -> bool:
+    """Whether a person may have typed a number so: whole, or with O for 0 and l for 1."""
+    return reading.clean or all(glyph.char in _TYPED for glyph in reading.region)
 
 
 def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:

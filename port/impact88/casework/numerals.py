@@ -181,10 +181,10 @@ def _step(best, back, i, j, di, dj, cost, doubt) -> None:  # type: ignore[no-unt
 
 
 def _round(chars: Sequence[str]) -> bool:
-    """Whether glyphs may be a lone 0 taken to pieces: ``C)``, ``()``, ``0)``, ``ie}``, ``©``."""
-    if not 0 < len(chars) <= 3 or any(char.isdigit() and char not in "0169" for char in chars):
-        return False
-    return not any(map(str.isdigit, chars)) or chars[-1] in ")}]" or chars[0] in "([{"
+    """Whether glyphs may be a lone 0 taken to pieces: ``C)``, ``()``, ``0)``, ``ie}``."""
+    if not 2 <= len(chars) <= 3 or any(char.isdigit() and char not in "0169" for char in chars):
+        return len(chars) == 1 and chars[0] in ")}"
+    return chars[-1] in ")}]" or chars[0] in "([{"
 
 
 def _substitution(char: str, printed: str) -> tuple[float, Doubt | None]:
@@ -205,7 +205,7 @@ def _substitution(char: str, printed: str) -> tuple[float, Doubt | None]:
         return _alike(char), Doubt.LOOK_ALIKE
     if printed in "-." and char in _SPECKS:
         return _LOOK_ALIKE + 0.1, Doubt.LOOK_ALIKE
-    if len(LOOK_ALIKES.get(char, "")) and char in "OQØ©®@IL|!ZSB$":
+    if len(LOOK_ALIKES.get(char, "")) and char in "OQØ©®@IL|!ZSB$&":
         # the look-alike of another digit
         return _CONTRADICTION, Doubt.CONTRADICTS
     return _FOREIGN, Doubt.ILLEGIBLE
@@ -312,6 +312,8 @@ def _candidates(
         wild += foreign
         for text, cost in ways.items():
             blank = 0.0 if joined or not text else _BLANK_INSIDE
+            if blank and gap is Gap.BLANK and char.isdigit() and "." not in text:
+                keep(text + "." + char, cost + _BLANK_FOR_POINT)
             if text and not joined:
                 rest = sum(part[0].isdigit() for part in region[index:])
                 apart = 0.25 if gap is Gap.LINE else 0.5 if gap is Gap.WIDE else 1.0

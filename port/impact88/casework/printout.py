@@ -35,6 +35,7 @@ FRAGMENT = 6
 
 _SLOT_COMMAND = re.compile(r"PR# ?[0-9]")
 """What line 610 prints where no DOS takes it for a command."""
+_PROMPT_LETTERS, _MOST_ANGLES = 25, 4
 _NEXT_TO_NUMBERS = ("%", "(", ")", "=")
 _CLOSINGS = {"LOSS": "%", "YAF": ")", "YBF": ")"}
 """Fields that a sign follows."""
@@ -306,9 +307,28 @@ class _Reader:
         return found
 
     def _worth_telling(self) -> bool:
-        digits = sum(any(map(str.isdigit, one.text)) for one in self._printout.fields.values())
+        """Whether a label and its number, or a prompt, was read."""
+        if self._letters(0) + self._letters(1) >= _PROMPT_LETTERS:
+            return True
+        shown = self._printout.fields
+        numbers = {name for name, one in shown.items() if any(map(str.isdigit, one.text))}
+        angles = numbers & set(ANGLES)
+        if len(angles) < _MOST_ANGLES:
+            numbers -= angles
+        labelled = sum(self._label_letters(name) >= 1 for name in numbers)
         letters = self._letters()
-        return (digits >= 1 and letters >= 4) or (digits >= 2 and letters >= 3) or letters >= 30
+        return (labelled >= 1 and letters >= 4) or (labelled >= 2 and letters >= 3)
+
+    def _label_letters(self, name: str) -> int:
+        """How many letters right before a number were read as its label's."""
+        page = template()
+        place = self._slots[name][0] - self._start - 1
+        found = 0
+        while place >= 0 and self._states[place] in page.letters:
+            letter = page.letters[self._states[place]]
+            found += letter.isalpha() and self._glyphs[self._start + place].char == letter
+            place -= 1
+        return found if name not in ANGLES else 1
 
     def _remark(self, name: str, message: str, index: int) -> None:
         place = self._page.place(self._page.span(index, index + 1)[0])

@@ -7,7 +7,7 @@ of are given stand-ins, and only what does not depend on them is kept for compar
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..fields import ANGLES
 from ..names import SCENE
@@ -29,7 +29,8 @@ class Recovered:
     ``assumed`` the printed texts it goes with, by field; ``outcome`` is what the replay prints,
     without fields that depend on missing values; ``wrong`` names what it leaves unexplained;
     ``choices`` is what each input may have been; ``m_unknown``: whether M = 4 explains the page as
-    well as 6 does."""
+    well as 6 does; ``row_in_doubt``: whether the row of angles was not read
+    for certain and no way to read it explains the page."""
 
     scene: dict[str, str]
     assumed: dict[str, str]
@@ -40,6 +41,7 @@ class Recovered:
     choices: Choices
     search: Search
     m_unknown: bool = False
+    row_in_doubt: bool = False
 
     def scene_or_missing(self) -> dict[str, str | None]:
         """The scene in the table's order, None for what is missing."""
@@ -51,9 +53,7 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
     choices, missing = choices_of(shown, given)
     search = Search(shown)
     best = search.best(choices)
-    guessed = bool(shown.angles) and (len(best.wrong) > _UNCONVINCING)
-    if guessed and not set(missing) & set(ANGLES):
-        missing = [*missing, *ANGLES]
+    in_doubt = bool(shown.angles) and len(best.wrong) > _UNCONVINCING
     outcome = best.outcome
     if missing:
         outcome = _independent_of(missing, best.scene, outcome)
@@ -61,7 +61,15 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
         best.scene, best.assumed, outcome, missing, best.wrong, best.cost, choices, search
     )
     recovered.m_unknown = not missing and _other_m_explains(recovered, best)
+    recovered.row_in_doubt = in_doubt and not set(missing) & set(ANGLES)
     return recovered
+
+
+def without_angles(recovered: Recovered) -> Recovered:
+    """The same with the row of angles as missing."""
+    missing = [*recovered.missing, *ANGLES]
+    outcome = _independent_of(missing, recovered.scene, recovered.outcome)
+    return replace(recovered, missing=missing, outcome=outcome, m_unknown=False, row_in_doubt=False)
 
 
 def _other_m_explains(recovered: Recovered, best: Scored) -> bool:

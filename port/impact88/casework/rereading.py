@@ -16,7 +16,7 @@ import numpy as np
 
 from ..fields import ANGLES, INPUTS
 from . import misreading
-from .numerals import printable
+from .numerals import printable, value_of
 from .recovery import Recovered
 from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search
 from .typedtext import stored_and_printed, texts_that_print
@@ -74,7 +74,7 @@ class Rereading:
         picks.append(self._pairs(choices, rest))
         every = np.unique(np.concatenate(picks), axis=0)
         every = self._search.screened(choices, every, 320)
-        tried = self._search.replayed(choices, every)
+        tried = self._search.replayed(self._proper(choices, every), every)
         found = []
         for pick, scored in zip(every.tolist(), tried, strict=True):
             made = tuple(
@@ -108,7 +108,8 @@ class Rereading:
         picks = np.array(rows, np.intp)
         best = self._search.screened(choices, picks, 60)
         where = {tuple(row): index for index, row in enumerate(rows)}
-        for pick, scored in zip(best.tolist(), self._search.replayed(choices, best), strict=True):
+        tried = self._search.replayed(self._proper(choices, best), best)
+        for pick, scored in zip(best.tolist(), tried, strict=True):
             found.append(Reread((made[where[tuple(pick)]],), scored))
         found.sort(key=lambda one: one.scored.cost)
         return found
@@ -154,13 +155,29 @@ class Rereading:
                     yield Change(kind, name, text, other), choice
 
     def _typed(self, name: str, printed: str, cost: float) -> Iterator[Choice]:
-        """What was typed where this is printed; for MU with either sign."""
-        typed = typed_for(printed, name in ANGLES)
-        if typed is None:
-            return
-        yield Choice({scene_name(name): typed}, {name: printed}, cost)
-        if name == "MUP" and float(typed):
-            yield Choice({"MU": opposite(typed)}, {name: printed}, cost + 0.001)
+        """What is printed, as if typed so; for MU with either sign. `_proper` says what was."""
+        yield Choice({scene_name(name): printed}, {name: printed}, cost)
+        if name == "MUP" and value_of(printed):
+            yield Choice({"MU": opposite(printed)}, {name: printed}, cost + 0.001)
+
+    def _proper(self, choices: Choices, picks: Picks) -> Choices:
+        """The choices, those that are picked with what must have been typed to print so."""
+        proper = [list(options) for options in choices]
+        for place, name in enumerate(self._names):
+            for index in np.unique(picks[:, place]).tolist():
+                choice = choices[place][index]
+                printed = choice.printed.get(name)
+                if not index or printed is None or printed == self._base.get(name):
+                    continue
+                typed = typed_for(printed, name in ANGLES)
+                if typed is None:
+                    proper[place][index] = choice._replace(cost=choice.cost + MISMATCH)
+                    continue
+                (own, text), *_ = choice.typed.items()
+                flipped = own == "MU" and text != printed
+                typed = opposite(typed) if flipped else typed
+                proper[place][index] = choice._replace(typed={own: typed})
+        return proper
 
     # --- combinations ---
 

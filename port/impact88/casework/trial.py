@@ -115,8 +115,11 @@ def run_on(scene: Mapping[str, str], arithmetic: Arithmetic) -> Outcome:
     replies = iter(whole.keyboard())
     console = Console(lambda: next(replies, None), printed.append)
     ending: str | None = None
+    import numpy as np
+
     try:
-        listing.impact(whole, arithmetic, console)
+        with np.errstate(divide="raise", over="raise", invalid="raise"):
+            listing.impact(whole, arithmetic, console)
     except listing.End:
         ending = ZERO_DETERMINANT
     except Exception as exception:

@@ -53,6 +53,9 @@ def stored_and_printed(text: str, angle: bool = False) -> tuple[bytes, str] | No
 def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
     """Texts which, typed, print as ``printed``: the shortest first, then others that enter the
     equations with other bits. Empty when none is found: then no Apple II printed it."""
+    figures = printed.partition("E")[0].replace(".", "").lstrip("-0")
+    if len(figures) > _PRINTED_DIGITS:
+        return ()  # no Apple prints as many
     found: dict[bytes, str] = {}
     for text in _shorter(printed):
         _keep(found, text, printed, angle)

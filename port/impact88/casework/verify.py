@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from .. import files
 from ..errors import UserError
 from . import beside, provenance, wording
-from .explain import explain
+from .explain import explain, look_past
 from .judging import (
     FieldCheck,
     Status,
@@ -22,7 +22,7 @@ from .judging import (
     verdict_of,
 )
 from .printout import LARGEST_FILE, Printout, read_bytes
-from .recovery import recover
+from .recovery import recover, without_angles
 from .unseen import unseen
 from .verification import Examined, Verification
 
@@ -79,6 +79,11 @@ def verify(
 
     ``given``: texts of inputs by scene name, known from elsewhere than the printout."""
     recovered = recover(shown, given)
+    looked_past = None
+    if recovered.row_in_doubt:
+        looked_past = look_past(shown, recovered)
+        if looked_past is None:
+            recovered = without_angles(recovered)
     checks = field_checks(shown, recovered)
     replies = reply_checks(shown, recovered)
     ending = ending_check(shown, recovered)
@@ -98,14 +103,14 @@ def verify(
         stop=shown.stop,
         text=shown.page.text if shown.page else "",
     )
-    if result.verdict is Verdict.DIFFERS:
+    if result.verdict is Verdict.DIFFERS and looked_past is None:
         explained = explain(shown, recovered, checks, replies, ending)
         result.explanations = explained.explanations
-        if explained.reread is not None:
-            reread = explained.reread
-            result.verdict = Verdict.IDENTICAL_AS_READ
-            result.scene, result.fields = reread.scene, reread.fields
-            result.replies, result.explanations = reread.replies, []
+        looked_past = explained.reread
+    if looked_past is not None:
+        result.verdict = Verdict.IDENTICAL_AS_READ
+        result.scene, result.fields = looked_past.scene, looked_past.fields
+        result.replies, result.explanations = looked_past.replies, []
     result.guessed = _guessed(result)
     result.findings = wording.findings(shown, result.fields, recovered)
     result.unseen = unseen(result.scene, result.missing)
