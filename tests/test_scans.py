@@ -136,6 +136,11 @@ def test_a_damaged_label_costs_nothing(old: str, new: str) -> None:
     assert not result.doubtful
 
 
+def test_labels_without_their_sign() -> None:
+    assert one(SAMPLE.replace("=", "")).verdict in SETTLED
+    assert one(SAMPLE.replace("=", ":")).verdict in SETTLED
+
+
 def test_a_page_number_is_left_over() -> None:
     result = one(SAMPLE.replace("VX= 14.52", "177\n\nVX= 14.52"))
     assert result.verdict is Verdict.IDENTICAL_AS_READ

@@ -101,7 +101,7 @@ _LOOSE_SIGN = 0.15
 """What an equals sign costs before which no letter of its label was read."""
 _TORN = 1.6
 """What it costs to take a figure right after a figure for a letter of a label."""
-_UNLABELLED = (1.6, 0.3, 0.0, 0.0, 1.6)
+_UNLABELLED = (0.1, 0.1, 0.0, 0.0, 1.6)
 """What a number costs before which no equals sign was read, by the gap before it: a number is not
 to be taken to pieces."""
 
