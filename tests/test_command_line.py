@@ -159,7 +159,7 @@ def test_run_prints_a_sample(sample: str) -> None:
 def test_run_ends_with_one_after_an_applesoft_error() -> None:
     done = command("run", "--sample", "1", "--set", "IA=0")
     assert done.returncode == 1
-    assert "?DIVISION BY ZERO ERROR\x07 IN 480" in done.stdout
+    assert "?DIVISION BY ZERO ERROR IN 480" in done.stdout
     assert "Traceback" not in done.stderr
 
 
