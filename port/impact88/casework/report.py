@@ -21,7 +21,7 @@ from .judging import Doubtful, FieldCheck, Status, Verdict
 from .verify import Examined, Verification
 
 _MARKS = {
-    Status.READ: ("", "✓", "read exactly"),
+    Status.READ: ("", "✓", "exact"),
     Status.DOUBTFUL: ("doubtful", "?", "doubtful"),
     Status.CONTRADICTED: ("differs", "≠", "differs"),
     Status.NOT_READ: ("unknown", "–", "not read"),
@@ -64,11 +64,11 @@ section:last-of-type { break-after: auto; }
 .identical { border-color: #00664b; } .identical_as_read { border-color: #1f5f8b; }
 .differs { border-color: #a33c00; } .incomplete, .unreadable { border-color: #5b5b5b; }
 .two { display: flex; gap: 5mm; align-items: flex-start; }
-.two > .numbers { flex: 1 1 auto; } .two > .picture { flex: 0 0 66mm; }
+.two > .numbers { flex: 1 1 auto; } .two > .picture { flex: 0 0 52mm; }
 .picture svg { width: 100%; height: auto; max-height: 88mm; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-.numbers table { width: 100%; font-size: 8pt; line-height: 1.2; }
+.numbers table { width: 100%; font-size: 7.4pt; line-height: 1.3; }
 th, td { text-align: right; padding: .12mm .9mm; vertical-align: top; white-space: nowrap; }
 thead th { border-bottom: .2mm solid #999; font-weight: 600; }
 tbody th { font-weight: 600; }
@@ -78,7 +78,8 @@ tr.differs > * { background: #fbe3d6; font-weight: 700; }
 tr.doubtful > * { background: #e8f0f7; }
 tr.unknown > * { color: #555; font-style: italic; }
 .summary table, .inputs table, .key table { width: 100%; font-size: 8.5pt; }
-.summary td, .summary th { white-space: normal; overflow-wrap: anywhere; text-align: left;
+.summary th:first-child { overflow-wrap: anywhere; }
+.summary td, .summary th { white-space: normal; text-align: left;
   padding: .5mm 1mm; border-bottom: .1mm solid #ccc; }
 .inputs table { font-size: 8pt; line-height: 1.25; }
 .inputs th { text-align: left; } .inputs td { text-align: left; padding-right: 3mm; }
@@ -95,7 +96,7 @@ ol, ul { margin: 0; padding-left: 5mm; } li { margin-bottom: .4mm; font-size: 8.
 .sign span { display: block; margin-top: -6mm; height: 5.4mm; font-size: 9.5pt; color: #1a1a1a; }
 .provenance { font-size: 7.5pt; color: #333; }
 .provenance td, .provenance th { white-space: normal; overflow-wrap: anywhere; text-align: left; }
-.provenance th { white-space: nowrap; padding-right: 4mm; font-weight: 400; }
+.provenance th { width: 34%; padding-right: 4mm; font-weight: 400; }
 tr, li, .verdict, .sign { break-inside: avoid; }
 h2 { break-after: avoid; }
 @media screen and (max-width: 640px) {
