@@ -18,7 +18,7 @@ from fuzzing.case import Case, read_corpus
 from fuzzing.judge import faults
 from fuzzing.kinds import KINDS, make
 
-SECONDS = float(os.environ.get("IMPACT88_FUZZ_SECONDS", "4"))
+SECONDS = float(os.environ.get("IMPACT88_FUZZ_SECONDS", "2"))
 LEAST = 40
 """Cases that are run, however slow the machine."""
 CORPUS = read_corpus(ROOT / "tests" / "corpus")

@@ -10,7 +10,7 @@ import zipfile
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import chain, islice
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -165,11 +165,13 @@ def write_excel(
     book = openpyxl.Workbook(write_only=True)
     writer = _ExcelWriter(book.create_sheet("impact88"), kept, results, dropped)
     with replacing(path, "wb") as file:
-        yield writer
-        _save(book, file)
+        try:
+            yield writer
+        finally:  # a sheet left open complains on stderr when it is collected
+            _close(book)
+        book.save(file)
 
 
-def _save(book: Any, file: IO[bytes]) -> None:
+def _close(book: Any) -> None:
     for sheet in book.worksheets:
         sheet.close()
-    book.save(file)
