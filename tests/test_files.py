@@ -240,6 +240,7 @@ def test_control_c_in_a_program_keeps_what_was_printed_before(folder: Path) -> N
 
 
 def test_with_an_unreadable_printout_no_report_is_written(folder: Path) -> None:
-    done = impact88("verify", "t.csv", "--report", "r.html")
+    (folder / "letter.txt").write_text("Dear sir,\nno printout is enclosed.\n", "utf-8")
+    done = impact88("verify", "letter.txt", "--report", "r.html")
     assert done.returncode == 2
-    assert names(folder) == {"t.csv"}
+    assert names(folder) == {"t.csv", "letter.txt"}

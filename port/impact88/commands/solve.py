@@ -49,7 +49,7 @@ from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..progress import progress
 from ..scene import VALUE_LIMIT, Scene, toml_file
 from ..status import Status
-from ..tables.overlap import ahead, behind
+from ..tables.overlap import ahead, behind, may_wait
 from ..tables.rows import BadCell, Rows, check_scene_columns, filled, numbers
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
@@ -150,9 +150,14 @@ def main(arguments: argparse.Namespace) -> int:
         )
         stack.enter_context(complaints)
         meter = stack.enter_context(progress(source.total, "solve", "B"))
-        write = stack.enter_context(behind(writer.write))
+        write = writer.write
+        if not may_wait(arguments.output):
+            write = stack.enter_context(behind(writer.write))
+        blocks = iter(source)
+        if not may_wait(arguments.cases):
+            blocks = stack.enter_context(ahead(blocks))
         at = 0
-        for rows in stack.enter_context(ahead(source)):
+        for rows in blocks:
             for name, text in given.items():
                 rows.columns[name] = [text] * rows.count
                 rows.others.pop(name, None)

@@ -5,6 +5,7 @@ pyarrow and numpy let go of the interpreter's lock while they work, so two proce
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
@@ -13,6 +14,12 @@ from typing import Any
 BEHIND = 2
 """Blocks that may wait to be written."""
 _END = object()
+
+
+def may_wait(path: str) -> bool:
+    """Whether reading or writing ``path`` can take for ever: standard input or output, a pipe. A
+    thread that waits there would keep a command that was told to stop from ending."""
+    return path == "-" or (os.path.exists(path) and not os.path.isfile(path))
 
 
 @contextmanager
