@@ -75,8 +75,8 @@ def sinpi(x: Decimal) -> Decimal:
         quarter = int((turn * 2).to_integral_value())
         rest = turn - Decimal(quarter) / 2
         angle = rest * _pi(context.prec)
-        found = (_sine(angle), _cosine(angle))[quarter % 2]
-    return +(-found if quarter % 4 in (2, 3) else found)
+        pair = (_sine(angle), _cosine(angle))[quarter % 2]
+    return +(-pair if quarter % 4 in (2, 3) else pair)
 
 
 def cospi(x: Decimal) -> Decimal:

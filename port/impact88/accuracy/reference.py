@@ -159,10 +159,10 @@ def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
     x = [mpmath.mpf(0)] * n
     for k in reversed(range(n)):
         x[k] = (rows[k][n] - sum(rows[k][j] * x[j] for j in range(k + 1, n))) / rows[k][k]
-    found = [mpmath.mpf(0)] * n
+    solution = [mpmath.mpf(0)] * n
     for k, name in enumerate(order):
-        found[name] = x[k] / column[name]
-    return found
+        solution[name] = x[k] / column[name]
+    return solution
 
 
 class Impulse(NamedTuple):
@@ -252,18 +252,18 @@ def listing_elimination(
     """
     with working(scene):
         t = _Terms(scene, listing_pi() if pi is None else pi)
-        found = eliminate(listing_rows(t, mpmath.mpf(0)), mpmath.mpf("1e-9"))
-        if found is None:
+        solution = eliminate(listing_rows(t, mpmath.mpf(0)), mpmath.mpf("1e-9"))
+        if solution is None:
             return None
         if t.point:
-            found = [*found, t.g.get("WA", 0), t.g.get("WB", 0)]
-        return dict(zip(ORDER, found, strict=True))
+            solution = [*solution, t.g.get("WA", 0), t.g.get("WB", 0)]
+        return dict(zip(ORDER, solution, strict=True))
 
 
-def relative_error(found: Mapping[str, Any] | Sequence[Any], true: Mapping[str, Any]) -> float:
+def relative_error(computed: Mapping[str, Any] | Sequence[Any], true: Mapping[str, Any]) -> float:
     """The largest relative error of the final velocities: errors of the four velocities by the
     largest of these four, errors of the two spins by the larger spin. Infinite if not a number."""
-    values = found if isinstance(found, Mapping) else dict(zip(ORDER, found, strict=True))
+    values = computed if isinstance(computed, Mapping) else dict(zip(ORDER, computed, strict=True))
     worst = 0.0
     with mpmath.workdps(DIGITS + GUARD):
         for group in (ORDER[:4], ORDER[4:]):
@@ -287,8 +287,8 @@ class Split(NamedTuple):
     pi: float
 
 
-def split(scene: Mapping[str, Any], found: Mapping[str, Any]) -> Split:
-    """Split the error of final velocities that the listing (in any arithmetic) ``found``.
+def split(scene: Mapping[str, Any], computed: Mapping[str, Any]) -> Split:
+    """Split the error of final velocities that the listing (in any arithmetic) ``computed``.
 
     The parts need not add up to the total, errors being sizes. ``elimination`` and ``arithmetic``
     are NaN when the listing's elimination ends with ZERO DETERMINANT even in 50 digits.
@@ -300,8 +300,11 @@ def split(scene: Mapping[str, Any], found: Mapping[str, Any]) -> Split:
     if eliminated is None:
         arithmetic = elimination = math.nan
     else:
-        arithmetic = relative_error(found, eliminated)
+        arithmetic = relative_error(computed, eliminated)
         elimination = relative_error(eliminated, with_listing_pi)
     return Split(
-        relative_error(found, true), arithmetic, elimination, relative_error(with_listing_pi, true)
+        relative_error(computed, true),
+        arithmetic,
+        elimination,
+        relative_error(with_listing_pi, true),
     )

@@ -69,17 +69,17 @@ def _scene_list(prepared: Prepared) -> list[Scene]:
 
 
 def _replay(columns: dict[str, list[str]]) -> Floats:
-    found = replay(columns)
-    return np.stack([found.floats(name) for name in ORDER], axis=1)
+    replayed = replay(columns)
+    return np.stack([replayed.floats(name) for name in ORDER], axis=1)
 
 
 def _listing_elimination(matrices: tuple[Floats, Floats]) -> Floats:
     """Lines 1000 to 1170 on matrices made with exact pi: what is left is the elimination's."""
     out = np.full(matrices[1].shape, np.nan)
     for i, (A, b) in enumerate(zip(matrices[0].tolist(), matrices[1].tolist(), strict=True)):
-        found = eliminate([[*row, right] for row, right in zip(A, b, strict=True)], 1e-9)
-        if found is not None:
-            out[i] = found
+        solution = eliminate([[*row, right] for row, right in zip(A, b, strict=True)], 1e-9)
+        if solution is not None:
+            out[i] = solution
     return out
 
 
@@ -103,8 +103,8 @@ def _lapack_ready(matrices: tuple[Floats, Floats]) -> Floats:
 
 def _closed_form(threads: int) -> Callable[[Prepared], Floats]:
     def solve_all(prepared: Prepared) -> Floats:
-        found = solve(prepared.columns, ORDER, threads=threads)
-        return np.stack([found[name] for name in ORDER], axis=1)
+        results = solve(prepared.columns, ORDER, threads=threads)
+        return np.stack([results[name] for name in ORDER], axis=1)
 
     return solve_all
 
@@ -170,11 +170,11 @@ def reference(prepared: Prepared) -> tuple[Floats, Floats]:
     return hi, lo
 
 
-def relative_errors(found: Floats, hi: Floats, lo: Floats) -> Floats:
+def relative_errors(computed: Floats, hi: Floats, lo: Floats) -> Floats:
     """Every scene's largest relative error, velocities by the largest velocity, spins by the larger
     spin (as `accuracy.reference.relative_error`); infinite where there is no answer."""
     with np.errstate(all="ignore"):
-        error = np.abs((found - hi) - lo)
+        error = np.abs((computed - hi) - lo)
         parts = []
         for group in (slice(0, 4), slice(4, 6)):
             scale = np.abs(hi[:, group]).max(axis=1)

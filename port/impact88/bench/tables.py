@@ -128,17 +128,17 @@ def paths(by_kind: Sequence[Path], by_output: Sequence[Path]) -> str:
     return "\n".join([*first, "", *second])
 
 
-def floor(found: Floor) -> str:
+def floor(times: Floor) -> str:
     return (
-        f"six velocities: {found.solve:.0f} ns a scene on one core; six sines and cosines alone: "
-        f"{found.numpy_sines:.0f} ns by numpy,\n{found.own_sines:.0f} ns by closedform.degrees "
-        f"({found.solve / found.own_sines:.1f} times that floor)\n"
-        f"six velocities of one scene: {found.one_scene / 1e3:.0f} microseconds a call as plain "
-        f"numbers, {found.array_of_one / 1e3:.0f} as arrays of one"
+        f"six velocities: {times.solve:.0f} ns a scene on one core; six sines and cosines alone: "
+        f"{times.numpy_sines:.0f} ns by numpy,\n{times.own_sines:.0f} ns by closedform.degrees "
+        f"({times.solve / times.own_sines:.1f} times that floor)\n"
+        f"six velocities of one scene: {times.one_scene / 1e3:.0f} microseconds a call as plain "
+        f"numbers, {times.array_of_one / 1e3:.0f} as arrays of one"
     )
 
 
-def sizes(found: Sequence[Size]) -> str:
+def sizes(measured: Sequence[Size]) -> str:
     lines = [
         [
             f"{size.scenes:,}",
@@ -147,7 +147,7 @@ def sizes(found: Sequence[Size]) -> str:
             f"{1e9 * size.seconds_out / size.scenes:.0f}",
             f"{size.extra_bytes / 2**20:.1f}",
         ]
-        for size in found
+        for size in measured
     ]
     return "\n".join(
         table(lines, ["scenes", "seconds", "ns/scene", "with out=", "MiB beside the results"])

@@ -40,30 +40,30 @@ def warnings(scene: Mapping[str, str]) -> list[str]:
     """What is unphysical about a scene (the bits of STATUS), and which of the program's known traps
     it steps into, one sentence each."""
     bits = status.Status(int(solved(scene, ["STATUS"])["STATUS"]))
-    found = [f"{bit.name}: {status.WORDS[bit]}" for bit in status.Status if bits & bit]
-    return found + list(_traps(scene))
+    sentences = [f"{bit.name}: {status.WORDS[bit]}" for bit in status.Status if bits & bit]
+    return sentences + list(_traps(scene))
 
 
 def solved(scene: Mapping[str, str], outputs: Sequence[str]) -> dict[str, float]:
     """Results of one scene by the closed form, as Python floats."""
     from ..closedform.solve import solve
 
-    found = solve(doubles_of(scene), list(outputs))
-    return {name: float(found[name]) for name in outputs}
+    results = solve(doubles_of(scene), list(outputs))
+    return {name: float(results[name]) for name in outputs}
 
 
 def _traps(scene: Mapping[str, str]) -> list[str]:
     value = doubles_of(scene)
-    found = []
+    traps = []
     if value["M"] == 4 and (value["DA"] or value["DB"]):
-        found.append(
+        traps.append(
             "M = 4 with DA or DB not zero: the XA, YA, XB, YB printed after the impact are "
             "nonsense (line 550 stores a sum where line 700 expects a spin)"
         )
     if value["M"] == 4 and (value["WA"] or value["WB"]):
-        found.append("M = 4 with WA or WB not zero: the KE LOSS printed is wrong")
+        traps.append("M = 4 with WA or WB not zero: the KE LOSS printed is wrong")
     if value["MU"] == 10:
-        found.append("MU = 10, once line 400 flips it, is taken for a pivot's by line 510")
+        traps.append("MU = 10, once line 400 flips it, is taken for a pivot's by line 510")
     if value["MU"] < -10:
-        found.append("MU below -10: line 510 zeroes a right-hand side that is not a pivot's")
-    return found
+        traps.append("MU below -10: line 510 zeroes a right-hand side that is not a pivot's")
+    return traps

@@ -99,26 +99,26 @@ def explain(
     )
     work = _Work(shown, recovered, base, {check.name: check for check in checks})
     alone = work.by_results_alone(replies)
-    found = [alone] if alone else []
+    explanations = [alone] if alone else []
     if not recovered.missing:
         reread = _reread(shown, recovered, base)
         again = _looked_past(shown, recovered, reread)
         if again is not None:
             return Explained([], again)
-        found += work.rereads(reread, replies)
-        found += work.others(otherruns.hypotheses(shown, recovered), replies)
-        if not found or min(one.weight for one in found) > 1.6:
+        explanations += work.rereads(reread, replies)
+        explanations += work.others(otherruns.hypotheses(shown, recovered), replies)
+        if not explanations or min(one.weight for one in explanations) > 1.6:
             doubles = Rereading(recovered).double_slips()
-            found += work.rereads(doubles, replies)
-    return Explained(_chosen(found, len(base)))
+            explanations += work.rereads(doubles, replies)
+    return Explained(_chosen(explanations, len(base)))
 
 
 def _reread(shown: Printout, recovered: Recovered, base: frozenset[str]) -> list[Reread]:
     unchanged = Reread((), recovered.search.replayed_scene(recovered.scene, recovered.assumed))
-    found = [unchanged]
+    rereads = [unchanged]
     if len(base) <= 2 and not base & {"KI"} and not _input_may_be_wrong(base):
-        return found
-    return [*found, *Rereading(recovered).best(deep=machine_read(shown))]
+        return rereads
+    return [*rereads, *Rereading(recovered).best(deep=machine_read(shown))]
 
 
 def _input_may_be_wrong(base: frozenset[str]) -> bool:
@@ -186,8 +186,8 @@ class _Work:
             names = {name for name in wrong if name in self.base}
             if len(names) <= _SLIPS_IN_RESULTS:
                 changes += self._slips(names, one.scored.outcome.fields, replies)
-            left = len(wrong) - (len(changes) - len(one.changes))
-            yield self._explanation(changes, wrong - {c.field for c in changes}, left)
+            unexplained = len(wrong) - (len(changes) - len(one.changes))
+            yield self._explanation(changes, wrong - {c.field for c in changes}, unexplained)
 
     def others(
         self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
@@ -250,14 +250,14 @@ class _Work:
                 yield Change(kind, name, check.printed, should)
 
     def _explanation(
-        self, changes: Sequence[Change], left: frozenset[str], remaining: int
+        self, changes: Sequence[Change], unexplained: frozenset[str], remaining: int
     ) -> Explanation:
         first = changes[0]
         kinds = list(dict.fromkeys(change.kind for change in changes))
         kind = kinds[0] if len(kinds) == 1 else " and ".join(kinds)
         weight = sum(_believed(change) for change in changes) + remaining
         weight += 0.1 * (len(changes) - 1)
-        explains = len(self.base - left) if left is not self.base else len(changes)
+        explains = len(self.base - unexplained) if unexplained is not self.base else len(changes)
         name = first.field.removeprefix("reply ")
         note = "in the typed reply" if first.field.startswith("reply ") else ""
         described = [self._change(change) for change in changes]
@@ -302,10 +302,10 @@ def _believed(change: Change) -> float:
     return cost
 
 
-def _chosen(found: list[Explanation], base: int) -> list[Explanation]:
+def _chosen(explanations: list[Explanation], base: int) -> list[Explanation]:
     """Those that explain nearly all, the least to believe first; none twice."""
     most_left = max(0, int(_NEARLY_ALL * base))
-    kept = [one for one in found if one.explains > 0 and one.remaining <= most_left]
+    kept = [one for one in explanations if one.explains > 0 and one.remaining <= most_left]
     kept.sort(key=lambda one: (one.remaining, one.weight))
     if kept:
         # what asks for much more than the best is no cause

@@ -163,33 +163,33 @@ def _angle_row(shown: Printout, recovered: Recovered) -> dict[str, tuple[Status,
     texts = [recovered.outcome.fields.get(name) for name in ANGLES]
     if not shown.angles or None in texts:
         return {}
-    found: dict[str, tuple[Status, tuple[Spot, ...]]] = {}
+    verdicts: dict[str, tuple[Status, tuple[Spot, ...]]] = {}
     for name, text in zip(ANGLES, texts, strict=True):
         reading = shown.fields.get(name)
         if reading is None or text is None:
             continue
         match = compare(reading.region, text)
-        found[name] = status_of(match, reading.region, text), match.spots
-    cut_so = len(found) == len(ANGLES)
-    if cut_so and all(status in (Status.READ, Status.DOUBTFUL) for status, _ in found.values()):
-        return found
+        verdicts[name] = status_of(match, reading.region, text), match.spots
+    cut_so = len(verdicts) == len(ANGLES)
+    if cut_so and all(status in (Status.READ, Status.DOUBTFUL) for status, _ in verdicts.values()):
+        return verdicts
     if tuple(texts) in [row for row, _ in shown.angles]:
         guessed = (Status.DOUBTFUL, (Spot(0, "", "", Doubt.BLANK),))
         return {
-            name: found[name] if found.get(name, guessed)[0] is Status.READ else guessed
+            name: verdicts[name] if verdicts.get(name, guessed)[0] is Status.READ else guessed
             for name in ANGLES
         }
-    return found
+    return verdicts
 
 
 def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
-    found = []
+    doubts = []
     for spot in spots:
         inside = spot.at < len(reading.region)
         start = reading.region[spot.at].offset if inside else reading.stop
         line, column = shown.place(start)
-        found.append(Doubtful(line, column, start, spot.read, spot.printed, str(spot.doubt)))
-    return found
+        doubts.append(Doubtful(line, column, start, spot.read, spot.printed, str(spot.doubt)))
+    return doubts
 
 
 def reply_checks(shown: Printout, recovered: Recovered) -> list[FieldCheck]:

@@ -143,8 +143,8 @@ def _compared(
     best[0][0] = 0.0
     for i in range(rows + 1):
         for j in range(columns + 1):
-            here = best[i][j]
-            if here >= 1e9:
+            least = best[i][j]
+            if least >= 1e9:
                 continue
             if i < rows:
                 char, _, joined = region[i]
@@ -154,12 +154,12 @@ def _compared(
                     cost, doubt = _substitution(char, printed[j])
                     if blank and doubt is None:
                         doubt = Doubt.BLANK
-                    _step(best, back, i, j, 1, 1, here + cost + blank, doubt)
+                    _step(best, back, i, j, 1, 1, least + cost + blank, doubt)
                 cost, doubt = _extra(region, i, j, printed, sign_free)
-                _step(best, back, i, j, 1, 0, here + cost, doubt)
+                _step(best, back, i, j, 1, 0, least + cost, doubt)
             if j < columns:
                 cost, doubt = _lost(region, i, j, printed, cut)
-                _step(best, back, i, j, 0, 1, here + cost, doubt)
+                _step(best, back, i, j, 0, 1, least + cost, doubt)
     spots = []
     exact = 0
     i, j = rows, columns
@@ -340,9 +340,9 @@ def _candidates(
     for text, cost in stopped.items():
         if cost < ways.get(text, 1e9):
             ways[text] = cost
-    found: dict[str, float] = {}
+    costs: dict[str, float] = {}
     if _round([part[0] for part in region]):
-        found["0"] = _IN_PIECES
+        costs["0"] = _IN_PIECES
     for text, cost in ways.items():
         if not is_number(text):
             continue
@@ -351,9 +351,9 @@ def _candidates(
             if retyped is None:
                 continue
             text, cost = retyped, cost + _RETYPED
-        if cost < found.get(text, 1e9):
-            found[text] = cost
-    return tuple(sorted(found.items(), key=lambda way: way[1])[:most])
+        if cost < costs.get(text, 1e9):
+            costs[text] = cost
+    return tuple(sorted(costs.items(), key=lambda way: way[1])[:most])
 
 
 def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[tuple[str, float]]:

@@ -296,15 +296,15 @@ class _Reader:
     def _misread_letters(self) -> int:
         """Letters of labels, and asterisks, read as other letters or figures."""
         page = template()
-        found = 0
+        count = 0
         before = 0
         for index, state in enumerate(self._states):
             letter = page.letters.get(state, "")
             char = self._glyphs[self._start + index].char
             if state != before and (letter.isalpha() or letter == "*"):
-                found += char != letter and char.isalnum()
+                count += char != letter and char.isalnum()
             before = state
-        return found
+        return count
 
     def _worth_telling(self) -> bool:
         """Whether a label and its number, or a prompt, was read."""

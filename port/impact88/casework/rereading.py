@@ -75,20 +75,20 @@ class Rereading:
         every = np.unique(np.concatenate(picks), axis=0)
         every = self._search.screened(choices, every, 320)
         tried = self._search.replayed(self._proper(choices, every), every)
-        found = []
+        ranked = []
         for pick, scored in zip(every.tolist(), tried, strict=True):
             made = tuple(
                 change
                 for place, index in enumerate(pick)
                 if (change := changes[place][index]) is not None
             )
-            found.append(Reread(made, scored))
-        found.sort(key=lambda one: one.scored.cost)
-        return found
+            ranked.append(Reread(made, scored))
+        ranked.sort(key=lambda one: one.scored.cost)
+        return ranked
 
     def double_slips(self) -> list[Reread]:
         """Scenes with two digits of one input put right."""
-        found: list[Reread] = []
+        pairs: list[Reread] = []
         choices: Choices = []
         rows: list[list[int]] = []
         made: list[Change] = []
@@ -104,15 +104,15 @@ class Rereading:
             columns.append(options)
         choices = [*columns, self._m()]
         if not rows:
-            return found
+            return pairs
         picks = np.array(rows, np.intp)
         best = self._search.screened(choices, picks, 60)
         where = {tuple(row): index for index, row in enumerate(rows)}
         tried = self._search.replayed(self._proper(choices, best), best)
         for pick, scored in zip(best.tolist(), tried, strict=True):
-            found.append(Reread((made[where[tuple(pick)]],), scored))
-        found.sort(key=lambda one: one.scored.cost)
-        return found
+            pairs.append(Reread((made[where[tuple(pick)]],), scored))
+        pairs.sort(key=lambda one: one.scored.cost)
+        return pairs
 
     # --- the hypotheses ---
 

@@ -260,11 +260,13 @@ def _believing(choices: Choices, picks: Picks) -> Floats:
 
 def columns(choices: Choices, picks: Picks) -> dict[str, Floats]:
     """The typed values of combinations as columns of doubles."""
-    found: dict[str, Floats] = {}
+    columns_by_name: dict[str, Floats] = {}
     for place, options in enumerate(choices):
         for name in options[0].typed:
-            found[name] = np.array([_number(one.typed[name]) for one in options])[picks[:, place]]
-    return found
+            columns_by_name[name] = np.array([_number(one.typed[name]) for one in options])[
+                picks[:, place]
+            ]
+    return columns_by_name
 
 
 def _printed_mu(choices: Choices, picks: Picks) -> Floats:

@@ -39,9 +39,9 @@ def run_whole(
     print them, unfloored (none when the run does not reach its end)."""
     from ..program.run import run
 
-    done = run(scene, arithmetic)
-    ending = ZERO_DETERMINANT if done.zero_determinant else done.error
-    return Outcome(outcome_fields(done.printout), ending), _unfloored(done)
+    ported = run(scene, arithmetic)
+    ending = ZERO_DETERMINANT if ported.zero_determinant else ported.error
+    return Outcome(outcome_fields(ported.printout), ending), _unfloored(ported)
 
 
 def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
@@ -70,27 +70,27 @@ def run_columns(
         same = column.count(column[0]) == len(column)
         # a list of one keeps the result an array however much the scenes share
         scene_columns[name] = column[0] if same and name != "M" else column
-    done = replay(scene_columns)
-    endings = done.error.tolist()
-    for index in done.zero_determinant.nonzero()[0].tolist():
+    replayed = replay(scene_columns)
+    endings = replayed.error.tolist()
+    for index in replayed.zero_determinant.nonzero()[0].tolist():
         endings[index] = ZERO_DETERMINANT
-    return endings, {name: done.printed(name) for name in names}
+    return endings, {name: replayed.printed(name) for name in names}
 
 
-def _unfloored(done: Run) -> dict[str, float]:
+def _unfloored(ported: Run) -> dict[str, float]:
     from ..applesoft.operators import Real
 
-    if done.error or done.zero_determinant or done.A is None:
+    if ported.error or ported.zero_determinant or ported.A is None:
         return {}
 
     def number(stored: str | float) -> float:
         return float(Real.from_stored(stored)) if isinstance(stored, str) else stored
 
-    value = {name: number(stored) for name, stored in done.reals.items()}
-    rows = done.A["dims"][0]
+    value = {name: number(stored) for name, stored in ported.reals.items()}
+    rows = ported.A["dims"][0]
     column = int(value["M"]) + 1
-    solution = [number(done.A["data"][row + rows * column]) for row in range(1, 7)]
-    found = {
+    solution = [number(ported.A["data"][row + rows * column]) for row in range(1, 7)]
+    values = {
         "XA": value["UX"] + value["D3"] * value["WA"],
         "YA": value["UY"] - value["D4"] * value["WA"],
         "XB": value["VX"] - value["D1"] * value["WB"],
@@ -100,8 +100,8 @@ def _unfloored(done: Run) -> dict[str, float]:
         **dict(zip(("VAX", "VAY", "VBX", "VBY"), solution, strict=False)),
     }
     if value["M"] == value["N"]:
-        found |= {"WAF": solution[4], "WBF": solution[5]}
-    return found
+        values |= {"WAF": solution[4], "WBF": solution[5]}
+    return values
 
 
 def run_on(scene: Mapping[str, str], arithmetic: Arithmetic) -> Outcome:

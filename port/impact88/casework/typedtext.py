@@ -56,31 +56,31 @@ def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
     figures = printed.partition("E")[0].replace(".", "").lstrip("-0")
     if len(figures) > _PRINTED_DIGITS:
         return ()  # no Apple prints as many
-    found: dict[bytes, str] = {}
+    printing: dict[bytes, str] = {}
     for text in _shorter(printed):
-        _keep(found, text, printed, angle)
-        if found:
+        _keep(printing, text, printed, angle)
+        if printing:
             break
-    _keep(found, printed, printed, angle)
-    if not found:
+    _keep(printing, printed, printed, angle)
+    if not printing:
         for text in _neighbours(printed):
-            _keep(found, text, printed, angle)
-            if found:
+            _keep(printing, text, printed, angle)
+            if printing:
                 break
-    texts = list(found.values())
+    texts = list(printing.values())
     others = [other for text in texts for other in _with_zeros(text)]
     if texts and min(map(_digits, texts)) >= _PRINTED_DIGITS:
         # all the digits there are: more may have been typed than are printed
         others += _neighbours(printed)
     for other in others:
-        _keep(found, other, printed, angle)
-    return tuple(found.values())
+        _keep(printing, other, printed, angle)
+    return tuple(printing.values())
 
 
-def _keep(found: dict[bytes, str], text: str, printed: str, angle: bool) -> None:
+def _keep(texts: dict[bytes, str], text: str, printed: str, angle: bool) -> None:
     seen = stored_and_printed(text, angle)
     if seen is not None and seen[1] == printed:
-        found.setdefault(seen[0], text)
+        texts.setdefault(seen[0], text)
 
 
 def _decimal(printed: str) -> Decimal | None:

@@ -42,20 +42,20 @@ def unseen(scene: Mapping[str, str | None], missing: list[str]) -> list[str]:
         exact = "+" not in name
         same[name] = same.get(name, True) and _agree(first, outcome, {name}, exact)
     alone = [name for name in INPUTS if same[name]]
-    found = []
+    sentences = []
     if alone:
         names = ", ".join(scene_name(name) for name in alone)
-        found.append(
+        sentences.append(
             f"{names}: nothing else on the page depends on {'it' if len(alone) == 1 else 'them'}, "
             "so a misreading there would not show"
         )
     for one, two in _SUMS:
         if same[f"{one} + {two}"] and not {one, two} & set(alone):
-            found.append(
+            sentences.append(
                 f"{one} and {two} enter only as their sum, so which of the two is misread would "
                 "not show"
             )
-    return found
+    return sentences
 
 
 def _others(text: str, name: str) -> list[str]:

@@ -132,27 +132,27 @@ def input_choices(name: str, shown: Printout) -> list[Choice]:
     reply = shown.replies.get(name)
     answers = reply_ways(reply) if reply is not None else []
     ways = printed_ways(reading) if reading is not None else {}
-    found: list[Choice] = []
+    choices: list[Choice] = []
     for text, cost in ways.items():
         same = [(typed, price) for typed, printed, price in answers if printed == text]
         if same:
             typed, price = min(same, key=lambda way: way[1])
-            found.append(Choice({scene: typed}, {name: text}, cost + 0.3 * price))
+            choices.append(Choice({scene: typed}, {name: text}, cost + 0.3 * price))
             continue
         texts = texts_that_print(text, angle)
         strange = 0.0 if texts else 0.7
         disagrees = _REPLY_DISAGREES if answers else 0.0
         typed = (texts or (text,))[0]
-        found.append(Choice({scene: typed}, {name: text}, cost + strange + disagrees))
+        choices.append(Choice({scene: typed}, {name: text}, cost + strange + disagrees))
     if reading is None or not reading.clean:
-        known = {choice.printed.get(name) for choice in found}
+        known = {choice.printed.get(name) for choice in choices}
         for typed, printed, price in answers:
             if printed not in known:
                 printed_too = {name: printed} if reading is not None else {}
-                cost = _NO_FIELD + price + (_REPLY_DISAGREES if found else 0.0)
-                found.append(Choice({scene: typed}, printed_too, cost))
-    found.sort(key=lambda choice: choice.cost)
-    return found[:_MOST]
+                cost = _NO_FIELD + price + (_REPLY_DISAGREES if choices else 0.0)
+                choices.append(Choice({scene: typed}, printed_too, cost))
+    choices.sort(key=lambda choice: choice.cost)
+    return choices[:_MOST]
 
 
 def reply_ways(reply: Reading) -> list[tuple[str, str, float]]:
@@ -167,12 +167,12 @@ def reply_ways(reply: Reading) -> list[tuple[str, str, float]]:
         others = {rest.text: 0.0} if rest.clean else dict(candidates(rest.region, 8))
         for text, cost in others.items():
             ways.setdefault(text, cost + 0.5)
-    found = []
+    readings = []
     for text, cost in ways.items():
         seen = stored_and_printed(text)
         if seen is not None:
-            found.append((text, seen[1], cost))
-    return found
+            readings.append((text, seen[1], cost))
+    return readings
 
 
 def other_bits(scene: Mapping[str, str], assumed: Mapping[str, str]) -> Choices:

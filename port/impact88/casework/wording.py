@@ -86,18 +86,18 @@ def _doubt(check: FieldCheck, read: str, printed: str, how: str) -> str:
 
 def look(check: FieldCheck) -> list[str]:
     """Where to look on the paper for a misread digit."""
-    found = []
+    sentences = []
     for one in check.doubts:
         if one.how != Doubt.CONTRADICTS:
             continue
         where = place(one.line, one.column)
         if one.read and one.printed:
-            found.append(f"{where}: is this {one.read} {_a(one.printed)} {one.printed}?")
+            sentences.append(f"{where}: is this {one.read} {_a(one.printed)} {one.printed}?")
         elif one.read:
-            found.append(f"{where}: is this {one.read} part of the number?")
+            sentences.append(f"{where}: is this {one.read} part of the number?")
         else:
-            found.append(f"{where}: is {_a(one.printed)} {one.printed} missing here?")
-    return found
+            sentences.append(f"{where}: is {_a(one.printed)} {one.printed} missing here?")
+    return sentences
 
 
 def _a(glyph: str) -> str:
@@ -106,26 +106,26 @@ def _a(glyph: str) -> str:
 
 def findings(shown: Printout, fields: Sequence[FieldCheck], recovered: Recovered) -> list[str]:
     """What the page shows besides its numbers."""
-    found = []
+    sentences = []
     retyped = [
         check.name for check in fields if any(one.how == Doubt.RETYPED for one in check.doubts)
     ]
     if retyped:
-        found.append(
+        sentences.append(
             f"{', '.join(retyped)} in a form Applesoft never prints (a zero before the point or at "
             "the end, a plus sign): retyped, or made by another program"
         )
     if commas(shown):
-        found.append("decimal commas throughout: retyped, or made by another program")
+        sentences.append("decimal commas throughout: retyped, or made by another program")
     if recovered.m_unknown and not recovered.missing:
         m = recovered.scene["M"]
-        found.append(
+        sentences.append(
             f"no line of final spins: read as M = {m}; with M = {'6' if m == '4' else '4'} the "
             "program prints the same numbers but for that line"
         )
     elif recovered.scene["M"] == "4" and "M" not in recovered.missing and not shown.has_final_spins:
-        found.append("no line of final spins: the results are those of M = 4, not of M = 6")
-    return found
+        sentences.append("no line of final spins: the results are those of M = 4, not of M = 6")
+    return sentences
 
 
 def commas(shown: Printout) -> bool:

@@ -112,13 +112,13 @@ def _truth(scene: dict[str, float], truth: dict[str, float]) -> Step:
 
 
 def _momentum(vehicles: dict[str, float]) -> Step:
-    (found,) = solve_for({**vehicles, **ESTIMATES, **NO_SWERVING}, ["UX", "VY"])
+    (solution,) = solve_for({**vehicles, **ESTIMATES, **NO_SWERVING}, ["UX", "VY"])
     return Step(
         "Initial velocities from the estimated final ones, v_ay = v_bx = 0",
         "Equations 13 and 14",
         (
-            Number("UX", "initial velocity of A", float(found["UX"]), "ft/s", "-40.21"),
-            Number("VY", "initial velocity of B", float(found["VY"]), "ft/s", "58.24"),
+            Number("UX", "initial velocity of A", float(solution["UX"]), "ft/s", "-40.21"),
+            Number("VY", "initial velocity of B", float(solution["VY"]), "ft/s", "58.24"),
         ),
         "Conservation of momentum alone: no coefficient and no spin is needed. The final "
         "velocities are estimates: VAX -10, VAY 20, VBX -20, VBY 45 ft/s.",
@@ -145,8 +145,8 @@ def _equation_19(
 
     def changes(speeds: tuple[float, float], loss: float, factor: float) -> tuple[float, float]:
         speed_a, speed_b = speeds
-        found = delta_v({**scene, "SA": speed_a, "SB": speed_b, "LOSS": loss}, factor)
-        return float(found["DVA"]), float(found["DVB"])
+        estimate = delta_v({**scene, "SA": speed_a, "SB": speed_b, "LOSS": loss}, factor)
+        return float(estimate["DVA"]), float(estimate["DVB"])
 
     true_speeds = (abs(scene["UX"]), abs(scene["VY"]))
     estimated = (abs(initial["UX"]), abs(initial["VY"]))
@@ -195,17 +195,17 @@ def _equation_19(
 
 def _coefficients(vehicles: dict[str, float]) -> Step:
     known = {**vehicles, **ESTIMATES, **NO_SWERVING, **NO_TURNING, **SPIN_ESTIMATE}
-    (found,) = solve_for(known)
-    worst = float(found.amplification["EM"])
-    em = float(found["EM"])
+    (solution,) = solve_for(known)
+    worst = float(solution.amplification["EM"])
+    em = float(solution["EM"])
     ratio = float(moment_ratio(em))
     return Step(
         "Coefficients, given a final spin of A of -2.9 rad/s and no initial spins",
         "Equations 13-18 for UX, VY, Ω_b, e, μ and e_m",
         (
-            Number("WBF", "final spin of B", float(found["WBF"]), "rad/s"),
-            Number("E", "coefficient of restitution", float(found["E"]), "1"),
-            Number("MUP", "P_t/P_n", float(found["MUP"]), "1"),
+            Number("WBF", "final spin of B", float(solution["WBF"]), "rad/s"),
+            Number("E", "coefficient of restitution", float(solution["E"]), "1"),
+            Number("MUP", "P_t/P_n", float(solution["MUP"]), "1"),
             Number("EM", "moment coefficient", em, "1"),
             Number("RR0", "share of relative spin the moment leaves", ratio, "1"),
         ),

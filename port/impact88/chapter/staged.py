@@ -95,27 +95,29 @@ def emendations() -> tuple[Emendation, ...]:
 @cache
 def cells() -> tuple[Cell, ...]:
     """Tables 1 and 2, cell by cell: as printed, as emended, and the evidence."""
-    found = []
+    result = []
     for row in _rows("table1.csv"):
         name = row["row"]
         printed = _printed_1(row)
         for column in COLUMNS_1:
             key = f"{column}_deg" if column in ("phi", "theta", "Gamma") else column
-            found.append(Cell(1, name, column, printed[column], row[key], _remark(1, name, column)))
+            result.append(
+                Cell(1, name, column, printed[column], row[key], _remark(1, name, column))
+            )
     for row in _rows("table2.csv"):
         name = row["collision"]
         for column in COLUMNS_2:
             key = {"loss": "loss_percent", "mu": "mu_signed_Pt_over_Pn"}.get(column, column)
             remark = _remark(2, name, column)
             emended = remark.emended if remark else row[key]
-            found.append(Cell(2, name, column, row[key], emended, remark))
-    return tuple(found)
+            result.append(Cell(2, name, column, row[key], emended, remark))
+    return tuple(result)
 
 
 def _remark(table: int, row: str, column: str) -> Emendation | None:
     """The remark on a cell, or else on its whole row."""
-    here = {e.column: e for e in emendations() if (e.table, e.row) == (table, row)}
-    return here.get(column) or here.get("*")
+    emended = {e.column: e for e in emendations() if (e.table, e.row) == (table, row)}
+    return emended.get(column) or emended.get("*")
 
 
 def _printed_1(row: Mapping[str, str]) -> dict[str, str]:
@@ -173,7 +175,7 @@ def collisions() -> tuple[Collision, ...]:
             vehicles.setdefault(cell.row, {})[cell.column] = cell.emended
         else:
             results.setdefault(cell.row, {})[cell.column] = float(cell.printed)
-    found = []
+    result = []
     for number, table2 in results.items():
         a, b = vehicles[f"{number}/A"], vehicles[f"{number}/B"]
         scene = {"GA": float(a["Gamma"]), "WA": 0.0, "WB": 0.0}
@@ -188,8 +190,8 @@ def collisions() -> tuple[Collision, ...]:
                 f"V{v}Y": float(row["Vy"] or "nan"),
                 f"W{v}F": float(row["Omega"]),
             }
-        found.append(Collision(int(number), a["category"], scene, measured, table2))
-    return tuple(found)
+        result.append(Collision(int(number), a["category"], scene, measured, table2))
+    return tuple(result)
 
 
 # -- forward, experimental, predicted
@@ -199,8 +201,8 @@ def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
     """The MU to type so that line 400 leaves the signed P_t/P_n: it changes it where gt > 0."""
     signed = np.asarray(signed, np.float64)
     # line 400 looks at the velocities alone: the other coefficients may be any
-    left = solve({**scene, "E": 0.0, "EM": 0.0, "MU": signed}, ("MUP",))["MUP"]
-    return np.where(left == signed, signed, -signed)
+    used = solve({**scene, "E": 0.0, "EM": 0.0, "MU": signed}, ("MUP",))["MUP"]
+    return np.where(used == signed, signed, -signed)
 
 
 def forward(
@@ -215,10 +217,10 @@ def forward(
 
 def experimental(collision: Collision) -> dict[str, float]:
     """ΔV from Table 1's measured velocities."""
-    here = collision.scene | collision.measured
+    values = collision.scene | collision.measured
     return {
-        "DVA": float(np.hypot(here["VAX"] - here["UX"], here["VAY"] - here["UY"])),
-        "DVB": float(np.hypot(here["VBX"] - here["VX"], here["VBY"] - here["VY"])),
+        "DVA": float(np.hypot(values["VAX"] - values["UX"], values["VAY"] - values["UY"])),
+        "DVB": float(np.hypot(values["VBX"] - values["VX"], values["VBY"] - values["VY"])),
     }
 
 
@@ -295,12 +297,18 @@ def fit(collision: Collision, em: float | None = None, spin_weight: float = SPIN
     best = int(np.argmin(sums))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
     em = _golden(lambda x: model.at(x).sum_of_squares, float(low), float(high))
-    found = min((model.at(x) for x in (em, float(grid[best]))), key=lambda f: f.sum_of_squares)
-    at = tuple(n for n in found.at_bound if n != "EM")
-    near = [bound for bound in EM_BOUNDS if abs(found.EM - bound) < 1e-6]
+    best_fit = min((model.at(x) for x in (em, float(grid[best]))), key=lambda f: f.sum_of_squares)
+    bounded = tuple(n for n in best_fit.at_bound if n != "EM")
+    near = [bound for bound in EM_BOUNDS if abs(best_fit.EM - bound) < 1e-6]
     if near:
-        found = model.at(near[0])
-    return Fit(found.E, found.EM, found.MUP, found.sum_of_squares, (*at, *(["EM"] * len(near))))
+        best_fit = model.at(near[0])
+    return Fit(
+        best_fit.E,
+        best_fit.EM,
+        best_fit.MUP,
+        best_fit.sum_of_squares,
+        (*bounded, *(["EM"] * len(near))),
+    )
 
 
 def profile(collision: Collision, count: int = 11) -> list[Fit]:
@@ -336,9 +344,9 @@ class _Linear:
 
     @classmethod
     def of(cls, collision: Collision, spin_weight: float = SPIN_WEIGHT) -> _Linear:
-        here = Geometry.of(collision.scene)
-        jacobian = np.array([here.changes(*unit) for unit in np.eye(3)], float).T
-        directions = np.array([[float(x) for x in row] for row in here.directions()])
+        geometry = Geometry.of(collision.scene)
+        jacobian = np.array([geometry.changes(*unit) for unit in np.eye(3)], float).T
+        directions = np.array([[float(x) for x in row] for row in geometry.directions()])
         before = np.array([collision.scene[name] for name in VELOCITIES])
         after = np.array([collision.measured[name] for name in FINAL_STATE])
         known = np.isfinite(after)
@@ -362,9 +370,9 @@ class _Linear:
         constant = -(1 - em) * self.spin_before / row[2]
         lift = np.array([[1.0, 0.0], [0.0, 1.0], [-row[0] / row[2], -row[1] / row[2]]])
         offset = np.array([0.0, 0.0, constant])
-        left = self.root_weight[:, None] * (self.jacobian @ lift)
+        weighted = self.root_weight[:, None] * (self.jacobian @ lift)
         right = self.root_weight * (self.change - self.jacobian @ offset)
-        free = np.linalg.lstsq(left, right, rcond=None)[0]
+        free = np.linalg.lstsq(weighted, right, rcond=None)[0]
         slope = self.normal @ lift
         e = -(self.approach + slope @ free + self.normal @ offset) / self.approach
         bound = min(max(e, E_BOUNDS[0]), E_BOUNDS[1])
@@ -373,9 +381,9 @@ class _Linear:
             target = -bound * self.approach - self.approach - self.normal @ offset
             start = slope * target / (slope @ slope)
             along = np.array([-slope[1], slope[0]])
-            step = left @ along
-            free = start + along * (step @ (right - left @ start)) / (step @ step)
-        misfit = left @ free - right
+            step = weighted @ along
+            free = start + along * (step @ (right - weighted @ start)) / (step @ step)
+        misfit = weighted @ free - right
         at_bound = ("E",) if bound != e else ()
         return Fit(float(bound), em, float(free[1] / free[0]), float(misfit @ misfit), at_bound)
 
@@ -421,7 +429,7 @@ class Compared:
 
 def comparison() -> list[Compared]:
     """Loss and the three pairs of ΔV of Table 2 beside their recomputation."""
-    found = []
+    rows = []
     for collision in collisions():
         centre, spread = _with_rounding(collision)
         measured = experimental(collision)
@@ -435,8 +443,8 @@ def comparison() -> list[Compared]:
             values[f"dV{vehicle}_pred"] = (float(equation_19[name][0]), equation_19[name])
         for column in COLUMNS_2:
             if column in values:
-                found.append(_compared(collision, column, *values[column]))
-    return found
+                rows.append(_compared(collision, column, *values[column]))
+    return rows
 
 
 def _with_rounding(collision: Collision) -> tuple[dict[str, Array], dict[str, Array]]:

@@ -190,15 +190,17 @@ def compare_file(
     scene's largest velocity, spin or energy, that agrees, in place of what rounding allows. Raises
     UserError when the table has no result column or does not give a whole scene."""
     values = values or {}
-    done = Comparison()
+    comparison = Comparison()
     waiting: list[_Waiting] = []
     with open_reader(path, form, encoding) as reader:
         wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
         where = called(path)
         known = {*SCENE, *RESULTS, *CARRIED}
-        done.unknown = {name: _meant(name) for name in reader.names if name not in known}
+        comparison.unknown = {name: _meant(name) for name in reader.names if name not in known}
         if not wanted:
-            hint = ", ".join(f"{name} for {meant}" for name, meant in done.unknown.items() if meant)
+            hint = ", ".join(
+                f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant
+            )
             raise UserError(
                 f"no column of results{f' ({hint}?)' if hint else ''}; expected some of "
                 f"{' '.join(RESULTS)}, beside the scene's",
@@ -206,19 +208,19 @@ def compare_file(
             )
         scene_names = [name for name in reader.names if name in SCENE]
         check_scene_columns(scene_names, list(values), ("M",))
-        done.tallies = {name: Tally() for name in wanted}
+        comparison.tallies = {name: Tally() for name in wanted}
         with progress(reader.total, "compare", "B") as meter:
             before = 0
             for rows in reader:
-                kept = _compare_block(rows, values, wanted, done, rtol)
+                kept = _compare_block(rows, values, wanted, comparison, rtol)
                 if kept is not None:
                     waiting.append(kept)
                 meter.update(reader.position() - before)
                 before = reader.position()
-    if not any(tally.compared for tally in done.tallies.values()):
+    if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
-    _explain(waiting, done)
-    return done
+    _explain(waiting, comparison)
+    return comparison
 
 
 def _meant(name: str) -> str:
@@ -236,7 +238,7 @@ def _compare_block(
     rows: Rows,
     values: Mapping[str, str],
     wanted: Sequence[str],
-    done: Comparison,
+    comparison: Comparison,
     rtol: float | None,
 ) -> _Waiting | None:
     """Judge a block and count; the rows to be explained are returned."""
@@ -255,44 +257,44 @@ def _compare_block(
     wrong = np.zeros(rows.count, bool)
     for name in wanted:
         wrong |= there[name] & ~verdicts[name].elimination
-        here = readable & np.isfinite(ours[name]) & compared
-        _tally(done.tallies[name], verdicts[name], there[name], here)
-    done.rows += rows.count
-    done.bad += rows.bad
-    done.agreeing += int((compared & ~wrong).sum())
-    done.differing += int(wrong.sum())
-    _count_skipped(done, rows, readable, compared, theirs, ours)
-    _count_elimination(done, rows, verdicts, there, compared & ~wrong, ours["COND"])
+        judged = readable & np.isfinite(ours[name]) & compared
+        _tally(comparison.tallies[name], verdicts[name], there[name], judged)
+    comparison.rows += rows.count
+    comparison.bad += rows.bad
+    comparison.agreeing += int((compared & ~wrong).sum())
+    comparison.differing += int(wrong.sum())
+    _count_skipped(comparison, rows, readable, compared, theirs, ours)
+    _count_elimination(comparison, rows, verdicts, there, compared & ~wrong, ours["COND"])
     places = np.flatnonzero(compared)
-    room = DIAGNOSED - len(done.differences)
+    room = DIAGNOSED - len(comparison.differences)
     keep = np.concatenate(
         [np.flatnonzero(wrong)[: max(room, 0)], np.flatnonzero(compared & ~wrong)[:DIAGNOSED]]
     )
-    done.causes[BEYOND] += max(int(wrong.sum()) - max(room, 0), 0)
+    comparison.causes[BEYOND] += max(int(wrong.sum()) - max(room, 0), 0)
     if not places.size or not keep.size:
         return None
-    found = [
+    theirs_by_name = [
         _row(rows, index, theirs, ours, verdicts, there) for index in np.flatnonzero(wrong).tolist()
     ]
-    found = found[: max(room, 0)]
-    done.differences += found
+    theirs_by_name = theirs_by_name[: max(room, 0)]
+    comparison.differences += theirs_by_name
     case = Case(scene, _texts(rows, values), theirs, ours, allowed, wrong)
-    return _Waiting(case.part(keep), found)
+    return _Waiting(case.part(keep), theirs_by_name)
 
 
-def _tally(tally: Tally, verdict: Verdict, there: Bools, here: Bools) -> None:
+def _tally(tally: Tally, verdict: Verdict, there: Bools, judged: Bools) -> None:
     tally.compared += int(there.sum())
     tally.double += int((there & verdict.double).sum())
     tally.digits += int((there & verdict.digits & ~verdict.double).sum())
     tally.elimination += int((there & verdict.elimination & ~verdict.digits).sum())
     tally.differ += int((there & ~verdict.elimination).sum())
-    tally.missing += int((here & ~there).sum())
+    tally.missing += int((judged & ~there).sum())
     if there.any():
         tally.largest = max(tally.largest, float(verdict.relative[there].max()))
 
 
 def _count_skipped(
-    done: Comparison,
+    comparison: Comparison,
     rows: Rows,
     readable: Bools,
     compared: Bools,
@@ -314,14 +316,14 @@ def _count_skipped(
     for reason, which in reasons.items():
         which &= ~compared
         if which.any():
-            done.not_compared[reason] += int(which.sum())
-            first = done.places_not_compared.setdefault(reason, [])
+            comparison.not_compared[reason] += int(which.sum())
+            first = comparison.places_not_compared.setdefault(reason, [])
             first += [rows.first + index for index in np.flatnonzero(which).tolist()]
             del first[WORST:]
 
 
 def _count_elimination(
-    done: Comparison,
+    comparison: Comparison,
     rows: Rows,
     verdicts: Mapping[str, Verdict],
     there: Mapping[str, Bools],
@@ -334,7 +336,7 @@ def _count_elimination(
         only = there[name] & verdict.elimination & ~verdict.digits & agreeing
         loose |= only
         relative = np.where(only, np.fmax(relative, verdict.relative), relative)
-    tally = done.elimination
+    tally = comparison.elimination
     tally.rows += int(loose.sum())
     if loose.any():
         worst = int(np.argmax(np.where(loose, relative, -1.0)))
@@ -382,19 +384,19 @@ def _texts(rows: Rows, values: Mapping[str, str]) -> dict[str, list[str]]:
     }
 
 
-def _explain(waiting: list[_Waiting], done: Comparison) -> None:
+def _explain(waiting: list[_Waiting], comparison: Comparison) -> None:
     """Find the causes, over the whole table at once."""
-    if done.differing:
+    if comparison.differing:
         case = _joined([one.case for one in waiting])
         rows = np.concatenate([np.flatnonzero(case.wrong), np.flatnonzero(~case.wrong)[:DIAGNOSED]])
         diagnosis = diagnose(case.part(rows))
-        done.equations = diagnosis.equations
-        done.differences = [
+        comparison.equations = diagnosis.equations
+        comparison.differences = [
             row._replace(cause=cause)
-            for row, cause in zip(done.differences, diagnosis.causes, strict=True)
+            for row, cause in zip(comparison.differences, diagnosis.causes, strict=True)
         ]
-        done.causes.update(diagnosis.causes)
-    done.causes += Counter()  # drops what counts 0
+        comparison.causes.update(diagnosis.causes)
+    comparison.causes += Counter()  # drops what counts 0
 
 
 def _joined(cases: Sequence[Case]) -> Case:

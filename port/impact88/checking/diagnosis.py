@@ -121,17 +121,17 @@ def diagnose(case: Case) -> Diagnosis:
     if not case.wrong.any():
         return Diagnosis([])
     fits = [*_cuts(case), *_fits(_candidates(case), case)]
-    found = np.where(case.wrong, UNKNOWN, "").astype(object)
+    causes = np.where(case.wrong, UNKNOWN, "").astype(object)
     covering = _worth_naming([fits[place] for place in _cover(fits, case)], case)
     if not covering or (covering[0].rows & case.wrong).sum() < _MAIN * case.wrong.sum():
-        _by_precision(found, case)
+        _by_precision(causes, case)
     for fit in covering:
-        found[(found == UNKNOWN) & fit.rows] = fit.says
+        causes[(causes == UNKNOWN) & fit.rows] = fit.says
     violations = residuals.violated(case.scene, case.theirs, case.allowed)
-    _by_residuals(found, case, violations)
+    _by_residuals(causes, case, violations)
     rows = int(case.wrong.sum())
     return Diagnosis(
-        found[case.wrong].tolist(),
+        causes[case.wrong].tolist(),
         {number: (rows, int((off & case.wrong).sum())) for number, off in violations.items()},
     )
 
@@ -159,7 +159,7 @@ def _candidates(case: Case) -> list[Program]:
     seen: list[Slip] = []
     fits: list[_Fit] = []
     chosen: list[Slip] = []
-    left = sample.wrong
+    unexplained = sample.wrong
     stages = [(*SLIPS, *_measured(case)), RARE, _in_the_equation(sample)]
     for slips in stages:
         more = list(_visible(slips, sample))
@@ -167,14 +167,14 @@ def _candidates(case: Case) -> list[Program]:
         fits += [measure.fit(slip.says, results) for slip, results in more]
         places = _cover(fits, sample)
         chosen = [seen[place] for place in places]
-        left = sample.wrong & ~np.logical_or.reduce([fits[place].rows for place in places])
-        if left.sum() <= (1 - _ENOUGH) * total:
+        unexplained = sample.wrong & ~np.logical_or.reduce([fits[place].rows for place in places])
+        if unexplained.sum() <= (1 - _ENOUGH) * total:
             break
     found: list[Program] = [(slip,) for slip in chosen]
-    if left.sum() > (1 - _ENOUGH) * total and np.median(measure.off[left]) > _LARGE:
+    if unexplained.sum() > (1 - _ENOUGH) * total and np.median(measure.off[unexplained]) > _LARGE:
         common = [slip for slip in seen if slip.common]
-        main = chosen if left.sum() <= (1 - _MAIN) * total else common
-        found += _pairs(main, common, sample, left)
+        main = chosen if unexplained.sum() <= (1 - _MAIN) * total else common
+        found += _pairs(main, common, sample, unexplained)
     return found
 
 
@@ -260,7 +260,7 @@ def _rounded(value: float) -> float | None:
 
 
 def _pairs(
-    main: Sequence[Slip], common: Sequence[Slip], sample: Case, left: Bools
+    main: Sequence[Slip], common: Sequence[Slip], sample: Case, unexplained: Bools
 ) -> list[Program]:
     """Pairs that explain what no slip alone explains: one of ``main``, which explain other rows
     alone if any do, and one of ``common``."""
@@ -269,7 +269,7 @@ def _pairs(
     else:
         pairs = [(one, other) for one in main for other in common if other not in main]
     for size in _PAIR_SAMPLES:
-        places = np.flatnonzero(left)
+        places = np.flatnonzero(unexplained)
         few = sample.part(places[:: max(1, places.size // size)][:size])
         results = otherprograms.run(pairs, few.scene)
         measure = _Measure(few)
@@ -341,20 +341,20 @@ class _Measure:
 def _cover(fits: Sequence[_Fit], case: Case) -> list[int]:
     """The programs that explain most rows that disagree, then most of those left. Of equals, the
     one that the rows that agree do not contradict, then the first."""
-    left = case.wrong.copy()
+    unexplained = case.wrong.copy()
     chosen: list[int] = []
     least = _LEAST_SHARE * case.wrong.sum() if case.wrong.sum() >= _MANY else 0
-    while left.any() and fits:
+    while unexplained.any() and fits:
         merit = [
-            (int((fit.rows & left).sum()), int((fit.rows & ~case.wrong).sum()), -place)
+            (int((fit.rows & unexplained).sum()), int((fit.rows & ~case.wrong).sum()), -place)
             for place, fit in enumerate(fits)
         ]
         best = -max(merit)[2]
-        explained = fits[best].rows & left
+        explained = fits[best].rows & unexplained
         if explained.sum() <= least or fits[best].digits[explained].sum() < _CERTAIN:
             break
         chosen.append(best)
-        left &= ~fits[best].rows
+        unexplained &= ~fits[best].rows
     return chosen
 
 
@@ -405,7 +405,7 @@ def _as_printed(case: Case) -> Bools:
     return rows
 
 
-def _by_precision(found: NDArray[np.object_], case: Case) -> None:
+def _by_precision(causes: NDArray[np.object_], case: Case) -> None:
     """Name coarser arithmetic where it is the whole table's: most rows in which it could be seen
     suffer from it, and hardly a row more than it explains."""
     measure = _Measure(case)
@@ -423,22 +423,22 @@ def _by_precision(found: NDArray[np.object_], case: Case) -> None:
             and explained.sum() >= _ENOUGH * case.wrong.sum()
             and (case.wrong & seen).sum() >= _WIDESPREAD * seen.sum()
         ):
-            found[explained] = says
+            causes[explained] = says
             return
 
 
-def _by_residuals(found: NDArray[np.object_], case: Case, violations: Mapping[str, Bools]) -> None:
+def _by_residuals(causes: NDArray[np.object_], case: Case, violations: Mapping[str, Bools]) -> None:
     """For rows without a cause: how closely they agree, or which equations they violate."""
     worst = _Measure(case).off
-    for row in np.flatnonzero(found == UNKNOWN).tolist():
+    for row in np.flatnonzero(causes == UNKNOWN).tolist():
         broken = [number for number, off in violations.items() if off[row]]
         if broken and len(broken) < len(violations):
             word = "Equation" if len(broken) == 1 else "Equations"
-            found[row] = f"{UNKNOWN}, but only {word} {_listed(broken)} violated"
+            causes[row] = f"{UNKNOWN}, but only {word} {_listed(broken)} violated"
         elif 0 < worst[row] < 1e-2:
-            found[row] = f"{UNKNOWN}, but agrees to about {int(-math.log10(worst[row]))} digits"
+            causes[row] = f"{UNKNOWN}, but agrees to about {int(-math.log10(worst[row]))} digits"
         elif violations and not broken:
-            found[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
+            causes[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
 
 
 def _listed(words: Sequence[str]) -> str:

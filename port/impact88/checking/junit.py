@@ -8,29 +8,33 @@ from ..files import replacing
 from .compare import HARMLESS, Comparison
 
 
-def write_junit(path: str, name: str, done: Comparison, strict: bool) -> None:
+def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> None:
     """Write a report: a failing test for every row that disagrees, one test for those that agree,
     one for each reason why rows were not compared (failing with ``strict``).
 
     Raises UserError when the place cannot be written to.
     """
-    failed = len(done.differences) + len(done.bad) + (len(done.silent) if strict else 0)
+    failed = (
+        len(comparison.differences)
+        + len(comparison.bad)
+        + (len(comparison.silent) if strict else 0)
+    )
     suite = ElementTree.Element("testsuite", name=f"impact88 compare {name}")
-    _case(suite, f"{done.agreeing} of {done.rows} rows agree")
-    for row in done.differences:
+    _case(suite, f"{comparison.agreeing} of {comparison.rows} rows agree")
+    for row in comparison.differences:
         place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
         said = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
         _case(suite, place, "failure", f"{said}; {row.cause}")
-    for bad in done.bad:
+    for bad in comparison.bad:
         _case(suite, f"row {bad.row}", "error", str(bad))
-    for said in done.silent:
+    for said in comparison.silent:
         _case(suite, said, "failure" if strict else "skipped", said)
     for reason in HARMLESS:
-        if reason in done.not_compared:
-            _case(suite, f"{done.not_compared[reason]} rows: {reason}", "skipped", reason)
+        if reason in comparison.not_compared:
+            _case(suite, f"{comparison.not_compared[reason]} rows: {reason}", "skipped", reason)
     suite.set("tests", str(len(suite)))
-    suite.set("failures", str(failed - len(done.bad)))
-    suite.set("errors", str(len(done.bad)))
+    suite.set("failures", str(failed - len(comparison.bad)))
+    suite.set("errors", str(len(comparison.bad)))
     suite.set("skipped", str(len(suite.findall("testcase/skipped"))))
     tree = ElementTree.ElementTree(suite)
     ElementTree.indent(tree)

@@ -89,14 +89,14 @@ def answers(lines: Iterable[str], reference: bool = True) -> Iterator[dict[str, 
 def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[str, Any]]:
     """The answers to some requests."""
     scenes = [request.scene for request in batch if request.scene is not None]
-    found = iter(look_up(scenes, reference))
+    answers = iter(look_up(scenes, reference))
     for request in batch:
         if request.scene is None:
             error = {"line": request.line, "message": request.problem}
             yield stamped("oracle", {"id": request.id, "error": error})
         else:
             scene = {name: request.scene[name] for name in SCENE}
-            whole = {"id": request.id, **request.extra, "scene": scene, **next(found)}
+            whole = {"id": request.id, **request.extra, "scene": scene, **next(answers)}
             yield stamped("oracle", whole)
 
 
@@ -124,7 +124,7 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
     double, listing = errorbound.oracle_bounds(scenes, numbers, found)
     out = []
     for index, scene in enumerate(scenes):
-        done = run(scene)
+        ported = run(scene)
         digits = thirty_digits(scene) if reference else {}
         results: dict[str, dict[str, Any]] = {}
         for name in RESULTS:
@@ -143,8 +143,8 @@ def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list
         condition = solved["COND"][index]
         out.append(
             {
-                "printout": done.printout,
-                "ending": "ZERO DETERMINANT" if done.zero_determinant else done.error,
+                "printout": ported.printout,
+                "ending": "ZERO DETERMINANT" if ported.zero_determinant else ported.error,
                 "results": results,
                 "condition": _json_number(condition),
                 "error_bound": {

@@ -73,10 +73,10 @@ def run(programs: Sequence[Sequence[Slip]], scene: Columns) -> list[Columns]:
     the columns of every result but COND, STATUS, MUC. NaN where there is none."""
     count = scene["M"].size
     step = max(1, AT_ONCE // max(count, 1))
-    found: list[Columns] = []
+    results: list[Columns] = []
     for at in range(0, len(programs), step):
-        found += _run(programs[at : at + step], scene, count)
-    return found
+        results += _run(programs[at : at + step], scene, count)
+    return results
 
 
 def _run(programs: Sequence[Sequence[Slip]], scene: Columns, count: int) -> list[Columns]:
@@ -92,13 +92,13 @@ def _run(programs: Sequence[Sequence[Slip]], scene: Columns, count: int) -> list
                     slip.equations(matrix[part], right[part], mine)
         unknowns = _solved(matrix, right)
         results = _consequences(whole, unknowns)
-        found = []
+        solved = []
         for slips, part in zip(programs, parts, strict=True):
             shown = {name: column[part] for name, column in results.items()}
             for slip in slips:
                 shown |= slip.results(shown, scene)
-            found.append(shown)
-    return found
+            solved.append(shown)
+    return solved
 
 
 def _as_read(slips: Sequence[Slip], scene: Columns) -> Columns:
@@ -135,18 +135,18 @@ def _each(matrix: Floats, right: Floats) -> Floats:
     return solution
 
 
-def _consequences(scene: Columns, found: Columns) -> Columns:
+def _consequences(scene: Columns, solved: Columns) -> Columns:
     """What follows from the final velocities by definition."""
-    here = Geometry.of(scene)
-    velocities: dict[str, Any] = {name: found[name] for name in FINAL_VELOCITIES}
+    geometry = Geometry.of(scene)
+    velocities: dict[str, Any] = {name: solved[name] for name in FINAL_VELOCITIES}
     coefficients = ("E", "EM", "MU")  # without them `outcome` does not solve anything again
     results = outcome({**{n: c for n, c in scene.items() if n not in coefficients}, **velocities})
     results = {name: np.asarray(column, float) for name, column in results.items()}
-    dax, day = found["VAX"] - scene["UX"], found["VAY"] - scene["UY"]
-    results["PN"] = scene["MA"] * (here.cosine * dax + here.sine * day)
-    results["PT"] = scene["MA"] * (here.cosine * day - here.sine * dax)
-    moment = scene["IA"] * (found["WAF"] - scene["WA"])
-    moment -= here.an * results["PN"] + here.at * results["PT"]
-    results["PM"] = np.where(here.point, 0.0, moment)
+    dax, day = solved["VAX"] - scene["UX"], solved["VAY"] - scene["UY"]
+    results["PN"] = scene["MA"] * (geometry.cosine * dax + geometry.sine * day)
+    results["PT"] = scene["MA"] * (geometry.cosine * day - geometry.sine * dax)
+    moment = scene["IA"] * (solved["WAF"] - scene["WA"])
+    moment -= geometry.an * results["PN"] + geometry.at * results["PT"]
+    results["PM"] = np.where(geometry.point, 0.0, moment)
     results["MUP"] = used_friction(scene)
     return {**velocities, **results}

@@ -57,7 +57,7 @@ def violated(scene: Columns, theirs: Mapping[str, Theirs], allowed: Slack) -> di
 def _unknowns(scene: Columns, theirs: Mapping[str, Theirs]) -> dict[str, Theirs] | None:
     """The six final velocities; point masses keep their spins, given or not."""
     point = scene["M"] == 4
-    found = {}
+    unknowns = {}
     for name in ORDER:
         column = theirs.get(name)
         if name in _SPINS and point.any():
@@ -67,8 +67,8 @@ def _unknowns(scene: Columns, theirs: Mapping[str, Theirs]) -> dict[str, Theirs]
             column = Theirs(np.where(point, kept, mine), np.where(point, 0.0, unit))
         if column is None:
             return None
-        found[name] = column
-    return found
+        unknowns[name] = column
+    return unknowns
 
 
 def effective(scene: Columns, theirs: Mapping[str, Theirs]) -> Columns:
@@ -77,21 +77,21 @@ def effective(scene: Columns, theirs: Mapping[str, Theirs]) -> Columns:
     unknowns = _unknowns(scene, theirs)
     if unknowns is None:
         return {}
-    here = Geometry.of(scene)
+    geometry = Geometry.of(scene)
     with np.errstate(all="ignore"):
         before = [scene[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB")]
         after = [unknowns[name].values for name in ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")]
         pn = scene["MA"] * (
-            here.cosine * (after[0] - before[0]) + here.sine * (after[1] - before[1])
+            geometry.cosine * (after[0] - before[0]) + geometry.sine * (after[1] - before[1])
         )
         pt = scene["MA"] * (
-            here.cosine * (after[1] - before[1]) - here.sine * (after[0] - before[0])
+            geometry.cosine * (after[1] - before[1]) - geometry.sine * (after[0] - before[0])
         )
-        moment = scene["IA"] * (after[2] - before[2]) - here.an * pn - here.at * pt
-        shared = moment * here.inverse_spin_inertia
+        moment = scene["IA"] * (after[2] - before[2]) - geometry.an * pn - geometry.at * pt
+        shared = moment * geometry.inverse_spin_inertia
         spinning = after[2] - after[5]
         return {
-            "E": -here.relative(after)[0] / here.relative(before)[0],
+            "E": -geometry.relative(after)[0] / geometry.relative(before)[0],
             "MU": pt / pn,
             "EM": spinning / (shared + spinning),
         }

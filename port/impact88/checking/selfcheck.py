@@ -79,17 +79,17 @@ def _guarded(cases: Callable[[Any], Counted], golden: Any) -> Counted:
         yield f"broke down: {type(error).__name__}: {error}", False
 
 
-def record(found: list[Check]) -> dict[str, Any]:
+def record(checks: list[Check]) -> dict[str, Any]:
     """The record as one object: versions, hashes, checks, verdict."""
     return {
-        "passed": all(check.passed for check in found),
+        "passed": all(check.passed for check in checks),
         "versions": provenance.versions(),
         "hashes": {
             "listing": provenance.listing_hash(),
             "captures": provenance.captures_hash(),
         },
-        "checks": [{**check._asdict(), "passed": check.passed} for check in found],
-        "seconds": round(sum(check.seconds for check in found), 2),
+        "checks": [{**check._asdict(), "passed": check.passed} for check in checks],
+        "seconds": round(sum(check.seconds for check in checks), 2),
     }
 
 
@@ -114,18 +114,18 @@ def _arithmetic(golden: Any) -> Counted:
 
 def _port(golden: Any) -> Counted:
     for row in _lines(golden, "scenes"):
-        done = run(row["scene"], dos=False)
-        same = done.printout == row["printout"]
-        left = captured.left_behind(done.reals, done.A)
-        yield row["id"], same and left == captured.left_behind(row["reals"], row["A"])
+        ported = run(row["scene"], dos=False)
+        same = ported.printout == row["printout"]
+        variables = captured.left_behind(ported.reals, ported.A)
+        yield row["id"], same and variables == captured.left_behind(row["reals"], row["A"])
 
 
 def _replay(golden: Any) -> Counted:
     from ..replay import replay
 
     rows = list(_lines(golden, "scenes"))
-    done = replay({name: [row["scene"][name] for row in rows] for name in SCENE})
-    printed = {name: done.printed(name).tolist() for name in FIELDS}
+    replayed = replay({name: [row["scene"][name] for row in rows] for name in SCENE})
+    printed = {name: replayed.printed(name).tolist() for name in FIELDS}
     for index, row in enumerate(rows):
         fields = {name: column[index] for name, column in printed.items() if column[index]}
         yield row["id"], fields == outcome_fields(row["printout"])
@@ -164,12 +164,12 @@ def _closed_form(golden: Any) -> Counted:
     rows = [row for row in _lines(golden, "scenes") if row["scene"]["M"] == "6"]
     g = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
     with np.errstate(all="ignore"):
-        found = {name: column.astype(float) for name, column in solve(g).items()}
-        bound = errorbound.relative_bounds(found["COND"])
-        usable = np.isfinite(found["VAX"]) & np.isfinite(found["WAF"])
+        solved = {name: column.astype(float) for name, column in solve(g).items()}
+        bound = errorbound.relative_bounds(solved["COND"])
+        usable = np.isfinite(solved["VAX"]) & np.isfinite(solved["WAF"])
         ok = np.ones(len(rows), bool)
         for a, b, before in (("VAX", "VBX", ("UX", "VX")), ("VAY", "VBY", ("UY", "VY"))):
-            parts = [g["MA"] * found[a], g["MB"] * found[b]]
+            parts = [g["MA"] * solved[a], g["MB"] * solved[b]]
             parts += [-g["MA"] * g[before[0]], -g["MB"] * g[before[1]]]
             ok &= np.abs(sum(parts)) <= bound * 2 * np.max(np.abs(parts), axis=0)
     for row, good, used in zip(rows, ok.tolist(), usable.tolist(), strict=True):

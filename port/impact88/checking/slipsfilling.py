@@ -61,32 +61,32 @@ def _spins_conserved(matrix: Floats, right: Floats, g: Columns) -> None:
 def friction_on_a(matrix: Floats, right: Floats, g: Columns) -> None:
     """Equation 16 with the impulse on A alone, as many write it, where the listing takes A's y and
     B's x: the same as long as Equations 13 and 14 are right."""
-    here = Geometry.of(g)
+    geometry = Geometry.of(g)
     mu = used_friction(g)
     sliding = mu != -10
     along = [
-        g["MA"] * (-here.sine - mu * here.cosine),
-        g["MA"] * (here.cosine - mu * here.sine),
+        g["MA"] * (-geometry.sine - mu * geometry.cosine),
+        g["MA"] * (geometry.cosine - mu * geometry.sine),
     ]
     _on_a(matrix, right, g, "16", along, (0.0, 0.0), where=sliding)
 
 
 def angular_momentum_on_a(matrix: Floats, right: Floats, g: Columns) -> None:
     """Equation 17, likewise."""
-    here = Geometry.of(g)
-    turning = [-g["MA"] * (here.d1 + here.d3), g["MA"] * (here.d2 + here.d4)]
+    geometry = Geometry.of(g)
+    turning = [-g["MA"] * (geometry.d1 + geometry.d3), g["MA"] * (geometry.d2 + geometry.d4)]
     row = _row("17")
     _on_a(matrix, right, g, "17", turning, (matrix[:, row, 4], matrix[:, row, 5]))
 
 
 def moment_on_a(matrix: Floats, right: Floats, g: Columns) -> None:
     """Equation 18 with the moment on A alone, where the listing takes both vehicles' spins."""
-    here = Geometry.of(g)
-    point = here.point
+    geometry = Geometry.of(g)
+    point = geometry.point
     em = np.where(point, 1.0, g["EM"])
     ia, ib = (np.where(point, 1.0, g[name]) for name in ("IA", "IB"))
     both = em * (1 / ia + 1 / ib)
-    arms = [-both * g["MA"] * here.d3, both * g["MA"] * here.d4]
+    arms = [-both * g["MA"] * geometry.d3, both * g["MA"] * geometry.d4]
     row = _row("18")
     for column, value in enumerate((*arms, 0.0, 0.0, both * ia - (1 - em), 1 - em)):
         matrix[:, row, column] = value

@@ -53,10 +53,10 @@ def solve_one(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[st
         return None
     if not math.isfinite(sum(results)):
         return None
-    found: dict[str, Any] = dict(zip(wanted, map(np.float64, results), strict=True))
-    if "STATUS" in found:
-        found["STATUS"] = np.uint16(found["STATUS"])
-    return found
+    by_name: dict[str, Any] = dict(zip(wanted, map(np.float64, results), strict=True))
+    if "STATUS" in by_name:
+        by_name["STATUS"] = np.uint16(by_name["STATUS"])
+    return by_name
 
 
 class LeftToArrays(Exception):

@@ -222,19 +222,19 @@ class Plan:
             *(results[name] for name in self._direct),
             *workspace,
         ]
-        for operation, at in self._steps:
+        for operation, place in self._steps:
             if operation is None:
-                a, s, c, w0, w1, w2, w3 = at
+                a, s, c, w0, w1, w2, w3 = place
                 sine_and_cosine(
                     places[a],
                     places[s],
                     places[c],
                     (places[w0], places[w1], places[w2], places[w3]),
                 )
-            elif len(at) == 3:
-                operation(places[at[0]], places[at[1]], places[at[2]])
+            elif len(place) == 3:
+                operation(places[place[0]], places[place[1]], places[place[2]])
             else:
-                operation(*[places[i] for i in at])
+                operation(*[places[i] for i in place])
         for name, e in self.results.items():
             if e.dtype == "float":
                 # -0.0 becomes 0.0: a zero's sign would tell which path led to it

@@ -109,8 +109,8 @@ def main(arguments: argparse.Namespace) -> int:
 
         save(figure.work_precision(rows), arguments.figure)
     if arguments.json:
-        found = {"machine": told, "seed": arguments.seed, "results": measure.as_json(rows)}
-        _print_json(found)
+        record = {"machine": told, "seed": arguments.seed, "results": measure.as_json(rows)}
+        _print_json(record)
     else:
         print(tables.machine(told), end="\n\n")
         print(tables.results(rows))
@@ -121,25 +121,25 @@ def main(arguments: argparse.Namespace) -> int:
 def _skipping(arguments: argparse.Namespace) -> int:
     from ..bench import files, measure, paths, tables
 
-    found: dict[str, Any] = {"machine": measure.machine()}
-    texts = [tables.machine(found["machine"])]
+    record: dict[str, Any] = {"machine": measure.machine()}
+    texts = [tables.machine(record["machine"])]
     if arguments.paths:
         by_kind, by_output = paths.paths(PATH_SCENES, arguments.repeats)
         floor = paths.floor(PATH_SCENES, arguments.repeats)
-        found["paths"] = [asdict(path) for path in by_kind]
-        found["outputs"] = [asdict(path) for path in by_output]
-        found["floor"] = asdict(floor)
+        record["paths"] = [asdict(path) for path in by_kind]
+        record["outputs"] = [asdict(path) for path in by_output]
+        record["floor"] = asdict(floor)
         texts += [tables.paths(by_kind, by_output), tables.floor(floor)]
     if arguments.files:
         doors = files.files(FILE_ROWS, _solve_file)
-        found["files"] = {"rows": FILE_ROWS, "doors": [asdict(door) for door in doors]}
+        record["files"] = {"rows": FILE_ROWS, "doors": [asdict(door) for door in doors]}
         texts.append(tables.doors(FILE_ROWS, doors))
     if arguments.sizes:
         grown = paths.sizes(SIZES, arguments.repeats)
-        found["sizes"] = [asdict(size) for size in grown]
+        record["sizes"] = [asdict(size) for size in grown]
         texts.append(tables.sizes(grown))
     if arguments.json:
-        _print_json(found)
+        _print_json(record)
     else:
         print("\n\n".join(texts))
     return 0
@@ -152,6 +152,6 @@ def _solve_file(path: str, to: str) -> None:
     command_line(["solve", path, "-o", to])
 
 
-def _print_json(found: dict[str, Any]) -> None:
-    json.dump(plain(found), sys.stdout, indent=1)
+def _print_json(record: dict[str, Any]) -> None:
+    json.dump(plain(record), sys.stdout, indent=1)
     print()

@@ -68,7 +68,7 @@ def main(args: argparse.Namespace) -> int:
     return 0
 
 
-def show(values: dict[str, float], found: tuple[str, ...], as_json: bool) -> None:
+def show(values: dict[str, float], solved_for: tuple[str, ...], as_json: bool) -> None:
     """Print the table or the JSON object."""
     from ..names import quantity
     from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
@@ -76,13 +76,18 @@ def show(values: dict[str, float], found: tuple[str, ...], as_json: bool) -> Non
     warnings = _warnings(values)
     if as_json:
         units = {name: quantity(name).unit for name in values}
-        whole = {"solved_for": list(found), "values": values, "units": units, "warnings": warnings}
+        whole = {
+            "solved_for": list(solved_for),
+            "values": values,
+            "units": units,
+            "warnings": warnings,
+        }
         print(json.dumps(plain(whole), allow_nan=False))
         return
     decimals = decimals_for([values[name] for name in (*BEFORE, *AFTER)])
     rows = []
     for label, names in (("n", ("UN", "VAN", "VN", "VBN")), ("t", ("UT", "VAT", "VT", "VBT"))):
-        cells = [f"{fixed(values[n], decimals)}{'*' if n in found else ' '}" for n in names]
+        cells = [f"{fixed(values[n], decimals)}{'*' if n in solved_for else ' '}" for n in names]
         rows.append([label, *cells, "length/time"])
     heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
     print("\n".join([*table(rows, heading, left=(0, 5)), "* solved for", ""]))
@@ -97,17 +102,17 @@ def show(values: dict[str, float], found: tuple[str, ...], as_json: bool) -> Non
 
 
 def _warnings(values: dict[str, float]) -> list[str]:
-    found = []
+    warnings = []
     if values["UN"] - values["VN"] >= 0:
-        found.append("the vehicles do not approach along n: UN - VN is not negative")
+        warnings.append("the vehicles do not approach along n: UN - VN is not negative")
     if not 0 <= values["E"] <= 1:
-        found.append("E is outside 0 ... 1")
+        warnings.append("E is outside 0 ... 1")
     if values["LOSS"] < -1e-10:
-        found.append("kinetic energy is gained in the impact")
+        warnings.append("kinetic energy is gained in the impact")
     if values["MUP"] and not values["MUC"]:
-        found.append("friction makes the vehicles slide: before the impact they do not")
+        warnings.append("friction makes the vehicles slide: before the impact they do not")
     elif abs(values["MUP"]) > abs(values["MUC"]):
-        found.append("friction reverses the sliding: |MUP| is above the critical value MUC")
+        warnings.append("friction reverses the sliding: |MUP| is above the critical value MUC")
     elif values["MUP"] * values["MUC"] < 0:
-        found.append("friction drives the sliding: MUP and MUC differ in sign")
-    return found
+        warnings.append("friction drives the sliding: MUP and MUC differ in sign")
+    return warnings

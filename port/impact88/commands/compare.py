@@ -80,54 +80,62 @@ def main(args: argparse.Namespace) -> int:
     given = settings(args.set)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
-    done = compare_file(
+    comparison = compare_file(
         args.theirs, format_of(args.theirs, args.form), given, args.rtol, args.encoding
     )
     if args.junit:
         from ..checking.junit import write_junit
 
-        write_junit(args.junit, args.theirs, done, args.strict)
+        write_junit(args.junit, args.theirs, comparison, args.strict)
     if args.json:
-        print(json.dumps(stamped("compare", done.as_json()), ensure_ascii=False, allow_nan=False))
+        print(
+            json.dumps(
+                stamped("compare", comparison.as_json()), ensure_ascii=False, allow_nan=False
+            )
+        )
     else:
-        print("\n".join(_lines(done)))
-    for line in _talk(done):
+        print("\n".join(_lines(comparison)))
+    for line in _talk(comparison):
         tell("compare", line)
-    return int(done.differing > 0 or bool(done.bad) or (args.strict and bool(done.silent)))
+    return int(
+        comparison.differing > 0
+        or bool(comparison.bad)
+        or (args.strict and bool(comparison.silent))
+    )
 
 
-def _talk(done: Comparison) -> Iterator[str]:
+def _talk(comparison: Comparison) -> Iterator[str]:
     """What is said on stderr: what could not be read or was not compared."""
-    yield from map(str, done.bad[:SHOWN])
-    if len(done.bad) > SHOWN:
-        yield f"and {len(done.bad) - SHOWN} more"
-    for name, meant in list(done.unknown.items())[:SHOWN]:
+    yield from map(str, comparison.bad[:SHOWN])
+    if len(comparison.bad) > SHOWN:
+        yield f"and {len(comparison.bad) - SHOWN} more"
+    for name, meant in list(comparison.unknown.items())[:SHOWN]:
         yield f"column {name} is not recognised{f'; did you mean {meant}?' if meant else ''}"
-    if len(done.unknown) > SHOWN:
-        yield f"and {len(done.unknown) - SHOWN} more columns are not recognised"
-    for reason, count in done.not_compared.items():
+    if len(comparison.unknown) > SHOWN:
+        yield f"and {len(comparison.unknown) - SHOWN} more columns are not recognised"
+    for reason, count in comparison.not_compared.items():
         if reason not in HARMLESS:
-            first = ", ".join(map(str, done.places_not_compared[reason][:5]))
+            first = ", ".join(map(str, comparison.places_not_compared[reason][:5]))
             yield f"{count} rows not compared ({first}{', ...' if count > 5 else ''}): {reason}"
-    for name, tally in done.tallies.items():
+    for name, tally in comparison.tallies.items():
         if tally.missing:
             yield f"{tally.missing} cells of {name} are empty where there is a result"
 
 
-def _lines(done: Comparison) -> Iterator[str]:
-    yield done.summary.partition("; ")[0]
+def _lines(comparison: Comparison) -> Iterator[str]:
+    yield comparison.summary.partition("; ")[0]
     yield ""
     yield (
         "result  compared  to the double  to digits claimed  as elimination      not  "
         "largest difference"
     )
-    for name, tally in done.tallies.items():
+    for name, tally in comparison.tallies.items():
         yield (
             f"{name:<6}  {tally.compared:>8}  {tally.double:>13}  {tally.digits:>17}  "
             f"{tally.elimination:>14}  {tally.differ:>7}  {tally.largest:>18.2g}"
         )
     yield "(difference relative to the scene's largest velocity, spin or energy)"
-    loose = done.elimination
+    loose = comparison.elimination
     if loose.rows:
         yield ""
         lost = _digits_lost(loose.worst_relative)
@@ -136,35 +144,35 @@ def _lines(done: Comparison) -> Iterator[str]:
             f"the worst, row {loose.worst_row}, has lost {lost} of 16 digits (the best of programs "
             f"has condition {loose.worst_condition:.2g} there)"
         )
-    if done.causes:
+    if comparison.causes:
         yield ""
         yield "rows that disagree, by likely cause:"
-        for cause, count in done.causes.most_common():
+        for cause, count in comparison.causes.most_common():
             yield f"  {count:>7}  {cause}"
-        yield from _equations(done)
+        yield from _equations(comparison)
         yield ""
         yield "worst first:"
-        for one in done.worst:
+        for one in comparison.worst:
             place = f"row {one.row}" + (f" (line {one.line})" if one.line else "")
             name = f", id {shown(one.id, 40)}" if one.id else ""
             yield (
                 f"  {place}{name}: {one.result} {shown(one.theirs, 40)}, here {one.ours:.12g}, "
                 f"off by {one.relative:.2g}; {one.cause}"
             )
-    for reason, count in done.not_compared.items():
+    for reason, count in comparison.not_compared.items():
         yield ""
         yield f"{count} rows not compared: {reason}"
 
 
-def _equations(done: Comparison) -> Iterator[str]:
+def _equations(comparison: Comparison) -> Iterator[str]:
     """Which of Equations 13 to 18 their own results violate."""
-    broken = {number: tally for number, tally in done.equations.items() if tally[1]}
+    broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
     if broken:
         yield ""
         yield "equations that their final velocities violate:"
         for number, (checked, violated) in broken.items():
             yield f"  {number} ({EQUATIONS[number]}): in {violated} of {checked} rows that disagree"
-    elif done.equations:
+    elif comparison.equations:
         yield ""
         yield "their final velocities violate none of Equations 13 to 18"
 

@@ -73,8 +73,8 @@ def main(args: argparse.Namespace) -> int:
     losses, source = _losses({**known, **given}, args)
     estimates = []
     for loss in losses:
-        found = delta_v({**given, "LOSS": loss}, factor)
-        estimates.append({"LOSS": loss, **{name: float(v) for name, v in found.items()}})
+        estimate = delta_v({**given, "LOSS": loss}, factor)
+        estimates.append({"LOSS": loss, **{name: float(v) for name, v in estimate.items()}})
     if args.json:
         whole = {
             "equation": described(factor),

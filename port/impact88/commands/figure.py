@@ -170,5 +170,5 @@ def solved(scene: Scene) -> dict[str, Any]:
     from ..closedform.solve import solve
     from ..names import FINAL_VELOCITIES
 
-    found = solve(numbers_of(scene), (*FINAL_VELOCITIES, "STATUS"))
-    return {name: value.item() for name, value in found.items()}
+    results = solve(numbers_of(scene), (*FINAL_VELOCITIES, "STATUS"))
+    return {name: value.item() for name, value in results.items()}

@@ -131,7 +131,9 @@ def main(args: argparse.Namespace) -> int:
                 _typed_lines().__next__, show, printer, dos=not args.no_dos, echo=echo
             )
         try:
-            error, zero_determinant, left = start(data, console, args.arithmetic, str(args.slot))
+            error, zero_determinant, variables = start(
+                data, console, args.arithmetic, str(args.slot)
+            )
         except EndOfInput:
             if not args.json:
                 print(flush=True)
@@ -146,7 +148,7 @@ def main(args: argparse.Namespace) -> int:
 
         from ..schemas import stamped
 
-        run = finished("".join(shown), error, zero_determinant, left)
+        run = finished("".join(shown), error, zero_determinant, variables)
         floats = {name: x if isfinite(x) else None for name, x in run.floats.items()}
         print(json.dumps(stamped("run", {**run._asdict(), "floats": floats})))
     elif error is not None and sys.stdout.isatty():

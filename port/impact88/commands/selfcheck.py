@@ -27,16 +27,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Run all checks and print the record."""
-    found: list[Check] = []
+    results: list[Check] = []
     names = iter(CHECKS)
     talk = args.json and sys.stderr.isatty()
     for check in checks():
-        found.append(check)
+        results.append(check)
         if talk:
             print(f"{next(names)}: {'pass' if check.passed else 'FAIL'}", file=sys.stderr)
         elif not args.json:
             print(_line(check), flush=True)
-    whole = record(found)
+    whole = record(results)
     if args.json:
         print(json.dumps(stamped("selfcheck", whole), indent=2))
     else:

@@ -156,7 +156,7 @@ def main(arguments: argparse.Namespace) -> int:
         blocks = iter(source)
         if not may_wait(arguments.cases):
             blocks = stack.enter_context(ahead(blocks))
-        at = 0
+        position = 0
         for rows in blocks:
             for name, text in given.items():
                 rows.columns[name] = [text] * rows.count
@@ -165,8 +165,8 @@ def main(arguments: argparse.Namespace) -> int:
             write(rows, results)
             complaints.take(rows.bad)
             now = source.position()
-            meter.update(now - at)
-            at = now
+            meter.update(now - position)
+            position = now
     complaints.summarise()
     return 1 if complaints.count or arithmetic.errors else 0
 
@@ -233,22 +233,22 @@ class _Applesoft:
         unread = {bad.row - rows.first for bad in rows.bad}
         try:
             # nearly always all cells can be read, and looking at each takes as long as solving
-            found = None if unread else replay(columns)
+            replayed = None if unread else replay(columns)
         except (ValueError, TypeError):  # UserError, or cells of several types
-            found = None
-        if found is None:
+            replayed = None
+        if replayed is None:
             unread |= _complain(rows, columns, unread)
             for column in columns.values():
                 for index in unread:
                     column[index] = "6"
-            found = replay(columns)
-        error = np.where(found.zero_determinant, "ZERO DETERMINANT", found.error)
-        results: Results = {name: found.floats(name) for name in self.names}
-        results |= {"ERROR": error, "LINE": found.line}
+            replayed = replay(columns)
+        error = np.where(replayed.zero_determinant, "ZERO DETERMINANT", replayed.error)
+        results: Results = {name: replayed.floats(name) for name in self.names}
+        results |= {"ERROR": error, "LINE": replayed.line}
         unusable = sorted(unread)
         for name, result in results.items():
             result[unusable] = {"ERROR": "", "LINE": 0}.get(name, np.nan)
-        self.errors += int(np.count_nonzero(error != "")) - int(found.zero_determinant.sum())
+        self.errors += int(np.count_nonzero(error != "")) - int(replayed.zero_determinant.sum())
         return results
 
 
@@ -261,14 +261,14 @@ def _texts(column: Any) -> list[Any]:
 def _complain(rows: Rows, columns: dict[str, list[Any]], unread: set[int]) -> set[int]:
     """Add what Applesoft cannot read to ``rows.bad``, the first of every row not yet ``unread``;
     return those rows."""
-    found: set[int] = set()
+    refused: set[int] = set()
     for name, column in columns.items():
         for index, text in enumerate(column):
             reason = _unreadable(text)
-            if reason is not None and index not in unread and index not in found:
-                found.add(index)
+            if reason is not None and index not in unread and index not in refused:
+                refused.add(index)
                 rows.bad.append(rows.cell(index, name, reason))
-    return found
+    return refused
 
 
 def _unreadable(text: Any) -> str | None:

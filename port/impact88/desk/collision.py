@@ -174,8 +174,8 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     if not form.whole or not form.ranges:
         raise UserError("there are no ranges to explore")
     inputs = read_inputs(form.entries, {}, source="the form")
-    found = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
-    return stamped("bounds", as_json(found))
+    answered = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
+    return stamped("bounds", as_json(answered))
 
 
 def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:

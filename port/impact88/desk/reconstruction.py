@@ -67,8 +67,8 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     except UserError as error:
         told["waiting"] = str(error)
         return told
-    told["object"] = stamped("reconstruct", {"solutions": [found for found, _ in solutions]})
-    told["solutions"] = [_told(given, found, printed) for found, printed in solutions]
+    told["object"] = stamped("reconstruct", {"solutions": [numbers for numbers, _ in solutions]})
+    told["solutions"] = [_told(given, numbers, printed) for numbers, printed in solutions]
     return told
 
 
@@ -80,12 +80,12 @@ def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dic
 
     units = system_of(named)
     if adjustment.needs_adjustment(known):
-        found = []
+        solutions = []
         for impact in adjustment.reconstruct(known):
             spread = reconstructedtable.uncertainty(impact, DRAWS)
             one = (impact, reconstructedtable.completed_values(impact, None), spread, units)
-            found.append((reconstructedtable.as_json(*one), reconstructedtable.as_text(*one)))
-        return found
+            solutions.append((reconstructedtable.as_json(*one), reconstructedtable.as_text(*one)))
+        return solutions
     numbers = {name: item.nominal for name, item in known.items()}
     tables = []
     for solution in unknowns.solve_for(numbers):
@@ -99,34 +99,34 @@ def _read(name: str, text: str) -> Uncertain:
     return uncertain.read(text, name)
 
 
-def _told(given: Entries, found: Mapping[str, Any], printed: str) -> dict[str, Any]:
+def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, Any]:
     from ..units import system_of
 
     system = system_of(given.units)
-    rows = [_row(name, value, found, system) for name, value in found["values"].items()]
+    rows = [_row(name, value, values, system) for name, value in values["values"].items()]
     named = (_DEVIATION, "5 %", "95 %", _LOWER, _UPPER, _AMPLIFIED)
     return {
         "printed": printed,
         "rows": rows,
         "columns": [name for name in named if any(row["columns"].get(name) for row in rows)],
         "adjusted": [
-            _adjusted(one, system) for one in found.get("adjusted", ()) if found["redundancy"]
+            _adjusted(one, system) for one in values.get("adjusted", ()) if values["redundancy"]
         ],
-        "warnings": found["warnings"],
-        "scene": None if given.units else _scene(given.texts, found["values"]),
+        "warnings": values["warnings"],
+        "scene": None if given.units else _scene(given.texts, values["values"]),
     }
 
 
 def _row(
-    name: str, value: float | None, found: Mapping[str, Any], system: System
+    name: str, value: float | None, values: Mapping[str, Any], system: System
 ) -> dict[str, Any]:
     # the object has uncertainties in base units
     factor = system.shown(quantity(name).unit, 1.0)
-    spread = found.get("uncertainty", {}).get(name, {})
+    spread = values.get("uncertainty", {}).get(name, {})
     quantiles = spread.get("quantiles", {})
     columns = {
         _DEVIATION: _times(factor, spread.get("first_order")),
-        _AMPLIFIED: found.get("amplification", {}).get(name),
+        _AMPLIFIED: values.get("amplification", {}).get(name),
     }
     bounds = {
         "5 %": _times(factor, quantiles.get("0.05")),
@@ -137,8 +137,8 @@ def _row(
     return {
         **_what(name, system),
         "text": _text(value, _DIGITS),
-        "known": name in found["known"],
-        "solved": name in found.get("solved_for", _SOUGHT) and name not in found["known"],
+        "known": name in values["known"],
+        "solved": name in values.get("solved_for", _SOUGHT) and name not in values["known"],
         "columns": {
             **{head: _text(one, _DIGITS_OF_A_SPREAD) for head, one in columns.items()},
             **{head: _text(one, _DIGITS) for head, one in bounds.items()},
@@ -176,15 +176,15 @@ def _adjusted(one: Mapping[str, Any], system: System) -> dict[str, Any]:
 
 def _scene(texts: Mapping[str, str], values: Mapping[str, float | None]) -> dict[str, str] | None:
     """The impact found as the texts of a scene, exact values as they were typed."""
-    found: dict[str, str] = {}
+    entries: dict[str, str] = {}
     for name in SCENE:
         value = values.get(name)
         if value is None or not math.isfinite(value):
             return None
         typed = texts.get(name, "").strip()
         exact = typed and uncertain.read(typed, name) == uncertain.fixed(value)
-        found[name] = typed if exact else number(value, _DIGITS_TO_GO_ON)
-    return found
+        entries[name] = typed if exact else number(value, _DIGITS_TO_GO_ON)
+    return entries
 
 
 def known_file(values: Mapping[str, str], units: str = "") -> str:

@@ -167,8 +167,12 @@ class Accumulator:
             return to_integer(self._last_integer) & 0xFF
         *base, x = self._last_power
         if base:
-            left = absolute(rounded(base[0]))
-            x = multiply(rounded(x), functions.logarithm(left)) if left[0] and x[0] else ZERO
+            magnitude = absolute(rounded(base[0]))
+            x = (
+                multiply(rounded(x), functions.logarithm(magnitude))
+                if magnitude[0] and x[0]
+                else ZERO
+            )
         return functions.exponential_integer(x) & 0xFF
 
 

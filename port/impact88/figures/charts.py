@@ -49,25 +49,27 @@ def _axis_label(name: str) -> str:
     return f"{symbol(what.symbol)}, {what.unit}"
 
 
-def _chosen(found: Bounds, outputs: Sequence[str] | None) -> list[str]:
-    wanted = list(outputs or found.bounds)
+def _chosen(result: Bounds, outputs: Sequence[str] | None) -> list[str]:
+    wanted = list(outputs or result.bounds)
     for name in wanted:
-        if name not in found.bounds:
-            raise UserError(f"{name!r} is not among the results; expected {' '.join(found.bounds)}")
+        if name not in result.bounds:
+            raise UserError(
+                f"{name!r} is not among the results; expected {' '.join(result.bounds)}"
+            )
     if len(wanted) > MOST_PANELS:
         raise UserError(f"{len(wanted)} results do not fit a page; expected {MOST_PANELS} at most")
     return wanted
 
 
-def histograms(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
+def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Figure:
     """The draws of up to twelve results, with quantiles, nominal value and bounds.
 
-    ``found`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks
+    ``result`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks
     and for more than fit.
     """
     import numpy as np
 
-    names = _chosen(found, outputs)
+    names = _chosen(result, outputs)
     columns = 1 if len(names) == 1 else 2
     rows = -(-len(names) // columns)
     with style():
@@ -77,9 +79,9 @@ def histograms(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
         for axes in panels[len(names) :]:
             axes.axis("off")
         for name, axes in zip(names, panels, strict=False):
-            draws = found.draws[name]
+            draws = result.draws[name]
             draws = draws[np.isfinite(draws)]
-            bound, spread = found.bounds[name], found.spreads[name]
+            bound, spread = result.bounds[name], result.spreads[name]
             axes.hist(
                 draws,
                 BINS,
@@ -123,23 +125,23 @@ def histograms(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
     return figure
 
 
-def tornado(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
+def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Figure:
     """How far each input alone takes each result, longest first; one panel a result.
 
     Bars end at the results of the input's limits, whiskers where the result goes in between.
-    Raises UserError for a result ``found`` lacks.
+    Raises UserError for a result it lacks.
     """
     from ..names import quantity
 
-    names = _chosen(found, outputs)
-    bars = min(len(found.inputs), MOST_BARS)
+    names = _chosen(result, outputs)
+    bars = min(len(result.inputs), MOST_BARS)
     with style():
         figure = new_figure(COLUMN, len(names) * (4.2 * bars + 14) + 7)
         figure.set_layout_engine("constrained", h_pad=0.04)
         panels = figure.subplots(len(names), 1, squeeze=False).ravel()
         for name, axes in zip(names, panels, strict=True):
-            bound = found.bounds[name]
-            drives = sorted(found.drives[name].items(), key=lambda entry: -entry[1].swing)
+            bound = result.bounds[name]
+            drives = sorted(result.drives[name].items(), key=lambda entry: -entry[1].swing)
             ticks = []
             for place, (source, drive) in enumerate(drives[:bars]):
                 ends = [(drive.at_low, "#ffffff", ""), (drive.at_high, BLUE, "")]
@@ -158,7 +160,7 @@ def tornado(found: Bounds, outputs: Sequence[str] | None = None) -> Figure:
                         linewidth=0.6,
                     )
                 axes.plot([drive.lowest, drive.highest], [place] * 2, color=BLACK, linewidth=0.8)
-                low, high = found.limits[source]
+                low, high = result.limits[source]
                 what = symbol(quantity(source).symbol)
                 ticks.append(f"{what}  {short(low)} … {short(high)}")
             axes.set_yticks(range(len(ticks)), ticks)
@@ -206,7 +208,9 @@ def friction_sweep(scene: Any) -> Figure:
     friction = np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP)
     results = solve({**values, "MU": friction}, ["LOSS", "DVA", "DVB", "STATUS"])
     beyond = (results["STATUS"] & np.uint16(Status.SLIDING_REVERSED)) != 0
-    here = {name: float(value) for name, value in solve(values, ["LOSS", "DVA", "DVB"]).items()}
+    own_results = {
+        name: float(value) for name, value in solve(values, ["LOSS", "DVA", "DVB"]).items()
+    }
     with style():
         figure = new_figure(COLUMN, 92)
         figure.set_layout_engine("constrained", h_pad=0.03)
@@ -220,9 +224,11 @@ def friction_sweep(scene: Any) -> Figure:
         lower.set_xlabel("friction coefficient as typed (MU)")
         lower.set_ylim(bottom=0)
         if friction[0] <= own <= friction[-1]:
-            upper.plot(own, here["LOSS"], "o", color=BLACK, markersize=4, zorder=6)
+            upper.plot(own, own_results["LOSS"], "o", color=BLACK, markersize=4, zorder=6)
             for name, colour in (("DVA", BLUE), ("DVB", VERMILION)):
-                lower.plot(own, speed * here[name], "o", color=colour, markersize=4, zorder=6)
+                lower.plot(
+                    own, speed * own_results[name], "o", color=colour, markersize=4, zorder=6
+                )
         for axes in (upper, lower):
             axes.set_xlim(friction[0], friction[-1])
             _shade(axes, friction, beyond)

@@ -149,17 +149,17 @@ def _body(
     labels: list[Label],
     shapes: Plan,
     vehicle: Vehicle,
-    at: Any,
+    project: Any,
     size: float,
     point: bool,
 ) -> None:
     """One body; of a point mass the impulse acts at its center, and nothing turns it."""
     items = drawing.items
     colour = COLOURS[vehicle.name]
-    outline = tuple(at(point) for point in vehicle.outline)
+    outline = tuple(project(point) for point in vehicle.outline)
     items.append(Path(outline, colour, 0.45, fill=TINTS[vehicle.name], role="body outline"))
-    center = at(vehicle.center)
-    contact = center if point else at((0.0, 0.0))
+    center = project(vehicle.center)
+    contact = center if point else project((0.0, 0.0))
     labels.insert(0, Label(center, _back(vehicle), vehicle.name, 10, colour, True))
     if not point:
         _angles(items, labels, shapes, vehicle, center, contact, size)

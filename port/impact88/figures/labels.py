@@ -127,12 +127,12 @@ def _beside(label: Label, angle: float, reach: float) -> Text:
     )
 
 
-def _leader_ends(at: Point, box: Box) -> tuple[Point, Point]:
+def _leader_ends(point: Point, box: Box) -> tuple[Point, Point]:
     """From just off the point named to the nearest place of the text's box."""
-    nearest = (min(max(at[0], box.left), box.right), min(max(at[1], box.bottom), box.top))
-    length = math.dist(at, nearest)
+    nearest = (min(max(point[0], box.left), box.right), min(max(point[1], box.bottom), box.top))
+    length = math.dist(point, nearest)
     share = min(0.8 / length, 1.0) if length else 1.0
-    start = (at[0] + share * (nearest[0] - at[0]), at[1] + share * (nearest[1] - at[1]))
+    start = (point[0] + share * (nearest[0] - point[0]), point[1] + share * (nearest[1] - point[1]))
     return start, nearest
 
 

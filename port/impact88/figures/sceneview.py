@@ -211,39 +211,63 @@ class _Field:
             high = plus(face[3], scaled(minus(face[2], face[3]), (step + 1) / 12))
             items.append(Path(ats([low, high]), COLOURS[vehicle.name], 0.2, role=role))
 
-    def _draw_plane(self, items: list[Path | Text], labels: list[Label], at: Any) -> None:
+    def _draw_plane(self, items: list[Path | Text], labels: list[Label], project: Any) -> None:
         half = scaled(self.shapes.tangent, self.plane_half())
-        plane = (at(scaled(half, -1.0)), at(half))
+        plane = (project(scaled(half, -1.0)), project(half))
         items.append(Path(plane, d.BLACK, 0.3, (2.4, 0.8, 0.4, 0.8), role="contact plane"))
         corner = scaled(half, 0.72)
         for unit, name in ((self.shapes.normal, "n"), (self.shapes.tangent, "t")):
             end = plus(corner, scaled(unit, 0.28 * self.size))
             if name == "t":
                 end = scaled(half, 1.0)
-            items += d.arrow(at(corner), at(end), d.BLACK, 0.35, head=1.8, role=f"{name} axis")
-            labels.append(Label(at(end), unit, name, 8, d.BLACK, False, f"{name} label"))
+            items += d.arrow(
+                project(corner), project(end), d.BLACK, 0.35, head=1.8, role=f"{name} axis"
+            )
+            labels.append(Label(project(end), unit, name, 8, d.BLACK, False, f"{name} label"))
 
     def _draw_motion(
-        self, items: list[Path | Text], labels: list[Label], vehicle: Vehicle, at: Any
+        self, items: list[Path | Text], labels: list[Label], vehicle: Vehicle, project: Any
     ) -> None:
         colour, name = COLOURS[vehicle.name], vehicle.name.lower()
-        center = at(vehicle.center)
+        center = project(vehicle.center)
         arrows = self.arrows(vehicle)
         if "before" in arrows:
             start, end = arrows["before"]
             items += d.arrow(
-                at(start), at(end), colour, 0.45, (1.3, 0.7), 2.2, f"{vehicle.name} before"
+                project(start),
+                project(end),
+                colour,
+                0.45,
+                (1.3, 0.7),
+                2.2,
+                f"{vehicle.name} before",
             )
             labels.append(
                 Label(
-                    at(start), minus(start, end), f"v_{name}", 8, colour, False, f"v_{name} label"
+                    project(start),
+                    minus(start, end),
+                    f"v_{name}",
+                    8,
+                    colour,
+                    False,
+                    f"v_{name} label",
                 )
             )
         if "after" in arrows:
             start, end = arrows["after"]
-            items += d.arrow(at(start), at(end), colour, 0.65, (), 2.5, f"{vehicle.name} after")
+            items += d.arrow(
+                project(start), project(end), colour, 0.65, (), 2.5, f"{vehicle.name} after"
+            )
             labels.append(
-                Label(at(end), minus(end, start), f"V_{name}", 8, colour, False, f"V_{name} label")
+                Label(
+                    project(end),
+                    minus(end, start),
+                    f"V_{name}",
+                    8,
+                    colour,
+                    False,
+                    f"V_{name} label",
+                )
             )
         least = 1e-4 * self.speed / self.size
         spins: list[tuple[str, float, float, tuple[float, ...]]] = [

@@ -67,11 +67,11 @@ class System:
         self.known, self.adjusted = dict(known), adjusted
         self.nominal = {name: item.nominal for name, item in known.items()}
         self.point = self.nominal.get("M", 6.0) == 4
-        here = Geometry.of(self.nominal)
-        self.mass = float(1 / here.inverse_mass)
+        geometry = Geometry.of(self.nominal)
+        self.mass = float(1 / geometry.inverse_mass)
         self.gyration = 1.0
         if not self.point:
-            self.gyration = float(np.sqrt(here.inverse_mass / here.inverse_spin_inertia))
+            self.gyration = float(np.sqrt(geometry.inverse_mass / geometry.inverse_spin_inertia))
         still = self._still()
         self.speed = self._typical_speed()
         loose = {n for n, item in known.items() if adjusted and item.varies}
@@ -98,7 +98,7 @@ class System:
         self.laws, self.exact = laws, exact
         self.conditions = (*laws, *exact)
         self.observations = tuple(n for n in known if n in loose and n not in still)
-        self.geometry = None if set(parameters) & set(GEOMETRY) else here
+        self.geometry = None if set(parameters) & set(GEOMETRY) else geometry
         self.linear = not adjusted and not any(
             n in _CURVED and _COURSE_OF.get(n) not in known for n in known
         )
@@ -140,16 +140,16 @@ class System:
     # -- residuals
 
     def state(
-        self, x: Array, data: Mapping[str, Array] | None = None, here: Geometry | None = None
+        self, x: Array, data: Mapping[str, Array] | None = None, geometry: Geometry | None = None
     ) -> State:
         """The impact with these variables; ``data`` replaces known values (when not adjusted) and
-        ``here`` is the geometry they make, where it has been worked out before."""
+        ``geometry`` is what they make, where it has been worked out before."""
         moved = {
             n: row * scale for n, row, scale in zip(self.variables, x, self.scales, strict=True)
         }
-        if here is None and not (data and set(data) & set(GEOMETRY)):
-            here = self.geometry
-        return State({**self.constants, **(data or {}), **moved}, here, self.from_after)
+        if geometry is None and not (data and set(data) & set(GEOMETRY)):
+            geometry = self.geometry
+        return State({**self.constants, **(data or {}), **moved}, geometry, self.from_after)
 
     def left(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
         """What conditions, then observations leave over, scaled: rows, one column an impact."""
@@ -187,8 +187,8 @@ class System:
         size = len(self.variables)
         if x.shape[1] == 1 and not data:
             # all derivatives of the one impact at once, a column each
-            left = rows(self.state(x + 1j * _TINY * np.eye(size)))
-            slopes = np.imag(np.broadcast_to(left, (len(left), size))) / _TINY
+            residuals = rows(self.state(x + 1j * _TINY * np.eye(size)))
+            slopes = np.imag(np.broadcast_to(residuals, (len(residuals), size))) / _TINY
             return np.asarray(slopes, np.float64)[:, :, None]
         columns = []
         for i in range(size):
@@ -216,37 +216,37 @@ class System:
     def solved(self, x: Floats) -> tuple[Floats, float]:
         """The adjusted impact near ``x``, and what its conditions leave over (largest)."""
         count = len(self.conditions)
-        left = self.left(self.state(x))
+        residual = self.left(self.state(x))
         for _ in range(_STEPS):
-            step = _step(left[:, 0], self.jacobian(x, self.left)[:, :, 0], count)
+            step = _step(residual[:, 0], self.jacobian(x, self.left)[:, :, 0], count)
             size = np.abs(step).max(initial=0.0)
             if not np.isfinite(size):
                 return x, np.inf
             step *= min(1.0, 2.0 / size) if size else 1.0
-            before = np.abs(left[:count]).max(initial=0.0)
+            before = np.abs(residual[:count]).max(initial=0.0)
             for _ in range(12):
                 tried = x + step[:, None]
                 after = self.left(self.state(tried))
                 if not np.abs(after[:count]).max(initial=0.0) > max(1.5 * before, 1e-9):
                     break
                 step = step / 2
-            x, left = tried, after
+            x, residual = tried, after
             if size < 1e-14 * (1 + np.abs(x).max(initial=0.0)):
                 break
-        return x, float(np.abs(left[:count]).max(initial=0.0))
+        return x, float(np.abs(residual[:count]).max(initial=0.0))
 
 
 _VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES} - {*_SPINS}
 _COURSE_OF = {speed: course for course, speed in COURSES.items()}
 
 
-def _step(left: Floats, jacobian: Floats, count: int) -> Floats:
+def _step(residual: Floats, jacobian: Floats, count: int) -> Floats:
     """The Gauss-Newton step that meets the first ``count`` rows and brings the others nearest."""
     inverse, free = pseudo_inverse(jacobian[:count])
-    step: Floats = -inverse @ left[:count]
-    if len(left) > count and free.shape[1]:
+    step: Floats = -inverse @ residual[:count]
+    if len(residual) > count and free.shape[1]:
         narrowed, _ = pseudo_inverse(jacobian[count:] @ free)
-        step = step - free @ (narrowed @ (left[count:] + jacobian[count:] @ step))
+        step = step - free @ (narrowed @ (residual[count:] + jacobian[count:] @ step))
     return step
 
 
@@ -416,11 +416,11 @@ def reconstruct(known: Mapping[str, Uncertain | float]) -> list[Reconstruction]:
     failure: UserError | None = None
     for reading in readings:
         try:
-            found = _solutions(reading)
+            answers = _solutions(reading)
         except UserError as error:
             failure = error
             continue
-        solutions += [s for s in found if mu is None or _agrees(s, mu.nominal)]
+        solutions += [s for s in answers if mu is None or _agrees(s, mu.nominal)]
     if not solutions:
         raise failure or UnsolvableError(
             "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
@@ -483,31 +483,31 @@ def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
     curved = any(name in known for name in _CURVED if _COURSE_OF.get(name) not in known)
     starts = [plain.solved(plain.start(rng, 0.3)) for _ in range(_STARTS if curved else 1)]
     assumed = False
-    if all(left > _HOLDS for _, left in starts):
+    if all(residual > _HOLDS for _, residual in starts):
         known, assumed = _with_tolerances(known)
     system = System(known, adjusted=True)
-    found: list[Reconstruction] = []
+    solutions: list[Reconstruction] = []
     for x, _ in starts:
         begin = system.start(rng, 0.0)
         state = plain.state(x)
         for i, name in enumerate(system.variables):
             if name in VELOCITIES or name in IMPULSES:
                 begin[i] = np.ravel(state[name])[0] / system.scales[i]
-        x, left = system.solved(begin)
-        if left > _HOLDS:
+        x, residual = system.solved(begin)
+        if residual > _HOLDS:
             continue
-        solution = _described(system, x, left, assumed)
-        if not any(_same(solution, other) for other in found):
-            found.append(solution)
+        solution = _described(system, x, residual, assumed)
+        if not any(_same(solution, other) for other in solutions):
+            solutions.append(solution)
         if solution.undetermined:
             break  # from elsewhere the undetermined would only come out otherwise
-    if not found:
+    if not solutions:
         raise UnsolvableError(
             "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
             "what is measured"
         )
-    least = min(s.squares for s in found)
-    return [s for s in found if s.squares <= max(4 * least, 1e-9)]
+    least = min(s.squares for s in solutions)
+    return [s for s in solutions if s.squares <= max(4 * least, 1e-9)]
 
 
 def _with_tolerances(known: Mapping[str, Uncertain]) -> tuple[Mapping[str, Uncertain], bool]:
@@ -529,7 +529,7 @@ def _same(one: Reconstruction, other: Reconstruction) -> bool:
     return bool(np.abs(one.x - other.x).max(initial=0.0) < 1e-6)
 
 
-def _described(system: System, x: Floats, left: float, assumed: bool) -> Reconstruction:
+def _described(system: System, x: Floats, residual: float, assumed: bool) -> Reconstruction:
     state = system.state(x)
     rest = system.left(state)[:, 0]
     rows = system.jacobian(x, system.left)[:, :, 0]
@@ -571,6 +571,6 @@ def _described(system: System, x: Floats, left: float, assumed: bool) -> Reconst
         adjusted=tuple(adjusted),
         redundancy=len(rows) - rank,
         squares=float(rest[count:] @ rest[count:]),
-        left_over=left,
+        left_over=residual,
         assumed=assumed,
     )

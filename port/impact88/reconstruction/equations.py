@@ -68,10 +68,10 @@ class Equations:
         """``given``: 1-d arrays of one length by name; ``point``: point masses (M = 4), whose spins
         and EM play no part; ``pivot``: no tangential relative velocity after the impact."""
         self.given, self.point, self.pivot = given, point, pivot
-        self.geometry = here = Geometry.of(given)
+        self.geometry = geometry = Geometry.of(given)
         self.count = len(given["MA"])
-        self.reduced_mass = 1 / here.inverse_mass
-        self.gyration = np.sqrt(here.inverse_mass / here.inverse_spin_inertia)
+        self.reduced_mass = 1 / geometry.inverse_mass
+        self.gyration = np.sqrt(geometry.inverse_mass / geometry.inverse_spin_inertia)
         self.impulses = 2 if point else 3
         pairs = [pair for pair in zip(INITIAL, FINAL, strict=True) if not self._leaves_out(pair[0])]
         self.known = [n for n in (*INITIAL, *FINAL) if n in given and not self._leaves_out(n)]

@@ -45,29 +45,29 @@ def initial_velocities(columns: Mapping[str, Any]) -> dict[str, Array]:
     Where there is no solution (e = 0, e_m = 0, the pivot's -10, singular friction) the values are
     NaN or infinite. Point masses (M = 4) keep their spins and need no e_m.
     """
-    here = Geometry.of(columns)
+    geometry = Geometry.of(columns)
     e, em, mu = (np.asarray(columns[name], np.float64) for name in ("E", "EM", "MUP"))
     final = [np.asarray(columns[name], np.float64) for name in FINAL_STATE]
     with np.errstate(all="ignore"):
         mu = np.where(mu == PIVOT, np.nan, mu)
-        normal, _, spin = here.relative(final)
-        a, b = here.inverse_ia, here.inverse_ib
-        moment = np.where(here.point, 0.0, (1 - em) / em * spin / here.inverse_spin_inertia)
-        turned = (here.an * a - here.bn * b) * moment
-        pn = ((1 + 1 / e) * normal - turned) / _along_impulse(here, mu)
+        normal, _, spin = geometry.relative(final)
+        a, b = geometry.inverse_ia, geometry.inverse_ib
+        moment = np.where(geometry.point, 0.0, (1 - em) / em * spin / geometry.inverse_spin_inertia)
+        turned = (geometry.an * a - geometry.bn * b) * moment
+        pn = ((1 + 1 / e) * normal - turned) / _along_impulse(geometry, mu)
         pt = mu * pn
-        changes = here.changes(pn, pt, moment)
+        changes = geometry.changes(pn, pt, moment)
         initial = [after - change for after, change in zip(final, changes, strict=True)]
     names = (*VELOCITIES, "PN", "PT", "PM")
     return dict(zip(names, (*initial, pn, pt, moment), strict=True))
 
 
-def _along_impulse(here: Geometry, mu: Array) -> Array:
+def _along_impulse(geometry: Geometry, mu: Array) -> Array:
     """R + S_nn + μ S_nt: what a unit of Pn, with the friction that goes with it, changes of Gn."""
-    a, b = here.inverse_ia, here.inverse_ib
-    snn = here.an * here.an * a + here.bn * here.bn * b
-    snt = here.an * here.at * a + here.bn * here.bt * b
-    result: Array = here.inverse_mass + snn + mu * snt
+    a, b = geometry.inverse_ia, geometry.inverse_ib
+    snn = geometry.an * geometry.an * a + geometry.bn * geometry.bn * b
+    snt = geometry.an * geometry.at * a + geometry.bn * geometry.bt * b
+    result: Array = geometry.inverse_mass + snn + mu * snt
     return result
 
 
@@ -108,14 +108,14 @@ def reconstruction_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> 
     }
     values["SA"] = np.hypot(values["UX"], values["UY"])
     values["SB"] = np.hypot(values["VX"], values["VY"])
-    here = Geometry.of(values)
+    geometry = Geometry.of(values)
     values |= velocity_changes(values)
     if {"KI", "KF", "LOSS", "STATUS"}.intersection(outputs):
-        values |= energies(here, values)
+        values |= energies(geometry, values)
     if "MUC" in outputs:
         # the critical friction depends on MU's sign as little as on MU
         scene = {name: values[name] for name in SCENE if name in values} | {"MU": 0.0}
         values["MUC"] = forward_model(scene, ["MUC"])["MUC"]
     if "STATUS" in outputs:
-        values["STATUS"] = status(here, values)
+        values["STATUS"] = status(geometry, values)
     return {name: values[name] for name in outputs}

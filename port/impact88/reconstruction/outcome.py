@@ -40,11 +40,11 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     headings = [(v, f"T{v}") for v in "AB" if f"T{v}" in values]
     whole = with_point_masses(values)
     given = {name: np.asarray(value, np.float64) for name, value in whole.items()}
-    here = Geometry.of(given)
-    if here.point.all():
+    geometry = Geometry.of(given)
+    if geometry.point.all():
         given = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **given}
         given = {"WAF": given["WA"], "WBF": given["WB"], **given}
-    result = here.contact_point()
+    result = geometry.contact_point()
     if "PN" in given and "PT" in given:
         pn, pt = given["PN"], given["PT"]
         for vehicle, theta in headings:
@@ -52,9 +52,9 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
                 vehicle, given[theta], given["GA"], pn, pt
             )
         result["P"] = np.hypot(pn, pt)
-    result |= _contact_velocities(here, given)
+    result |= _contact_velocities(geometry, given)
     result |= velocity_changes(given)
-    result |= energies(here, given)
+    result |= energies(geometry, given)
     for course_name, speed in COURSES.items():
         if all(name in given for name in SPEEDS[speed]):
             x, y = (given[name] for name in SPEEDS[speed])
@@ -69,7 +69,7 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
         scene = {name: given[name] for name in SCENE if name in given}
         solved = solve(scene, _FORWARD)
         result["MUC"], condition = solved["MUC"], solved["COND"]
-    result["STATUS"] = status(here, given | result, condition)
+    result["STATUS"] = status(geometry, given | result, condition)
     shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
     return {name: np.broadcast_to(value, shape) for name, value in result.items()}
 
@@ -83,14 +83,17 @@ def moment_ratio(em: Any) -> Any:
         return -em / (1 - 2 * em)
 
 
-def _contact_velocities(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
+def _contact_velocities(geometry: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
     """Lines 340, 700 and 710."""
     velocities = {}
     for suffix, names in (("", VELOCITIES), ("F", FINAL_STATE)):
-        arms = ((here.d3, -here.d4, names[:3], "A"), (-here.d1, here.d2, names[3:], "B"))
+        arms = (
+            (geometry.d3, -geometry.d4, names[:3], "A"),
+            (-geometry.d1, geometry.d2, names[3:], "B"),
+        )
         for arm_x, arm_y, (x, y, spin), vehicle in arms:
             if all(name in given for name in (x, y, spin)):
-                turning = np.where(here.point, 0.0, given[spin])
+                turning = np.where(geometry.point, 0.0, given[spin])
                 velocities[f"X{vehicle}{suffix}"] = given[x] + arm_x * turning
                 velocities[f"Y{vehicle}{suffix}"] = given[y] + arm_y * turning
     return velocities
@@ -107,7 +110,7 @@ def velocity_changes(given: Mapping[str, Array]) -> dict[str, Array]:
     return changes
 
 
-def energies(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
+def energies(geometry: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
     """KI and KF where the velocities they need are given, and LOSS where both are. Point masses'
     spins and barriers (infinite, at rest) add nothing."""
     inertias = [np.where(np.isinf(given[name]), 0.0, given[name]) for name in _INERTIAS]
@@ -115,7 +118,7 @@ def energies(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
     for name, velocities in (("KI", VELOCITIES), ("KF", FINAL_STATE)):
         if all(velocity in given for velocity in velocities):
             six = [given[velocity] for velocity in velocities]
-            six[2], six[5] = (np.where(here.point, 0.0, six[i]) for i in (2, 5))
+            six[2], six[5] = (np.where(geometry.point, 0.0, six[i]) for i in (2, 5))
             result[name] = kinetic_energy(inertias, six)
     if len(result) == 2:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -123,7 +126,7 @@ def energies(here: Geometry, given: Mapping[str, Array]) -> dict[str, Array]:
     return result
 
 
-def status(here: Geometry, given: Mapping[str, Array], condition: Any = 1.0) -> Array:
+def status(geometry: Geometry, given: Mapping[str, Array], condition: Any = 1.0) -> Array:
     """STATUS of an impact known from both sides; what cannot be decided for lack of a value is not
     remarked. ``given``: velocities, coefficients, PN PT, KI KF as far as they are known;
     ``condition``: COND, where the forward equations are at hand."""
@@ -136,8 +139,8 @@ def status(here: Geometry, given: Mapping[str, Array], condition: Any = 1.0) -> 
     before = [value(name) for name in VELOCITIES]
     after = [value(name) for name in FINAL_STATE]
     with np.errstate(invalid="ignore"):
-        gn, gt, _ = here.relative(before)
-        _, after_gt, _ = here.relative(after)
+        gn, gt, _ = geometry.relative(before)
+        _, after_gt, _ = geometry.relative(after)
         pivot = value("MUP") == PIVOT
         operands = (
             gn,
@@ -145,15 +148,15 @@ def status(here: Geometry, given: Mapping[str, Array], condition: Any = 1.0) -> 
             np.where(pivot, 0.0, after_gt),
             value("PN"),
             value("PT"),
-            here.at,
-            here.bt,
-            np.where(here.point, 0.0, given["DA"]),
-            np.where(here.point, 0.0, given["DB"]),
+            geometry.at,
+            geometry.bt,
+            np.where(geometry.point, 0.0, given["DA"]),
+            np.where(geometry.point, 0.0, given["DB"]),
             # energies that are not known are no numbers that are not finite
             2 * (value("KI") - value("KF")) if "KF" in given and "KI" in given else np.zeros(()),
             given.get("KI", np.ones(())),
             value("E"),
-            np.where(here.point, 0.0, value("EM")),
+            np.where(geometry.point, 0.0, value("EM")),
             np.where(pivot, 0.0, value("MUP")),
             np.asarray(condition),
             sum((given[name] for name in known), np.zeros(())),

@@ -65,9 +65,9 @@ def written(values: Mapping[str, float], units: System) -> dict[str, float]:
 
 def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
     """What a reader must know about a solution of a single scene, in sentences."""
-    found = []
+    lines = []
     if solution.contradictory:
-        found.append(
+        lines.append(
             "the known values contradict one another: the solution fits them by least squares, "
             f"root-mean-square mismatch {number(solution.mismatch, 3)} [length/time]"
         )
@@ -75,8 +75,8 @@ def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
     bad = {name: value for name, value in worst.items() if not value < BADLY_CONDITIONED}
     if bad:
         names = ", ".join(f"{name} {number(value, 3)} times" for name, value in bad.items())
-        found.append(f"badly conditioned: errors of the known velocities are amplified ({names})")
-    return found + sentences(int(values.get("STATUS", 0)))
+        lines.append(f"badly conditioned: errors of the known velocities are amplified ({names})")
+    return lines + sentences(int(values.get("STATUS", 0)))
 
 
 def as_text(

@@ -38,11 +38,11 @@ class State:
     def __init__(
         self,
         values: Mapping[str, Any],
-        here: Geometry | None = None,
+        geometry: Geometry | None = None,
         from_after: Collection[str] = (),
     ) -> None:
         self.values = values
-        self.here = Geometry.of(values) if here is None else here
+        self.here = Geometry.of(values) if geometry is None else geometry
         self.from_after = from_after
 
     @cached_property

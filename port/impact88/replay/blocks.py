@@ -65,10 +65,10 @@ def _blocks(
     for M in (6, 4):
         for is_pivot in (False, True):
             kind = listing.Kind(M, is_pivot)
-            here = known & (six == (M == 6)) & (pivot == is_pivot)
-            if here.all():
-                return [(slice(at, at + block), kind) for at in range(0, here.size, block)]
-            rows = np.flatnonzero(here)
+            kept = known & (six == (M == 6)) & (pivot == is_pivot)
+            if kept.all():
+                return [(slice(at, at + block), kind) for at in range(0, kept.size, block)]
+            rows = np.flatnonzero(kept)
             result += [(rows[at : at + block], kind) for at in range(0, rows.size, block)]
     return result
 

@@ -80,9 +80,9 @@ def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], firs
     unit = Unit(len(every))
     unit.at_every(np.repeat([key(*PLACES[name]) for name in names], sizes))
 
-    def where(at: int) -> str:
-        column = int(np.searchsorted(starts, at, side="right")) - 1
-        row = f", row {at - starts[column] + 1}" if sizes[column] > 1 else ""
+    def where(index: int) -> str:
+        column = int(np.searchsorted(starts, index, side="right")) - 1
+        row = f", row {index - starts[column] + 1}" if sizes[column] > 1 else ""
         return names[column] + row
 
     x = read(every, unit, where).rounded()

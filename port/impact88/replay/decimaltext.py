@@ -79,11 +79,11 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
     steps = _signed_bytes(exponent - numerals.decimals)
     for step, count in ((times_ten, steps), (over_ten, -steps)):
         rows = np.flatnonzero(count > 0)
-        done = 0
+        finished = 0
         while rows.size:
             _treat(x, rows, step)
-            done += 1
-            rows = rows[count[rows] > done]
+            finished += 1
+            rows = rows[count[rows] > finished]
     np.negative(x.v, out=x.v, where=numerals.negative)
     return x
 
@@ -111,13 +111,13 @@ def _character_places(texts: Sequence[str], where: Callable[[int], str]) -> Iter
     if ends.size != len(texts):
         row = next(i for i, text in enumerate(texts) if "\n" in text)
         raise _no_number(texts, row, where)
-    at = np.empty_like(ends)
-    at[0] = 0
-    np.add(ends[:-1], 1, out=at[1:])
-    for _ in range(int((ends - at).max(initial=0))):
-        yield data[at]
-        at += 1
-        np.minimum(at, ends, out=at)
+    places = np.empty_like(ends)
+    places[0] = 0
+    np.add(ends[:-1], 1, out=places[1:])
+    for _ in range(int((ends - places).max(initial=0))):
+        yield data[places]
+        places += 1
+        np.minimum(places, ends, out=places)
 
 
 class _Numerals:
@@ -318,13 +318,13 @@ def _lay_out(number: Ints, d: Ints, negative: Bools) -> Strings:
             out[place + 2, rows] = np.where(last[rows] >= place, digits[place, rows], _NOTHING)
     rows = np.flatnonzero(~plain)
     if rows.size:
-        at = end[rows]
+        places = end[rows]
         exponent = d[rows] + 8
         size = np.abs(exponent)
-        out[at, rows] = ord("E")
-        out[at + 1, rows] = np.where(exponent < 0, ord("-"), ord("+"))
-        out[at + 2, rows] = ord("0") + size // 10
-        out[at + 3, rows] = ord("0") + size % 10
+        out[places, rows] = ord("E")
+        out[places + 1, rows] = np.where(exponent < 0, ord("-"), ord("+"))
+        out[places + 2, rows] = ord("0") + size // 10
+        out[places + 3, rows] = ord("0") + size % 10
     zero = number == 0
     if zero.any():
         out[:, zero] = 0

@@ -71,11 +71,11 @@ def solve(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool = Fa
         unit.at(1040, order=stamp(570, 100 * J + 2))
         if low < 2.0**-60:  # too low a bound to rule out underflow: look again
             low, high = _bounds(block[1:, J:], unit)
-        here = np.ix_(rows, columns)
+        corner = np.ix_(rows, columns)
         AR = Reals(block[rows, J, np.newaxis], unit, low, high, True)
-        others = (Reals(block[here], unit, low, high, True) - pivot_row * AR).rounded()
-        block[here] = others.v
-        filled[here] = True
+        others = (Reals(block[corner], unit, low, high, True) - pivot_row * AR).rounded()
+        block[corner] = others.v
+        filled[corner] = True
         low, high = min(low, others.low), max(high, others.high)
     if matrix:
         for place in places:
@@ -111,17 +111,17 @@ def _exchange(block: Floats, filled: Bools, J: int, RX: Ints) -> None:
     ``filled`` tells which elements may be other than zero: after a row is exchanged in some scenes
     only, what either row could hold.
     """
-    found = np.bincount(RX, minlength=1)
-    for row in np.flatnonzero(found).tolist():
+    counts = np.bincount(RX, minlength=1)
+    for row in np.flatnonzero(counts).tolist():
         if row == J:
             continue
-        if found[row] == RX.size:
+        if counts[row] == RX.size:
             block[[J, row], J:] = block[[row, J], J:]
             filled[[J, row], J:] = filled[[row, J], J:]
             continue
-        here = row == RX
+        chosen = row == RX
         mine, theirs = block[J, J:], block[row, J:]
-        exchanged = np.where(here, theirs, mine)
-        block[row, J:] = np.where(here, mine, theirs)
+        exchanged = np.where(chosen, theirs, mine)
+        block[row, J:] = np.where(chosen, mine, theirs)
         block[J, J:] = exchanged
         filled[[J, row], J:] = filled[J, J:] | filled[row, J:]

@@ -97,10 +97,10 @@ def each(
             results[i] = operation(*(column[i] for column in operands))
         elif rows:
             unit.at_each([places[i] for i in rows])
-            done = operation(*(stack([column[i] for i in rows], unit) for column in operands))
+            result = operation(*(stack([column[i] for i in rows], unit) for column in operands))
             for row, i in enumerate(rows):
                 # a lone number, where a known zero decides: every row's
-                results[i] = done[row] if done.v.ndim > 1 else done
+                results[i] = result[row] if result.v.ndim > 1 else result
     return results
 
 
@@ -116,22 +116,22 @@ def _some(
 def times(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Products, leaving out the rows in which a factor is known to be zero."""
     rows = [i for i in range(len(left)) if left[i].high and right[i].high]
-    done = _some(unit, where, Reals.__mul__, rows, left, right)
-    return [done.get(i) or zero(unit) for i in range(len(left))]
+    computed = _some(unit, where, Reals.__mul__, rows, left, right)
+    return [computed.get(i) or zero(unit) for i in range(len(left))]
 
 
 def plus(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Sums, leaving out the rows in which a term is known to be zero."""
     rows = [i for i in range(len(left)) if left[i].high and right[i].high]
-    done = _some(unit, where, Reals.__add__, rows, left, right)
-    return _rest_one_by_one(unit, where, Reals.__add__, done, left, right)
+    computed = _some(unit, where, Reals.__add__, rows, left, right)
+    return _rest_one_by_one(unit, where, Reals.__add__, computed, left, right)
 
 
 def over(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Quotients. Known zeros are divided one by one, to find the divisors that are zero."""
     rows = [i for i in range(len(left)) if left[i].high]
-    done = _some(unit, where, Reals.__truediv__, rows, left, right)
-    return _rest_one_by_one(unit, where, Reals.__truediv__, done, left, right)
+    computed = _some(unit, where, Reals.__truediv__, rows, left, right)
+    return _rest_one_by_one(unit, where, Reals.__truediv__, computed, left, right)
 
 
 def _rest_one_by_one(
@@ -154,8 +154,8 @@ def _rest_one_by_one(
 def squares(unit: Unit, where: Places, values: Rows) -> list[Reals]:
     """x ^ 2 of each, which is EXP (2 * LOG (x)); 0 ^ 2 is 0."""
     rows = [i for i in range(len(values)) if values[i].high]
-    done = _some(unit, where, _square, rows, values)
-    return [done.get(i) or zero(unit) for i in range(len(values))]
+    computed = _some(unit, where, _square, rows, values)
+    return [computed.get(i) or zero(unit) for i in range(len(values))]
 
 
 def _square(x: Reals) -> Reals:

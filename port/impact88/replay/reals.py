@@ -442,7 +442,7 @@ def _defects(right: Reals) -> Ints | None:
         return right._defects  # type: ignore[return-value]
     bits = right.bits
     (_, i0), *_ = right._unit().buffers(bits.shape)
-    found = []
+    defects = []
     # a stored number's byte 0 is zero
     for zeros, below in ((_BYTES_2_3, _BYTES_0_1), (_BYTES_1_2, _BYTE_0))[: 1 + (not right.stored)]:
         np.bitwise_and(bits, zeros, out=i0)
@@ -450,8 +450,8 @@ def _defects(right: Reals) -> Ints | None:
             at = np.flatnonzero(i0 == 0)
             at = at[bits.reshape(-1)[at] & below != 0]
             if at.size:
-                found.append(at)
-    right._defects = np.concatenate(found) if found else None
+                defects.append(at)
+    right._defects = np.concatenate(defects) if defects else None
     return right._defects
 
 

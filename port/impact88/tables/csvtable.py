@@ -210,8 +210,8 @@ class _CsvWriter:
     def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         refuse_late(rows, self._dropped, "a CSV table")
         kept = (_fields(one_per_row(rows, name)) for name in self._kept)
-        found = (shortest(results[name]) for name in self._results)
-        self._rows.writerows(zip(*kept, *found, strict=True))
+        columns = (shortest(results[name]) for name in self._results)
+        self._rows.writerows(zip(*kept, *columns, strict=True))
 
 
 def _fields(column: Column) -> Sequence[Any]:

@@ -105,8 +105,8 @@ def open_text(path: str, encoding: str | None = None) -> Iterator[TextFile]:
             start = binary.peek(3)[:3]
         except (EOFError, zlib.error, OSError) as error:
             raise UserError(f"cannot be unpacked: {error}", called(path)) from None
-        found = encoding or encoding_of(start)
-        yield TextFile(binary, "utf-8-sig" if found == "utf-8" else found, source)
+        name = encoding or encoding_of(start)
+        yield TextFile(binary, "utf-8-sig" if name == "utf-8" else name, source)
 
 
 def _check_encoding(name: str) -> None:

@@ -109,12 +109,12 @@ def scene_names(names: Sequence[str]) -> list[str]:
     """The names of a table's columns: those in small letters, or with a unit behind them
     (``Mu [1]``), are the scene's names where the table has no such column otherwise."""
     known = set(names)
-    found = []
+    matched = []
     for name in names:
         bare = _UNIT.sub("", name).strip().upper()
         taken = name in SCENE or bare not in SCENE or bare in known
-        found.append(name if taken else bare)
-    return found
+        matched.append(name if taken else bare)
+    return matched
 
 
 def filled(column: Column, text: str) -> Column:

@@ -160,7 +160,7 @@ def bounds(
     correlated = correlation_root(pairs, box.inputs)
     nominal = box.nominal()
     sweeps = box.sweeps()
-    found = box.extremes(np.random.default_rng([seed, 0]))
+    searched = box.extremes(np.random.default_rng([seed, 0]))
     rng = np.random.default_rng([seed, 1])
     draws, ranked, flags = _monte_carlo(box, rng, samples, correlated, progress)
     usable = np.all([np.isfinite(column) for column in draws.values()], axis=0)
@@ -176,14 +176,14 @@ def bounds(
         bounds={
             name: Bound(
                 nominal=nominal[name],
-                lower=float(found.lower[place]),
-                upper=float(found.upper[place]),
-                at_lower=box.inputs_at(found.at_lower[place]),
-                at_upper=box.inputs_at(found.at_upper[place]),
-                corner_lower=float(found.corner_lower[place]),
-                corner_upper=float(found.corner_upper[place]),
-                lower_warnings=box.warnings_at(found.at_lower[place]),
-                upper_warnings=box.warnings_at(found.at_upper[place]),
+                lower=float(searched.lower[place]),
+                upper=float(searched.upper[place]),
+                at_lower=box.inputs_at(searched.at_lower[place]),
+                at_upper=box.inputs_at(searched.at_upper[place]),
+                corner_lower=float(searched.corner_lower[place]),
+                corner_upper=float(searched.corner_upper[place]),
+                lower_warnings=box.warnings_at(searched.at_lower[place]),
+                upper_warnings=box.warnings_at(searched.at_upper[place]),
             )
             for place, name in enumerate(box.outputs)
         },
@@ -204,7 +204,7 @@ def bounds(
         samples=samples,
         seed=seed,
         sigmas=sigmas,
-        evaluations=found.evaluations,
+        evaluations=searched.evaluations,
         corners_in_full=len(box.inputs) <= CORNERS_IN_FULL,
         correlations=pairs,
         draws=draws if keep_draws else {},
@@ -319,8 +319,8 @@ class _Box:
             if slip.lower[0] <= 0 if sign > 0 else slip.upper[0] > 0:
                 apart = 0.0 if sign > 0 else SLIP_APART * float(slip.upper[0] - slip.lower[0])
                 pieces.append(extremes(self.piece(sign, apart), count, rng, ends))
-        found = merged(pieces)
-        return replace(found, evaluations=found.evaluations + slip.evaluations)
+        searched = merged(pieces)
+        return replace(searched, evaluations=searched.evaluations + slip.evaluations)
 
     def piece(self, sign: float | None, apart: float = 0.0) -> Piece:
         """The outputs with MU's sign kept (+1) or changed (-1) throughout, and where line 400 does
@@ -331,11 +331,11 @@ class _Box:
             columns = self.scenes(self.columns(points))
             with np.errstate(all="ignore"):
                 solved, denominators = self.divided(columns, names, sign)
-            found = [np.array(solved[name]) for name in self.outputs]
+            results = [np.array(solved[name]) for name in self.outputs]
             if self.excluded:
                 left_out = self.left_out(solved)
-                found = [np.where(left_out, np.nan, column) for column in found]
-            return _stacked([*found, *denominators], len(points))
+                results = [np.where(left_out, np.nan, column) for column in results]
+            return _stacked([*results, *denominators], len(points))
 
         def margin(points: Array) -> Array:
             return -(sign or 1.0) * self.slip(points) - apart
@@ -445,8 +445,8 @@ def _monte_carlo(
     ranked = {name: np.empty(min(samples, RANKED)) for name in box.inputs}
     flags = np.zeros(samples, np.int64)
     for first in range(0, samples, CHUNK):
-        here = slice(first, min(first + CHUNK, samples))
-        count = here.stop - first
+        chunk = slice(first, min(first + CHUNK, samples))
+        count = chunk.stop - first
         columns = {
             name: item.draws(rng, count) for name, item in box.inputs.items() if name not in names
         }
@@ -457,11 +457,11 @@ def _monte_carlo(
         solved = box.solved(columns, (*box.outputs, "STATUS"))
         left_out = box.left_out(solved) if box.excluded else False
         for name in box.outputs:
-            draws[name][here] = np.where(left_out, np.nan, solved[name])
-        flags[here] = solved["STATUS"]
+            draws[name][chunk] = np.where(left_out, np.nan, solved[name])
+        flags[chunk] = solved["STATUS"]
         if first < RANKED:
             for name, column in ranked.items():
-                part = column[here]
+                part = column[chunk]
                 part[:] = columns[name][: len(part)]
         progress(count)
     return draws, ranked, flags

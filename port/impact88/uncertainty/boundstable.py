@@ -19,29 +19,29 @@ def _plain(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def as_json(found: Bounds) -> dict[str, Any]:
+def as_json(bounds: Bounds) -> dict[str, Any]:
     """Everything found, as JSON takes it; a value that does not exist is null."""
     return {
-        "problem": found.problem,
-        "samples": found.samples,
-        "seed": found.seed,
-        "sigmas": found.sigmas,
-        "evaluations": found.evaluations,
-        "all_corners": found.corners_in_full,
-        "unusable": found.unusable,
-        "warnings": found.warnings,
+        "problem": bounds.problem,
+        "samples": bounds.samples,
+        "seed": bounds.seed,
+        "sigmas": bounds.sigmas,
+        "evaluations": bounds.evaluations,
+        "all_corners": bounds.corners_in_full,
+        "unusable": bounds.unusable,
+        "warnings": bounds.warnings,
         "correlations": [
             {"names": list(pair), "correlation": value}
-            for pair, value in found.correlations.items()
+            for pair, value in bounds.correlations.items()
         ],
         "inputs": {
             name: {
                 "kind": item.kind,
                 "nominal": item.nominal,
-                "limits": list(found.limits[name]),
+                "limits": list(bounds.limits[name]),
                 "unit": quantity(name).unit,
             }
-            for name, item in found.inputs.items()
+            for name, item in bounds.inputs.items()
         },
         "outputs": {
             name: {
@@ -57,11 +57,11 @@ def as_json(found: Bounds) -> dict[str, Any]:
                 "upper_warnings": list(bound.upper_warnings),
                 "at_lower": bound.at_lower,
                 "at_upper": bound.at_upper,
-                "mean": _plain(found.spreads[name].mean),
-                "deviation": _plain(found.spreads[name].deviation),
+                "mean": _plain(bounds.spreads[name].mean),
+                "deviation": _plain(bounds.spreads[name].deviation),
                 "quantiles": {
                     f"{share:g}": _plain(value)
-                    for share, value in found.spreads[name].quantiles.items()
+                    for share, value in bounds.spreads[name].quantiles.items()
                 },
                 "drives": {
                     source: {
@@ -71,10 +71,10 @@ def as_json(found: Bounds) -> dict[str, Any]:
                         "lowest": _plain(drive.lowest),
                         "highest": _plain(drive.highest),
                     }
-                    for source, drive in found.drives[name].items()
+                    for source, drive in bounds.drives[name].items()
                 },
             }
-            for name, bound in found.bounds.items()
+            for name, bound in bounds.bounds.items()
         },
     }
 
@@ -89,21 +89,21 @@ def _width(bound: Bound) -> float:
     return width if math.isfinite(width) else 0.0
 
 
-def table(found: Bounds) -> str:
+def table(bounds: Bounds) -> str:
     """What a reader wants to see, at most 100 characters wide."""
-    lines = [f"Inputs that vary ({found.problem} problem)", ""]
+    lines = [f"Inputs that vary ({bounds.problem} problem)", ""]
     lines.append(f"{'':6}{'from':>12}{'to':>12}{'nominal':>12}  {'kind':<12}{'unit':<16}symbol")
-    for name, item in found.inputs.items():
-        low, high = found.limits[name]
+    for name, item in bounds.inputs.items():
+        low, high = bounds.limits[name]
         what = quantity(name)
         numbers = "".join(f"{value:>12.6g}" for value in (low, high, item.nominal))
         lines.append(f"{name:6}{numbers}  {item.kind:<12}{what.unit:<16}{what.symbol}")
-    spreads = next(iter(found.spreads.values())).quantiles
+    spreads = next(iter(bounds.spreads.values())).quantiles
     lines += ["", "Bounds, and quantiles of the draws", ""]
     heading = ["", "nominal", "lower", "", "upper", ""]
     heading += [*(f"{100 * share:g} %" for share in spreads), "unit"]
     rows, inside = [], False
-    for name, bound in found.bounds.items():
+    for name, bound in bounds.bounds.items():
         width = _width(bound)
         marks = [
             "*" if abs(value - corner) > 1e-6 * width else ""
@@ -115,7 +115,7 @@ def table(found: Bounds) -> str:
         inside = inside or "*" in marks
         nominal = bound.nominal if abs(bound.nominal) > 1e-12 * width else 0.0
         cells = [number(nominal, 4), number(bound.lower, 5), marks[0], number(bound.upper, 5)]
-        cells += [marks[1], *(number(q, 4) for q in found.spreads[name].quantiles.values())]
+        cells += [marks[1], *(number(q, 4) for q in bounds.spreads[name].quantiles.values())]
         rows.append([name, *cells, quantity(name).unit])
     lines += columns(rows, heading, left=(0, 3, 5, len(heading) - 1))
     lines += [
@@ -123,38 +123,38 @@ def table(found: Bounds) -> str:
         "What drives them: rank correlation, and how far the result goes with that alone",
         "",
     ]
-    for name in found.bounds:
-        ranked = sorted(found.drives[name].items(), key=lambda entry: -abs(entry[1].swing or 0.0))
+    for name in bounds.bounds:
+        ranked = sorted(bounds.drives[name].items(), key=lambda entry: -abs(entry[1].swing or 0.0))
         drivers = "".join(
             f"  {source:<4}{drive.rank_correlation:>+6.2f} ({drive.swing:.3g})".ljust(23)
             for source, drive in ranked[:DRIVERS_SHOWN]
-            if drive.swing > 1e-9 * _width(found.bounds[name])
+            if drive.swing > 1e-9 * _width(bounds.bounds[name])
         )
         lines.append(f"{name:6}{drivers}".rstrip())
     lines.append("")
     if inside:
         lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
-    if any(math.isinf(value) for bound in found.bounds.values() for _, value in _sides(bound)):
+    if any(math.isinf(value) for bound in bounds.bounds.values() for _, value in _sides(bound)):
         lines.append("inf: unbounded; somewhere in the ranges the equations have no solution")
-    lines += _warnings_at_bounds(found)
-    corners = "all corners" if found.corners_in_full else "corners at random"
+    lines += _warnings_at_bounds(bounds)
+    corners = "all corners" if bounds.corners_in_full else "corners at random"
     lines += [
-        f"Bounds: attained; sought in {found.evaluations:,} scenes ({corners}, faces, interior,",
+        f"Bounds: attained; sought in {bounds.evaluations:,} scenes ({corners}, faces, interior,",
         "climbing), not proven to be the farthest. Correlations do not narrow them.",
-        f"Draws: {found.samples:,}, seed {found.seed}.",
+        f"Draws: {bounds.samples:,}, seed {bounds.seed}.",
     ]
-    for name, share in found.warnings.items():
+    for name, share in bounds.warnings.items():
         lines.append(f"{100 * share:.3g} % of the draws: {name}")
-    if found.unusable:
-        share = 100 * found.unusable
+    if bounds.unusable:
+        share = 100 * bounds.unusable
         lines.append(f"{share:.3g} % of the draws have no finite result or are excluded: left out")
     return "\n".join(lines)
 
 
-def _warnings_at_bounds(found: Bounds) -> list[str]:
+def _warnings_at_bounds(answer: Bounds) -> list[str]:
     """For each warning the bounds at which it stands, one line (or more) each."""
     places: dict[str, list[str]] = {}
-    for name, bound in found.bounds.items():
+    for name, bound in answer.bounds.items():
         for side, warnings in (("lower", bound.lower_warnings), ("upper", bound.upper_warnings)):
             for warning in warnings:
                 places.setdefault(warning, []).append(f"{side} {name}")

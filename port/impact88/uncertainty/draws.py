@@ -42,11 +42,11 @@ class Drive:
 
 
 def spread_of(values: Array, quantiles: Sequence[float]) -> Spread:
-    found = np.quantile(values, list(quantiles)) if quantiles else np.empty(0)
+    quantile_values = np.quantile(values, list(quantiles)) if quantiles else np.empty(0)
     return Spread(
         mean=float(values.mean()),
         deviation=float(values.std(ddof=1)) if len(values) > 1 else 0.0,
-        quantiles=dict(zip(quantiles, found.tolist(), strict=True)),
+        quantiles=dict(zip(quantiles, quantile_values.tolist(), strict=True)),
     )
 
 

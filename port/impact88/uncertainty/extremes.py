@@ -292,22 +292,22 @@ class _Poles:
             if len(low)
         ]
 
-    def put_into(self, found: Extremes) -> Extremes:
+    def put_into(self, whole: Extremes) -> Extremes:
         """The extremes of the functions, the denominators left out, with what is infinite."""
         count = self.piece.size
-        at_lower, at_upper = found.at_lower[:count].copy(), found.at_upper[:count].copy()
+        at_lower, at_upper = whole.at_lower[:count].copy(), whole.at_upper[:count].copy()
         for place, at in ((at_lower, self.at_lower), (at_upper, self.at_upper)):
             for function, point in at.items():
                 place[function] = point
         lower, upper = self.lower[:count], self.upper[:count]
         return Extremes(
-            lower=np.where(np.isinf(lower), lower, found.lower[:count]),
-            upper=np.where(np.isinf(upper), upper, found.upper[:count]),
+            lower=np.where(np.isinf(lower), lower, whole.lower[:count]),
+            upper=np.where(np.isinf(upper), upper, whole.upper[:count]),
             at_lower=at_lower,
             at_upper=at_upper,
-            corner_lower=found.corner_lower[:count],
-            corner_upper=found.corner_upper[:count],
-            evaluations=found.evaluations,
+            corner_lower=whole.corner_lower[:count],
+            corner_upper=whole.corner_upper[:count],
+            evaluations=whole.evaluations,
         )
 
 
@@ -423,11 +423,11 @@ class _Climbers:
             return tried, np.ones(tried.shape[:2], bool)
         margins = self.margin(tried.reshape(-1, tried.shape[2])).reshape(tried.shape[:2])
         self.taken += margins.size
-        left = margins < 0
-        if not left.any():
-            return tried, ~left
-        points, outward = tried[left], normal[np.nonzero(left)[0]]
-        depth = margins[left]
+        outside = margins < 0
+        if not outside.any():
+            return tried, ~outside
+        points, outward = tried[outside], normal[np.nonzero(outside)[0]]
+        depth = margins[outside]
         for _ in range(4):
             if (depth >= 0).all():
                 break
@@ -440,7 +440,7 @@ class _Climbers:
             depth = self.margin(points)
             self.taken += len(points)
         tried, margins = tried.copy(), margins.copy()
-        tried[left], margins[left] = points, depth
+        tried[outside], margins[outside] = points, depth
         return tried, margins >= 0
 
     def gradient(self, who: NDArray[np.intp], place: Array) -> Array:

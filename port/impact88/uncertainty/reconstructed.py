@@ -109,7 +109,7 @@ def ranges(
         return np.where(usable[:, None], np.stack(broad, axis=1), np.nan)
 
     piece = Piece(outputs, len(names))
-    found = extremes(piece, len(kept), np.random.default_rng([seed, 0]))
+    searched = extremes(piece, len(kept), np.random.default_rng([seed, 0]))
 
     def inputs(point: Floats) -> dict[str, float]:
         return {name: float(column[0]) for name, column in data_at(point[None]).items()}
@@ -118,10 +118,10 @@ def ranges(
         name: Range(-np.inf, np.inf, {}, {})
         if name in endless
         else Range(
-            float(found.lower[i]),
-            float(found.upper[i]),
-            inputs(found.at_lower[i]),
-            inputs(found.at_upper[i]),
+            float(searched.lower[i]),
+            float(searched.upper[i]),
+            inputs(searched.at_lower[i]),
+            inputs(searched.at_upper[i]),
         )
         for i, name in enumerate(names)
     }
@@ -149,62 +149,64 @@ class _Solving:
 
     def __call__(self, data: Mapping[str, Floats]) -> tuple[State, NDArray[np.bool_]]:
         """The impacts, and which of them meet all conditions."""
-        here = None
+        geometry = None
         if set(data) & set(GEOMETRY):
-            here = Geometry.of({**self.system.constants, **data})
+            geometry = Geometry.of({**self.system.constants, **data})
         with np.errstate(all="ignore"):
             if self.system.linear and self.square and set(data) & set(PARAMETERS):
-                x = self._linear(data, here)
+                x = self._linear(data, geometry)
                 settled = np.asarray(np.isfinite(x).all(axis=0))
             else:
-                x, settled = self._chords(data, here)
-        return self.system.state(x, data, here), settled
+                x, settled = self._chords(data, geometry)
+        return self.system.state(x, data, geometry), settled
 
-    def _linear(self, data: Mapping[str, Floats], here: Geometry | None) -> Floats:
+    def _linear(self, data: Mapping[str, Floats], geometry: Geometry | None) -> Floats:
         """The conditions are linear in the variables: their matrix, column by column, and right
         side are what they leave over of unit vectors and of none."""
         count, size = len(next(iter(data.values()))), len(self.x)
         none = np.zeros((size, 1))
-        right = np.broadcast_to(self.left(none, data, here), (size, count))
+        right = np.broadcast_to(self.left(none, data, geometry), (size, count))
         matrices = np.empty((count, size, size))
         for i in range(size):
             unit = none.copy()
             unit[i] = 1.0
-            matrices[:, :, i] = (self.left(unit, data, here) - right).T
+            matrices[:, :, i] = (self.left(unit, data, geometry) - right).T
         return -_solved(matrices, right.T).T
 
     def _chords(
-        self, data: Mapping[str, Floats], here: Geometry | None
+        self, data: Mapping[str, Floats], geometry: Geometry | None
     ) -> tuple[Floats, NDArray[np.bool_]]:
         count = len(next(iter(data.values()))) if data else 1
         x = np.repeat(self.x, count, axis=1)
-        left = self.left(x, data, here)
+        residual = self.left(x, data, geometry)
         for _ in range(CHORDS):
-            if not np.abs(left).max(initial=0.0) > SETTLED:
+            if not np.abs(residual).max(initial=0.0) > SETTLED:
                 break
-            x = x - self.inverse @ left
-            left = self.left(x, data, here)
-        settled = np.abs(left).max(axis=0, initial=0.0) <= SETTLED
+            x = x - self.inverse @ residual
+            residual = self.left(x, data, geometry)
+        settled = np.abs(residual).max(axis=0, initial=0.0) <= SETTLED
         if not settled.all():
             wild = np.broadcast_to(~settled, (count,))
             x[:, wild] = self._newton({n: column[wild] for n, column in data.items()})
-            left = self.left(x, data, here)
-            settled = np.abs(left).max(axis=0, initial=0.0) <= 100 * SETTLED
+            residual = self.left(x, data, geometry)
+            settled = np.abs(residual).max(axis=0, initial=0.0) <= 100 * SETTLED
         return x, np.broadcast_to(settled, (count,))
 
-    def left(self, x: Floats, data: Mapping[str, Floats], here: Geometry | None = None) -> Floats:
-        return np.asarray(self.system.left(self.system.state(x, data, here), data))
+    def left(
+        self, x: Floats, data: Mapping[str, Floats], geometry: Geometry | None = None
+    ) -> Floats:
+        return np.asarray(self.system.left(self.system.state(x, data, geometry), data))
 
     def _newton(self, data: Mapping[str, Floats]) -> Floats:
         """The same by Newton's method, from the nominal impact."""
         x = np.repeat(self.x, len(next(iter(data.values()))), axis=1)
         for _ in range(NEWTONS):
-            left = self.left(x, data)
+            residual = self.left(x, data)
             jacobian = self.system.jacobian(
                 x, lambda state: self.system.left(state, data), data
             ).transpose(2, 0, 1)
             jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
-            step = np.einsum("nij,jn->in", np.linalg.pinv(jacobian, rcond=1e-13), left)
+            step = np.einsum("nij,jn->in", np.linalg.pinv(jacobian, rcond=1e-13), residual)
             step = np.nan_to_num(step)
             x = x - step
             if not np.abs(step).max(initial=0.0) > 1e-13 * (1 + np.abs(x).max(initial=0.0)):
@@ -228,9 +230,9 @@ class _Adjusting:
 
         with np.errstate(all="ignore"):
             for _ in range(ADJUSTMENTS):
-                left = left_of(system.state(x))
+                residual = left_of(system.state(x))
                 jacobian = np.broadcast_to(
-                    system.jacobian(x, left_of), (len(left), size, x.shape[1])
+                    system.jacobian(x, left_of), (len(residual), size, x.shape[1])
                 ).transpose(2, 0, 1)
                 exact, loose = jacobian[:, :count], jacobian[:, count:]
                 # Lagrange: the normal equations bordered with the conditions
@@ -239,8 +241,8 @@ class _Adjusting:
                 bordered[:, :size, size:] = exact.transpose(0, 2, 1)
                 bordered[:, size:, :size] = exact
                 right = np.zeros((x.shape[1], size + count))
-                right[:, :size] = np.einsum("nji,jn->ni", loose, left[count:])
-                right[:, size:] = left[:count].T
+                right[:, :size] = np.einsum("nji,jn->ni", loose, residual[count:])
+                right[:, size:] = residual[:count].T
                 step = _solved(bordered, right).T[:size]
                 x = x - step
                 if not np.abs(step).max(initial=0.0) > 1e-10:

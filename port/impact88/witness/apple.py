@@ -130,19 +130,19 @@ class Apple:
     def _run(self, limit: int) -> None:
         cpu, memory, step = self.cpu, self.memory, self.cpu.step
         memory.waiting = False
-        left = limit
+        remaining = limit
         while not memory.waiting:
             if cpu.pc == COUT:
-                left -= self._display()
+                remaining -= self._display()
             else:
                 step()
-                left -= 1
-            if left < 0:
+                remaining -= 1
+            if remaining < 0:
                 raise Lost(
                     f"the machine does not wait for a key after {limit:,} instructions "
                     f"(program counter ${cpu.pc:04X})"
                 )
-        self.instructions += limit - left
+        self.instructions += limit - remaining
 
     def _display(self) -> int:
         """Let the monitor display a character and take it; returns the instructions it took."""

@@ -83,8 +83,8 @@ def hear_scene(
     if capture:
         others[CAPTURE] = Finished(capture["printout"], capture["reals"], capture["A"])
     for who, its_run in ((PORT, run), (EMULATOR, emulated.run)):
-        done = its_run(scene, dos=False)
-        others[who] = Finished(done.printout, done.reals, done.A)
+        ported = its_run(scene, dos=False)
+        others[who] = Finished(ported.printout, ported.reals, ported.A)
     differences = [
         difference for who, other in others.items() for difference in _apart(rom, who, other)
     ]
@@ -138,10 +138,10 @@ def _arrays_apart(who: str, mine: Any, theirs: Any) -> Iterator[Difference]:
 def _replayed_apart(rom: Finished, scene: Scene) -> Iterator[Difference]:
     from ..replay import replay
 
-    done = replay({name: [scene[name]] for name in SCENE})
+    alone = replay({name: [scene[name]] for name in SCENE})
     printed = outcome_fields(rom.printout)
     for name in FIELDS:
-        replayed = done.printed(name).tolist()[0]
+        replayed = alone.printed(name).tolist()[0]
         if replayed != printed.get(name, ""):
             yield Difference(REPLAY, name, printed.get(name, "nothing"), replayed or "nothing")
 

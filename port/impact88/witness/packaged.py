@@ -74,15 +74,15 @@ def _fuzz() -> list[Case]:
 @cache
 def _programs() -> list[Case]:
     files = {file.name: file for file in _golden().joinpath(PROGRAMS).iterdir()}
-    found = []
+    programs = []
     for name in sorted(name.removesuffix(".bas") for name in files if name.endswith(".bas")):
         texts = {
             ending: files[f"{name}.{ending}"].read_bytes().decode("latin-1")
             for ending in ("bas", "in", "out", "scr")
             if f"{name}.{ending}" in files
         }
-        found.append(Case(PROGRAMS, name, texts))
-    return found
+        programs.append(Case(PROGRAMS, name, texts))
+    return programs
 
 
 @cache
