@@ -46,10 +46,10 @@ def exact(part: Any) -> Any:
     return closed
 
 
-def check(name: str, printed: str, status: int = 0) -> Any:
+def check(name: str, printed: str, version: str | None = impact88.__version__) -> Any:
     found = json.loads(printed)
     assert found["schema"] == f"impact88/{name}/{schemas.NUMBERS[name]}"
-    assert found["version"] == impact88.__version__
+    assert version is None or found["version"] == version
     jsonschema.Draft202012Validator(exact(schema(name))).validate(found)
     return found
 
@@ -109,7 +109,7 @@ def test_vectors_new_and_published() -> None:
         check("vectors", line)
     whole = published().splitlines()
     for line in whole[:: len(whole) // 50]:
-        check("vectors", line)
+        check("vectors", line, version=None)  # they name the version that made them
 
 
 @pytest.mark.parametrize("change", [None, ("25.994", "26.994"), ("MB=", "XX="), ("KE LOSS", "KE")])
