@@ -29,6 +29,7 @@ from ..emulator.machine import TooManyStatements
 from ..endings import INTERRUPTED
 from ..errors import UserError
 from ..files import called, packaged_text, read_text, replacing, typed_line
+from ..talk import tell
 from .run import add_machine_arguments
 
 LISTING = "impact.bas"
@@ -216,9 +217,7 @@ def _end_row(terminal: Terminal) -> None:
 
 def _tell_refused(machine: Applesoft) -> None:
     for what in machine.machine.refused:
-        print(
-            f"impact88 basic: {what} is not done here: text only, no machine code", file=sys.stderr
-        )
+        tell("basic", f"{what} is not done here: text only, no machine code")
 
 
 def _disk_command(machine: Applesoft, line: str) -> bool:
@@ -234,5 +233,5 @@ def _disk_command(machine: Applesoft, line: str) -> bool:
             with replacing(name) as file:
                 file.write(machine.source())
     except UserError as error:
-        print(f"impact88 basic: {error}", file=sys.stderr)
+        tell("basic", str(error))
     return True

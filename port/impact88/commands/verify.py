@@ -32,6 +32,7 @@ from ..casework.verify import Examined, FieldCheck, Status, Verdict, Verificatio
 from ..errors import UserError, shown
 from ..files import called
 from ..schemas import stamped
+from ..talk import tell
 from .options import add_json_argument, add_output_argument
 
 _ON_REPORT = ("date", "case", "examiner")
@@ -79,7 +80,7 @@ def main(args: argparse.Namespace) -> int:
 
 def _tell(one: Examined, args: argparse.Namespace) -> None:
     if one.error:
-        print(f"impact88 verify: {one.error}", file=sys.stderr)
+        tell("verify", one.error)
     if args.json:
         for described in one.as_json():
             print(json.dumps(stamped("verify", described), ensure_ascii=False))

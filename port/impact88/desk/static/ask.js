@@ -154,3 +154,13 @@ export function tell(place, error) {
   place.textContent = error ? error.message : "";
   place.hidden = !error;
 }
+
+/** Do some work; what goes wrong with it is told, and what went wrong before no longer. */
+export async function attempt(work, trouble) {
+  try {
+    trouble(null);
+    await work();
+  } catch (error) {
+    trouble(error);
+  }
+}

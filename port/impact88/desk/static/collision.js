@@ -1,5 +1,5 @@
 // The Collision view: 21 values, answered while one types.
-import { ask, asked, element, fill, newest, page, save, settled, showUnits, shown, stop, tell, what } from "./ask.js";
+import { ask, asked, attempt, element, fill, newest, page, save, settled, showUnits, shown, stop, tell, what } from "./ask.js";
 
 const form = () => page("collision-form");
 const inputs = () => [...form().querySelectorAll("fieldset input")];
@@ -163,14 +163,7 @@ function load(scene) {
   answer();
 }
 
-async function doing(work) {
-  try {
-    trouble(null);
-    await work();
-  } catch (error) {
-    trouble(error);
-  }
-}
+const doing = (work) => attempt(work, trouble);
 
 /** Start the view. */
 export function collision() {

@@ -1,5 +1,5 @@
 // The Reconstruction view: what is known is ticked, the rest is solved for while one types.
-import { ask, asked, element, fill, page, save, settled, showUnits, tell, what } from "./ask.js";
+import { ask, asked, attempt, element, fill, page, save, settled, showUnits, tell, what } from "./ask.js";
 
 const form = () => page("reconstruction-form");
 const inputs = () => [...form().querySelectorAll("input[name]")];
@@ -140,14 +140,7 @@ function load(given) {
   answer();
 }
 
-async function doing(work) {
-  try {
-    trouble(null);
-    await work();
-  } catch (error) {
-    trouble(error);
-  }
-}
+const doing = (work) => attempt(work, trouble);
 
 /** Start the view. */
 export function reconstruction() {
