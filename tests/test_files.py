@@ -204,6 +204,33 @@ def test_a_signal_leaves_the_old_file_and_nothing_beside_it(folder: Path, number
     assert (folder / "old.csv").read_text("utf-8") == "old"
 
 
+def test_a_signal_in_the_moment_the_temporary_file_is_made_leaves_none(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened = os.open
+    made = []
+
+    def interrupted(path: str, flags: int, mode: int = 0o777) -> int:
+        os.close(opened(path, flags, mode))
+        made.append(Path(path).name)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "open", interrupted)
+    with pytest.raises(KeyboardInterrupt), replacing("new.csv"):
+        pytest.fail("nothing was opened")
+    assert len(made) == 1
+    assert names(folder) == {"t.csv"}
+
+
+@pytest.mark.parametrize("letter", ["x", "µ", "衝", "🚗"])
+def test_the_longest_name_a_file_can_have_is_written(folder: Path, letter: str) -> None:
+    name = letter * (255 // len(letter.encode()))
+    with replacing(name) as file:
+        file.write("new")
+    assert Path(name).read_text("utf-8") == "new"
+    assert names(folder) == {"t.csv", name}
+
+
 _WORKS_ON_CONTROL_C = (
     "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler);"
     "from impact88.cli import main; sys.exit(main(sys.argv[1:]))"

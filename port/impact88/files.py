@@ -10,7 +10,7 @@ import errno
 import io
 import os
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 
 from .errors import UserError
@@ -178,8 +178,10 @@ class _Sink(io.FileIO):
             raise UserError(f"cannot be written: {_why(error)}", self.target) from None
 
 
-def _sink(file: int | str, target: str, mode: str, newline: str) -> IO[Any]:
-    raw = _Sink(file, "w")
+def _sink(
+    file: str, target: str, mode: str, newline: str, opener: Callable[[str, int], int] | None = None
+) -> IO[Any]:
+    raw = _Sink(file, "w", opener=opener)
     raw.target = target
     buffered = io.BufferedWriter(raw, _WRITE_BUFFER)
     if "b" in mode:
@@ -197,8 +199,6 @@ def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[An
     directly: there is nothing to rename. Raises UserError when the place cannot be written to, the
     disk is full, or what stands there is read-only.
     """
-    import tempfile
-
     target = _target(path)
     if os.path.exists(target) and not os.path.isfile(target):
         try:
@@ -208,17 +208,17 @@ def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[An
         with file:
             yield file
         return
-    folder, name = os.path.split(target)
+    beside = _beside(target)
+    # its name is known before it is there: a signal at any moment finds what to remove
     try:
-        handle, beside = tempfile.mkstemp(prefix=f".{name[:80]}.", suffix=".part", dir=folder)
-    except OSError as error:
-        raise UserError(f"cannot be written: {_why(error)}", path) from None
-    try:
-        file = _sink(handle, path, mode, newline)
+        try:
+            file = _sink(beside, path, mode, newline, _private)
+        except OSError as error:
+            raise UserError(f"cannot be written: {_why(error)}", path) from None
         try:
             yield file
             file.flush()
-            _settle(handle, path)
+            _settle(file.fileno(), path)
             file.close()
         except BaseException:
             with suppress(UserError, OSError, ValueError):
@@ -233,6 +233,17 @@ def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[An
         with suppress(OSError):
             os.unlink(beside)
         raise
+
+
+def _beside(target: str) -> str:
+    """A name nobody has, in the folder of ``target``; at most 255 bytes if that one has."""
+    folder, name = os.path.split(target)
+    return os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
+
+
+def _private(path: str, flags: int) -> int:
+    """Open a file that must not be there yet, for nobody but its owner."""
+    return os.open(path, flags | os.O_EXCL, 0o600)
 
 
 def _target(path: str) -> str:
@@ -262,7 +273,7 @@ def _settle(handle: int, path: str) -> None:
 
 
 def _take_usual_mode(beside: str, path: str) -> None:
-    """mkstemp makes files private; give the new file the mode of the old one or the usual one."""
+    """The temporary file is private; give the new file the mode of the old one or the usual one."""
     try:
         mode = os.stat(path).st_mode & 0o7777
     except FileNotFoundError:
