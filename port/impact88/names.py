@@ -111,6 +111,10 @@ CHAPTER: dict[str, Quantity] = {
         Quantity("CAL", "", "contact point to the left of A's center of gravity", _LENGTH, 0),
         Quantity("CBF", "", "contact point forward of B's center of gravity", _LENGTH, 0),
         Quantity("CBL", "", "contact point to the left of B's center of gravity", _LENGTH, 0),
+        Quantity("LA", "", "overall length of A, for an estimate of IA", _LENGTH, 0),
+        Quantity("BA", "", "overall width of A, for an estimate of IA", _LENGTH, 0),
+        Quantity("LB", "", "overall length of B, for an estimate of IB", _LENGTH, 0),
+        Quantity("BB", "", "overall width of B, for an estimate of IB", _LENGTH, 0),
         Quantity("CX", "ΔC_x", "move of the contact point along x", _LENGTH, 0),
         Quantity("CY", "ΔC_y", "move of the contact point along y", _LENGTH, 0),
         Quantity(

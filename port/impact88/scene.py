@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
+from . import estimates
 from .doubles import double, is_number
 from .errors import UserError
 from .files import called, packaged_text, read_text
@@ -36,10 +37,11 @@ class Scene(Mapping[str, str]):
     """The 21 values of a scene by the listing's names, in the table's order, each as typed.
 
     ``source`` says where it came from (a file's name), for messages; ``units`` names the system of
-    units its file was written in (`impact88.units`), whose base units the values are in.
+    units its file was written in (`impact88.units`), whose base units the values are in;
+    ``estimated`` tells of each value that is an estimate (`impact88.estimates`) how it was found.
     """
 
-    __slots__ = ("_values", "source", "title", "units")
+    __slots__ = ("_values", "estimated", "source", "title", "units")
 
     def __init__(
         self,
@@ -47,6 +49,7 @@ class Scene(Mapping[str, str]):
         title: str | None = None,
         source: str = "scene",
         units: str | None = None,
+        estimated: Mapping[str, str] | None = None,
     ) -> None:
         """Raises UserError for a missing or unknown name and for text that is no number."""
         given = dict(values)
@@ -59,6 +62,7 @@ class Scene(Mapping[str, str]):
         self.title = title
         self.source = source
         self.units = units
+        self.estimated = dict(estimated or {})
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, str], source: str = "scene") -> Scene:
@@ -74,9 +78,9 @@ class Scene(Mapping[str, str]):
     @classmethod
     def from_toml_text(cls, text: str, source: str, units: str | None = None) -> Scene:
         """The scene in a TOML document; ``source`` names it in errors."""
-        values, units = in_base_units(toml_texts(text, source), source, units)
+        values, units, estimated = file_values(toml_texts(text, source), source, units)
         title = values.pop("title", None)
-        return cls(_with_contact_point(values, source), title, source, units)
+        return cls(_with_contact_point(values, source), title, source, units, estimated)
 
     def __getitem__(self, name: str) -> str:
         return self._values[name]
@@ -92,7 +96,9 @@ class Scene(Mapping[str, str]):
 
     def replaced(self, changes: Mapping[str, str]) -> Scene:
         """This scene with some values changed. Raises UserError as the constructor does."""
-        return Scene({**self._values, **changes}, self.title, self.source, self.units)
+        estimated = {name: how for name, how in self.estimated.items() if name not in changes}
+        values = {**self._values, **changes}
+        return Scene(values, self.title, self.source, self.units, estimated)
 
     def keyboard(self) -> list[str]:
         """The replies to the INPUTs of lines 210 and 230."""
@@ -182,6 +188,18 @@ def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
 
 
 _BARE = frozenset("0123456789+-.eE ")
+
+
+def file_values(
+    texts: Mapping[str, str], source: str, units: str | None = None
+) -> tuple[dict[str, str], str | None, dict[str, str]]:
+    """The entries of a file in base units, the system's name (see `in_base_units`), and how each
+    value was found that is an estimate (`impact88.estimates`). Raises UserError."""
+    values, system = in_base_units(texts, source, units)
+    how: dict[str, str] = {}
+    if estimates.wanted(values):
+        values, how = estimates.with_estimates(values, source, system)
+    return values, system, how
 
 
 def in_base_units(
@@ -326,6 +344,7 @@ def template(
     ]
     if units:
         lines.append(f"units = {_quoted(units)}")
+    estimated = getattr(values, "estimated", {})
     heading = None
     for row in SCENE.values():
         if row.line != heading:
@@ -334,7 +353,8 @@ def template(
         text = values[row.name] if values else (DEFAULT_M if row.name == "M" else "")
         value = text if _plain_toml(text) else _quoted(text)
         entry = f"{row.name} = {value}"
-        lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{row.unit}]")
+        mark = ", estimated" if row.name in estimated else ""
+        lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{row.unit}]{mark}")
     return "\n".join(lines) + "\n"
 
 

@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import UserError
 from ..files import called
-from ..scene import in_base_units, sample, toml_file
+from ..scene import file_values, in_base_units, sample, toml_file
 from ..schemas import stamped
 from ..talk import tell
 from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
@@ -48,6 +48,7 @@ from .options import (
     add_output_argument,
     add_scene_argument,
     pairs,
+    tell_estimates,
 )
 
 if TYPE_CHECKING:
@@ -115,7 +116,8 @@ def read_scene(args: argparse.Namespace) -> Inputs:
         raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
     if args.scene:
         source = called(args.scene)
-        texts, units = in_base_units(toml_file(args.scene), source)
+        texts, units, estimated = file_values(toml_file(args.scene), source)
+        tell_estimates(estimated, texts)
     else:
         texts, source = dict(sample(args.sample)), f"sample {args.sample}"
         units = None

@@ -7,15 +7,17 @@ mean the same everywhere, and what is refused is refused in the same words.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import isfinite
 
 from ..doubles import double
 from ..errors import UserError, quoted
+from ..estimates import told
 from ..files import called, check_apart
 from ..names import SCENE, check_names
-from ..scene import SAMPLES, Scene, check_value, in_base_units, sample, toml_file
+from ..scene import SAMPLES, Scene, check_value, file_values, in_base_units, sample, toml_file
+from ..talk import tell
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -127,10 +129,17 @@ def _entries(
 ) -> tuple[dict[str, str], str | None]:
     """The values of a file in base units, and their system."""
     source = called(path)
-    entries, units = in_base_units(toml_file(path), source, units)
+    entries, units, estimated = file_values(toml_file(path), source, units)
+    tell_estimates(estimated, entries)
     entries.pop("title", None)
     check_names(entries, allowed, "value here", source)
     return entries, units
+
+
+def tell_estimates(estimated: Mapping[str, str], values: Mapping[str, str]) -> None:
+    """Say on stderr which values are estimates, and how each was found."""
+    for line in told(estimated, values):
+        tell(None, line)
 
 
 def _changes(texts: Sequence[str], allowed: Collection[str]) -> dict[str, str]:
@@ -243,6 +252,7 @@ def one_scene(args: argparse.Namespace) -> Scene:
     scene = Scene.from_toml(args.scene, units) if args.scene else sample(args.sample)
     changes = settings(args.set, units=scene.units)
     scene = scene.replaced(changes) if changes else scene
+    tell_estimates(scene.estimated, scene)
     return with_contact_moved(scene, getattr(args, "move_contact", None))
 
 

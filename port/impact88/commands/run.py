@@ -34,6 +34,7 @@ from .options import (
     add_scene_argument,
     add_set_argument,
     settings,
+    tell_estimates,
     with_contact_moved,
 )
 
@@ -91,6 +92,7 @@ def chosen_scene(args: argparse.Namespace, changes: dict[str, str]) -> Scene | N
         if scene.units:
             changes = settings(args.set, units=scene.units)
         scene = scene.replaced(changes) if changes else scene
+        tell_estimates(scene.estimated, scene)
         return with_contact_moved(scene, args.move_contact)
     given = [name for name in VELOCITIES if name in changes]
     if not given:

@@ -3,7 +3,8 @@
 {signs}
 A value may have a unit ("-25 mph", "3091 lb", "3.5 ft"), and the file units = "us", "metric", "si"
 or "chapter" for those that have none. CAF CAL (forward and to the left of A's center of gravity)
-may stand for DA PA, CBF CBL for DB PB.
+may stand for DA PA, CBF CBL for DB PB. IA = "estimate" has the yaw inertia estimated: from the
+vehicle's length and width where LA BA are given (LB BB for IB), else for a car from its weight.
 
 examples:
 impact88 scene > mine.toml        a template to fill in

@@ -63,6 +63,7 @@ from .options import (
     names_given,
     settings,
     sweeps,
+    tell_estimates,
 )
 
 Results = dict[str, NDArray[Any]]
@@ -112,6 +113,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", choices=FORMATS, help="the format of RESULTS")
 
 
+def _swept_scene(path: str) -> Scene:
+    scene = Scene.from_toml(path)
+    tell_estimates(scene.estimated, scene)
+    return scene
+
+
 def main(arguments: argparse.Namespace) -> int:
     """Solve a table. Returns 1 when a row is bad or ended with an Applesoft error."""
     swept = arguments.cases.lower().endswith(".toml")
@@ -130,7 +137,7 @@ def main(arguments: argparse.Namespace) -> int:
     check_names(filling, SCENE, "value of a scene", arguments.scene or "")
     with ExitStack() as stack:
         source = stack.enter_context(
-            read_sweep(Scene.from_toml(arguments.cases), read_ranges(sweeps(arguments.sweep)))
+            read_sweep(_swept_scene(arguments.cases), read_ranges(sweeps(arguments.sweep)))
             if swept
             else open_reader(arguments.cases, source_format, arguments.encoding)
         )

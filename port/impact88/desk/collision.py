@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from ..doubles import double, is_number
 from ..errors import UserError
+from ..estimates import wanted
 from ..files import decode
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names
 from ..plaintable import number
@@ -191,7 +192,7 @@ def read_scene_file(data: bytes, name: str) -> dict[str, Any]:
     and line."""
     texts = small_toml(data, name)
     title, units = texts.pop("title", ""), texts.pop("units", "").lower()
-    if _OWN_AXES.intersection(texts):
+    if _OWN_AXES.intersection(texts) or wanted(texts):
         scene = Scene.from_toml_text(decode(data, name), name)
         units = _WHOSE_BASE.get(scene.units or "", scene.units or "")
         return {"values": dict(scene), "title": title, "units": units}
