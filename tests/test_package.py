@@ -113,6 +113,11 @@ def test_version_stands_in_one_place(project: dict[str, Any]) -> None:
     assert version("impact88") == impact88.__version__
 
 
+def test_classifiers_begin_with_the_lowest_python(project: dict[str, Any]) -> None:
+    said = re.findall(r"Python :: (3\.\d+)", "\n".join(project["project"]["classifiers"]))
+    assert f">={said[0]}" == project["project"]["requires-python"]
+
+
 @pytest.mark.parametrize("name", sorted(impact88._LAZY))
 def test_every_public_name_is_there_whatever_was_imported_before(name: str) -> None:
     """Also where a module has its function's name: importing it must not hide the function."""

@@ -82,11 +82,12 @@ class Source(io.RawIOBase):
         """Raises UserError if there is no such file or it cannot be opened."""
         self.name = called(path)
         self.count = 0
-        self._keep = path == "-"
+        self._keep = True  # nothing to close yet
         try:
-            inner: Any = sys.stdin.buffer if self._keep else io.FileIO(path)
+            inner: Any = sys.stdin.buffer if path == "-" else io.FileIO(path)
         except (OSError, ValueError) as error:
             raise UserError(f"cannot be read: {_why(error)}", self.name) from None
+        self._keep = path == "-"
         self._inner = inner
         self._fill = getattr(inner, "readinto1", inner.readinto)
 
