@@ -12,10 +12,12 @@ from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 
 import mpmath
+import numpy as np
 import pytest
 
 import captures
 from impact88.accuracy import decimals, digits, reference
+from impact88.accuracy.errorbound import oracle_bounds, scales
 from impact88.bench import populations
 from impact88.bench.populations import POPULATIONS, texts
 from impact88.checking.oracle import answers, decimal_of, look_up
@@ -31,8 +33,11 @@ from impact88.checking.vectors import (
     scenes,
     vectors,
 )
+from impact88.closedform.solve import solve
+from impact88.doubles import doubles
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.program.run import run
+from impact88.replay import replay
 from impact88.scene import sample
 from installed import COMMAND, impact88
 
@@ -97,6 +102,33 @@ def test_errors_stay_within_the_bounds(name: str) -> None:
                 if bound is not None and value is not None:
                     off = abs(Fraction(rows[result]["reference"]) - Fraction(value))
                     assert off <= Fraction(bound) * Fraction(size) * Fraction(1.0001), result
+
+
+@pytest.mark.parametrize("name", [n for n, p in POPULATIONS.items() if p.listing])
+def test_the_apple_s_errors_stay_within_its_bound(name: str) -> None:
+    """Every stored final velocity against the double and what that may itself be off, in blocks, so
+    that many scenes can be looked at. IMPACT88_ORACLE_LISTING sets how many of each population
+    (100000: seven minutes each)."""
+    left, seed = int(os.environ.get("IMPACT88_ORACLE_LISTING") or 200), 23
+    judged = 0
+    while left > 0:
+        count, seed = min(left, 5_000), seed + 1
+        left -= count
+        columns = texts(populations.scenes(name, count, seed))
+        lines = [
+            dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)
+        ]
+        numbers = {name: np.array(doubles(column)) for name, column in columns.items()}
+        solved, replayed = solve(numbers), replay(columns)
+        own, listing = oracle_bounds(lines, numbers, solved)
+        sizes = scales(numbers, solved)
+        for result in FINAL_VELOCITIES:
+            stored = np.where(replayed.present(result), replayed.floats(result), np.nan)
+            off = np.abs(stored - solved[result]) / sizes[result]
+            said = np.isfinite(listing) & np.isfinite(own) & np.isfinite(off)
+            assert np.all(off[said] <= (np.array(listing) + own)[said] * 1.0001), (result, seed)
+            judged += np.count_nonzero(said)
+    assert judged
 
 
 def test_bounds_tell_a_lorry_and_a_car_from_two_cars() -> None:

@@ -25,7 +25,7 @@ from ..accuracy import errorbound
 from ..doubles import double, doubles
 from ..errors import quoted
 from ..names import FINAL_VELOCITIES
-from ..tables.rows import Rows
+from ..tables.rows import Rows, one_per_row
 from . import otherprograms
 
 Floats = NDArray[np.float64]
@@ -78,8 +78,8 @@ _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
 
 def read_theirs(rows: Rows, name: str) -> Theirs:
     """A column of results; an empty cell is NaN and counts as not given. What is no number is
-    added to ``rows.bad``."""
-    column = rows.others[name]
+    added to ``rows.bad``. Raises UserError for an array that has not a number for each row."""
+    column = one_per_row(rows, name)
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
         return Theirs(column.astype(float), np.zeros(rows.count))
     texts = ["" if cell is None else str(cell).strip() for cell in column]

@@ -23,7 +23,7 @@ from ..files import called
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..plaintable import plain
 from ..progress import progress
-from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
+from ..tables.rows import BadCell, Rows, check_scene_columns, numbers, one_per_row
 from ..tables.table import open_reader
 from .agreement import Slack, Theirs, Verdict, given, judge, read_theirs, slack
 from .diagnosis import UNKNOWN, Case, diagnose
@@ -361,13 +361,13 @@ def _row(
         if there[name][index] and not verdict.elimination[index]
     }
     name = max(off, key=lambda one: off[one])
-    ids = rows.others.get("id")
+    ids = one_per_row(rows, "id") if "id" in rows.others else None
     return Row(
         rows.first + index,
         rows.lines[index] if rows.lines else 0,
         str(ids[index]) if ids is not None else "",
         name,
-        str(rows.others[name][index]),
+        str(one_per_row(rows, name)[index]),
         float(ours[name][index]),
         off[name],
         UNKNOWN,

@@ -139,7 +139,7 @@ def one_per_row(rows: Rows, name: str) -> Column:
         shape = " by ".join(map(str, column.shape))
         raise UserError(
             f"{quoted(name)} is an array of {shape}, not a column of {rows.count} rows; expected "
-            "to write .npz, or a table without it"
+            "a cell for each row (only .npz results hold it as it is)"
         )
     return column
 
