@@ -101,7 +101,7 @@ def test_reconstruction_says_where_the_finals_come_from(capsys):
         capsys, "--sample", "3", "--reconstruct", "--range", "VAX=+- 1", "--samples", "1000"
     )
     assert status == 0
-    assert err == "from the forward solution: VAY VBX VBY WAF WBF MUP\n"
+    assert err == "impact88: from the forward solution: VAY VBX VBY WAF WBF MUP\n"
     row = next(line for line in out.splitlines() if line.startswith("SB"))
     assert float(row.split()[1]) == pytest.approx(58.667, abs=0.005)
     assert re.search(r"(?m)^WA +0 ", out)  # not -4E-17

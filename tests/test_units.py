@@ -207,3 +207,57 @@ class TestContactPoint:
             "PB": math.degrees(math.atan2(by + dy, bx + dx)) - 60,
         }
         assert float(solve(corner, "DVA")["DVA"]) == pytest.approx(found.lower, rel=1e-12)
+
+
+class TestWhatIsExplored:
+    """Bounds, sweeps and their figures: in the units that came in."""
+
+    @pytest.fixture
+    def us(self, tmp_path):
+        """The first sample with its speeds in mph."""
+        texts = dict(sample(1))
+        for name in ("UX", "UY", "VX", "VY"):
+            texts[name] = repr(float(texts[name]) * 3600 / 5280)
+        path = tmp_path / "us.toml"
+        chapter = {"MA": "slug", "MB": "slug"}
+        lines = [
+            f'{name} = "{t} {chapter.get(name, "")}"'.replace(' "', '"')
+            for name, t in texts.items()
+        ]
+        path.write_text('units = "us"\n' + "\n".join(lines))
+        return str(path)
+
+    def test_bounds(self, us, capsys):
+        assert main(["bounds", us, "--range", "UX=+- 2", "--outputs", "VAX", "--json"]) == 0
+        shown = json.loads(capsys.readouterr().out)
+        ux, vax = shown["inputs"]["UX"], shown["outputs"]["VAX"]
+        assert ux["unit"] == vax["unit"] == "mph"
+        assert ux["limits"] == pytest.approx([-21.8, -17.8])
+        base = {**RUN_1, "UX": np.array([-21.8, -17.8]) * 5280 / 3600}
+        low, high = sorted(solve(base, ["VAX"])["VAX"] * 3600 / 5280)
+        assert (vax["lower"], vax["upper"]) == (pytest.approx(low), pytest.approx(high))
+        assert vax["corner_lower"] == pytest.approx(low)
+        assert vax["drives"]["UX"]["at_low"] == pytest.approx(low)
+        assert low < vax["quantiles"]["0.5"] < high
+        assert vax["at_lower"]["UX"] == pytest.approx(-21.8)
+        assert main(["bounds", us, "--range", "UX=+- 2", "--outputs", "VAX"]) == 0
+        assert "mph" in capsys.readouterr().out
+
+    def test_a_sweep_takes_the_file_s_units_and_its_table_says_its_own(self, us, capsys):
+        line = ["solve", us, "--outputs", "VAX", "--sweep"]
+        for sweep in ("UX=-30:-15:2", "UX=-30 mph:-22 ft/s:2"):
+            assert main([*line, sweep]) == 0
+            shown = capsys.readouterr()
+            rows = [float(row.split(",")[0]) for row in shown.out.splitlines()[1:]]
+            assert rows == pytest.approx([-44, -22])
+            assert shown.err == "impact88 solve: the table is in ft, slug, s\n"
+        assert main([*line, "UX=-30 lb:-15:2"]) == 2
+        assert "lb is no unit of its length/time" in capsys.readouterr().err
+
+    @pytest.mark.parametrize("kind", ["tornado", "histogram", "sweep"])
+    def test_figures_say_their_units(self, kind, us, tmp_path):
+        pytest.importorskip("matplotlib")
+        out = tmp_path / "out.svg"
+        how = ["--sweep", "UX=-30:-15:5"] if kind == "sweep" else ["--range", "UX=+- 2"]
+        assert main(["figure", kind, us, *how, "--outputs", "DVA", "-o", str(out)]) == 0
+        assert ", mph" in out.read_text("utf-8")

@@ -33,7 +33,6 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UserError
 from ..names import RESULTS
 from ..scene import Scene, numbers_of
-from .bounds import add_scene_arguments, explored
 from .options import (
     add_move_argument,
     add_names_argument,
@@ -44,6 +43,7 @@ from .options import (
     one_scene,
     sweeps,
 )
+from .ranges import add_range_arguments, explored
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,7 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="where to write: .svg, .png or .pdf"
     )
-    add_scene_arguments(parser)
+    add_range_arguments(parser)
     add_set_argument(parser, "change a value of the scene")
     add_move_argument(parser)
     add_sweep_argument(parser)
@@ -157,12 +157,13 @@ def _swept(args: argparse.Namespace) -> Figure:
 
     if args.ranges:
         raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")
-    ranges = read_ranges(sweeps(args.sweep))
+    scene = one_scene(args)
+    ranges = read_ranges(sweeps(args.sweep), scene.units)
     if len(ranges) != 1:
         raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
     ((name, run),) = ranges.items()
     outputs = names_given(args.outputs, tuple(RESULTS), "--outputs") or ["LOSS", "DVA", "DVB"]
-    return charts.swept(one_scene(args), name, run.values(), outputs)
+    return charts.swept(scene, name, run.values(), outputs)
 
 
 def solved(scene: Scene) -> dict[str, Any]:

@@ -33,8 +33,8 @@ from __future__ import annotations
 
 import argparse
 import csv
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack
 from typing import IO, Any
 
 import numpy as np
@@ -50,7 +50,7 @@ from ..progress import progress
 from ..scene import VALUE_LIMIT, Scene, toml_file
 from ..status import Status
 from ..tables.overlap import ahead, behind, may_wait
-from ..tables.rows import BadCell, Rows, check_scene_columns, filled, numbers
+from ..tables.rows import BadCell, Reader, Rows, check_scene_columns, filled, numbers
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from ..talk import tell
@@ -113,10 +113,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", choices=FORMATS, help="the format of RESULTS")
 
 
-def _swept_scene(path: str) -> Scene:
+def _sweep(path: str, texts: Mapping[str, str]) -> AbstractContextManager[Reader]:
+    """The table that a scene file makes, swept or as it is: in base units, which are told."""
     scene = Scene.from_toml(path)
     tell_estimates(scene.estimated, scene)
-    return scene
+    if scene.units:
+        from ..units import base_of, system_of
+
+        tell("solve", f"the table is in {base_of(system_of(scene.units))}")
+    return read_sweep(scene, read_ranges(texts, scene.units))
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -137,7 +142,7 @@ def main(arguments: argparse.Namespace) -> int:
     check_names(filling, SCENE, "value of a scene", arguments.scene or "")
     with ExitStack() as stack:
         source = stack.enter_context(
-            read_sweep(_swept_scene(arguments.cases), read_ranges(sweeps(arguments.sweep)))
+            _sweep(arguments.cases, sweeps(arguments.sweep))
             if swept
             else open_reader(arguments.cases, source_format, arguments.encoding)
         )

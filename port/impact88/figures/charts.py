@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..names import PIVOT
 from ..scene import numbers_of
 from ..status import Status
-from ..units import RULES, system_of
+from ..units import RULES, System, system_of
 from .canvas import new_figure, style
 from .drawing import BLACK, BLUE, COLUMN, GREY, ORANGE, VERMILION
 from .sceneview import short
@@ -42,11 +42,18 @@ def symbol(text: str) -> str:
     return "$\\mathregular{" + lowered.replace(" ", r"\ ") + "}$"
 
 
-def _axis_label(name: str) -> str:
+def _axis_label(name: str, units: System) -> str:
     from ..names import quantity
 
     what = quantity(name)
-    return f"{symbol(what.symbol)}, {what.unit}"
+    return f"{symbol(what.symbol)}, {units.label(what.unit)}"
+
+
+def _factor(name: str, units: System) -> float:
+    """What a number of base units is multiplied with to be shown."""
+    from ..names import quantity
+
+    return units.shown(quantity(name).unit, 1.0)
 
 
 def _chosen(result: Bounds, outputs: Sequence[str] | None) -> list[str]:
@@ -107,7 +114,7 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Figure:
                 clip_on=False,
                 zorder=5,
             )
-            axes.set_xlabel(_axis_label(name))
+            axes.set_xlabel(_axis_label(name, system_of(result.units)))
             axes.margins(x=0.05)
             axes.xaxis.set_major_locator(_ticks(5 if columns == 2 else 8))
             axes.yaxis.set_major_locator(_ticks(4))
@@ -167,7 +174,7 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Figure:
             axes.tick_params(axis="y", length=0)
             axes.invert_yaxis()
             axes.axvline(bound.nominal, color=BLACK, linewidth=0.8)
-            axes.set_xlabel(_axis_label(name))
+            axes.set_xlabel(_axis_label(name, system_of(result.units)))
             axes.xaxis.set_major_locator(_ticks(6))
             axes.margins(x=0.04)
         figure.legend(
@@ -259,7 +266,8 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
     if len(outputs) > MOST_PANELS:
         raise UserError(f"{len(outputs)} results do not fit a page; expected {MOST_PANELS} at most")
     numbers: dict[str, Any] = numbers_of(scene)
-    axis = np.asarray(values)
+    units = system_of(getattr(scene, "units", None))
+    axis, shown = np.asarray(values), _factor(name, units)
     results = solve({**numbers, name: axis}, [*outputs, "STATUS"])
     faulty = results["STATUS"] != 0
     with style():
@@ -267,13 +275,14 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
         figure.set_layout_engine("constrained", h_pad=0.03)
         panels = figure.subplots(len(outputs), 1, sharex=True, squeeze=False).ravel()
         for output, axes in zip(outputs, panels, strict=True):
-            axes.plot(axis, results[output], color=BLUE)
-            axes.set_ylabel(_axis_label(output))
+            factor = _factor(output, units)
+            axes.plot(axis * shown, results[output] * factor, color=BLUE)
+            axes.set_ylabel(_axis_label(output, units))
             if min(values) <= numbers[name] <= max(values):
-                here = float(solve(numbers, [output])[output])
-                axes.plot(numbers[name], here, "o", color=BLACK, markersize=4, zorder=6)
-            _shade(axes, axis, faulty)
-        panels[-1].set_xlabel(_axis_label(name))
+                here = float(solve(numbers, [output])[output]) * factor
+                axes.plot(numbers[name] * shown, here, "o", color=BLACK, markersize=4, zorder=6)
+            _shade(axes, axis * shown, faulty)
+        panels[-1].set_xlabel(_axis_label(name, units))
         entries = [("mark", BLACK, "o", "this scene")]
         if faulty.any():
             entries.append(("bar", _GAINED, "", "unphysical: see STATUS"))

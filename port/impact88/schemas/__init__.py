@@ -28,7 +28,7 @@ NUMBERS = {
     "verify": 2,
     "selfcheck": 1,
     "witness": 1,
-    "bounds": 1,
+    "bounds": 2,
     "reconstruct": 1,
 }
 """Name of a form -> its number. Names are those of the commands, and the oracle's ``vectors``."""

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from ..doubles import double, is_number
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
+from ..scene import in_base_units
 from .rows import BLOCK_ROWS, Column, Reader, Rows
 
 MOST = 10_000_000
@@ -32,15 +33,17 @@ class Range(NamedTuple):
         return [*(self.low + i * step for i in range(self.steps - 1)), self.high]
 
 
-def read_ranges(texts: Mapping[str, str]) -> dict[str, Range]:
-    """Name -> range of texts LOW:HIGH:COUNT. Raises UserError naming the value and the form."""
+def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str, Range]:
+    """Name -> range, in base units, of texts LOW:HIGH:COUNT; ``units``: the system of bare numbers,
+    the scene's. Raises UserError naming the value and the form."""
     check_names(texts, tuple(SCENE), "value of a scene", "--sweep")
     ranges = {}
     for name, text in texts.items():
         parts = [part.strip() for part in text.split(":")]
-        if len(parts) != 3 or not all(map(is_number, parts[:2])) or not parts[2].isdigit():
+        ends = [in_base_units({name: part}, "--sweep", units)[0][name] for part in parts[:2]]
+        if len(parts) != 3 or not all(map(is_number, ends)) or not parts[2].isdigit():
             raise UserError(f"--sweep {name}: {quoted(text)} is no LOW:HIGH:COUNT, such as 0:1:51")
-        low, high, count = double(parts[0]), double(parts[1]), int(parts[2])
+        low, high, count = double(ends[0]), double(ends[1]), int(parts[2])
         if not (isfinite(low) and isfinite(high)) or not 1 <= count <= MOST:
             raise UserError(f"--sweep {name}: {quoted(text)} is out of range")
         ranges[name] = Range(low, high, count)

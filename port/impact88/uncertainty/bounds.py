@@ -96,7 +96,8 @@ class Bounds:
     ``drives`` by output, then input; ``warnings``: STATUS name -> share of the draws that carry it;
     ``unusable``: share of the draws without a finite result or excluded, left out of the spreads;
     ``evaluations``: scenes solved in search of the bounds; ``draws``: each output's draws, arrays
-    of the ``samples`` values, kept on request.
+    of the ``samples`` values, kept on request; ``units``: the system of units of all of it
+    (`uncertainty.boundsunits`), None for base units or any others that are consistent.
     """
 
     problem: str
@@ -114,6 +115,7 @@ class Bounds:
     corners_in_full: bool
     correlations: dict[tuple[str, str], float]
     draws: dict[str, Array] = field(default_factory=dict, repr=False)
+    units: str | None = None
 
 
 def input_names(problem: str) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from typing import Any
 from ..names import quantity
 from ..plaintable import number
 from ..plaintable import table as columns
+from ..units import system_of
 from .bounds import Bound, Bounds
 
 DRIVERS_SHOWN = 4
@@ -21,6 +22,7 @@ def _plain(value: float) -> float | None:
 
 def as_json(bounds: Bounds) -> dict[str, Any]:
     """Everything found, as JSON takes it; a value that does not exist is null."""
+    units = system_of(bounds.units)
     return {
         "problem": bounds.problem,
         "samples": bounds.samples,
@@ -39,14 +41,14 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
                 "kind": item.kind,
                 "nominal": item.nominal,
                 "limits": list(bounds.limits[name]),
-                "unit": quantity(name).unit,
+                "unit": units.label(quantity(name).unit),
             }
             for name, item in bounds.inputs.items()
         },
         "outputs": {
             name: {
                 "meaning": quantity(name).meaning,
-                "unit": quantity(name).unit,
+                "unit": units.label(quantity(name).unit),
                 "nominal": bound.nominal,
                 "lower": _plain(bound.lower),
                 "upper": _plain(bound.upper),
@@ -91,13 +93,14 @@ def _width(bound: Bound) -> float:
 
 def table(bounds: Bounds) -> str:
     """What a reader wants to see, at most 100 characters wide."""
+    units = system_of(bounds.units)
     lines = [f"Inputs that vary ({bounds.problem} problem)", ""]
     lines.append(f"{'':6}{'from':>12}{'to':>12}{'nominal':>12}  {'kind':<12}{'unit':<16}symbol")
     for name, item in bounds.inputs.items():
         low, high = bounds.limits[name]
         what = quantity(name)
         numbers = "".join(f"{value:>12.6g}" for value in (low, high, item.nominal))
-        lines.append(f"{name:6}{numbers}  {item.kind:<12}{what.unit:<16}{what.symbol}")
+        lines.append(f"{name:6}{numbers}  {item.kind:<12}{units.label(what.unit):<16}{what.symbol}")
     spreads = next(iter(bounds.spreads.values())).quantiles
     lines += ["", "Bounds, and quantiles of the draws", ""]
     heading = ["", "nominal", "lower", "", "upper", ""]
@@ -116,7 +119,7 @@ def table(bounds: Bounds) -> str:
         nominal = bound.nominal if abs(bound.nominal) > 1e-12 * width else 0.0
         cells = [number(nominal, 4), number(bound.lower, 5), marks[0], number(bound.upper, 5)]
         cells += [marks[1], *(number(q, 4) for q in bounds.spreads[name].quantiles.values())]
-        rows.append([name, *cells, quantity(name).unit])
+        rows.append([name, *cells, units.label(quantity(name).unit)])
     lines += columns(rows, heading, left=(0, 3, 5, len(heading) - 1))
     lines += [
         "",

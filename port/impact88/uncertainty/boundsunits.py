@@ -1,0 +1,86 @@
+"""What `bounds` found, in the units its inputs came in.
+
+A result is found in base units; what is shown is a multiple of it, so everything that has a unit is
+multiplied: nominal values, limits, bounds, spreads, and the scenes that attain the bounds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from ..names import quantity
+from ..units import RULES, System, system_of
+from .bounds import Bound, Bounds
+from .draws import Drive, Spread
+from .uncertain import Uncertain
+
+
+def in_units(found: Bounds, name: str | None) -> Bounds:
+    """What was found in base units, in those of the system of that name; as it is for None."""
+    units = system_of(name)
+    if units is RULES:
+        return found
+    factors = {name: _factor(name, units) for name in (*found.inputs, *found.bounds)}
+    return replace(
+        found,
+        inputs={name: _uncertain(item, factors[name]) for name, item in found.inputs.items()},
+        limits={
+            name: (low * factors[name], high * factors[name])
+            for name, (low, high) in found.limits.items()
+        },
+        bounds={name: _bound(one, factors[name], units) for name, one in found.bounds.items()},
+        spreads={name: _spread(one, factors[name]) for name, one in found.spreads.items()},
+        drives={
+            name: {source: _drive(drive, factors[name]) for source, drive in drives.items()}
+            for name, drives in found.drives.items()
+        },
+        draws={name: draws * factors[name] for name, draws in found.draws.items()},
+        units=units.name,
+    )
+
+
+def _factor(name: str, units: System) -> float:
+    return units.shown(quantity(name).unit, 1.0)
+
+
+def _uncertain(item: Uncertain, factor: float) -> Uncertain:
+    return replace(
+        item,
+        nominal=item.nominal * factor,
+        low=item.low * factor,
+        high=item.high * factor,
+        deviation=item.deviation * factor,
+    )
+
+
+def _scene(values: Mapping[str, float], units: System) -> dict[str, float]:
+    return {name: value * _factor(name, units) for name, value in values.items()}
+
+
+def _bound(one: Bound, factor: float, units: System) -> Bound:
+    return replace(
+        one,
+        nominal=one.nominal * factor,
+        lower=one.lower * factor,
+        upper=one.upper * factor,
+        at_lower=_scene(one.at_lower, units),
+        at_upper=_scene(one.at_upper, units),
+        corner_lower=one.corner_lower * factor,
+        corner_upper=one.corner_upper * factor,
+    )
+
+
+def _spread(one: Spread, factor: float) -> Spread:
+    quantiles = {share: value * factor for share, value in one.quantiles.items()}
+    return Spread(one.mean * factor, one.deviation * factor, quantiles)
+
+
+def _drive(one: Drive, factor: float) -> Drive:
+    return replace(
+        one,
+        at_low=one.at_low * factor,
+        at_high=one.at_high * factor,
+        lowest=one.lowest * factor,
+        highest=one.highest * factor,
+    )
