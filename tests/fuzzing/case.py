@@ -19,6 +19,12 @@ class Case:
     files: dict[str, bytes] = field(default_factory=dict)
     seed: str = ""
 
+    def printouts(self) -> int:
+        """How many printouts `verify` is given, at least."""
+        if self.arguments[:1] != ["verify"]:
+            return 0
+        return sum(data.count(b"INITIAL KE") for data in (*self.files.values(), self.stdin))
+
     def to_json(self) -> str:
         """The case as text; bytes packed."""
         return json.dumps(

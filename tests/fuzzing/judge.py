@@ -19,6 +19,7 @@ from pathlib import Path
 from types import FrameType
 
 from impact88 import cli
+from impact88.endings import INTERRUPTED
 from impact88.errors import UserError
 from impact88.program.run import run
 from impact88.scene import Scene
@@ -29,8 +30,12 @@ SECONDS = 10
 """Of the processor's time a case may take: what else the machine does is not the case's fault."""
 STILL_SECONDS = 120
 """Of the clock's, for what waits without working."""
+A_PRINTOUT = 2
+"""Of the processor's time each printout of a page may take."""
 BYTES = 1_000_000_000
 STATUSES = (0, 1, 2)
+CONTROL_C = b"\x03"
+"""Typed at a prompt it interrupts the program."""
 LONGEST_LINE = 900
 MOST_LINES = 200
 _CONTROL = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
@@ -63,8 +68,9 @@ def faults(case: Case) -> list[str]:
         return _replay_faults(case)
     with _folder(case) as folder, _streams(case.stdin) as (out, err):
         began, before = time.process_time(), _listing(folder)
+        seconds = max(SECONDS, A_PRINTOUT * case.printouts())
         try:
-            with _no_longer_than(SECONDS, STILL_SECONDS):
+            with _no_longer_than(seconds, STILL_SECONDS):
                 status = cli.main(case.arguments)
         except Hang as hang:
             return [f"took too long: {hang}"]
@@ -72,7 +78,7 @@ def faults(case: Case) -> list[str]:
             return [f"escaped: {traceback.format_exc()}"]
         found = []
         said, shown = err.text(), out.text()
-        if status not in STATUSES:
+        if status not in STATUSES and not (status == INTERRUPTED and CONTROL_C in case.stdin):
             found.append(f"status {status}: {said[:500]}")
         if "Traceback" in said or "Traceback" in shown:
             found.append(f"traceback: {said[-500:]}")
@@ -95,7 +101,7 @@ def faults(case: Case) -> list[str]:
             found.append("an input was changed")
         if status == 2 and set(after) != set(before) and case.arguments[:1] != ["basic"]:
             found.append(f"status 2 and written: {sorted(set(after) - set(before))}")
-        if (took := time.process_time() - began) > SECONDS:
+        if (took := time.process_time() - began) > seconds:
             found.append(f"took {took:.1f} s")
         largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
         if largest > BYTES:
