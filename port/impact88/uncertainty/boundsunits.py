@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from ..names import quantity
 from ..units import RULES, System, system_of
 from .bounds import Bound, Bounds
-from .draws import Drive, Spread
-from .uncertain import Uncertain
+from .draws import Spread
 
 
 def in_units(found: Bounds, name: str | None) -> Bounds:
@@ -24,7 +24,10 @@ def in_units(found: Bounds, name: str | None) -> Bounds:
     factors = {name: _factor(name, units) for name in (*found.inputs, *found.bounds)}
     return replace(
         found,
-        inputs={name: _uncertain(item, factors[name]) for name, item in found.inputs.items()},
+        inputs={
+            name: _times(factors[name], item, "nominal", "low", "high", "deviation")
+            for name, item in found.inputs.items()
+        },
         limits={
             name: (low * factors[name], high * factors[name])
             for name, (low, high) in found.limits.items()
@@ -32,7 +35,10 @@ def in_units(found: Bounds, name: str | None) -> Bounds:
         bounds={name: _bound(one, factors[name], units) for name, one in found.bounds.items()},
         spreads={name: _spread(one, factors[name]) for name, one in found.spreads.items()},
         drives={
-            name: {source: _drive(drive, factors[name]) for source, drive in drives.items()}
+            name: {
+                source: _times(factors[name], drive, "at_low", "at_high", "lowest", "highest")
+                for source, drive in drives.items()
+            }
             for name, drives in found.drives.items()
         },
         draws={name: draws * factors[name] for name, draws in found.draws.items()},
@@ -44,14 +50,9 @@ def _factor(name: str, units: System) -> float:
     return units.shown(quantity(name).unit, 1.0)
 
 
-def _uncertain(item: Uncertain, factor: float) -> Uncertain:
-    return replace(
-        item,
-        nominal=item.nominal * factor,
-        low=item.low * factor,
-        high=item.high * factor,
-        deviation=item.deviation * factor,
-    )
+def _times(factor: float, record: Any, *names: str) -> Any:
+    """The record with the fields of those names multiplied."""
+    return replace(record, **{name: getattr(record, name) * factor for name in names})
 
 
 def _scene(values: Mapping[str, float], units: System) -> dict[str, float]:
@@ -59,28 +60,11 @@ def _scene(values: Mapping[str, float], units: System) -> dict[str, float]:
 
 
 def _bound(one: Bound, factor: float, units: System) -> Bound:
-    return replace(
-        one,
-        nominal=one.nominal * factor,
-        lower=one.lower * factor,
-        upper=one.upper * factor,
-        at_lower=_scene(one.at_lower, units),
-        at_upper=_scene(one.at_upper, units),
-        corner_lower=one.corner_lower * factor,
-        corner_upper=one.corner_upper * factor,
-    )
+    scenes = {"at_lower": _scene(one.at_lower, units), "at_upper": _scene(one.at_upper, units)}
+    values = ("nominal", "lower", "upper", "corner_lower", "corner_upper")
+    return replace(_times(factor, one, *values), **scenes)
 
 
 def _spread(one: Spread, factor: float) -> Spread:
     quantiles = {share: value * factor for share, value in one.quantiles.items()}
     return Spread(one.mean * factor, one.deviation * factor, quantiles)
-
-
-def _drive(one: Drive, factor: float) -> Drive:
-    return replace(
-        one,
-        at_low=one.at_low * factor,
-        at_high=one.at_high * factor,
-        lowest=one.lowest * factor,
-        highest=one.highest * factor,
-    )
