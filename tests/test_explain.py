@@ -9,7 +9,7 @@ import pytest
 from impact88.casework import trial
 from impact88.casework.explain import Explanation
 from impact88.casework.misreading import misreadings, slip
-from impact88.casework.otherruns import rounded_text
+from impact88.casework.otherprints import rounded_text
 from impact88.casework.printout import FIELDS, read_printouts
 from impact88.casework.verify import Verdict, verify
 from impact88.program.run import run

@@ -1,9 +1,10 @@
 """Explaining a printout that differs: causes, each tested by replay, best first.
 
 A cause is a slip or two in what is printed (`rereading`), two numbers in each other's place,
-another unit, another program or arithmetic (`otherruns`). What counts is how many of the numbers
-that differ then agree and how much has to be believed for it; a cause is offered only when it
-explains nearly all that differs.
+another unit, another program or arithmetic (`otherruns`), or two of a side or an axis exchanged and
+a slip besides. What counts is how many of the numbers that differ then agree and how much has to be
+believed for it; a cause is offered only when it explains nearly all that differs. Causes that ask
+for about as much and leave the same unexplained share a rank: the page cannot tell them apart.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ from dataclasses import dataclass, replace
 from dataclasses import field as default
 from typing import Any
 
-from . import misreading, otherruns
+from . import misreading, otherruns, refining
+from .hypothesis import NATURAL, Hypothesis
 from .judging import FieldCheck, Status, field_checks, machine_read, reply_checks, settled
-from .otherruns import Hypothesis
 from .printout import Printout
 from .recovery import Recovered
 from .rereading import Change, Reread, Rereading
@@ -26,6 +27,15 @@ MOST = 6
 _NEARLY_ALL = 0.15
 """An explanation that leaves more than this of what differs is none."""
 _SLIPS_IN_RESULTS = 3
+_MOST_SLIPS = 4
+"""More slips than these are no explanation: nobody makes them all."""
+_ALIKE = 0.8
+"""Causes that leave the same unexplained and ask for no more than this more share a rank."""
+_WORSE = 1.5
+"""What asks for so much more than the best is no cause."""
+_GOOD = 1.6
+_SLIPS_BESIDES = 60
+_TWINS = 8
 NO_SINGLE_SLIP = "no single slip explains this"
 
 _COST = {
@@ -46,7 +56,7 @@ class Explanation:
     """A cause that would make printed and recomputed agree in ``explains`` of the differing numbers
     and leaves ``remaining`` differences. ``changes``: every printed number it puts right, and where
     it stands; ``field``, ``printed``, ``would_be``: the first of them. ``look``: where to look on
-    the paper."""
+    the paper. ``rank``: from 1; explanations that the page cannot tell apart share it."""
 
     kind: str
     field: str | None
@@ -57,12 +67,14 @@ class Explanation:
     note: str = ""
     changes: list[dict[str, Any]] = default(default_factory=list)
     look: list[str] = default(default_factory=list)
+    rank: int = 1
     weight: float = 0.0
+    unexplained: frozenset[str] = frozenset()
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
         shown = dict(vars(self))
-        del shown["weight"]
+        del shown["weight"], shown["unexplained"]
         return shown
 
 
@@ -106,10 +118,17 @@ def explain(
         if again is not None:
             return Explained([], again)
         explanations += work.rereads(reread, replies)
-        explanations += work.others(otherruns.hypotheses(shown, recovered), replies)
-        if not explanations or min(one.weight for one in explanations) > 1.6:
+        hypotheses = otherruns.hypotheses(shown, recovered)
+        explanations += work.others(hypotheses, replies)
+        if not explanations or min(one.weight for one in explanations) > _GOOD:
             doubles = Rereading(recovered).double_slips()
             explanations += work.rereads(doubles, replies)
+            reread += doubles
+        explanations += work.twins(reread, replies)
+        if not explanations or min(one.weight for one in explanations) > _GOOD + 1:
+            refined = list(refining.refined(recovered, hypotheses))
+            explanations += work.others(refined, replies)
+            explanations += work.exchanged_and_slipped(hypotheses, replies)
     return Explained(_chosen(explanations, len(base)))
 
 
@@ -189,6 +208,13 @@ class _Work:
             unexplained = len(wrong) - (len(changes) - len(one.changes))
             yield self._explanation(changes, wrong - {c.field for c in changes}, unexplained)
 
+    def twins(
+        self, reread: Sequence[Reread], replies: Sequence[FieldCheck]
+    ) -> Iterator[Explanation]:
+        """The best of the same by the other angle of a sum."""
+        best = sorted(reread, key=lambda one: one.scored.cost)[:_TWINS]
+        return self.rereads(list(Rereading(self.recovered).twins(best)), replies)
+
     def others(
         self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
     ) -> Iterator[Explanation]:
@@ -205,6 +231,7 @@ class _Work:
                 len(wrong),
                 one.hypothesis.note,
                 weight=one.hypothesis.weight + len(wrong),
+                unexplained=wrong,
             )
             first = one.hypothesis.changes[0] if one.hypothesis.changes else None
             if first is not None:
@@ -215,6 +242,27 @@ class _Work:
                 )
                 shown.changes = [self._change(change) for change in one.hypothesis.changes]
             yield shown
+
+    def exchanged_and_slipped(
+        self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
+    ) -> Iterator[Explanation]:
+        """Inputs of a side or an axis exchanged, and a slip in another."""
+        exchanges = [one for one in hypotheses if one.assumed is not None and one.weight <= NATURAL]
+        texts = [
+            {change.field: (one.assumed or {})[change.field] for change in one.changes}
+            for one in exchanges
+        ]
+        if not texts:
+            return
+        for number, one in Rereading(self.recovered).besides(texts, _SLIPS_BESIDES):
+            hypothesis = exchanges[number]
+            wrong = self._wrong(one.scored, replies)
+            believed = hypothesis.weight + sum(map(_believed, one.changes)) + 0.1
+            made = self._explanation(
+                [*hypothesis.changes, *one.changes], wrong, len(wrong), believed
+            )
+            made.note = hypothesis.note
+            yield made
 
     def _wrong(self, scored: Scored, replies: Sequence[FieldCheck]) -> frozenset[str]:
         return scored.wrong | self._wrong_replies(scored.scene, replies)
@@ -250,13 +298,18 @@ class _Work:
                 yield Change(kind, name, check.printed, should)
 
     def _explanation(
-        self, changes: Sequence[Change], unexplained: frozenset[str], remaining: int
+        self,
+        changes: Sequence[Change],
+        unexplained: frozenset[str],
+        remaining: int,
+        believed: float | None = None,
     ) -> Explanation:
         first = changes[0]
         kinds = list(dict.fromkeys(change.kind for change in changes))
         kind = kinds[0] if len(kinds) == 1 else " and ".join(kinds)
-        weight = sum(_believed(change) for change in changes) + remaining
-        weight += 0.1 * (len(changes) - 1)
+        if believed is None:
+            believed = sum(map(_believed, changes)) + 0.1 * (len(changes) - 1)
+        weight = believed + remaining
         explains = len(self.base - unexplained) if unexplained is not self.base else len(changes)
         name = first.field.removeprefix("reply ")
         note = "in the typed reply" if first.field.startswith("reply ") else ""
@@ -264,7 +317,7 @@ class _Work:
         look = [one["look"] for one in described if one["look"]]
         return Explanation(
             kind, name, first.printed, first.would_be, explains, max(0, remaining), note,
-            described, look, weight,
+            described, look, weight=weight, unexplained=unexplained,
         )  # fmt: skip
 
     def _change(self, change: Change) -> dict[str, Any]:
@@ -305,18 +358,50 @@ def _believed(change: Change) -> float:
 def _chosen(explanations: list[Explanation], base: int) -> list[Explanation]:
     """Those that explain nearly all, the least to believe first; none twice."""
     most_left = max(0, int(_NEARLY_ALL * base))
-    kept = [one for one in explanations if one.explains > 0 and one.remaining <= most_left]
-    kept.sort(key=lambda one: (one.remaining, one.weight))
+    kept = [
+        one
+        for one in explanations
+        if one.explains > 0 and one.remaining <= most_left and _few_slips(one)
+    ]
+    kept.sort(key=lambda one: one.weight)
     if kept:
-        # what asks for much more than the best is no cause
-        kept = [one for one in kept if one.weight <= kept[0].weight + 1.5]
+        kept = [one for one in kept if one.weight <= kept[0].weight + _WORSE]
     chosen: list[Explanation] = []
     for one in kept:
-        changes = _changes(one)
         # what only adds to a simpler cause, or says it again, is none of its own
-        if not any(_changes(other) <= changes and _changes(other) for other in chosen):
+        if not any(_adds_to(one, other) or _says(one) == _says(other) for other in chosen):
             chosen.append(one)
-    return chosen[:MOST]
+    return _ranked(chosen[:MOST])
+
+
+def _ranked(chosen: list[Explanation]) -> list[Explanation]:
+    """The same, with ranks; those of one rank beside each other."""
+    leaders: list[Explanation] = []
+    for one in chosen:
+        alike = (
+            rank
+            for rank, other in enumerate(leaders, 1)
+            if one.unexplained == other.unexplained and one.weight <= other.weight + _ALIKE
+        )
+        one.rank = next(alike, len(leaders) + 1)
+        if one.rank > len(leaders):
+            leaders.append(one)
+    return sorted(chosen, key=lambda one: (one.rank, one.weight))
+
+
+def _few_slips(one: Explanation) -> bool:
+    slips = [change for change in one.changes if change["kind"] in misreading.KINDS_OF_SLIPS]
+    return len(slips) <= _MOST_SLIPS
+
+
+def _adds_to(one: Explanation, other: Explanation) -> bool:
+    """Whether one puts right what the other does and more, or the same in the same way."""
+    changes, others = _changes(one), _changes(other)
+    return bool(others) and (others < changes or (others == changes and one.kind == other.kind))
+
+
+def _says(one: Explanation) -> tuple[str, str, frozenset[tuple[str, str]]]:
+    return one.kind, one.note, _changes(one)
 
 
 def _changes(one: Explanation) -> frozenset[tuple[str, str]]:

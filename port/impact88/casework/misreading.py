@@ -18,6 +18,8 @@ TWO_DIGITS = "two digits misread"
 
 KINDS = (DIGIT, SIGN, POINT, SWAP, COUNT)
 """In the order of how common they are taken to be."""
+KINDS_OF_SLIPS = frozenset((*KINDS, TWO_DIGITS))
+"""All of them."""
 
 _ALIKE = {
     "0": "869",

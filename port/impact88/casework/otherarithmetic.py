@@ -8,7 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from decimal import ROUND_FLOOR, Context, Decimal, DecimalException, localcontext
+from decimal import (
+    ROUND_DOWN,
+    ROUND_FLOOR,
+    ROUND_HALF_UP,
+    Context,
+    Decimal,
+    DecimalException,
+    localcontext,
+)
 from functools import lru_cache
 from typing import Any
 
@@ -17,7 +25,7 @@ from ..applesoft.errors import ApplesoftError, division_by_zero, overflow
 from ..program.arithmetics import FLOAT64, Arithmetic
 
 PI = "3.14159265"
-SINGLE_DIGITS, DECIMAL_DIGITS = 7, 12
+SINGLE_DIGITS, DECIMAL_DIGITS = 7, (10, 12, 14)
 """Digits that single-precision BASICs print; digits that decimal ones compute with."""
 
 
@@ -85,9 +93,41 @@ def single() -> Arithmetic:
     )
 
 
+def shaken(seed: int) -> Arithmetic:
+    """The same, each number that is stored moved by up to one unit of its last bit: what machines
+    of 24 bits may differ in. Whole numbers stay what they are."""
+    import random
+
+    import numpy as np
+
+    rng = random.Random(seed)
+    plain = single()
+
+    def store(x: Any) -> Any:
+        value = float(x)
+        if value.is_integer() or not math.isfinite(value):
+            return np.float32(value)
+        return np.float32(value * (1 + rng.choice((-1, 0, 1)) * 2.0**-23))
+
+    return _Other(
+        "single",
+        read=plain.read,
+        LET=store,
+        NEXT=plain.NEXT,
+        INT=plain.INT,
+        ABS=plain.ABS,
+        SIN=lambda x: store(plain.SIN(x)),
+        COS=lambda x: store(plain.COS(x)),
+        write=plain.write,
+        error=plain.error,
+        unset=plain.unset,
+        zero=plain.zero,
+    )
+
+
 @lru_cache(maxsize=1)
 def decimal() -> Arithmetic:
-    """Twelve decimal digits, as the HP-85's and other BCD machines compute."""
+    """The decimal digits of the context, as the HP-85's and other BCD machines compute."""
 
     def of(function: Callable[[float], float]) -> Callable[[Any], Any]:
         return lambda x: +Decimal(repr(function(float(x))))
@@ -129,6 +169,11 @@ def with_pi(text: str) -> Arithmetic:
     return made
 
 
-DECIMAL_CONTEXT = Context(prec=DECIMAL_DIGITS)
+DECIMAL_CONTEXTS = tuple(
+    Context(prec=digits, rounding=rounding)
+    for digits in DECIMAL_DIGITS
+    for rounding in (ROUND_HALF_UP, ROUND_DOWN)
+)
+"""Decimal machines: so many digits, rounded or cut off."""
 
-__all__ = ["DECIMAL_CONTEXT", "decimal", "localcontext", "single", "with_pi"]
+__all__ = ["DECIMAL_CONTEXTS", "decimal", "localcontext", "shaken", "single", "with_pi"]

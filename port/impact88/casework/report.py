@@ -347,12 +347,16 @@ def _explanations(result: Verification) -> str:
         return ""
     if not result.explanations:
         return f"<h2>Explanations, tested by replay</h2><p>{wording.NO_SINGLE_SLIP}</p>"
-    items = []
+    items: list[str] = []
     for one in result.explanations:
-        text = f"{escape(wording.cause(one))}; explains {one.explains} of {result.disagreements}"
+        text = escape(wording.cause(one))
         if one.look:
             text += "<br>look at " + "; ".join(map(escape, one.look[:4]))
-        items.append(f"<li>{text}</li>")
+        if one.rank > len(items):
+            items.append(f"{text}<br>explains {one.explains} of {result.disagreements}")
+        else:
+            items[-1] += f"<br><i>or, {wording.NOT_TOLD_APART}:</i> {text}"
+    items = [f"<li>{text}</li>" for text in items]
     return f"<h2>Explanations, tested by replay</h2><ol>{''.join(items)}</ol>"
 
 

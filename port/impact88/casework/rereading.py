@@ -8,7 +8,8 @@ energy first, and the best replayed. Nothing here is a verdict: `explain` names 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from decimal import Decimal
 from itertools import combinations as pairs_of
 from typing import NamedTuple
 
@@ -16,7 +17,7 @@ import numpy as np
 
 from ..fields import ANGLES, INPUTS
 from . import misreading
-from .numerals import printable, value_of
+from .numerals import as_printed, printable, value_of
 from .recovery import Recovered
 from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search
 from .typedtext import stored_and_printed, texts_that_print
@@ -32,6 +33,8 @@ COSTS = {
 }
 """What it costs to believe a slip; a result that differs costs `search.MISMATCH`."""
 _UNLIKE = 0.05
+_SUMS = (("PA", "TA"), ("PB", "TB"))
+"""Angles that enter only as their sum."""
 _SINGLES_KEPT = 220
 _PAIRS = 160_000
 _ENERGIES = 24
@@ -68,7 +71,11 @@ class Rereading:
         and two in the rest, those that explain most first."""
         choices, changes = self._choices()
         kinetic = [place for place, name in enumerate(self._names) if scene_name(name) in KINETIC]
-        rest = [place for place in range(len(choices)) if place not in kinetic]
+        rest = [
+            place
+            for place in range(len(choices))
+            if place not in kinetic or self._still(self._names[place])
+        ]
         picks = [self._singles(choices)]
         picks.append(self._in_energy(choices, kinetic, rest, deep))
         picks.append(self._pairs(choices, rest))
@@ -85,6 +92,77 @@ class Rereading:
             ranked.append(Reread(made, scored))
         ranked.sort(key=lambda one: one.scored.cost)
         return ranked
+
+    def besides(
+        self, exchanges: Sequence[Mapping[str, str]], most: int
+    ) -> list[tuple[int, Reread]]:
+        """Scenes with some inputs exchanged and one of the others put right, those that explain
+        most first: the number of the exchange, and the rest. ``exchanges``: for each the texts
+        printed in place of others, by field."""
+        choices, changes = self._choices()
+        singles = self._singles(choices)
+        rows: list[Picks] = []
+        numbers: list[int] = []
+        for number, exchange in enumerate(exchanges):
+            places = [self._names.index(name) for name in exchange]
+            block = singles[(singles[:, places] == 0).all(axis=1)][1:]
+            for place, (name, text) in zip(places, exchange.items(), strict=True):
+                block[:, place] = len(choices[place])
+                choices[place].append(next(self._typed(name, text, 0.0)))
+                changes[place].append(None)
+            rows.append(block)
+            numbers += [number] * len(block)
+        picks = np.concatenate(rows)
+        order = {tuple(row): number for row, number in zip(picks.tolist(), numbers, strict=True)}
+        picks = self._search.screened(choices, picks, most)
+        tried = self._search.replayed(self._proper(choices, picks), picks)
+        both = []
+        for pick, scored in zip(picks.tolist(), tried, strict=True):
+            made = tuple(
+                change
+                for place, index in enumerate(pick)
+                if (change := changes[place][index]) is not None
+            )
+            both.append((order[tuple(pick)], Reread(made, scored)))
+        return both
+
+    def _still(self, name: str) -> bool:
+        """Whether an input is an inertia that does not spin: the energy says nothing of it."""
+        spin = {"IA": "WA", "IB": "WB"}.get(name)
+        return spin is not None and not float(self._scene[spin] or 0)
+
+    def twins(self, rereads: Sequence[Reread]) -> Iterator[Reread]:
+        """The same pages by the other angle of a sum: what is wrong in TB may be wrong in PB."""
+        for one in rereads:
+            for name, twin in (*_SUMS, *((two, one) for one, two in _SUMS)):
+                change = next((one for one in one.changes if one.field == name), None)
+                if change is None or any(other.field == twin for other in one.changes):
+                    continue
+                other = self._twin(change, twin)
+                if other is not None:
+                    yield self._instead(one, change, other)
+
+    def _twin(self, change: Change, twin: str) -> Change | None:
+        """The slip in the other angle that gives the same sum."""
+        values = [value_of(self._base.get(twin, "")), value_of(change.would_be)]
+        printed = value_of(change.printed)
+        if None in values or printed is None:
+            return None
+        total: Decimal = sum(value for value in values if value is not None) - printed
+        text = as_printed(f"{total:f}")
+        if text is None or not printable(text) or text == self._base[twin]:
+            return None
+        kind = misreading.slip(self._base[twin], text)
+        if kind is None and misreading.differ_in_two(self._base[twin], text):
+            kind = misreading.TWO_DIGITS
+        return Change(kind, twin, self._base[twin], text) if kind else None
+
+    def _instead(self, one: Reread, change: Change, other: Change) -> Reread:
+        scene = {**one.scored.scene, change.field: self._scene[change.field]}
+        scene[other.field] = typed_for(other.would_be, True) or other.would_be
+        assumed = {**one.scored.assumed, change.field: change.printed, other.field: other.would_be}
+        changes = tuple(other if each == change else each for each in one.changes)
+        return Reread(changes, self._search.replayed_scene(scene, assumed))
 
     def double_slips(self) -> list[Reread]:
         """Scenes with two digits of one input put right."""
@@ -196,8 +274,12 @@ class Rereading:
     def _in_energy(
         self, choices: Choices, kinetic: list[int], rest: list[int], deep: bool
     ) -> Picks:
-        """Up to two slips in masses and velocities, with up to one (or two) in the rest."""
-        own = [choices[place] for place in kinetic]
+        """Up to two slips in masses and velocities, with up to one (or two) in the rest; inertias
+        that do not spin are of the rest."""
+        own = [
+            choices[place][:1] if self._still(self._names[place]) else choices[place]
+            for place in kinetic
+        ]
         first = self._search.by_energy(own, _two_changes(own, _PAIRS), _ENERGIES)
         others = [choices[place] for place in rest]
         second = _one_change(others)

@@ -18,6 +18,7 @@ TITLES = {
     Verdict.INCOMPLETE: "INCOMPLETE",
 }
 
+NOT_TOLD_APART = "which this page cannot tell from it"
 _SAYS = {
     Verdict.IDENTICAL: "every printed number is what the 1988 program prints, digit for digit",
     Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; what was not read "
@@ -170,8 +171,14 @@ def explained(result: Verification) -> Iterator[str]:
         yield NO_SINGLE_SLIP
         return
     yield "possible explanations, best first:"
-    for place_, one in enumerate(result.explanations, 1):
-        yield f"{place_}. {cause(one)}; explains {one.explains} of {result.disagreements}"
+    before = 0
+    for one in result.explanations:
+        if one.rank != before:
+            words = f"{one.rank}. {cause(one)}; explains {one.explains} of {result.disagreements}"
+        else:
+            words = f"   or, {NOT_TOLD_APART}: {cause(one)}"
+        before = one.rank
+        yield words
         for where in one.look[:4]:
             yield f"   look at {where}"
 
