@@ -55,17 +55,19 @@ if TYPE_CHECKING:
     from .errors import UserError
     from .figures.sceneview import scene_svg
     from .program.run import Run, run
-    from .reconstruction.adjustment import Reconstruction, reconstruct
+    from .reconstruction.adjustment import Reconstruction
     from .reconstruction.unknowns import Solution, solve_for
     from .replay import Replay, replay
     from .scene import Scene, sample
     from .tables.frames import solve_frame
-    from .uncertainty.bounds import Bounds, bounds
+    from .uncertainty.bounds import bounds
+    from .uncertainty.boundstable import Bounds
+    from .uncertainty.reconstructedtable import reconstruct
     from .uncertainty.uncertain import Uncertain
 
 _LAZY = {
     "Applesoft": "emulator.emulator",
-    "Bounds": "uncertainty.bounds",
+    "Bounds": "uncertainty.boundstable",
     "Reconstruction": "reconstruction.adjustment",
     "Replay": "replay",
     "Run": "program.run",
@@ -83,7 +85,7 @@ _LAZY = {
     "names": "",
     "oracle": "checking.oracle:look_up",
     "read_printouts": "casework.printout",
-    "reconstruct": "reconstruction.adjustment",
+    "reconstruct": "uncertainty.reconstructedtable",
     "replay": "replay",
     "run": "program.run",
     "sample": "scene",

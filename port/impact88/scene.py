@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from . import estimates
+from . import estimates, notebook
 from .doubles import double, is_number
 from .errors import UserError
 from .files import called, packaged_text, read_text
@@ -93,6 +93,10 @@ class Scene(Mapping[str, str]):
 
     def __repr__(self) -> str:
         return f"Scene({self._values!r})"
+
+    def _repr_html_(self) -> str:
+        """The scene file, as a notebook shows it."""
+        return notebook.preformatted(self.to_toml())
 
     def replaced(self, changes: Mapping[str, str]) -> Scene:
         """This scene with some values changed. Raises UserError as the constructor does."""

@@ -16,7 +16,8 @@ from .. import files
 from ..errors import UserError
 from ..fields import FIELDS
 from ..names import FINAL_VELOCITIES, quantity
-from . import beside, provenance, wording
+from . import beside, provenance, verification, wording
+from .explain import NO_SINGLE_SLIP
 from .judging import Doubtful, FieldCheck, Status, Verdict
 from .verify import Examined, Verification
 
@@ -250,7 +251,7 @@ def _provenance(examined: Sequence[Examined], date: str | None) -> str:
 def _section(result: Verification, sha256: str | None, date: str | None) -> str:
     where = escape(files.called(result.file))
     verdict = result.verdict
-    summary = " ".join(f"{_sentence(line)}" for line in wording.summary(result))
+    summary = " ".join(f"{_sentence(line)}" for line in verification.summary(result))
     parts = [
         "<section>",
         f"<h1>{where}, printout {result.number}</h1>",
@@ -346,7 +347,7 @@ def _explanations(result: Verification) -> str:
     if result.verdict is not Verdict.DIFFERS:
         return ""
     if not result.explanations:
-        return f"<h2>Explanations, tested by replay</h2><p>{wording.NO_SINGLE_SLIP}</p>"
+        return f"<h2>Explanations, tested by replay</h2><p>{NO_SINGLE_SLIP}</p>"
     items: list[str] = []
     for one in result.explanations:
         text = escape(wording.cause(one))

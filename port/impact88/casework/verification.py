@@ -1,12 +1,17 @@
-"""What a verification holds: the result for one printout, and for one file."""
+"""What a verification holds: the result for one printout, and for one file; and both as text."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from .. import notebook
+from ..errors import shown
+from ..files import called
 from ..schemas import stamped
-from .explain import Explanation
+from . import wording
+from .explain import NO_SINGLE_SLIP, Explanation
 from .judging import FieldCheck, Status, Verdict
 from .printout import Piece
 
@@ -65,6 +70,10 @@ class Verification:
         """The fields the program prints and that were not read."""
         return [check.name for check in self.fields if check.status == Status.NOT_READ]
 
+    def _repr_html_(self) -> str:
+        """What the command prints, as a notebook shows it."""
+        return notebook.preformatted("\n".join(lines(self)))
+
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
         whole = {
@@ -106,3 +115,120 @@ class Examined:
             return [result.as_json() for result in self.results]
         refused = {"file": self.file, "sha256": self.sha256, "error": self.error}
         return [stamped("verify", refused)]
+
+
+# --- as text --------------------------------------------------------------------------------------
+
+
+def summary(result: Verification) -> Iterator[str]:
+    """What a verdict rests on: counts, and by name what is missing."""
+    verdict = result.verdict
+    fields = result.fields
+    if verdict is Verdict.IDENTICAL:
+        yield f"all {len(fields)} printed numbers are what the program prints, digit for digit"
+    elif verdict is Verdict.DIFFERS:
+        compared = sum(check.same is not None for check in fields)
+        yield f"{compared} printed numbers compared, {len(result.differing)} differ"
+    else:
+        yield wording.counts(fields)
+    if verdict is Verdict.IDENTICAL_AS_READ:
+        yield wording.says(verdict)
+    if len(result.missing) == 1:
+        yield f"{result.missing[0]} is missing: what depends on it was not compared"
+    elif result.missing:
+        yield f"{', '.join(result.missing)} are missing: what depends on them was not compared"
+    not_read = [name for name in result.not_read if name not in result.missing]
+    if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
+        yield f"not read: {', '.join(not_read)}"
+    if verdict is Verdict.INCOMPLETE and not result.missing and not not_read:
+        yield "the results are missing, or the page ends before they do"
+    ending = result.ending
+    if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
+        yield (
+            f"ends with {ending.printed or 'no error'}, "
+            f"recomputed: {ending.recomputed or 'no error'}"
+        )
+
+
+def explained(result: Verification) -> Iterator[str]:
+    """The explanations, best first, and where to look on the paper."""
+    if not result.explanations:
+        yield NO_SINGLE_SLIP
+        return
+    yield "possible explanations, best first:"
+    before = 0
+    for one in result.explanations:
+        if one.rank != before:
+            words = f"{one.rank}. {wording.cause(one)}; explains {one.explains} of "
+            words += str(result.disagreements)
+        else:
+            words = f"   or, {wording.NOT_TOLD_APART}: {wording.cause(one)}"
+        before = one.rank
+        yield words
+        for where in one.look[:4]:
+            yield f"   look at {where}"
+
+
+def lines(result: Verification, brief: bool = False) -> Iterator[str]:
+    """What `impact88 verify` prints of one printout; ``brief``: only verdict and what differs."""
+    where = f"{shown(called(result.file))}, printout {result.number} (line {result.line})"
+    yield f"{where}: {wording.title(result.verdict)}"
+    yield from (f"  {line}" for line in summary(result))
+    doubts = [line for check in result.doubtful for line in wording.doubts(check)]
+    yield from (f"  {line}" for line in _some(doubts, brief))
+    checks = result.differing if brief else result.fields
+    if checks:
+        yield ""
+        yield from (f"  {line}" for line in _table(checks, exact=not brief))
+    for check in result.replies:
+        if check.same is False:
+            yield f"  the reply {check.printed} for {check.name} is not the {check.recomputed} used"
+    if result.verdict is Verdict.DIFFERS:
+        yield ""
+        yield from (f"  {line}" for line in explained(result))
+    for title, sentences in (
+        ("the page cannot show:", result.unseen),
+        ("what the page shows besides:", result.findings),
+        ("beside the verdict:", [] if brief else result.warnings),
+    ):
+        if sentences:
+            yield ""
+            yield f"  {title}"
+            yield from (f"  - {line}" for line in sentences)
+    notes = [*result.remarks, *wording.left_over(result.left_over)]
+    yield from (f"  note: {line}" for line in _some(notes, brief))
+    if not brief:
+        yield ""
+
+
+def _some(lines: list[str], brief: bool) -> list[str]:
+    """All lines, or a few of them and how many more there are."""
+    if not brief or len(lines) <= 4:
+        return lines
+    return [*lines[:3], f"and {len(lines) - 3} more places"]
+
+
+_MARKS = {
+    Status.READ: "",
+    Status.DOUBTFUL: "doubtful",
+    Status.CONTRADICTED: "differs",
+    Status.NOT_READ: "not read",
+    Status.NOT_COMPARED: "not compared",
+}
+
+
+def _table(checks: list[FieldCheck], exact: bool) -> Iterator[str]:
+    """Rows of printed against recomputed, those that differ marked."""
+    rows = [["", "printed", "recomputed"]]
+    for check in checks:
+        rows.append([check.name, check.printed or "-", check.recomputed or "-"])
+    if exact:
+        rows[0] += ["exact", "printed-exact"]
+        for row, check in zip(rows[1:], checks, strict=True):
+            row += [check.exact or "", check.difference or ""]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    notes = ["", *(_MARKS[Status(check.status)] for check in checks)]
+    for row, note in zip(rows, notes, strict=True):
+        cells = [row[0].ljust(widths[0])]
+        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        yield "  ".join([*cells, note]).rstrip()

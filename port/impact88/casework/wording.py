@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
-from .explain import NO_SINGLE_SLIP, Explanation
+from .explain import Explanation
 from .judging import FieldCheck, Status, Verdict
 from .numerals import Doubt
 from .printout import Piece, Printout
 from .recovery import Recovered
-from .verification import Verification
 
 TITLES = {
     Verdict.IDENTICAL: "IDENTICAL",
@@ -133,54 +132,6 @@ def commas(shown: Printout) -> bool:
     """Whether every decimal point is a comma."""
     text = "".join(glyph.char for reading in shown.fields.values() for glyph in reading.region[:-1])
     return text.count(",") >= 3 and "." not in text
-
-
-def summary(result: Verification) -> Iterator[str]:
-    """What a verdict rests on: counts, and by name what is missing."""
-    verdict = result.verdict
-    fields = result.fields
-    if verdict is Verdict.IDENTICAL:
-        yield f"all {len(fields)} printed numbers are what the program prints, digit for digit"
-    elif verdict is Verdict.DIFFERS:
-        compared = sum(check.same is not None for check in fields)
-        yield f"{compared} printed numbers compared, {len(result.differing)} differ"
-    else:
-        yield counts(fields)
-    if verdict is Verdict.IDENTICAL_AS_READ:
-        yield says(verdict)
-    if len(result.missing) == 1:
-        yield f"{result.missing[0]} is missing: what depends on it was not compared"
-    elif result.missing:
-        yield f"{', '.join(result.missing)} are missing: what depends on them was not compared"
-    not_read = [name for name in result.not_read if name not in result.missing]
-    if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
-        yield f"not read: {', '.join(not_read)}"
-    if verdict is Verdict.INCOMPLETE and not result.missing and not not_read:
-        yield "the results are missing, or the page ends before they do"
-    ending = result.ending
-    if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
-        yield (
-            f"ends with {ending.printed or 'no error'}, "
-            f"recomputed: {ending.recomputed or 'no error'}"
-        )
-
-
-def explained(result: Verification) -> Iterator[str]:
-    """The explanations, best first, and where to look on the paper."""
-    if not result.explanations:
-        yield NO_SINGLE_SLIP
-        return
-    yield "possible explanations, best first:"
-    before = 0
-    for one in result.explanations:
-        if one.rank != before:
-            words = f"{one.rank}. {cause(one)}; explains {one.explains} of {result.disagreements}"
-        else:
-            words = f"   or, {NOT_TOLD_APART}: {cause(one)}"
-        before = one.rank
-        yield words
-        for where in one.look[:4]:
-            yield f"   look at {where}"
 
 
 def cause(one: Explanation) -> str:

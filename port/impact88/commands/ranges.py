@@ -15,7 +15,7 @@ from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
 from .options import add_names_argument, add_scene_argument, pairs, tell_estimates
 
 if TYPE_CHECKING:
-    from ..uncertainty.bounds import Bounds
+    from ..uncertainty.boundstable import Bounds
 
 
 def add_range_arguments(parser: argparse.ArgumentParser) -> None:

@@ -121,7 +121,13 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: S
     from ..progress import progress
     from ..reconstruction.adjustment import reconstruct
     from ..reconstruction.state import QUANTITIES
-    from ..uncertainty.reconstructedtable import as_json, as_text, completed_values, uncertainty
+    from ..uncertainty.reconstructedtable import (
+        as_json,
+        as_text,
+        completed_values,
+        in_turn,
+        uncertainty,
+    )
 
     wanted = names_given([args.wanted], QUANTITIES, "--for") if args.wanted else None
     try:
@@ -142,10 +148,7 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: S
         whole = stamped("reconstruct", {"solutions": [as_json(*one, units) for one in tables]})
         print(json.dumps(whole, allow_nan=False))
         return
-    for count, one in enumerate(tables, 1):
-        if len(tables) > 1:
-            print(f"{chr(10) if count > 1 else ''}SOLUTION {count} OF {len(tables)}\n")
-        print(as_text(*one, units))
+    print(in_turn([as_text(*one, units) for one in tables]))
 
 
 def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace) -> None:

@@ -25,12 +25,10 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator
 
-from ..casework import wording
-from ..casework.verify import Examined, FieldCheck, Status, Verdict, Verification, examine
-from ..errors import UserError, shown
-from ..files import called
+from ..casework.verification import lines
+from ..casework.verify import Examined, Verdict, examine
+from ..errors import UserError
 from ..schemas import stamped
 from ..talk import tell
 from .options import add_json_argument, add_output_argument
@@ -86,69 +84,5 @@ def _tell(one: Examined, args: argparse.Namespace) -> None:
             print(json.dumps(stamped("verify", described), ensure_ascii=False))
     else:
         for result in one.results:
-            print("\n".join(_lines(result, args.brief)))
+            print("\n".join(lines(result, args.brief)))
     sys.stdout.flush()
-
-
-def _lines(result: Verification, brief: bool) -> Iterator[str]:
-    where = f"{shown(called(result.file))}, printout {result.number} (line {result.line})"
-    yield f"{where}: {wording.title(result.verdict)}"
-    yield from (f"  {line}" for line in wording.summary(result))
-    doubts = [line for check in result.doubtful for line in wording.doubts(check)]
-    yield from (f"  {line}" for line in _some(doubts, brief))
-    checks = result.differing if brief else result.fields
-    if checks:
-        yield ""
-        yield from (f"  {line}" for line in _table(checks, exact=not brief))
-    for check in result.replies:
-        if check.same is False:
-            yield f"  the reply {check.printed} for {check.name} is not the {check.recomputed} used"
-    if result.verdict is Verdict.DIFFERS:
-        yield ""
-        yield from (f"  {line}" for line in wording.explained(result))
-    for title, lines in (
-        ("the page cannot show:", result.unseen),
-        ("what the page shows besides:", result.findings),
-        ("beside the verdict:", [] if brief else result.warnings),
-    ):
-        if lines:
-            yield ""
-            yield f"  {title}"
-            yield from (f"  - {line}" for line in lines)
-    notes = [*result.remarks, *wording.left_over(result.left_over)]
-    yield from (f"  note: {line}" for line in _some(notes, brief))
-    if not brief:
-        yield ""
-
-
-def _some(lines: list[str], brief: bool) -> list[str]:
-    """All lines, or a few of them and how many more there are."""
-    if not brief or len(lines) <= 4:
-        return lines
-    return [*lines[:3], f"and {len(lines) - 3} more places"]
-
-
-_MARKS = {
-    Status.READ: "",
-    Status.DOUBTFUL: "doubtful",
-    Status.CONTRADICTED: "differs",
-    Status.NOT_READ: "not read",
-    Status.NOT_COMPARED: "not compared",
-}
-
-
-def _table(checks: list[FieldCheck], exact: bool) -> Iterator[str]:
-    """Rows of printed against recomputed, those that differ marked."""
-    rows = [["", "printed", "recomputed"]]
-    for check in checks:
-        rows.append([check.name, check.printed or "-", check.recomputed or "-"])
-    if exact:
-        rows[0] += ["exact", "printed-exact"]
-        for row, check in zip(rows[1:], checks, strict=True):
-            row += [check.exact or "", check.difference or ""]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    notes = ["", *(_MARKS[Status(check.status)] for check in checks)]
-    for row, note in zip(rows, notes, strict=True):
-        cells = [row[0].ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
-        yield "  ".join([*cells, note]).rstrip()

@@ -9,7 +9,7 @@ from base64 import b64decode, b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from ..casework import pasted, wording
+from ..casework import pasted, verification, wording
 from ..casework.judging import Verdict
 from ..casework.printout import LARGEST_FILE
 from ..casework.report import report as report_page
@@ -76,7 +76,7 @@ def _words(result: Verification) -> dict[str, Any]:
     return {
         "title": wording.title(result.verdict),
         "says": says,
-        "summary": [line for line in wording.summary(result) if line != says],
+        "summary": [line for line in verification.summary(result) if line != says],
         "parts": [
             {"heading": heading, "items": items} for heading, items in _parts(result) if items
         ],
@@ -89,7 +89,7 @@ def _parts(result: Verification) -> Iterable[tuple[str, list[str]]]:
     yield "Where to look", [line for check in contradicted for line in wording.look(check)]
     yield "Doubtful", [line for check in result.doubtful for line in wording.doubts(check)]
     if result.verdict is Verdict.DIFFERS:
-        first, *rest = wording.explained(result)
+        first, *rest = verification.explained(result)
         heading = first.rstrip(":")
         yield (heading[:1].upper() + heading[1:], rest or [first])
     yield "The page cannot show", result.unseen

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..uncertainty.bounds import Bounds
+    from ..uncertainty.boundstable import Bounds
 
 MOST_PANELS = 12
 MOST_BARS = 8

@@ -14,7 +14,7 @@ from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
 from .plan import Plan, Vehicle, dot, minus, plan, plus, scaled
-from .svg import svg
+from .svg import Svg, svg
 
 COLOURS = {"A": d.BLUE, "B": d.VERMILION}
 TINTS = {"A": "#d6e8f3", "B": "#fbe6d8"}
@@ -56,7 +56,7 @@ def scene_drawing(
     return drawing
 
 
-def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> str:
+def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
     """The scene as a self-contained SVG element, 85 mm wide, to stand in an HTML page or a file.
 
     ``scene``: an `impact88.Scene` or any mapping of the listing's names to texts or numbers;

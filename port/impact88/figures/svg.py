@@ -7,7 +7,16 @@ from xml.sax.saxutils import escape, quoteattr
 from .drawing import FONTS, MM_PER_POINT, Drawing, Path, Point, Text, dashes, text_runs
 
 
-def svg(drawing: Drawing) -> str:
+class Svg(str):
+    """The text of an SVG element, which a notebook shows as a picture."""
+
+    __slots__ = ()
+
+    def _repr_svg_(self) -> str:
+        return str(self)
+
+
+def svg(drawing: Drawing) -> Svg:
     """The drawing as one SVG element, in millimetres, with title and description for readers who
     cannot see it. May stand in a file by itself or inside an HTML page."""
     width, height = _number(drawing.width), _number(drawing.height)
@@ -20,7 +29,7 @@ def svg(drawing: Drawing) -> str:
     ]
     for item in drawing.items:
         lines.append(_path(item, drawing) if isinstance(item, Path) else _text(item, drawing))
-    return "\n".join([*lines, "</svg>", ""])
+    return Svg("\n".join([*lines, "</svg>", ""]))
 
 
 def _number(value: float) -> str:

@@ -11,6 +11,7 @@ from collections import namedtuple
 from collections.abc import Mapping
 from contextlib import nullcontext
 
+from .. import notebook
 from ..applesoft.console import Console
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.operators import Real
@@ -71,9 +72,7 @@ class Run(_Run):
 
     def _repr_html_(self) -> str:
         """The printout, as a notebook shows it."""
-        from html import escape
-
-        return f"<pre>{escape(self.page)}</pre>"
+        return notebook.preformatted(self.page)
 
 
 def page(text: str) -> str:

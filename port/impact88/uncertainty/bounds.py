@@ -21,7 +21,7 @@ the six final velocities back, with MUP, the signed ratio P_t/P_n, for MU, becau
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +39,8 @@ from ..reconstruction.model import (
     reconstruction_model,
     reconstruction_with_denominators,
 )
-from .draws import Drive, Spread, drive_of, ranks, spread_of
+from .boundstable import Bound, Bounds
+from .draws import drive_of, ranks, spread_of
 from .extremes import CORNERS_IN_FULL, Extremes, Piece, extremes, merged
 from .uncertain import Uncertain, correlation_root, fixed
 
@@ -64,58 +65,6 @@ SLIP_APART = 1e-12
 """How far from gt = 0 the changed sign of MU is met, of gt's range: on it the sign is kept."""
 SWEEP_POINTS = 41
 """Points of a one-at-a-time sweep."""
-
-
-@dataclass(frozen=True)
-class Bound:
-    """Lowest and highest value of one result over the box, and the inputs that give them.
-
-    ``nominal``: with every input at its nominal value; ``corner_lower`` and ``corner_upper``: the
-    extremes over the corners evaluated, which are the bounds themselves unless the result turns
-    around inside; a bound is infinite where the range holds a scene without solution, and the
-    inputs beside it then are close to that scene's; ``lower_warnings`` and ``upper_warnings``:
-    names of what is unphysical there.
-    """
-
-    nominal: float
-    lower: float
-    upper: float
-    at_lower: dict[str, float]
-    at_upper: dict[str, float]
-    corner_lower: float
-    corner_upper: float
-    lower_warnings: tuple[str, ...]
-    upper_warnings: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Bounds:
-    """The answer of `bounds`.
-
-    ``inputs``: what varies, and ``limits``: the box; ``bounds`` and ``spreads`` by output,
-    ``drives`` by output, then input; ``warnings``: STATUS name -> share of the draws that carry it;
-    ``unusable``: share of the draws without a finite result or excluded, left out of the spreads;
-    ``evaluations``: scenes solved in search of the bounds; ``draws``: each output's draws, arrays
-    of the ``samples`` values, kept on request; ``units``: the system of units of all of it
-    (`uncertainty.boundsunits`), None for base units or any others that are consistent.
-    """
-
-    problem: str
-    inputs: dict[str, Uncertain]
-    limits: dict[str, tuple[float, float]]
-    bounds: dict[str, Bound]
-    spreads: dict[str, Spread]
-    drives: dict[str, dict[str, Drive]]
-    warnings: dict[str, float]
-    unusable: float
-    samples: int
-    seed: int
-    sigmas: float
-    evaluations: int
-    corners_in_full: bool
-    correlations: dict[tuple[str, str], float]
-    draws: dict[str, Array] = field(default_factory=dict, repr=False)
-    units: str | None = None
 
 
 def input_names(problem: str) -> tuple[str, ...]:

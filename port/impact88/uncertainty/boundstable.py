@@ -1,18 +1,80 @@
-"""What `bounds` found as a table to read and as JSON to process."""
+"""What `bounds` found: the numbers, a table to read, and JSON to process."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from textwrap import wrap
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import notebook
 from ..names import quantity
 from ..plaintable import number
 from ..plaintable import table as columns
 from ..units import system_of
-from .bounds import Bound, Bounds
+from .draws import Drive, Spread
+from .uncertain import Uncertain
 
 DRIVERS_SHOWN = 4
+
+
+@dataclass(frozen=True)
+class Bound:
+    """Lowest and highest value of one result over the box, and the inputs that give them.
+
+    ``nominal``: with every input at its nominal value; ``corner_lower`` and ``corner_upper``: the
+    extremes over the corners evaluated, which are the bounds themselves unless the result turns
+    around inside; a bound is infinite where the range holds a scene without solution, and the
+    inputs beside it then are close to that scene's; ``lower_warnings`` and ``upper_warnings``:
+    names of what is unphysical there.
+    """
+
+    nominal: float
+    lower: float
+    upper: float
+    at_lower: dict[str, float]
+    at_upper: dict[str, float]
+    corner_lower: float
+    corner_upper: float
+    lower_warnings: tuple[str, ...]
+    upper_warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """The answer of `bounds`.
+
+    ``inputs``: what varies, and ``limits``: the box; ``bounds`` and ``spreads`` by output,
+    ``drives`` by output, then input; ``warnings``: STATUS name -> share of the draws that carry it;
+    ``unusable``: share of the draws without a finite result or excluded, left out of the spreads;
+    ``evaluations``: scenes solved in search of the bounds; ``draws``: each output's draws, arrays
+    of the ``samples`` values, kept on request; ``units``: the system of units of all of it
+    (`uncertainty.boundsunits`), None for base units or any others that are consistent.
+    """
+
+    problem: str
+    inputs: dict[str, Uncertain]
+    limits: dict[str, tuple[float, float]]
+    bounds: dict[str, Bound]
+    spreads: dict[str, Spread]
+    drives: dict[str, dict[str, Drive]]
+    warnings: dict[str, float]
+    unusable: float
+    samples: int
+    seed: int
+    sigmas: float
+    evaluations: int
+    corners_in_full: bool
+    correlations: dict[tuple[str, str], float]
+    draws: dict[str, NDArray[np.float64]] = field(default_factory=dict, repr=False)
+    units: str | None = None
+
+    def _repr_html_(self) -> str:
+        """What the command prints, as a notebook shows it."""
+        return notebook.preformatted(table(self))
 
 
 def _plain(value: float) -> float | None:

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..names import quantity
 from ..units import RULES, System, system_of
-from .bounds import Bound, Bounds
+from .boundstable import Bound, Bounds
 from .draws import Spread
 
 

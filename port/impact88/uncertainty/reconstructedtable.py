@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import notebook
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..plaintable import number, paragraph, plain, table
+from ..reconstruction import adjustment
 from ..reconstruction.adjustment import Reconstruction, typed_friction
 from ..reconstruction.solutiontable import (
     CHANGES,
@@ -25,6 +27,7 @@ from ..reconstruction.state import COURSES, SPEEDS
 from ..status import sentences
 from ..units import RULES, System, base_of
 from .reconstructed import Draws, Range, draws, ranges
+from .uncertain import Uncertain
 
 _RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB", "LOSS", *COEFFICIENTS)
 QUANTILES = (0.05, 0.5, 0.95)
@@ -175,6 +178,28 @@ def as_text(
     for warning in warnings(solution, values, spread):
         lines += paragraph(f"! {warning}")
     return "\n".join(lines).rstrip("\n")
+
+
+def in_turn(texts: Sequence[str]) -> str:
+    """The solutions one below the other, numbered where there are several."""
+    if len(texts) == 1:
+        return texts[0]
+    total = len(texts)
+    return "\n\n".join(f"SOLUTION {i} OF {total}\n\n{text}" for i, text in enumerate(texts, 1))
+
+
+class Reconstructions(list[Reconstruction]):
+    """The impacts that agree with what is known."""
+
+    def _repr_html_(self) -> str:
+        """What `impact88 reconstruct --samples 0` prints, as a notebook shows it."""
+        each = ((one, completed_values(one, None), uncertainty(one, 0)) for one in self)
+        return notebook.preformatted(in_turn([as_text(*one) for one in each]))
+
+
+def reconstruct(known: Mapping[str, Uncertain | float]) -> Reconstructions:
+    """`reconstruction.adjustment.reconstruct`, whose result a notebook can show."""
+    return Reconstructions(adjustment.reconstruct(known))
 
 
 def _adjustments(solution: Reconstruction, units: System) -> list[str]:

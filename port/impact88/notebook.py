@@ -1,0 +1,10 @@
+"""What a notebook is shown: texts as the command line prints them."""
+
+from __future__ import annotations
+
+
+def preformatted(text: str) -> str:
+    """A text as a piece of HTML that shows it as it stands."""
+    from html import escape
+
+    return f"<pre>{escape(text)}</pre>"
