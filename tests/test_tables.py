@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import io
 import json
 import math
@@ -302,6 +303,57 @@ def test_parquet_takes_types_as_they_are(tmp_path, capsys):
     parquet.write_table(pa.table({**columns, "MA": [True] * 3}), tmp_path / "b.parquet")
     assert main(["solve", str(tmp_path / "b.parquet"), "--to", "csv"]) == 2
     assert "MA holds bool; expected numbers" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("form", "to"), [("csv", "jsonl"), ("jsonl", "jsonl.gz")])
+def test_json_lines_have_one_type_a_column(tmp_path, form, to):
+    """From the first line to the last, however its numbers are written, for whoever infers it."""
+    pandas = pytest.importorskip("pandas")
+    polars = pytest.importorskip("polars")
+    pyarrow_json = pytest.importorskip("pyarrow.json")
+    first = [".5", "1", "1E5", "0", "0.25", "+.75", "-10", "007"]
+    cells = [*first, *["1"] * BLOCK_ROWS, "2", "1.5", "much", "", "1E-3"]
+    rows = [{"id": "17" if i else "a", "MU": cell} for i, cell in enumerate(cells)]
+    source, scene, there = tmp_path / f"a.{form}", tmp_path / "s.toml", tmp_path / f"b.{to}"
+    scene.write_text("".join(f'{name} = "{text}"\n' for name, text in TEXTS.items()))
+    if form == "csv":
+        source.write_text("id,MU\n" + "".join(f"{row['id']},{row['MU']}\n" for row in rows))
+    else:
+        source.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    asked = ["--scene", str(scene), "--outputs", "VAX,STATUS", "--errors", str(tmp_path / "e")]
+    assert main(["solve", str(source), "-o", str(there), *asked]) == 1
+    data = (gzip.decompress if to.endswith("gz") else bytes)(there.read_bytes())
+    told = [json.loads(line) for line in data.splitlines()]
+    assert [row["MU"] for row in told[-5:]] == [2, 1.5, None, None, 0.001]
+    assert [row["MU"] for row in told[: len(first)]] == list(map(float, first))
+    kinds = {name: {type(row[name]) for row in told} - {type(None)} for name in told[0]}
+    assert kinds == {"id": {str}, "MU": {float}, "VAX": {float}, "STATUS": {int}}
+    arrow_schema = pyarrow_json.read_json(io.BytesIO(data)).schema
+    for types in (
+        pandas.read_json(io.BytesIO(data), lines=True, dtype=False).dtypes,
+        polars.read_ndjson(io.BytesIO(data)).schema,
+        {name: arrow_schema.field(name).type for name in arrow_schema.names},
+    ):
+        kinds = {name: str(types[name]).lower() for name in told[0]}
+        assert kinds["id"] in ("object", "str", "string")
+        assert kinds["MU"] == kinds["VAX"]
+        assert kinds["MU"] in ("float64", "double")
+        assert kinds["STATUS"] == "int64"
+
+
+def test_infinite_mass_goes_into_every_format(tmp_path):
+    """A barrier's; the rest of its column are numbers."""
+    wall = {"VX": "0", "VY": "0", "WB": "0"}
+    rows = [{**TEXTS, **wall, "MB": text, "IB": text} for text in ("inf", "95.8")]
+    (tmp_path / "a.csv").write_text(csv_text(rows))
+    outputs = ["--outputs", "VAX,STATUS"]
+    texts = []
+    for form in ("csv", "jsonl", "npz", "parquet", "feather"):
+        there, back = tmp_path / f"b.{form}", tmp_path / "c.csv"
+        assert main(["solve", str(tmp_path / "a.csv"), "-o", str(there), *outputs]) == 0
+        assert main(["solve", str(there), "-o", str(back), "--results-only", *outputs]) == 0
+        texts.append(back.read_text())
+    assert len(set(texts)) == 1
 
 
 def test_older_excel_is_read_when_told(tmp_path, capsys):

@@ -161,7 +161,9 @@ def _array(name: str, rows: Rows, pa: Any) -> Any:
     column = rows.kept(name) if name in rows.columns or name in rows.others else [""] * rows.count
     if isinstance(column, ArrowColumn) and not (isinstance(column, ArrowTexts) and name in SCENE):
         return column.array
-    return pa.array(typed(name, column))
+    cells = typed(name, column)
+    # whole numbers too: where one is missing, a later block of them is of doubles
+    return pa.array(cells, pa.float64() if name in SCENE else None)
 
 
 class _ParquetWriter(_ArrowWriter):

@@ -7,12 +7,9 @@ to the same double.
 
 from __future__ import annotations
 
-import contextlib
 import csv
-import gzip
 import io
 import re
-import sys
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -23,11 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError, quoted
-from ..files import ESCAPED, replacing
 from ..names import RESULTS, SCENE
 from . import arrow
 from .jsontext import plain
-from .lines import TextFile, open_text
+from .lines import TextFile, open_text, writing
 from .plainblocks import PlainBlocks
 from .rows import (
     BLOCK_CHARACTERS,
@@ -267,22 +263,9 @@ def write_csv(
     delimiter: str,
 ) -> Iterator[Writer]:
     """Write a CSV table, see `tables.table.open_writer`."""
-    with contextlib.ExitStack() as stack:
-        file: IO[str]
-        if path == "-":
-            file = sys.stdout
-        elif path.lower().endswith(".gz"):
-            file = stack.enter_context(_packed(stack.enter_context(replacing(path, "wb"))))
-        else:
-            file = stack.enter_context(replacing(path))
+    with writing(path) as file:
         writer = _CsvWriter(file, kept, results, dropped, delimiter)
         if arrow.available() and hasattr(file, "buffer"):
             yield _ArrowCsvWriter(file, writer, kept, results, delimiter)
         else:
             yield writer
-
-
-def _packed(file: IO[bytes]) -> IO[str]:
-    """A text file that is packed into another one; the same text gives the same bytes."""
-    packed: Any = gzip.GzipFile(filename="", mode="wb", fileobj=file, compresslevel=6, mtime=0)
-    return io.TextIOWrapper(packed, encoding="utf-8", errors=ESCAPED, newline="\n")

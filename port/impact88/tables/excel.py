@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ..errors import UserError, quoted
 from ..files import replacing
 from ..names import SCENE
+from .jsontext import plain
 from .npzfile import check_unpacked
 from .rows import (
     BLOCK_ROWS,
@@ -79,8 +80,10 @@ class _ExcelReader:
             columns: dict[str, Column] = {}
             others: dict[str, Column] = {}
             for name, column in zip(self.names, cells, strict=True):
-                texts = [cell if isinstance(cell, bool) else _text(cell) for cell in column]
-                (columns if name in SCENE else others)[name] = texts
+                if name in SCENE:
+                    columns[name] = [c if isinstance(c, bool) else _text(c) for c in column]
+                else:
+                    others[name] = [plain(c) if isinstance(c, bool) else _text(c) for c in column]
             yield Rows(first, len(block), columns, others, [number for number, _ in block])
             first += len(block)
 

@@ -1,15 +1,16 @@
 """JSON Lines: a scene is an object on a line of its own.
 
-A number, or a string that holds one, is taken as the decimal text it is written as. Results are
-added as numbers with the fewest digits that read back to the same double; NaN, which JSON does not
-have, is null, and infinity 1e999, which readers take for it.
+A number, or a string that holds one, is taken as the decimal text it is written as. A column that
+is written has one type from the first line to the last: a scene's values are doubles with their own
+digits (``1`` is written 1.0), results doubles with the fewest digits that read back to the same;
+what is no number, such as NaN, which JSON does not have, is null, and infinity 1e999, which readers
+take for it. Other columns have the type that they came with: texts from a CSV.
 """
 
 from __future__ import annotations
 
 import json
-import re
-import sys
+import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import IO, Any
@@ -17,10 +18,9 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import replacing
 from ..names import SCENE
 from . import jsontext
-from .lines import Lines, open_text
+from .lines import Lines, open_text, writing
 from .rows import (
     ABSENT,
     BLOCK_CELLS,
@@ -31,6 +31,7 @@ from .rows import (
     Reader,
     Rows,
     Writer,
+    is_infinite,
     one_per_row,
 )
 
@@ -108,22 +109,23 @@ def read_json_lines(path: str, encoding: str | None = None) -> Iterator[Reader]:
         yield _JsonReader(file.lines())
 
 
-_JSON_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
-
-
-def _scene_number(value: Any) -> str:
-    if isinstance(value, str) and _JSON_NUMBER.fullmatch(value):
-        return value
-    return jsontext.written(value)
+def _double(cell: Any) -> str:
+    if isinstance(cell, str):
+        try:
+            return jsontext.double(cell)
+        except ValueError:
+            return jsontext.number(math.inf) if is_infinite(cell) else "null"
+    return jsontext.number(cell) if type(cell) in (int, float) else "null"
 
 
 def _cells(name: str, column: Column) -> list[str]:
     if isinstance(column, np.ndarray):
-        if column.dtype.kind == "f":
-            return list(map(jsontext.number, column.tolist()))
+        if column.dtype.kind == "f" or (name in SCENE and column.dtype.kind in "iub"):
+            # whole numbers too: where one is missing, a later block of them is of doubles
+            return list(map(jsontext.number, column.astype(np.float64, copy=False).tolist()))
         return list(map(json.dumps, column.tolist()))
     return [
-        "" if cell is ABSENT else _scene_number(cell) if name in SCENE else jsontext.written(cell)
+        "" if cell is ABSENT else _double(cell) if name in SCENE else jsontext.written(cell)
         for cell in column
     ]
 
@@ -158,8 +160,5 @@ def write_json_lines(
     path: str, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
 ) -> Iterator[Writer]:
     """Write a JSON Lines table, see `tables.table.open_writer`."""
-    if path == "-":
-        yield _JsonWriter(sys.stdout, kept, results, dropped)
-        return
-    with replacing(path) as file:
+    with writing(path) as file:
         yield _JsonWriter(file, kept, results, dropped)

@@ -7,7 +7,11 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from typing import Any
+
+from .. import doubles
+from ..applesoft.decimaltext import scan
 
 DEEPEST = 100
 """Lists and objects inside one another that are read."""
@@ -59,6 +63,8 @@ def written(value: Any) -> str:
         return "{" + ", ".join(f"{json.dumps(k)}: {written(v)}" for k, v in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(written, value)) + "]"
+    if isinstance(value, float):
+        return number(value)
     return json.dumps(value, ensure_ascii=False, default=str)
 
 
@@ -67,6 +73,25 @@ def plain(value: Any) -> str:
     if value is None:
         return ""
     return written(value) if isinstance(value, dict | list | bool) else str(value)
+
+
+_DOUBLE = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)")
+_WHOLE = re.compile(r"-?(0|[1-9][0-9]*)")
+
+
+def double(text: str) -> str:
+    """A number's own digits as JSON writes a double: never as a whole number, so that readers who
+    go by what they see give all of a column one type. Raises ValueError for a text that is no
+    number."""
+    if _DOUBLE.fullmatch(text):
+        return text
+    if _WHOLE.fullmatch(text):
+        return text + ".0"
+    if not doubles.is_number(text):
+        raise ValueError(f"{text!r} is no number")
+    sign, whole, decimals, exponent_sign, exponent, _ = scan(text.upper())
+    power = f"E{exponent_sign}{exponent}" if exponent else ""
+    return f"{sign.strip('+')}{whole.lstrip('0') or '0'}.{decimals or '0'}{power}"
 
 
 def number(value: float) -> str:

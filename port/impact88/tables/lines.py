@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import codecs
 import io
+import sys
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 from ..errors import UserError, quoted
-from ..files import LONGEST_LINE, Source, called, encoding_of
+from ..files import ESCAPED, LONGEST_LINE, Source, called, encoding_of, replacing
 
 PEEK = 1 << 17
 """Bytes that can be looked at before they are read."""
@@ -107,6 +108,24 @@ def open_text(path: str, encoding: str | None = None) -> Iterator[TextFile]:
             raise UserError(f"cannot be unpacked: {error}", called(path)) from None
         name = encoding or encoding_of(start)
         yield TextFile(binary, "utf-8-sig" if name == "utf-8" else name, source)
+
+
+@contextmanager
+def writing(path: str) -> Iterator[IO[str]]:
+    """A text file to write, packed when its name ends in ``.gz`` (the same text gives the same
+    bytes); ``-`` is standard output. It appears under its name when all is written."""
+    if path == "-":
+        yield sys.stdout
+    elif path.lower().endswith(".gz"):
+        import gzip
+
+        with replacing(path, "wb") as file:
+            packed: Any = gzip.GzipFile("", "wb", 6, file, mtime=0)
+            with io.TextIOWrapper(packed, "utf-8", ESCAPED, newline="\n") as text:
+                yield text
+    else:
+        with replacing(path) as file:
+            yield file
 
 
 def _check_encoding(name: str) -> None:

@@ -153,13 +153,7 @@ def typed(name: str, column: Column) -> NDArray[Any] | list[str]:
         return [jsontext.plain(cell) for cell in column]
     if isinstance(column, arrow.ArrowTexts) and (found := column.doubles()) is not None:
         return found
-    values = np.full(len(column), np.nan)
-    for i, cell in enumerate(column):
-        try:
-            values[i] = doubles.double(cell)
-        except (TypeError, AttributeError, ValueError):
-            continue
-    return values
+    return np.array([np.nan if _why_no_number(cell) else _double(cell) for cell in column], float)
 
 
 def refuse_late(rows: Rows, dropped: Collection[str], what: str) -> None:
@@ -201,7 +195,7 @@ def _numbers(rows: Rows, name: str, column: Column) -> NDArray[np.float64]:
             continue
         reason = _why_no_number(text)
         if reason is None:
-            values[index] = math.inf if _is_infinite(text) else doubles.double(text)
+            values[index] = _double(text)
         else:
             rows.bad.append(rows.cell(index, name, reason))
     return values
@@ -210,12 +204,16 @@ def _numbers(rows: Rows, name: str, column: Column) -> NDArray[np.float64]:
 def _why_no_number(text: object) -> str | None:
     if text is None or (isinstance(text, str) and not text.strip()):
         return "is empty; expected a number"
-    if isinstance(text, str) and (_is_infinite(text) or doubles.is_number(text)):
+    if isinstance(text, str) and (is_infinite(text) or doubles.is_number(text)):
         return None
     return f"{quoted(text)} is no number"
 
 
-def _is_infinite(text: str) -> bool:
+def _double(text: str) -> float:
+    return math.inf if is_infinite(text) else doubles.double(text)
+
+
+def is_infinite(text: str) -> bool:
     """Whether a cell says inf, the mass and the inertia of a barrier; INPUT has no such number."""
     return text.strip().lower() == "inf"
 
