@@ -7,13 +7,14 @@ pi, for the recovered scene: what the program would print had its arithmetic cos
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 
 from .. import status
 from ..doubles import doubles_of
 from ..fields import INPUTS
 from ..names import RESULTS
 from .judging import FieldCheck
+from .numerals import value_of
 
 _DIGITS = 12
 """Digits an exact value is shown with: as many as double precision is sure of."""
@@ -29,10 +30,10 @@ def add_exact_values(scene: Mapping[str, str], checks: Sequence[FieldCheck]) -> 
             continue
         check.exact = f"{value + 0.0:.{_DIGITS}g}"
         if check.printed is not None:
-            try:
-                difference = Decimal(check.printed) - Decimal(check.exact)
-            except InvalidOperation:
+            printed = value_of(check.printed)
+            if printed is None:
                 continue
+            difference = printed - Decimal(check.exact)
             check.difference = f"{difference:+.3g}" if difference else "0"
 
 

@@ -69,6 +69,8 @@ _COMMA = 0.3
 _SPECK, _SPECK_INSIDE, _BLANK_INSIDE = 0.4, 0.7, 0.3
 _BLANK_FOR_POINT = 1.0
 _RETYPED = 0.2
+_WIDEST = 400
+"""Powers of ten, either way, of the numbers that are taken for some."""
 _IN_PIECES = 0.45
 _SPECKS = frozenset(".,:;'`|_~-\"“”’‘·•!*°^«»<>=/\\")
 
@@ -84,11 +86,13 @@ def is_number(text: str) -> bool:
 
 
 def value_of(text: str) -> Decimal | None:
-    """The number a text is, None when it is none."""
+    """The number a text is; None when it is none, or one that no computer of the time could print
+    and no later step could add to another."""
     try:
-        return Decimal(text) if is_number(text) else None
+        value = Decimal(text) if is_number(text) else None
     except InvalidOperation:
         return None
+    return value if value is None or abs(value.adjusted()) <= _WIDEST else None
 
 
 def plain(region: Sequence[Glyph]) -> str:

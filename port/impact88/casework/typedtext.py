@@ -9,12 +9,13 @@ change its last bit (72.80 is 7280 divided twice by ten, 72.8 is 728 divided onc
 from __future__ import annotations
 
 import re
-from decimal import ROUND_HALF_EVEN, Decimal, InvalidOperation
+from decimal import ROUND_HALF_EVEN, Decimal
 from functools import lru_cache
 
 from ..applesoft import decimaltext
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import Number, divide, multiply, rounded, to_stored
+from .numerals import value_of
 
 _TYPED_ZEROS = 3
 """How many zeros after the last decimal are thought to have been typed at most."""
@@ -83,16 +84,9 @@ def _keep(texts: dict[bytes, str], text: str, printed: str, angle: bool) -> None
         texts.setdefault(seen[0], text)
 
 
-def _decimal(printed: str) -> Decimal | None:
-    try:
-        return Decimal(printed)
-    except InvalidOperation:
-        return None
-
-
 def _digits(text: str) -> int:
     """How many significant digits a text has."""
-    value = _decimal(text)
+    value = value_of(text)
     return 0 if value is None else len(value.normalize().as_tuple().digits)
 
 
@@ -114,7 +108,7 @@ def _trimmed(text: str) -> str:
 
 def _shorter(printed: str) -> list[str]:
     """The printed value with fewer and fewer digits left out: one digit, two digits ..."""
-    value = _decimal(printed)
+    value = value_of(printed)
     if value is None or not value:
         return []
     digits = len(value.as_tuple().digits)
@@ -130,7 +124,7 @@ def _shorter(printed: str) -> list[str]:
 
 def _neighbours(printed: str) -> list[str]:
     """Texts of as many digits or one more, near the printed value, nearest first."""
-    value = _decimal(printed)
+    value = value_of(printed)
     if value is None:
         return []
     last = Decimal(1).scaleb(value.adjusted() - _PRINTED_DIGITS + 1)
@@ -149,6 +143,6 @@ def _with_zeros(text: str) -> list[str]:
         return []
     sign, whole, decimals, exponent = match.groups(default="")
     if exponent:
-        plain = _decimal(text)
+        plain = value_of(text)
         return [] if plain is None or abs(plain.adjusted()) > 20 else [_trimmed(f"{plain:f}")]
     return [f"{sign}{whole}.{decimals}{'0' * count}" for count in range(1, _TYPED_ZEROS + 1)]
