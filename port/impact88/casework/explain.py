@@ -247,7 +247,14 @@ class _Work:
         self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
     ) -> Iterator[Explanation]:
         """Inputs of a side or an axis exchanged, and a slip in another."""
-        exchanges = [one for one in hypotheses if one.assumed is not None and one.weight <= NATURAL]
+        exchanges = [
+            one
+            for one in hypotheses
+            if one.weight <= NATURAL
+            and one.changes
+            # inputs that were given apart stand nowhere on the page to be exchanged
+            and {change.field for change in one.changes} <= {*(one.assumed or ())}
+        ]
         texts = [
             {change.field: (one.assumed or {})[change.field] for change in one.changes}
             for one in exchanges
