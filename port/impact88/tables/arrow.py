@@ -58,10 +58,10 @@ class ArrowTexts(ArrowColumn):
         needs a closer look."""
         import pyarrow as pa
 
-        _, offsets, data = self.array.buffers()
+        data = self.array.buffers()[2]
         if data is None:
             return None
-        ends = np.frombuffer(offsets, np.int32, len(self.array) + 1, 4 * self.array.offset)
+        ends = self._ends()
         characters = np.frombuffer(data, np.uint8)[ends[0] : ends[-1]]
         if not _PLAIN[characters].all():
             return None
@@ -71,6 +71,11 @@ class ArrowTexts(ArrowColumn):
             return None
         return values
 
+    def _ends(self) -> NDArray[np.int32]:
+        """Where each text begins among the characters, and where the last one ends."""
+        offsets = self.array.buffers()[1]
+        return np.frombuffer(offsets, np.int32, len(self.array) + 1, 4 * self.array.offset)
+
     def replaced(self, old: str, new: str) -> ArrowTexts:
         """The column with every ``old`` a ``new``."""
         import pyarrow.compute as compute
@@ -79,12 +84,14 @@ class ArrowTexts(ArrowColumn):
 
     def filled(self, text: str) -> ArrowTexts:
         """The column with ``text`` where there is none."""
+        import pyarrow as pa
+
+        empty = np.diff(self._ends()) == 0
+        if not empty.any():
+            return self
         import pyarrow.compute as compute
 
-        empty = compute.equal(self.array, "")
-        if not compute.any(empty).as_py():
-            return self
-        return ArrowTexts(compute.if_else(empty, text, self.array))
+        return ArrowTexts(compute.if_else(pa.array(empty), text, self.array))
 
 
 def texts_of(values: NDArray[Any]) -> Any:
