@@ -108,7 +108,7 @@ def test_errors_stay_within_the_bounds(name: str) -> None:
 def test_the_apple_s_errors_stay_within_its_bound(name: str) -> None:
     """Every stored final velocity against the double and what that may itself be off, in blocks, so
     that many scenes can be looked at. IMPACT88_ORACLE_LISTING sets how many of each population
-    (100000: seven minutes each)."""
+    (100000: some two minutes each)."""
     left, seed = int(os.environ.get("IMPACT88_ORACLE_LISTING") or 200), 23
     judged = 0
     while left > 0:

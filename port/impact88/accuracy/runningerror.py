@@ -6,9 +6,9 @@ one: what its operands are off, and what the operation rounds, always at their w
 of unknowns and its pivots without scaling do to a lorry and a car, which the condition of the
 equations does not. It is of first order (where a divisor is uncertain by a quarter there is none),
 supposes that the pivots chosen are those a double finds.
-On 10^5 scenes of cars, 10^5 of bodies up to 10^12 times heavier and 2·10^4 of each other population
-of the benchmark that the program can be given no error was above it; it is a thousand times the
-error of a usual scene.
+On 10^5 scenes of each population of the benchmark that the program can be given, bodies 10^12 times
+heavier than others among them, no error was above it; it is a thousand times the error of a usual
+scene.
 """
 
 from __future__ import annotations
