@@ -57,13 +57,13 @@ def _changes(one: Explanation) -> set[tuple[str | None, str | None]]:
 
 
 def _puts_right(true: Mapping[str, str]) -> Named:
-    """Whether just these numbers are put right, as they were."""
+    """Whether just these numbers are put right, as they were; fewer where that explains all, for
+    then nothing on the page depends on the others."""
     wanted = {(name, Decimal(text)) for name, text in true.items()}
 
     def named(one: Explanation) -> bool:
-        return wanted == {
-            (name, Decimal(text or "NaN")) for name, text in _changes(one) if name is not None
-        }
+        said = {(name, Decimal(text or "NaN")) for name, text in _changes(one) if name is not None}
+        return said == wanted or (bool(said) and said < wanted and not one.remaining)
 
     return named
 

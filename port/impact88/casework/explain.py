@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from dataclasses import field as default
 from typing import Any
 
+from ..fields import INPUTS
 from . import misreading, otherruns, refining
 from .hypothesis import NATURAL, Hypothesis
 from .judging import FieldCheck, Status, field_checks, machine_read, reply_checks, settled
@@ -200,7 +201,7 @@ class _Work:
         for one in reread:
             if not one.changes:
                 continue
-            wrong = self._wrong(one.scored, replies)
+            wrong = self._wrong(one.scored, replies) | self._inputs_left(one.changes)
             changes = list(one.changes)
             names = {name for name in wrong if name in self.base}
             if len(names) <= _SLIPS_IN_RESULTS:
@@ -221,6 +222,8 @@ class _Work:
         """Other units, places, programs and arithmetics, tried."""
         for one in otherruns.tried(self.shown, self.recovered, hypotheses):
             wrong = one.wrong | self._wrong_replies(one.scene, replies)
+            if one.hypothesis.outcome is None:
+                wrong |= self._inputs_left(one.hypothesis.changes)
             explained = len(self.base - wrong)
             shown = Explanation(
                 one.hypothesis.kind,
@@ -247,13 +250,15 @@ class _Work:
         self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
     ) -> Iterator[Explanation]:
         """Inputs of a side or an axis exchanged, and a slip in another."""
+        printed = set(self.recovered.assumed)
         exchanges = [
             one
             for one in hypotheses
-            if one.weight <= NATURAL
+            if one.assumed is not None
+            and one.weight <= NATURAL
             and one.changes
             # inputs that were given apart stand nowhere on the page to be exchanged
-            and {change.field for change in one.changes} <= {*(one.assumed or ())}
+            and {change.field for change in one.changes} <= printed
         ]
         texts = [
             {change.field: (one.assumed or {})[change.field] for change in one.changes}
@@ -264,12 +269,18 @@ class _Work:
         for number, one in Rereading(self.recovered).besides(texts, _SLIPS_BESIDES):
             hypothesis = exchanges[number]
             wrong = self._wrong(one.scored, replies)
+            wrong |= self._inputs_left([*hypothesis.changes, *one.changes])
             believed = hypothesis.weight + sum(map(_believed, one.changes)) + 0.1
             made = self._explanation(
                 [*hypothesis.changes, *one.changes], wrong, len(wrong), believed
             )
             made.note = hypothesis.note
             yield made
+
+    def _inputs_left(self, changes: Sequence[Change]) -> frozenset[str]:
+        """Printed inputs that differ and that these changes leave as they are."""
+        changed = {change.field for change in changes}
+        return self.base & frozenset(INPUTS) - {"MUP"} - changed
 
     def _wrong(self, scored: Scored, replies: Sequence[FieldCheck]) -> frozenset[str]:
         return scored.wrong | self._wrong_replies(scored.scene, replies)
@@ -402,8 +413,11 @@ def _few_slips(one: Explanation) -> bool:
 
 
 def _adds_to(one: Explanation, other: Explanation) -> bool:
-    """Whether one puts right what the other does and more, or the same in the same way."""
+    """Whether one puts right what the other does and more, the same in the same way, or the same
+    numbers in the same way and worse."""
     changes, others = _changes(one), _changes(other)
+    if one.kind == other.kind and one.remaining > other.remaining:
+        return {name for name, _ in changes} == {name for name, _ in others} != set()
     return bool(others) and (others < changes or (others == changes and one.kind == other.kind))
 
 

@@ -7,7 +7,7 @@ converted, so the shortest number that rounds to it is taken for what was comput
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import combinations
 
@@ -107,7 +107,12 @@ class _Inputs:
     ) -> Iterator[Hypothesis]:
         """The scene with some inputs otherwise, MU with either sign."""
         changes = tuple(
-            Change(kind, name, self._printed.get(name, ""), as_printed(text) or text)
+            Change(
+                kind,
+                name,
+                self._printed.get(name, self._scene[scene_name(name)]),
+                _shown(name, text, assumed),
+            )
             for name in INPUTS
             if (text := typed.get(scene_name(name), self._scene[scene_name(name)]))
             != self._scene[scene_name(name)]
@@ -187,12 +192,19 @@ class _Inputs:
         that round to what is shown."""
         shown = {name: self._scene[scene_name(name)] for name in names}
         values = {name: float(text) * scale for name, text in shown.items()}
-        yield {scene_name(name): _short(value) for name, value in values.items()}
         decimals = max(map(_decimals, shown.values()))
         half = 0.5 * 10.0**-decimals * abs(scale)
-        yield {scene_name(name): _shortest(value, half) for name, value in values.items()}
-        for places in (0, 1, 2, 3, 4):
-            yield {scene_name(name): _short(round(value, places)) for name, value in values.items()}
+        ways: list[Callable[[float], str]] = [_short, lambda value: _shortest(value, half)]
+        ways += [_to(places) for places in (0, 1, 2, 3, 4)]
+        for way in ways:
+            typed = {scene_name(name): way(value) for name, value in values.items()}
+            if all(float(typed[scene_name(name)]) or not value for name, value in values.items()):
+                yield typed
+
+
+def _shown(name: str, typed: str, assumed: Mapping[str, str] | None) -> str:
+    """What should be printed for an input that was typed so."""
+    return (assumed or {}).get(name) or as_printed(typed) or typed
 
 
 def _decimals(text: str) -> int:
@@ -206,6 +218,10 @@ def _shortest(value: float, half: float) -> str:
         if abs(round(value, places) - value) <= half:
             return _short(round(value, places))
     return _short(value)
+
+
+def _to(places: int) -> Callable[[float], str]:
+    return lambda value: _short(round(value, places))
 
 
 def _short(value: float) -> str:

@@ -189,10 +189,12 @@ def _undone(text: str) -> str:
 def _left_open(name: str, text: str, every: Sequence[str | None]) -> bool:
     """Whether a printed number lies within what the runs leave open, and that is little."""
     shown = value_of(text)
+    places = FIELDS[name].places
+    if shown is not None and places is not None and shown != round(shown, places):
+        return False  # to more decimals than the listing floors to
     numbers = [value for one in every if (value := value_of(one or "")) is not None]
     if shown is None or len(numbers) < len(every):
         return False
-    places = FIELDS[name].places
     size = max(map(abs, numbers))
     if places is None:
         unit = Decimal(1).scaleb(size.adjusted() - otherarithmetic.SINGLE_DIGITS + 1)

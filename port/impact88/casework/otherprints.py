@@ -39,6 +39,8 @@ _ENERGY_UNITS = (
 )
 _LINES = (("VAX", "VBX"), ("VAY", "VBY"), ("XAF", "XBF"), ("YAF", "YBF"), ("WAF", "WBF"))
 _AXES = (("VAX", "VAY"), ("VBX", "VBY"), ("XAF", "YAF"), ("XBF", "YBF"))
+_SINGLE, _SINGLE_ERROR = 7, 3e-6
+"""Digits of single precision, and the relative error left to its results."""
 _SAME_TO = 1e-6
 """Relative error left to a factor that is known to seven digits."""
 
@@ -138,10 +140,14 @@ class Prints:
         values = {**self._values, "KI": energy(self._scene)}
         for name, value in values.items():
             printed = self._text(name)
-            if printed is None or not is_rounding(printed, value):
+            own = value_of(printed or "") == value_of(self._outcome.fields.get(name, "?"))
+            if printed is None or not (
+                own or is_rounding(printed, value) or _in_single(printed, value)
+            ):
                 continue
             places = FIELDS[name].places
-            more += places is not None and (_decimals(printed) > places or "E" in printed)
+            longer = places is not None and (_decimals(printed) > places or "E" in printed)
+            more += longer and not own
             fields[name] = printed
         return fields if more >= 2 else {}
 
@@ -189,6 +195,16 @@ def is_rounding(printed: str, value: float, units: int = 1) -> bool:
     unit: Decimal = Decimal(1).scaleb(int(shown.as_tuple().exponent))
     return abs(Decimal(value) - shown) <= unit * units * Decimal("1.001") and unit < (
         abs(shown) or 1
+    )
+
+
+def _in_single(printed: str, value: float) -> bool:
+    """Whether a text of seven digits is a value as single precision leaves it."""
+    shown = value_of(printed)
+    if shown is None or not math.isfinite(value) or len(shown.as_tuple().digits) > _SINGLE:
+        return False
+    return len(shown.as_tuple().digits) == _SINGLE and math.isclose(
+        shown, value, rel_tol=_SINGLE_ERROR
     )
 
 

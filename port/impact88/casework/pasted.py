@@ -107,7 +107,48 @@ def unwrapped(text: str) -> str:
     if len(re.findall(r"(?m)^\s*\|.*\|\s*$", text)) >= 3:
         text = re.sub(r"(?m)^\s*\|[-:| \t]+\|\s*$", _blank, text)
         text = re.sub(r"(?m)^\s*\|.*\|\s*$", lambda row: row.group().replace("|", " "), text)
-    return text
+    return _groups_joined(_table_parted(text))
+
+
+_ROW = re.compile(
+    r"""(?mx) ^[ \t]* (?P<quote>["']?) (?P<name>[A-Za-z]{1,9}(?:[ ][A-Za-z]{2,4})?)
+    (?P=quote) [ \t]* [,;\t] [ \t]*
+    (?P<other>["']?) (?P<number>[-+−–.,0-9Ee]+) (?P=other) [ \t]*$"""
+)
+"""A row of a table of two columns: a name, a comma, semicolon or tabulator, and a number."""
+_HEADING = re.compile(
+    r"""(?m)^[ \t]*["']?[A-Za-z]+["']?[ \t]*[,;\t][ \t]*["']?[A-Za-z]+["']?[ \t]*$"""
+)
+_ROWS = 10
+"""So many rows make a table."""
+
+
+def _table_parted(text: str) -> str:
+    """A table of names and numbers with its quotes and separators blanked out."""
+    rows = list(_ROW.finditer(text))
+    if len(rows) < _ROWS:
+        return text
+    parts, place = [_HEADING.sub(_blank, text[: rows[0].start()])], rows[0].start()
+    for row in rows:
+        parts.append(text[place : row.start()])
+        parts.append(re.sub(r"""["';\t]""", " ", row.group()[: row.start("number") - row.start()]))
+        parts[-1] = parts[-1].replace(",", " ")
+        parts.append(row.group("number") + " " * (row.end() - row.end("number")))
+        place = row.end()
+    return "".join([*parts, text[place:]])
+
+
+_GROUPED = re.compile(r"(?<![0-9.,])[0-9]{1,3}(?:[.][0-9]{3})+(?=,[0-9]|(?![0-9.,]))")
+
+
+def _groups_joined(text: str) -> str:
+    """The points that part thousands where commas part decimals (``100.904,929``) as blanks."""
+    grouped = len(_GROUPED.findall(text))
+    points = len(re.findall(r"[0-9][.][0-9]|(?<![0-9])[.][0-9]", text))
+    both = re.search(r"[0-9][.][0-9]{3},[0-9]", text)
+    if not both or grouped < points - grouped:
+        return text
+    return _GROUPED.sub(lambda number: number.group().replace(".", "\u2009"), text)
 
 
 _STATEMENT = re.compile(

@@ -35,8 +35,9 @@ COSTS = {
 _UNLIKE = 0.05
 _SUMS = (("PA", "TA"), ("PB", "TB"))
 """Angles that enter only as their sum."""
+_FLIPPED = 0.001
 _SINGLES_KEPT = 220
-_PAIRS = 160_000
+_PAIRS = 320_000
 _ENERGIES = 24
 
 
@@ -184,8 +185,17 @@ class Rereading:
         if not rows:
             return pairs
         picks = np.array(rows, np.intp)
+        if float(self._scene["MU"] or 0):
+            # what is wrong may be what gives MU its sign (line 400)
+            mu = self._names.index("MUP")
+            typed = {"MU": opposite(self._scene["MU"])}
+            flipped = picks[picks[:, mu] == 0]
+            flipped[:, mu] = len(choices[mu])
+            choices[mu].append(choices[mu][0]._replace(typed=typed, cost=_FLIPPED))
+            made += [made[index] for index in np.flatnonzero(picks[:, mu] == 0).tolist()]
+            picks = np.concatenate([picks, flipped])
         best = self._search.screened(choices, picks, 60)
-        where = {tuple(row): index for index, row in enumerate(rows)}
+        where = {tuple(row): index for index, row in enumerate(picks.tolist())}
         tried = self._search.replayed(self._proper(choices, best), best)
         for pick, scored in zip(best.tolist(), tried, strict=True):
             pairs.append(Reread((made[where[tuple(pick)]],), scored))

@@ -112,13 +112,22 @@ def verify(
         result.scene, result.fields = looked_past.scene, looked_past.fields
         result.replies, result.explanations = looked_past.replies, []
     result.guessed = _guessed(result)
-    result.findings = wording.findings(shown, result.fields, recovered)
+    result.findings = [
+        *wording.findings(shown, result.fields, recovered),
+        *wording.given_apart([name for name in given or () if _not_printed(result, name)], result),
+    ]
     result.unseen = unseen(result.scene, result.missing)
     if result.runnable:
         scene = {name: text or "" for name, text in result.scene.items()}
         beside.add_exact_values(scene, result.fields)
         result.warnings = beside.warnings(scene)
     return result
+
+
+def _not_printed(result: Verification, name: str) -> bool:
+    """Whether an input was not read from the page; M is printed nowhere."""
+    field = "MUP" if name == "MU" else name
+    return any(check.name == field and check.printed is None for check in result.fields)
 
 
 def _guessed(result: Verification) -> list[str]:
