@@ -114,7 +114,9 @@ def verify(
     result.guessed = _guessed(result)
     result.findings = [
         *wording.findings(shown, result.fields, recovered),
-        *wording.given_apart([name for name in given or () if _not_printed(result, name)], result),
+        *wording.given_apart(
+            [name for name in given or () if _not_printed(result, name)], result.fields
+        ),
     ]
     result.unseen = unseen(result.scene, result.missing)
     if result.runnable:

@@ -128,17 +128,18 @@ def findings(shown: Printout, fields: Sequence[FieldCheck], recovered: Recovered
     return sentences
 
 
-def given_apart(names: Sequence[str], result: Verification) -> Iterator[str]:
+def given_apart(names: Sequence[str], fields: Sequence[FieldCheck]) -> list[str]:
     """That inputs are not the page's own, and how its results compare with them."""
     if not names:
-        return
-    compared = [check for check in result.fields if check.same is not None]
+        return []
+    compared = [check for check in fields if check.same is not None]
+    differing = sum(check.same is False for check in compared)
     agree = f"all {len(compared)} numbers read are what the program prints for them"
     if not compared:
         agree = "no number was read to be compared"
-    elif result.differing:
-        agree = f"{len(result.differing)} of {len(compared)} numbers read are not what it prints"
-    yield f"not on the page, and taken from the scene given apart: {', '.join(names)}; {agree}"
+    elif differing:
+        agree = f"{differing} of {len(compared)} numbers read are not what it prints for them"
+    return [f"not on the page, and taken from the scene given apart: {', '.join(names)}; {agree}"]
 
 
 def commas(shown: Printout) -> bool:
