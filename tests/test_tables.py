@@ -305,6 +305,27 @@ def test_parquet_takes_types_as_they_are(tmp_path, capsys):
     assert "MA holds bool; expected numbers" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("delimiter", [",", ";"])
+def test_what_must_be_quoted_is(tmp_path, monkeypatch, delimiter):
+    """As the standard library's csv does it, and nothing else."""
+    notes = ["a,b", "c;d", 'say "no"', "two\nlines", "\r", "", " ", "'", "plain"]
+    monkeypatch.setattr(arrow, "available", lambda: False)
+    for note in notes:
+        source, there = tmp_path / "a.csv", tmp_path / "b.csv"
+        text = csv_text([{**TEXTS, "note": note}, {**TEXTS, "note": "x"}], delimiter=delimiter)
+        source.write_text(text, newline="")
+        assert main(["solve", str(source), "-o", str(there), "--outputs", "STATUS"]) == 0
+        with there.open(newline="") as file:
+            rows = list(csv.DictReader(file, delimiter=delimiter))
+        assert [row["note"] for row in rows] == [note, "x"]
+        if "\r" not in note:  # which not every version of csv's writer quotes
+            with there.open(newline="") as file:
+                again = io.StringIO()
+                writer = csv.writer(again, delimiter=delimiter, lineterminator="\n")
+                writer.writerows(csv.reader(file, delimiter=delimiter))
+            assert again.getvalue() == there.read_bytes().decode()
+
+
 @pytest.mark.parametrize(("form", "to"), [("csv", "jsonl"), ("jsonl", "jsonl.gz")])
 def test_json_lines_have_one_type_a_column(tmp_path, form, to):
     """From the first line to the last, however its numbers are written, for whoever infers it."""

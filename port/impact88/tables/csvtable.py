@@ -200,20 +200,36 @@ class _CsvWriter:
         self._dropped = dropped
         self._kept = kept
         self._results = results
-        self._rows = csv.writer(file, delimiter=delimiter, lineterminator="\n")
-        self._rows.writerow([*kept, *results])
+        self._file = file
+        self._delimiter = delimiter
+        self._ends = re.compile(f'[{re.escape(delimiter)}"\\r\\n]')
+        self._write([[name] for name in (*kept, *results)])
 
     def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         refuse_late(rows, self._dropped, "a CSV table")
-        kept = (_fields(one_per_row(rows, name)) for name in self._kept)
-        columns = (shortest(results[name]) for name in self._results)
-        self._rows.writerows(zip(*kept, *columns, strict=True))
+        columns = [_fields(one_per_row(rows, name)) for name in self._kept]
+        columns += [shortest(results[name]) for name in self._results]
+        self._write(columns)
+
+    def _write(self, columns: Sequence[Sequence[str]]) -> None:
+        rows = zip(*map(self._quoted, columns), strict=True)
+        self._file.writelines([f"{row}\n" for row in map(self._delimiter.join, rows)])
+
+    def _quoted(self, column: Sequence[str]) -> Sequence[str]:
+        """The texts, those in quotes that hold what ends a field or a line; not every version of
+        csv's own writer thinks of a carriage return."""
+        if not self._ends.search("".join(column)):
+            return column
+        return [
+            '"{}"'.format(text.replace('"', '""')) if self._ends.search(text) else text
+            for text in column
+        ]
 
 
-def _fields(column: Column) -> Sequence[Any]:
+def _fields(column: Column) -> Sequence[str]:
     if isinstance(column, np.ndarray):
         return shortest(column)
-    return list(map(plain, column))
+    return column if set(map(type, column)) == {str} else list(map(plain, column))
 
 
 class _ArrowCsvWriter:
