@@ -79,12 +79,13 @@ tr.differs > * { background: #fbe3d6; font-weight: 700; }
 tr.doubtful > * { background: #e8f0f7; }
 tr.unknown > * { color: #555; font-style: italic; }
 .summary table, .inputs table, .key table { width: 100%; font-size: 8.5pt; }
-.summary th:first-child { overflow-wrap: anywhere; }
+.summary th:first-child { overflow-wrap: anywhere; width: 30%; min-width: 24mm; }
+@media print, (min-width: 641px) { .summary td:nth-child(2) { white-space: nowrap; } }
 .summary td, .summary th { white-space: normal; text-align: left;
   padding: .5mm 1mm; border-bottom: .1mm solid #ccc; }
 .inputs table { font-size: 8pt; line-height: 1.25; }
 .inputs th { text-align: left; } .inputs td { text-align: left; padding-right: 3mm; }
-.key td, .key th { white-space: normal; text-align: left; font-size: 8pt; }
+.key td, .key th { white-space: normal; text-align: left; font-size: 7.2pt; line-height: 1.2; }
 pre { font: 7.6pt/1.3 "DejaVu Sans Mono", "Liberation Mono", Menlo, Consolas, monospace;
   border: .2mm solid #bbb; padding: 2mm; margin: 0; white-space: pre-wrap;
   overflow-wrap: anywhere; }
@@ -98,7 +99,8 @@ ol, ul { margin: 0; padding-left: 5mm; } li { margin-bottom: .4mm; font-size: 8.
 .provenance { font-size: 7.5pt; color: #333; }
 .provenance td, .provenance th { white-space: normal; overflow-wrap: anywhere; text-align: left; }
 .provenance th { width: 34%; padding-right: 4mm; font-weight: 400; }
-tr, li, .verdict, .sign { break-inside: avoid; }
+tr, li, pre, .verdict, .sign, .picture, .provenance { break-inside: avoid; }
+.whole { white-space: nowrap; }
 h2 { break-after: avoid; }
 @media screen and (max-width: 640px) {
   body { margin: 4mm auto; }
@@ -252,12 +254,13 @@ def _section(result: Verification, sha256: str | None, date: str | None) -> str:
     where = escape(files.called(result.file))
     verdict = result.verdict
     summary = " ".join(f"{_sentence(line)}" for line in verification.summary(result))
+    when = f', <span class="whole">{escape(date)}</span>' if date else ""
     parts = [
         "<section>",
         f"<h1>{where}, printout {result.number}</h1>",
         f'<p class="source">begins on line {result.line}'
         f"{', SHA-256 of the file ' + sha256 if sha256 else ''}"
-        f"{', ' + escape(date) if date else ''}</p>",
+        f"{when}</p>",
         f'<div class="verdict {verdict}"><b>{wording.title(verdict)}</b>'
         f"<p>{escape(_LAY[verdict])}</p><p>{escape(summary)}</p></div>",
         '<div class="two"><div class="numbers wide">',
