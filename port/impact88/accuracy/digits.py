@@ -15,7 +15,7 @@ from . import reference
 from .reference import mpmath, total
 
 DIGITS = 30
-LONGEST_EXPONENT = 4
+LONGEST_EXPONENT = 3
 """Digits of the largest exponents that are computed with."""
 
 
@@ -30,7 +30,7 @@ def thirty_digits(scene: Mapping[str, str]) -> dict[str, str]:
     """Result name -> 30 digits; empty when the equations are singular or make no sense. What is no
     number (LOSS where nothing moves, MUC where a pivot feels no impulse) is not in it."""
     if any(len(exponent) > LONGEST_EXPONENT for exponent in _exponents(scene)):
-        return {}  # a number of a million digits is nobody's measurement
+        return {}  # a number of thousands of digits is nobody's measurement
     try:
         values = fifty_digits(scene)
     except (ValueError, ZeroDivisionError):

@@ -85,8 +85,10 @@ class Machine(Hardware):
         self.changed()
 
     def changed(self) -> None:
-        """The program was changed: variables are gone, and it cannot be continued."""
+        """The program was changed: variables are gone, and it cannot be continued. Nor resumed: the
+        ROM would go on at the address where the error was, whatever stands there by then."""
         self.code.changed()
+        self.errors.resume = None
         self.variables.put_start(self.program.end)
         self.clear()
 
