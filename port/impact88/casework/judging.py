@@ -14,7 +14,8 @@ from enum import StrEnum
 from typing import Any
 
 from ..fields import ANGLES, FIELDS, FINAL_SPINS
-from .numerals import Doubt, Match, Region, Spot, compare
+from .anglerow import cut_as
+from .numerals import SIMILAR, Doubt, Match, Region, Spot, compare
 from .printout import Printout, Reading
 from .recovery import Recovered
 from .typedtext import stored_and_printed
@@ -97,6 +98,8 @@ def field_checks(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
     for name in FIELDS:
         reading = shown.fields.get(name)
         text = outcome.fields.get(name)
+        if name in row:
+            reading = shown.reading(row[name][0])
         if reading is None and text is None:
             expected = recovered.missing and not shown.ending
             if not expected or (name in FINAL_SPINS and recovered.scene["M"] != "6"):
@@ -108,7 +111,7 @@ def field_checks(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
             check.status = Status.NOT_READ
         elif text is not None:
             if name in row:
-                check.status, spots = row[name]
+                _, check.status, spots = row[name]
             else:
                 match = explained(reading, text)
                 check.status, spots = status_of(match, reading.region, text), match.spots
@@ -158,28 +161,27 @@ def _hardly_read(match: Match, region: Region, text: str) -> bool:
     return 2 * match.exact + alike < len(text)
 
 
-def _angle_row(shown: Printout, recovered: Recovered) -> dict[str, tuple[Status, tuple[Spot, ...]]]:
-    """The angles' statuses where their row had to be cut by guess."""
-    texts = [recovered.outcome.fields.get(name) for name in ANGLES]
-    if not shown.angles or None in texts:
+def _angle_row(
+    shown: Printout, recovered: Recovered
+) -> dict[str, tuple[Region, Status, tuple[Spot, ...]]]:
+    """Where the angles stand in a row that blanks alone do not cut, and what became of each; none
+    where the row is plain."""
+    texts = tuple(recovered.outcome.fields.get(name) for name in ANGLES)
+    if not shown.angle_row or None in texts:
         return {}
-    verdicts: dict[str, tuple[Status, tuple[Spot, ...]]] = {}
-    for name, text in zip(ANGLES, texts, strict=True):
-        reading = shown.fields.get(name)
-        if reading is None or text is None:
-            continue
-        match = compare(reading.region, text)
-        verdicts[name] = status_of(match, reading.region, text), match.spots
-    cut_so = len(verdicts) == len(ANGLES)
-    if cut_so and all(status in (Status.READ, Status.DOUBTFUL) for status, _ in verdicts.values()):
-        return verdicts
-    if tuple(texts) in [row for row, _ in shown.angles]:
-        guessed = (Status.DOUBTFUL, (Spot(0, "", "", Doubt.BLANK),))
-        return {
-            name: verdicts[name] if verdicts.get(name, guessed)[0] is Status.READ else guessed
-            for name in ANGLES
-        }
-    return verdicts
+    row: dict[str, tuple[Region, Status, tuple[Spot, ...]]] = {}
+    cuts = cut_as(shown.angle_row, tuple(map(str, texts)))
+    for name, text, (start, stop) in zip(ANGLES, texts, cuts, strict=bool(cuts)):
+        region = shown.angle_row[start:stop]
+        match = compare(region, str(text))
+        status, spots = status_of(match, region, str(text)), match.spots
+        if not region:
+            status = Status.NOT_READ
+        elif start and region[0].joined:
+            spots = (Spot(0, "", "", Doubt.BLANK), *spots)
+            status = Status.DOUBTFUL if status is Status.READ else status
+        row[name] = region, status, spots
+    return row
 
 
 def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
@@ -287,8 +289,10 @@ def machine_read(shown: Printout) -> bool:
 
 
 def _typed_so(reading: Reading) -> bool:
-    """Whether a person may have typed a number so: whole, or with O for 0 and l for 1."""
-    return reading.clean or all(glyph.char in _TYPED for glyph in reading.region)
+    """Whether a person may have typed a number so: in one piece, with O for 0 and l for 1 at
+    worst."""
+    whole = all(glyph.joined for glyph in reading.region[1:])
+    return whole and all(glyph.char in _TYPED for glyph in reading.region)
 
 
 def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
@@ -296,7 +300,8 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
 
     A reader loses and adds signs, points and digits, and where it takes one digit for another it
     does so in more places than one. A digit altered on the paper stands alone: a digit cleanly read
-    as another is never looked past unless the page shows the same mistake again.
+    as another is never looked past unless the page shows the same mistake again, or shows that this
+    reader cannot read the digit that is printed there (`_readers_own`).
     """
     every = [*checks, *replies]
     wrong = [check for check in every if check.status == Status.CONTRADICTED]
@@ -305,8 +310,7 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
     read = sum(check.status in (Status.READ, Status.DOUBTFUL) for check in every)
     if not machine_read(shown) or read < _READ_WELL * len(every):
         return False
-    pairs = Counter(pair for check in wrong for pair in _swapped_digits(check))
-    if any(count < 2 for count in pairs.values()):
+    if not _readers_own(every):
         return False
     lost = sum(not any(True for _ in _swapped_digits(check)) for check in wrong)
     return lost <= LOST_AND_ADDED
@@ -314,6 +318,30 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
 
 LOST_AND_ADDED = 3
 """So many numbers with a glyph lost or added may be put down to a reader."""
+UNREADABLE = 3
+"""So many other misreadings of a digit on one page, and its shape is beyond the reader of it."""
+
+
+def _readers_own(checks: Sequence[FieldCheck]) -> bool:
+    """Whether every digit cleanly read as another is one of its reader's mistakes.
+
+    It is where the page shows the same mistake again. And it is where the printed digit was misread
+    in `UNREADABLE` other places, as whatever else, and the two look alike: a zero with a stroke
+    through it comes out as 8 once, as 6 once, as @ and © elsewhere.
+    """
+    swapped = Counter(pair for check in checks for pair in _swapped_digits(check))
+    misread = Counter(
+        doubt.printed for check in checks for doubt in check.doubts if _misread_digit(doubt)
+    )
+    return all(
+        count > 1 or (frozenset(pair) in SIMILAR and misread[pair[0]] > UNREADABLE)
+        for pair, count in swapped.items()
+    )
+
+
+def _misread_digit(doubt: Doubtful) -> bool:
+    """Whether a digit is printed where another glyph was read."""
+    return doubt.printed.isdigit() and bool(doubt.read) and doubt.read != doubt.printed
 
 
 def _swapped_digits(check: FieldCheck) -> Iterator[tuple[str, str]]:

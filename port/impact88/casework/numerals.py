@@ -63,7 +63,8 @@ _PRINTABLE = re.compile(r"-?(?:0|[1-9][0-9]*|(?=[.]))(?:[.][0-9]*[1-9])?(?:E[+-]
 _NUMBER = re.compile(r"[+-]?(?=[.]?[0-9])[0-9]*(?:[.][0-9]*)?(?:E[+-]?[0-9]{1,2})?")
 
 _CONTRADICTION = 3.0
-_SIMILAR = {frozenset(pair) for pair in "08 06 09 89 86 56 58 53 32 38 17 14 93 27 95 28".split()}
+SIMILAR = {frozenset(pair) for pair in "08 06 09 89 86 56 58 53 32 38 17 14 93 27 95 28".split()}
+"""Digits that readers take for one another."""
 _LOOK_ALIKE, _ILLEGIBLE_MARK, _FOREIGN = 0.5, 0.7, 1.0
 _COMMA = 0.3
 _SPECK, _SPECK_INSIDE, _BLANK_INSIDE = 0.4, 0.7, 0.3
@@ -202,7 +203,7 @@ def _substitution(char: str, printed: str) -> tuple[float, Doubt | None]:
     if char == "+" and printed == "-":
         return _LOOK_ALIKE + 0.1, Doubt.LOOK_ALIKE
     if char in NUMERIC:
-        if frozenset((char, printed)) in _SIMILAR:
+        if frozenset((char, printed)) in SIMILAR:
             return _CONTRADICTION - 0.4, Doubt.CONTRADICTS
         return _CONTRADICTION, Doubt.CONTRADICTS
     if printed in LOOK_ALIKES.get(char, ""):

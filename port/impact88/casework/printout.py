@@ -108,7 +108,7 @@ class Printout:
     ``line``, ``column``, ``start``, ``stop``: where it stands in the text. ``fields``: name ->
     reading, for every number found; ``replies``: the velocities typed at the prompts, where the
     transcript shows them; ``angles``: ways to cut the row of five angles with what each costs, the
-    likeliest first, where blanks alone do not tell; ``ending``: ``ZERO DETERMINANT`` or an
+    likeliest first, where blanks alone do not tell, and ``angle_row`` its glyphs then; ``ending``: ``ZERO DETERMINANT`` or an
     Applesoft error as printed, with its line; ``ended``: whether anything of the last row of
     asterisks is there; ``left_over``: text that belongs nowhere; ``remarks``: what could not be
     read, and where; ``misread_letters``: how many letters of labels and asterisks were read as
@@ -122,6 +122,7 @@ class Printout:
     fields: dict[str, Reading] = field(default_factory=dict)
     replies: dict[str, Reading] = field(default_factory=dict)
     angles: list[tuple[tuple[str, ...], float]] = field(default_factory=list)
+    angle_row: Region = ()
     ending: str | None = None
     ended: bool = False
     spin_line: bool = False
@@ -148,6 +149,10 @@ class Printout:
     def fragment_of_run(self) -> bool:
         """Whether nothing of the results is there, and no message that says why."""
         return self.ending is None and not any(name in self.fields for name in _RESULTS)
+
+    def reading(self, region: Region) -> Reading | None:
+        """A part of the row of angles as a number; None when it is none."""
+        return _reading(self.page, region) if self.page and region else None
 
     def text(self, name: str) -> str | None:
         """The text of a field, None when it was not read."""
@@ -344,29 +349,13 @@ class _Reader:
         read = {page.slot_before.get(state) for state in self._states} & set(_CLOSINGS)
         return "" if name in read or not read else _CLOSING_DIGITS[mark]
 
-    def _reading(
-        self, start: int, stop: int, sign_free: bool = False, closing: str = ""
-    ) -> Reading | None:
-        region = tuple(self._glyphs[start:stop])
-        begin, end = self._page.span(start, stop)
-        text = numerals.clean(region)
-        ways: list[str] = []
-        if text is None:
-            ways = [way for way, _ in numerals.candidates(region, 4, sign_free)]
-            text = illegibly(region) if not ways or _foreign_inside(region) else ways[0]
-        if text is None:
-            return None
-        cut = stop == len(self._glyphs) and end == len(self._page.text)
-        line, column = self._page.place(begin)
-        return Reading(
-            text, line, column, begin, end, region, tuple(ways[1:]), cut, sign_free, closing
-        )
-
     def _read_number(self, name: str, start: int, stop: int) -> None:
         before = start - 1 - self._start
         label = template().letters.get(self._states[before]) if before >= 0 else None
         unsigned = label != "=" or self._glyphs[start - 1].char != "="
-        reading = self._reading(start, stop, unsigned and name not in ANGLES, self._closing(name))
+        region = tuple(self._glyphs[start:stop])
+        sign_free = unsigned and name not in ANGLES
+        reading = _reading(self._page, region, sign_free, self._closing(name)) if region else None
         if reading is None:
             shown = self._page.shown(start, stop)
             self._remark(name, f"{_quoted(shown)}: expected a number", start)
@@ -384,7 +373,8 @@ class _Reader:
             return
         start = min(self._slots[name][0] for name in names)
         stop = max(self._slots[name][1] for name in names)
-        shown.angles = cut_in_five(tuple(self._glyphs[start:stop]))
+        shown.angle_row = tuple(self._glyphs[start:stop])
+        shown.angles = cut_in_five(shown.angle_row)
         if not shown.angles and len(names) < len(ANGLES):
             what = _quoted(self._page.shown(start, stop))
             self._remark("PA", f"{what}: expected five angles, PA PB TA TB GA", start)
@@ -464,6 +454,25 @@ class _Reader:
         if _SLOT_COMMAND.fullmatch(text):
             return
         self._printout.left_over.append(Piece(text, line, column, start, stop, line in numbered))
+
+
+def _reading(
+    page: Page, region: Region, sign_free: bool = False, closing: str = ""
+) -> Reading | None:
+    """A region of a page as a number, None when nothing of one is there."""
+    begin, end = region[0].offset, region[-1].offset + 1
+    text = numerals.clean(region)
+    ways: list[str] = []
+    if text is None:
+        ways = [way for way, _ in numerals.candidates(region, 4, sign_free)]
+        text = illegibly(region) if not ways or _foreign_inside(region) else ways[0]
+    if text is None:
+        return None
+    cut = end == len(page.text) and region[-1].offset == page.glyphs[-1].offset
+    line, column = page.place(begin)
+    return Reading(
+        text, line, column, begin, end, region, tuple(ways[1:]), cut, sign_free, closing
+    )
 
 
 def _foreign_inside(region: Region) -> bool:
