@@ -10,14 +10,14 @@ for about as much and leave the same unexplained share a rank: the page cannot t
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from dataclasses import field as default
 from typing import Any
 
 from ..fields import INPUTS
 from . import misreading, otherruns, refining
 from .hypothesis import NATURAL, Hypothesis
-from .judging import FieldCheck, Status, field_checks, machine_read, reply_checks, settled
+from .judging import FieldCheck, Status
 from .printout import Printout
 from .recovery import Recovered
 from .rereading import Change, Reread, Rereading
@@ -79,32 +79,16 @@ class Explanation:
         return shown
 
 
-@dataclass
-class Rejudged:
-    """The printout judged with the slips of its reader looked past."""
-
-    scene: dict[str, str | None]
-    fields: list[FieldCheck]
-    replies: list[FieldCheck]
-
-
-@dataclass
-class Explained:
-    """What `explain` found: explanations, and the printout judged anew where all that differs is
-    its reader's."""
-
-    explanations: list[Explanation] = default(default_factory=list)
-    reread: Rejudged | None = None
-
-
 def explain(
     shown: Printout,
     recovered: Recovered,
     checks: Sequence[FieldCheck],
     replies: Sequence[FieldCheck],
     ending: FieldCheck,
-) -> Explained:
-    """Causes that make more of a differing printout agree, those that ask least first."""
+    rereads: Sequence[Reread] | None = None,
+) -> list[Explanation]:
+    """Causes that make more of a differing printout agree, those that ask least first. ``rereads``:
+    slips that were tried already."""
     base = frozenset(
         [check.name for check in checks if check.status == Status.CONTRADICTED]
         + [f"reply {check.name}" for check in replies if check.status == Status.CONTRADICTED]
@@ -114,10 +98,7 @@ def explain(
     alone = work.by_results_alone(replies)
     explanations = [alone] if alone else []
     if not recovered.missing:
-        reread = _reread(shown, recovered, base)
-        again = _looked_past(shown, recovered, reread)
-        if again is not None:
-            return Explained([], again)
+        reread = _reread(recovered, base, rereads)
         explanations += work.rereads(reread, replies)
         hypotheses = otherruns.hypotheses(shown, recovered)
         explanations += work.others(hypotheses, replies)
@@ -130,51 +111,21 @@ def explain(
             refined = list(refining.refined(recovered, hypotheses))
             explanations += work.others(refined, replies)
             explanations += work.exchanged_and_slipped(hypotheses, replies)
-    return Explained(_chosen(explanations, len(base)))
+    return _chosen(explanations, len(base))
 
 
-def _reread(shown: Printout, recovered: Recovered, base: frozenset[str]) -> list[Reread]:
+def _reread(
+    recovered: Recovered, base: frozenset[str], tried: Sequence[Reread] | None
+) -> list[Reread]:
     unchanged = Reread((), recovered.search.replayed_scene(recovered.scene, recovered.assumed))
     rereads = [unchanged]
     if len(base) <= 2 and not base & {"KI"} and not _input_may_be_wrong(base):
         return rereads
-    return [*rereads, *Rereading(recovered).best(deep=machine_read(shown))]
+    return [*rereads, *(Rereading(recovered).best() if tried is None else tried)]
 
 
 def _input_may_be_wrong(base: frozenset[str]) -> bool:
     return bool(base)
-
-
-def look_past(shown: Printout, recovered: Recovered) -> Rejudged | None:
-    """The printout judged with its reader's slips put right; None where they are not its alone."""
-    if recovered.missing or not machine_read(shown):
-        return None
-    return _looked_past(shown, recovered, Rereading(recovered).best(deep=True))
-
-
-def _looked_past(
-    shown: Printout, recovered: Recovered, reread: Sequence[Reread]
-) -> Rejudged | None:
-    """The printout judged with its reader's slips put right, where only a reader makes such."""
-    if not machine_read(shown):
-        return None
-    best = min(reread, key=lambda one: one.scored.cost, default=None)
-    if best is None:
-        return None
-    other = replace(
-        recovered,
-        scene=best.scored.scene,
-        assumed=best.scored.assumed,
-        outcome=best.scored.outcome,
-    )
-    checks = field_checks(shown, other)
-    replies = reply_checks(shown, other)
-    if not settled(shown, checks, replies):
-        return None
-    for check in [*checks, *replies]:
-        if check.status == Status.CONTRADICTED:
-            check.status, check.same = Status.DOUBTFUL, None
-    return Rejudged(other.scene_or_missing(), checks, replies)
 
 
 @dataclass

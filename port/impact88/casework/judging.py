@@ -298,10 +298,11 @@ def _typed_so(reading: Reading) -> bool:
 def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
     """Whether all that a machine-read page contradicts is its reader's doing.
 
-    A reader loses and adds signs, points and digits, and where it takes one digit for another it
-    does so in more places than one. A digit altered on the paper stands alone: a digit cleanly read
-    as another is never looked past unless the page shows the same mistake again, or shows that this
-    reader cannot read the digit that is printed there (`_readers_own`).
+    A reader loses and adds signs and points, and a digit of a number here and there, and where it
+    takes one digit for another it does so in more places than one. A digit altered on the paper
+    stands alone: a digit cleanly read as another is never looked past unless the page shows the
+    same mistake again, or shows that this reader cannot read the digit that is printed there
+    (`_readers_own`).
     """
     every = [*checks, *replies]
     wrong = [check for check in every if check.status == Status.CONTRADICTED]
@@ -312,7 +313,9 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
         return False
     if not _readers_own(every):
         return False
-    lost = sum(not any(True for _ in _swapped_digits(check)) for check in wrong)
+    if any(_digits_lost_or_added(check) > 1 for check in wrong):
+        return False
+    lost = sum(not any(True for _ in swapped_digits(check)) for check in wrong)
     return lost <= LOST_AND_ADDED
 
 
@@ -329,7 +332,7 @@ def _readers_own(checks: Sequence[FieldCheck]) -> bool:
     in `UNREADABLE` other places, as whatever else, and the two look alike: a zero with a stroke
     through it comes out as 8 once, as 6 once, as @ and © elsewhere.
     """
-    swapped = Counter(pair for check in checks for pair in _swapped_digits(check))
+    swapped = Counter(pair for check in checks for pair in swapped_digits(check))
     misread = Counter(
         doubt.printed for check in checks for doubt in check.doubts if _misread_digit(doubt)
     )
@@ -344,7 +347,16 @@ def _misread_digit(doubt: Doubtful) -> bool:
     return doubt.printed.isdigit() and bool(doubt.read) and doubt.read != doubt.printed
 
 
-def _swapped_digits(check: FieldCheck) -> Iterator[tuple[str, str]]:
+def _digits_lost_or_added(check: FieldCheck) -> int:
+    """How many digits of a number were not read, or read where none is printed."""
+    wrong = [doubt for doubt in check.doubts if doubt.how == Doubt.CONTRADICTS]
+    return sum(
+        doubt.read.isdigit() != doubt.printed.isdigit() and not (doubt.read and doubt.printed)
+        for doubt in wrong
+    )
+
+
+def swapped_digits(check: FieldCheck) -> Iterator[tuple[str, str]]:
     """The digits of a number cleanly read as other digits: (printed by the program, read)."""
     for doubt in check.doubts:
         if doubt.how == Doubt.CONTRADICTS and doubt.read.isdigit() and doubt.printed.isdigit():

@@ -108,11 +108,11 @@ class Printout:
     ``line``, ``column``, ``start``, ``stop``: where it stands in the text. ``fields``: name ->
     reading, for every number found; ``replies``: the velocities typed at the prompts, where the
     transcript shows them; ``angles``: ways to cut the row of five angles with what each costs, the
-    likeliest first, where blanks alone do not tell, and ``angle_row`` its glyphs then; ``ending``: ``ZERO DETERMINANT`` or an
-    Applesoft error as printed, with its line; ``ended``: whether anything of the last row of
-    asterisks is there; ``left_over``: text that belongs nowhere; ``remarks``: what could not be
-    read, and where; ``misread_letters``: how many letters of labels and asterisks were read as
-    others; ``page``: the whole text as glyphs.
+    likeliest first, where blanks alone do not tell, and ``angle_row`` its glyphs then; ``ending``:
+    ``ZERO DETERMINANT`` or an Applesoft error as printed, with its line; ``ended``: whether
+    anything of the last row of asterisks is there; ``left_over``: text that belongs nowhere;
+    ``remarks``: what could not be read, and where; ``misread_letters``: how many letters of labels
+    and asterisks were read as others; ``page``: the whole text as glyphs.
     """
 
     line: int
@@ -470,9 +470,7 @@ def _reading(
         return None
     cut = end == len(page.text) and region[-1].offset == page.glyphs[-1].offset
     line, column = page.place(begin)
-    return Reading(
-        text, line, column, begin, end, region, tuple(ways[1:]), cut, sign_free, closing
-    )
+    return Reading(text, line, column, begin, end, region, tuple(ways[1:]), cut, sign_free, closing)
 
 
 def _foreign_inside(region: Region) -> bool:

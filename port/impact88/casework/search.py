@@ -157,7 +157,7 @@ class Search:
         costs = _believing(choices, picks)
         expected = next((one for one in self.expected if one.name == "KI"), None)
         if expected is not None:
-            costs = costs + _mismatch(expected, kinetic_energy(columns(choices, picks)))
+            costs = costs + mismatch(expected, kinetic_energy(columns(choices, picks)))
         return picks[np.argsort(costs, kind="stable")[:most]]
 
     def _rough(self, choices: Choices, picks: Picks, expected: Sequence[Expected]) -> Floats:
@@ -170,10 +170,10 @@ class Search:
         wrong_sign = np.abs(results["MUP"] - mu) > 1e-6 * np.abs(mu)
         costs = costs + np.where(wrong_sign, MISMATCH, 0.0)
         for one in expected:
-            mismatch = _mismatch(one, results[one.name])
+            wrong = mismatch(one, results[one.name])
             if one.name in FINAL_SPINS:
-                mismatch = np.where(value["M"] == 6, mismatch, MISMATCH)
-            costs = costs + mismatch
+                wrong = np.where(value["M"] == 6, wrong, MISMATCH)
+            costs = costs + wrong
         return costs
 
     def replayed(self, choices: Choices, picks: Picks) -> list[Scored]:
@@ -190,6 +190,16 @@ class Search:
             joined.append((scene, assumed, cost))
         outcomes = trial.run_all([scene for scene, _, _ in joined])
         return [self._scored(*one, outcome) for one, outcome in zip(joined, outcomes, strict=True)]
+
+    def replayed_scenes(self, scenes: Sequence[dict[str, str]]) -> list[Scored]:
+        """Scenes, replayed, whatever was read of their inputs."""
+        outcomes = trial.run_all(scenes)
+        pairs = zip(scenes, outcomes, strict=True)
+        return [self._scored(scene, {}, 0.0, outcome) for scene, outcome in pairs]
+
+    def results_cost(self, scored: Scored) -> float:
+        """What the results of a scene that was replayed cost, its inputs apart."""
+        return self._scored(scored.scene, {}, 0.0, scored.outcome).cost
 
     def replayed_scene(self, scene: dict[str, str], assumed: dict[str, str]) -> Scored:
         """One scene, replayed."""
@@ -288,7 +298,7 @@ def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
     return energy
 
 
-def _mismatch(expected: Expected, values: Floats) -> Floats:
+def mismatch(expected: Expected, values: Floats) -> Floats:
     """What each value costs where the program prints it to the places of its line."""
     costs: Floats = np.full(values.shape, expected.default)
     places = FIELDS[expected.name].places

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from .. import files
 from ..errors import UserError
 from . import beside, provenance, wording
-from .explain import explain, look_past
+from .explain import explain
 from .judging import (
     FieldCheck,
     Status,
@@ -21,6 +21,7 @@ from .judging import (
     reply_checks,
     verdict_of,
 )
+from .lookingpast import LookingPast
 from .printout import LARGEST_FILE, Printout, read_bytes
 from .recovery import recover, without_angles
 from .unseen import unseen
@@ -79,11 +80,11 @@ def verify(
 
     ``given``: texts of inputs by scene name, known from elsewhere than the printout."""
     recovered = recover(shown, given)
-    looked_past = None
-    if recovered.row_in_doubt:
-        looked_past = look_past(shown, recovered)
-        if looked_past is None:
-            recovered = without_angles(recovered)
+    past = LookingPast(shown, recovered, bool(given))
+    looked_past = past.judged() if recovered.row_in_doubt else None
+    tried = recovered.row_in_doubt
+    if tried and looked_past is None:
+        recovered = without_angles(recovered)
     checks = field_checks(shown, recovered)
     replies = reply_checks(shown, recovered)
     ending = ending_check(shown, recovered)
@@ -103,10 +104,10 @@ def verify(
         stop=shown.stop,
         text=shown.page.text if shown.page else "",
     )
+    if result.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE) and not tried:
+        looked_past = past.judged()
     if result.verdict is Verdict.DIFFERS and looked_past is None:
-        explained = explain(shown, recovered, checks, replies, ending)
-        result.explanations = explained.explanations
-        looked_past = explained.reread
+        result.explanations = explain(shown, recovered, checks, replies, ending, past.rereads)
     if looked_past is not None:
         result.verdict = Verdict.IDENTICAL_AS_READ
         result.scene, result.fields = looked_past.scene, looked_past.fields

@@ -1,0 +1,105 @@
+"""Looking past a reader's mistakes: a printout judged anew where nothing but its reader is wrong.
+
+A page that a machine read may differ, or lack an input, because of the reading alone. Scenes in
+which slips are put right (`rereading`) or inputs solved for (`inversion`) are then judged as if
+they were the printout's own; `judging.settled` says whether what is still wrong is the reader's,
+and `borneout` whether what was not read hangs on what was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from .borneout import borne_out
+from .inversion import paper_cost, scenes_found
+from .judging import FieldCheck, Status, field_checks, machine_read, reply_checks, settled
+from .printout import Printout
+from .recovery import Recovered
+from .rereading import Reread, Rereading
+from .search import Scored
+
+_TRIED = 8
+"""Scenes of each kind that are judged, those that explain most."""
+_AS_WELL = 1.0
+"""Scenes that cost so little more than the best explain the page as well."""
+
+
+@dataclass
+class Rejudged:
+    """The printout judged with the slips of its reader looked past."""
+
+    scene: dict[str, str | None]
+    fields: list[FieldCheck]
+    replies: list[FieldCheck]
+
+
+class LookingPast:
+    """Looking past the reader of one printout. ``fixed``: inputs come from elsewhere than the page,
+    so that none is solved for."""
+
+    def __init__(self, shown: Printout, recovered: Recovered, fixed: bool = False) -> None:
+        self._shown = shown
+        self._recovered = recovered
+        self._fixed = fixed
+
+    @cached_property
+    def rereads(self) -> list[Reread] | None:
+        """Scenes with slips put right, those that explain most first; None for a page that no
+        machine read, or that lacks an input."""
+        if not machine_read(self._shown) or self._recovered.missing:
+            return None
+        return Rereading(self._recovered).best(deep=True)
+
+    def judged(self) -> Rejudged | None:
+        """The printout judged with its reader's slips put right; None where they are not its alone.
+
+        The scene that explains most decides, and every other that explains the page as well must
+        bear it out: a digit altered in one angle can be made good by a sign of the angle beside it.
+        """
+        shown = self._shown
+        if not machine_read(shown) or shown.fragment_of_run or shown.ending:
+            return None
+        scenes = list(self._scenes())
+        costs = [paper_cost(shown, self._recovered.search, one) for one in scenes]
+        best: Rejudged | None = None
+        for cost, _, scored in sorted(zip(costs, range(len(scenes)), scenes, strict=True)):
+            if cost > min(costs) + _AS_WELL:
+                break
+            judged = _judged(shown, self._recovered, scored)
+            if judged is None:
+                return None
+            best = best or judged
+        return best
+
+    def _scenes(self) -> Iterator[Scored]:
+        """Scenes that may be the printout's own: as read, with slips put right, with inputs solved
+        for."""
+        recovered = self._recovered
+        search = recovered.search
+        if not recovered.missing:
+            yield search.replayed_scene(recovered.scene, recovered.assumed)
+        yield from (one.scored for one in (self.rereads or [])[:_TRIED])
+        if not self._fixed:
+            found = scenes_found(self._shown, search, recovered.scene, recovered.missing)
+            yield from found[:_TRIED]
+
+
+def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Rejudged | None:
+    """The printout judged as one of a scene; None where more than its reader is wrong."""
+    other = replace(
+        recovered,
+        scene=scored.scene,
+        assumed=scored.assumed,
+        outcome=scored.outcome,
+        missing=[],
+    )
+    checks = field_checks(shown, other)
+    replies = reply_checks(shown, other)
+    if not borne_out(shown, other, checks) or not settled(shown, checks, replies):
+        return None
+    for check in [*checks, *replies]:
+        if check.status == Status.CONTRADICTED:
+            check.status, check.same = Status.DOUBTFUL, None
+    return Rejudged(other.scene_or_missing(), checks, replies)
