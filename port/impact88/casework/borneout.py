@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 
 from ..fields import ANGLES, INPUTS
 from . import trial
+from .glyphs import LOOK_ALIKES, NUMERIC
 from .judging import Doubtful, FieldCheck, Status
 from .numerals import Doubt, candidates
 from .printout import Printout
@@ -52,7 +53,8 @@ def _reads_as_a_number(shown: Printout, check: FieldCheck) -> bool:
         return False
     glyphs = shown.page.glyphs
     region = tuple(one for one in glyphs if check.start <= one.offset < check.stop)
-    return bool(candidates(region, 1))
+    foreign = any(one.char not in NUMERIC and one.char not in LOOK_ALIKES for one in region)
+    return not foreign and bool(candidates(region, 1))
 
 
 def _doubted(shown: Printout, check: FieldCheck) -> None:

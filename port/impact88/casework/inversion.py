@@ -40,8 +40,10 @@ _KEPT, _REPLAYED = 60, 80
 _DECIMALS = range(5)
 _FULL_TURN, _TURNED = 360.0, 2.0
 """Beyond it nobody types an angle, and what it costs to believe that somebody did."""
-_UNREAD, _MOST_COST = 0.1, 2 * MISMATCH
-"""What an input costs of which nothing was read, by the digit, and what one may cost at most."""
+_UNREAD, _MOST_COST = 0.6, 2 * MISMATCH
+"""What an input costs of which nothing was read, by the digit: of two that explain the page the
+shorter was typed; and what an input may cost at most."""
+_TURNS = 12
 _ROWS = 6
 """Ways to cut the row of angles that are taken for a start."""
 _STARTS: dict[str, tuple[float, ...]] = {
@@ -111,13 +113,11 @@ class _Inversion:
         self, scene: Mapping[str, str], missing: Sequence[str]
     ) -> Iterator[tuple[dict[str, str], tuple[str, ...]]]:
         """Scenes to begin with, and what is unknown in each beside what may be misread."""
-        lost = [name for name in missing if name not in ANGLES]
         rows = [dict(zip(ANGLES, row, strict=True)) for row, _ in self._shown.angles[:_ROWS]]
-        if not (self._shown.angle_row and set(missing) & set(ANGLES)):
-            rows, lost = [{}], list(missing)
+        lost = [name for name in missing if name not in ANGLES or not self._shown.angle_row]
         if len(lost) > _MOST_MISSING:
             return
-        for row in rows or [dict.fromkeys(ANGLES, "0")]:
+        for row in rows or [{}]:
             for start in product(*(_STARTS[name] for name in lost)):
                 values = dict(zip(lost, map(_typed, start), strict=True))
                 yield {**scene, **row, **values}, tuple(lost)
@@ -135,10 +135,13 @@ class _Inversion:
             if not count and not lost:
                 continue
             sets = [(*lost, *some) for some in combinations(others, count)]
-            values = self._least_squares(base, start, sets)
+            starts = [np.tile(start, (len(sets), 1))]
+            starts += [_begun(start, sets, some) for some in range(_TURNS if count == 1 else 1)]
+            values = self._least_squares(base, np.concatenate(starts), sets * len(starts))
             agree = self._agreeing(base, values)
             order = np.argsort(-agree, kind="stable")[: _KEPT // (1 + count)]
-            found += [(int(agree[i]) - 2 * count, sets[i], values[i]) for i in order.tolist()]
+            for i in order.tolist():
+                found.append((int(agree[i]) - 2 * count, sets[i % len(sets)], values[i]))
         found.sort(key=lambda one: -one[0])
         found = found[:_KEPT]
         return [names for _, names, _ in found], np.array([values for _, _, values in found])
@@ -146,10 +149,11 @@ class _Inversion:
     def _least_squares(
         self, base: Mapping[str, str], start: Floats, sets: Sequence[tuple[str, ...]]
     ) -> Floats:
-        """Gauss-Newton for every set of unknowns at once; each row all inputs."""
+        """Gauss-Newton for every set of unknowns at once; ``start`` and the result hold all inputs
+        in a row each."""
         count, width = len(sets), len(sets[0])
         where = np.array([[UNKNOWN.index(name) for name in names] for names in sets])
-        values = np.tile(start, (count, 1))
+        values = start.copy()
         rows = np.arange(count)
         limits = np.array([_STEP_LIMIT.get(name, 0.0) for name in UNKNOWN])[where]
         coarse = np.maximum(self._units, _COARSE * np.maximum(1.0, abs(self._values)))
@@ -208,6 +212,8 @@ class _Inversion:
             options = []
             for name in names:
                 value = float(row[UNKNOWN.index(name)])
+                if name in ANGLES:
+                    value = _within_a_turn(value, float(base[name]))
                 options.append(_roundings(value) if abs(value) < 1e8 else [])
             for texts in product(*options):
                 yield {**base, **dict(zip(names, texts, strict=True))}
@@ -273,6 +279,21 @@ def _read_cost(reading: Reading | None, printed: str) -> float:
     return min(match.cost, _MOST_COST)
 
 
+def _begun(start: Floats, sets: Sequence[tuple[str, ...]], turn: int) -> Floats:
+    """Where else the unknowns of every set are looked for: what has a sign at its opposite, angles
+    further round by so many turns of a dozen, what has none where it is usual."""
+    values = np.tile(start, (len(sets), 1))
+    for row, names in enumerate(sets):
+        for name in names:
+            place = UNKNOWN.index(name)
+            usual = _STARTS[name][0]
+            signed = name in ANGLES or min(_STARTS[name]) <= 0
+            values[row, place] = -start[place] if signed else usual
+            if name in ANGLES:
+                values[row, place] += turn * 360 / _TURNS
+    return values
+
+
 def _targets(search: Search) -> Iterator[_Target]:
     """The results that were read, each at its likeliest."""
     for one in search.expected:
@@ -294,6 +315,14 @@ def _roundings(value: float) -> list[str]:
     """The numbers with few decimals nearest to a value, shortest first."""
     texts = [_typed(round(value, decimals)) for decimals in _DECIMALS]
     return list(dict.fromkeys(texts))
+
+
+def _within_a_turn(angle: float, like: float) -> float:
+    """An angle as people type it, from -180 to 180 degrees, or up to 360 where it was read so."""
+    within = (angle + 180) % 360 - 180
+    if 180 < abs(like) <= _FULL_TURN and within * like < 0:
+        within += 360 if like > 0 else -360
+    return within
 
 
 def _typed(value: float) -> str:
