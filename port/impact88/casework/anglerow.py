@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 
 from .glyphs import Gap
 from .numerals import Region, candidates, compare
@@ -57,6 +57,7 @@ def cut_in_five(region: Region, most: int = _CUTS) -> list[tuple[tuple[str, ...]
     return [(texts, cost) for cost, texts in ways.get(count, [])]
 
 
+@lru_cache(maxsize=4096)
 def cut_as(region: Region, printed: tuple[str, ...]) -> list[tuple[int, int]]:
     """Where each of the printed texts stands among the glyphs of a row, as ``(start, stop)``; both
     the same where nothing is read of it.

@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 UNKNOWN = tuple(map(scene_name, INPUTS))
 """What may be solved for, by scene name."""
 _AT_ONCE = 3
-"""Inputs taken as unknown at a time, those that are missing apart."""
+"""Inputs taken as unknown at a time, those that are missing apart; one fewer with other angles."""
 _MOST_MISSING = 3
 _STEPS, _LAST_STEPS = 9, 4
 _COARSE = 1e-3
@@ -44,7 +44,7 @@ _UNREAD, _MOST_COST = 0.6, 2 * MISMATCH
 """What an input costs of which nothing was read, by the digit: of two that explain the page the
 shorter was typed; and what an input may cost at most."""
 _TURNS = 12
-_ROWS = 6
+_ROWS = 4
 """Ways to cut the row of angles that are taken for a start."""
 _STARTS: dict[str, tuple[float, ...]] = {
     **dict.fromkeys(("MA", "MB"), (100.0,)),
@@ -97,8 +97,9 @@ class _Inversion:
         if len(self._targets) < 4:
             return []
         texts: list[dict[str, str]] = []
-        for base, unknown in self._bases(scene, missing):
-            texts += self._typed(base, *self._solved(base, unknown))
+        for number, (base, unknown) in enumerate(self._bases(scene, missing)):
+            most = _AT_ONCE if not number else _AT_ONCE - 1
+            texts += self._typed(base, *self._solved(base, unknown, most))
         texts = list({tuple(sorted(one.items())): one for one in texts}.values())
         if not texts:
             return []
@@ -125,13 +126,13 @@ class _Inversion:
     # --- least squares ---
 
     def _solved(
-        self, base: Mapping[str, str], lost: tuple[str, ...]
+        self, base: Mapping[str, str], lost: tuple[str, ...], most: int
     ) -> tuple[list[tuple[str, ...]], Floats]:
         """The unknowns that explain the results best, and their values (a row each)."""
         others = [name for name in UNKNOWN if name not in lost]
         start = np.array([float(base[name]) for name in UNKNOWN])
         found: list[tuple[int, tuple[str, ...], Floats]] = []
-        for count in range(_AT_ONCE + 1):
+        for count in range(most + 1):
             if not count and not lost:
                 continue
             sets = [(*lost, *some) for some in combinations(others, count)]

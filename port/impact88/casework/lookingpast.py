@@ -18,7 +18,7 @@ from .judging import FieldCheck, Status, field_checks, machine_read, reply_check
 from .printout import Printout
 from .recovery import Recovered
 from .rereading import Reread, Rereading
-from .search import Scored
+from .search import MISMATCH, Scored
 
 _TRIED = 8
 """Scenes of each kind that are judged, those that explain most."""
@@ -61,8 +61,13 @@ class LookingPast:
         shown = self._shown
         if not machine_read(shown) or shown.fragment_of_run or shown.ending:
             return None
-        scenes = list(self._scenes())
-        costs = [paper_cost(shown, self._recovered.search, one) for one in scenes]
+        search = self._recovered.search
+        scenes = list(self._slips_put_right())
+        costs = [paper_cost(shown, search, one) for one in scenes]
+        if not self._fixed and min(costs, default=MISMATCH + _AS_WELL) >= MISMATCH + _AS_WELL:
+            found = scenes_found(shown, search, self._recovered.scene, self._recovered.missing)
+            scenes += found[:_TRIED]
+            costs += [paper_cost(shown, search, one) for one in found[:_TRIED]]
         best: Rejudged | None = None
         for cost, _, scored in sorted(zip(costs, range(len(scenes)), scenes, strict=True)):
             if cost > min(costs) + _AS_WELL:
@@ -73,17 +78,13 @@ class LookingPast:
             best = best or judged
         return best
 
-    def _scenes(self) -> Iterator[Scored]:
-        """Scenes that may be the printout's own: as read, with slips put right, with inputs solved
-        for."""
+    def _slips_put_right(self) -> Iterator[Scored]:
+        """The scene as read, and with slips put right. Where one number's slip explains the page,
+        nothing needs to be solved for."""
         recovered = self._recovered
-        search = recovered.search
         if not recovered.missing:
-            yield search.replayed_scene(recovered.scene, recovered.assumed)
+            yield recovered.search.replayed_scene(recovered.scene, recovered.assumed)
         yield from (one.scored for one in (self.rereads or [])[:_TRIED])
-        if not self._fixed:
-            found = scenes_found(self._shown, search, recovered.scene, recovered.missing)
-            yield from found[:_TRIED]
 
 
 def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Rejudged | None:
