@@ -123,7 +123,7 @@ def _cells(name: str, column: Column) -> list[str]:
         if column.dtype.kind == "f" or (name in SCENE and column.dtype.kind in "iub"):
             # whole numbers too: where one is missing, a later block of them is of doubles
             return list(map(jsontext.number, column.astype(np.float64, copy=False).tolist()))
-        return list(map(json.dumps, column.tolist()))
+        return list(map(jsontext.written, column.tolist()))
     return [
         "" if cell is ABSENT else _double(cell) if name in SCENE else jsontext.written(cell)
         for cell in column
