@@ -34,7 +34,7 @@ def differing(result: Verification) -> list[str]:
 
 @pytest.mark.captures
 def test_captured_printouts_verify_as_identical() -> None:
-    for row in printouts.sampled(printouts.normal_ends(), 30):
+    for row in printouts.sampled(printouts.normal_ends(), 20):
         for text in (row["printout"], printouts.body(row["printout"])):
             result = verified(text)
             assert result.verdict is Verdict.IDENTICAL, row["scene"]
@@ -83,7 +83,7 @@ def test_captured_errors_verify() -> None:
 @pytest.mark.captures
 def test_one_output_digit_changed_is_the_one_field_reported() -> None:
     rng = random.Random(3)
-    for row in printouts.sampled(printouts.normal_ends(), 8, seed=3):
+    for row in printouts.sampled(printouts.normal_ends(), 6, seed=3):
         text = printouts.body(row["printout"])
         outputs = [place for place in printouts.places(text) if place.name not in INPUTS]
         for place in printouts.chosen(outputs, rng):
