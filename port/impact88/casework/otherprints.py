@@ -41,6 +41,8 @@ _LINES = (("VAX", "VBX"), ("VAY", "VBY"), ("XAF", "XBF"), ("YAF", "YBF"), ("WAF"
 _AXES = (("VAX", "VAY"), ("VBX", "VBY"), ("XAF", "YAF"), ("XBF", "YBF"))
 _SINGLE, _SINGLE_ERROR = 7, 3e-6
 """Digits of single precision, and the relative error left to its results."""
+_MOST_PLACES = 22
+"""Decimals of a program's number, at most; to here the powers of ten are exact."""
 _SAME_TO = 1e-6
 """Relative error left to a factor that is known to seven digits."""
 
@@ -221,21 +223,25 @@ def _is_near(printed: str, value: float, places: int | None) -> bool:
 
 def rounded_text(value: float, places: int) -> str:
     """A value rounded to so many decimals, halves upward, as a program rounds and writes it."""
-    return _written(math.floor(value * 10**places + 0.5), places)
+    return _written(lambda units: math.floor(units + 0.5), value, places)
 
 
 def truncated_text(value: float, places: int) -> str:
     """A value cut toward zero to so many decimals, as a program cuts and writes it."""
-    return _written(math.trunc(value * 10**places), places)
+    return _written(math.trunc, value, places)
 
 
 def floored_text(value: float, places: int) -> str:
     """A value floored to so many decimals, as a program floors and writes it."""
-    return _written(math.floor(value * 10**places), places)
+    return _written(math.floor, value, places)
 
 
-def _written(units: int, places: int) -> str:
-    text = f"{Decimal(units).scaleb(-places):f}"
+def _written(whole: Callable[[float], int], value: float, places: int) -> str:
+    """Empty where no program's number has as many decimals, or is as large."""
+    units = value * 10.0**places if places <= _MOST_PLACES else math.inf
+    if not math.isfinite(units):
+        return ""
+    text = f"{Decimal(whole(units)).scaleb(-places):f}"
     return as_printed(text) or text
 
 
