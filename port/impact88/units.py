@@ -88,6 +88,10 @@ class System(NamedTuple):
         """The unit that values of a rule ("length/time") are shown in."""
         return self.usual.get(rule) or self.labels.get(rule, rule)
 
+    def factor(self, name: str) -> float:
+        """What a quantity's value in base units is multiplied with to be shown."""
+        return self.shown(quantity(name).unit, 1.0)
+
     def shown(self, rule: str, value: float) -> float:
         """A value in base units as it is shown."""
         unit = self.usual.get(rule)

@@ -81,16 +81,7 @@ class Rereading:
         picks.append(self._in_energy(choices, kinetic, rest, deep))
         picks.append(self._pairs(choices, rest))
         every = np.unique(np.concatenate(picks), axis=0)
-        every = self._search.screened(choices, every, 320)
-        tried = self._search.replayed(self._proper(choices, every), every)
-        ranked = []
-        for pick, scored in zip(every.tolist(), tried, strict=True):
-            made = tuple(
-                change
-                for place, index in enumerate(pick)
-                if (change := changes[place][index]) is not None
-            )
-            ranked.append(Reread(made, scored))
+        ranked = [reread for _, reread in self._tried(choices, changes, every, 320)]
         ranked.sort(key=lambda one: one.scored.cost)
         return ranked
 
@@ -115,17 +106,22 @@ class Rereading:
             numbers += [number] * len(block)
         picks = np.concatenate(rows)
         order = {tuple(row): number for row, number in zip(picks.tolist(), numbers, strict=True)}
+        tried = self._tried(choices, changes, picks, most)
+        return [(order[pick], reread) for pick, reread in tried]
+
+    def _tried(
+        self, choices: Choices, changes: list[list[Change | None]], picks: Picks, most: int
+    ) -> Iterator[tuple[tuple[int, ...], Reread]]:
+        """The picks that explain most, so many of them, each with its scene replayed."""
         picks = self._search.screened(choices, picks, most)
-        tried = self._search.replayed(self._proper(choices, picks), picks)
-        both = []
-        for pick, scored in zip(picks.tolist(), tried, strict=True):
+        scenes = self._search.replayed(self._proper(choices, picks), picks)
+        for pick, scored in zip(picks.tolist(), scenes, strict=True):
             made = tuple(
                 change
                 for place, index in enumerate(pick)
                 if (change := changes[place][index]) is not None
             )
-            both.append((order[tuple(pick)], Reread(made, scored)))
-        return both
+            yield tuple(pick), Reread(made, scored)
 
     def _still(self, name: str) -> bool:
         """Whether an input is an inertia that does not spin: the energy says nothing of it."""

@@ -49,13 +49,6 @@ def _axis_label(name: str, units: System) -> str:
     return f"{symbol(what.symbol)}, {units.label(what.unit)}"
 
 
-def _factor(name: str, units: System) -> float:
-    """What a number of base units is multiplied with to be shown."""
-    from ..names import quantity
-
-    return units.shown(quantity(name).unit, 1.0)
-
-
 def _chosen(result: Bounds, outputs: Sequence[str] | None) -> list[str]:
     wanted = list(outputs or result.bounds)
     for name in wanted:
@@ -267,7 +260,7 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
         raise UserError(f"{len(outputs)} results do not fit a page; expected {MOST_PANELS} at most")
     numbers: dict[str, Any] = numbers_of(scene)
     units = system_of(getattr(scene, "units", None))
-    axis, shown = np.asarray(values), _factor(name, units)
+    axis, shown = np.asarray(values), units.factor(name)
     results = solve({**numbers, name: axis}, [*outputs, "STATUS"])
     faulty = results["STATUS"] != 0
     with style():
@@ -275,7 +268,7 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
         figure.set_layout_engine("constrained", h_pad=0.03)
         panels = figure.subplots(len(outputs), 1, sharex=True, squeeze=False).ravel()
         for output, axes in zip(outputs, panels, strict=True):
-            factor = _factor(output, units)
+            factor = units.factor(output)
             axes.plot(axis * shown, results[output] * factor, color=BLUE)
             axes.set_ylabel(_axis_label(output, units))
             if min(values) <= numbers[name] <= max(values):

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from ..names import quantity
 from ..units import RULES, System, system_of
 from .boundstable import Bound, Bounds
 from .draws import Spread
@@ -21,7 +20,7 @@ def in_units(found: Bounds, name: str | None) -> Bounds:
     units = system_of(name)
     if units is RULES:
         return found
-    factors = {name: _factor(name, units) for name in (*found.inputs, *found.bounds)}
+    factors = {name: units.factor(name) for name in (*found.inputs, *found.bounds)}
     return replace(
         found,
         inputs={
@@ -46,17 +45,13 @@ def in_units(found: Bounds, name: str | None) -> Bounds:
     )
 
 
-def _factor(name: str, units: System) -> float:
-    return units.shown(quantity(name).unit, 1.0)
-
-
 def _times(factor: float, record: Any, *names: str) -> Any:
     """The record with the fields of those names multiplied."""
     return replace(record, **{name: getattr(record, name) * factor for name in names})
 
 
 def _scene(values: Mapping[str, float], units: System) -> dict[str, float]:
-    return {name: value * _factor(name, units) for name, value in values.items()}
+    return {name: value * units.factor(name) for name, value in values.items()}
 
 
 def _bound(one: Bound, factor: float, units: System) -> Bound:
