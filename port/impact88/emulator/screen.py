@@ -114,6 +114,11 @@ class Screen(Editor):
         if address < END:
             self._ram[address] = code
 
+    def _fill(self, address: int, codes: bytes | bytearray) -> None:
+        """Bytes from an address on, those behind the screen's end dropped as by ``_put``."""
+        codes = codes[: max(END - address, 0)]
+        self._ram[address : address + len(codes)] = codes
+
     def _go_to_row(self, row: int) -> None:
         """The cursor's address in a row, whether the screen has such a row or not."""
         page = BASE + (row >> 1 & 3) * 0x100
@@ -142,15 +147,17 @@ class Screen(Editor):
             self._go_to_row(row)
             # the monitor counts columns down while they look positive
             columns = self.width if 1 <= self.width <= 0x80 else 1
-            for column in range(self.width - columns, self.width) if self.width else (0xFF,):
-                self._put(upper + column, self._ram[self._address + column])
+            first = self.width - columns & 0xFF
+            # rows are 128 bytes apart at least, so none of these is read after it is written
+            source = self._address + first
+            self._fill(upper + first, self._ram[source : source + columns])
         self._clear_from(0)
         self._go_to_row(self._row)
 
     def _clear_from(self, column: int) -> None:
         """Blanks to the end of the window's row; one at least."""
-        for each in range(column, max(self.width, column + 1)):
-            self._put(self._address + each, _BLANK)
+        columns = max(self.width - column, 1)
+        self._fill(self._address + column, bytes([_BLANK]) * columns)
 
     def _clear_rows(self, row: int, column: int) -> None:
         while True:
