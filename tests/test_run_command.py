@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from impact88.applesoft.console import Console
+from impact88.applesoft.console import Console, keyed
 from impact88.errors import UserError
 from impact88.program import emulated
 from impact88.program.arithmetics import APPLESOFT
@@ -198,6 +198,20 @@ def test_values_that_cannot_be_typed_into_the_program(changes, words):
 def test_an_empty_reply_is_asked_again():
     done = impact88("run", input="\n" + REPLIES)
     assert "?\n?REENTER\n?-29.04,0,0\n" in done.stdout
+
+
+@pytest.mark.parametrize(
+    "typed", ["\N{MINUS SIGN}5", "\N{MICRO SIGN}5", "\N{FULLWIDTH DIGIT ONE}", "\u7903"]
+)
+def test_a_character_the_keyboard_has_no_key_for_is_no_part_of_a_number(typed):
+    """The last seven bits of a micro sign are those of 5, of U+7903 those of control-C."""
+    done = impact88("run", input=f"{typed},0,0\n" + REPLIES)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert ",0,0\n?REENTER\n" in done.stdout
+
+
+def test_a_reply_in_apple_text_with_its_high_bits():
+    assert keyed("\udcb1\udcac\udcad2") == "1,-2"
 
 
 def test_what_a_refused_reply_has_made():

@@ -34,6 +34,9 @@ BUFFER = 256
 WARNING = 248
 BELL = "\a"
 PRINTER_SLOT = 1
+NO_KEY = "?"
+_ESCAPED_BYTE = 0xDC80
+"""What Python makes of a byte 80 that it cannot decode."""
 _MOVES = {"I": "D", "J": "B", "K": "A", "M": "C"}
 """Keys after ESC that may be repeated, and what they do once."""
 
@@ -157,7 +160,7 @@ class Console:
             typed = self.keyboard()
             if typed is None:
                 raise EndOfInput
-            self._keys = typed if isinstance(typed, Keys) else typed + "\r"
+            self._keys = keyed(typed) if isinstance(typed, Keys) else keyed(typed) + "\r"
         key, self._keys = self._keys[0], self._keys[1:]
         return key
 
@@ -314,6 +317,23 @@ class Reply:
         return self._position < len(self._line)
 
 
+def keyed(text: str) -> str:
+    """A text in the codes of the Apple's keyboard, which has seven bits.
+
+    A byte that is no text (of Apple text with its high bits set) counts for its seven bits. Other
+    characters have no key: ``?`` stands for them, so that a typographic minus or a micro sign is
+    refused where a number is expected, and not taken for the key that has its last seven bits.
+    """
+    if text.isascii():
+        return text
+    return "".join(_key(ord(character)) for character in text)
+
+
+def _key(code: int) -> str:
+    escaped = _ESCAPED_BYTE <= code < _ESCAPED_BYTE + 0x80
+    return chr(code & 0x7F) if code < 0x80 or escaped else NO_KEY
+
+
 def capitals(typed: str) -> str:
     """What the monitor makes of the codes above capital letters: those, and ``{`` becomes ``[``."""
-    return "".join(chr(n & 0x5F) if 0x60 <= n < 0x80 else chr(n & 0x7F) for n in map(ord, typed))
+    return "".join(chr(n & 0x5F) if n >= 0x60 else chr(n) for n in map(ord, keyed(typed)))

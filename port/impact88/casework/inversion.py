@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations, product
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,8 @@ _COARSE = 1e-3
 """Relative error a result is allowed while the solution is still far off."""
 _KEPT, _REPLAYED = 60, 80
 _DECIMALS = range(5)
+_COMBINED = 128
+"""Roundings of all unknowns of a solution that are tried."""
 _FULL_TURN, _TURNED = 360.0, 2.0
 """Beyond it nobody types an angle, and what it costs to believe that somebody did."""
 _UNREAD, _MOST_COST = 0.6, 2 * MISMATCH
@@ -216,7 +219,7 @@ class _Inversion:
                 if name in ANGLES:
                     value = _within_a_turn(value, float(base[name]))
                 options.append(_roundings(value) if abs(value) < 1e8 else [])
-            for texts in product(*options):
+            for texts in _alike_decimals(options):
                 yield {**base, **dict(zip(names, texts, strict=True))}
 
     def _rough_costs(self, scenes: Sequence[Mapping[str, str]]) -> Floats:
@@ -316,6 +319,14 @@ def _roundings(value: float) -> list[str]:
     """The numbers with few decimals nearest to a value, shortest first."""
     texts = [_typed(round(value, decimals)) for decimals in _DECIMALS]
     return list(dict.fromkeys(texts))
+
+
+def _alike_decimals(options: Sequence[Sequence[str]]) -> Iterator[tuple[str, ...]]:
+    """A text of each; of very many combinations those with as few decimals."""
+    most = max(map(len, options), default=0)
+    while most > 2 and prod(min(len(some), most) for some in options) > _COMBINED:
+        most -= 1
+    yield from product(*(some[:most] for some in options))
 
 
 def _within_a_turn(angle: float, like: float) -> float:

@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals
+from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals, keyed
 from ..applesoft.errors import ApplesoftError
 from ..applesoft.real import to_stored
 from .lister import source
@@ -132,7 +132,7 @@ class Applesoft:
         machine = self.machine
         machine.errors.flag >>= 1
         machine.error = None
-        typed = bytes(ord(character) & 0x7F for character in text)
+        typed = keyed(text).encode("ascii")
         try:
             numbered = split_number(text)
         except ValueError:

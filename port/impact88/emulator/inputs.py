@@ -187,7 +187,7 @@ class Inputs:
         key = ""
         for kind, where in items:
             values, index = where()
-            key = chr(ord(self._console.read_key()) & 0x7F).rstrip("\0")
+            key = self._console.read_key().rstrip("\0")
             if kind == STRING:
                 values[index] = self._strings.kept(self._strings.made(key))
                 position = len(key)

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from ..applesoft.console import keyed
+
 FIRST = 0x80
 KEYWORDS = (
     *"END FOR NEXT DATA INPUT DEL DIM READ GR TEXT PR# IN# CALL PLOT HLIN VLIN".split(),
@@ -63,6 +65,7 @@ def _keyword(text: str, start: int) -> tuple[int, int] | None:
 @lru_cache(maxsize=4096)
 def tokenise(text: str) -> bytes:
     """The bytes of a line's statements as the ROM's parser leaves them, without the final zero."""
+    text = keyed(text)
     out = bytearray()
     position = 0
     in_data = False
@@ -73,7 +76,7 @@ def tokenise(text: str) -> bytes:
         elif character == _QUOTE:
             position = _copy(text, position, _QUOTE, out)
         elif in_data or "0" <= character <= ";":
-            out.append(ord(character) & 0x7F)
+            out.append(ord(character))
             position += 1
             if character == ":":
                 in_data = False
@@ -87,7 +90,7 @@ def tokenise(text: str) -> bytes:
             if token == REM:
                 position = _copy(text, position, "", out)
         else:
-            out.append(ord(character) & 0x7F)
+            out.append(ord(character))
             position += 1
     return bytes(out)
 
@@ -96,7 +99,7 @@ def _copy(text: str, position: int, until: str, out: bytearray) -> int:
     """Copy up to and including the next ``until``, or to the end; return where that is."""
     end = text.find(until, position + 1) + 1 if until else 0
     end = end or len(text)
-    out += bytes(ord(character) & 0x7F for character in text[position:end])
+    out += bytes(ord(character) for character in text[position:end])
     return end
 
 
