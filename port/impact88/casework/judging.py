@@ -348,8 +348,11 @@ def _misread_digit(doubt: Doubtful) -> bool:
 
 
 def _digits_lost_or_added(check: FieldCheck) -> int:
-    """How many digits of a number were not read, or read where none is printed."""
+    """How many digits of a number were not read, or read where none is printed; all that is lost
+    behind a point is lost in one piece, for the program ends no number so."""
     wrong = [doubt for doubt in check.doubts if doubt.how == Doubt.CONTRADICTS]
+    if check.printed and check.printed.endswith(".") and not any(doubt.read for doubt in wrong):
+        return 1
     return sum(
         doubt.read.isdigit() != doubt.printed.isdigit() and not (doubt.read and doubt.printed)
         for doubt in wrong

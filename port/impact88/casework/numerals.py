@@ -66,7 +66,7 @@ _CONTRADICTION = 3.0
 SIMILAR = {frozenset(pair) for pair in "08 06 09 89 86 56 58 53 32 38 17 14 93 27 95 28".split()}
 """Digits that readers take for one another."""
 _LOOK_ALIKE, _ILLEGIBLE_MARK, _FOREIGN = 0.5, 0.7, 1.0
-_COMMA = 0.3
+_COMMA, _DASH_FOR_POINT = 0.3, 0.6
 _SPECK, _SPECK_INSIDE, _BLANK_INSIDE = 0.4, 0.7, 0.3
 _BLANK_FOR_POINT = 1.0
 _RETYPED = 0.2
@@ -157,6 +157,8 @@ def _compared(
                 blank = 0.0 if joined or not inside else _BLANK_INSIDE
                 if j < columns:
                     cost, doubt = _substitution(char, printed[j])
+                    if char == "-" and printed[j] == "." and _between_digits(region, i):
+                        cost, doubt = _DASH_FOR_POINT, Doubt.LOOK_ALIKE
                     if blank and doubt is None:
                         doubt = Doubt.BLANK
                     _step(best, back, i, j, 1, 1, least + cost + blank, doubt)
@@ -186,7 +188,9 @@ def _step(best, back, i, j, di, dj, cost, doubt) -> None:  # type: ignore[no-unt
 
 
 def _round(chars: Sequence[str]) -> bool:
-    """Whether glyphs may be a lone 0 taken to pieces: ``C)``, ``()``, ``0)``, ``ie}``."""
+    """Whether glyphs may be a lone 0 taken to pieces: ``C)``, ``()``, ``0)``, ``ie}``, ``(2)``."""
+    if len(chars) == 3 and chars[0] in "([{" and chars[-1] in ")}]":
+        return True
     if not 2 <= len(chars) <= 3 or any(char.isdigit() and char not in "0169" for char in chars):
         return len(chars) == 1 and chars[0] in ")}"
     return chars[-1] in ")}]" or chars[0] in "([{"
@@ -214,6 +218,17 @@ def _substitution(char: str, printed: str) -> tuple[float, Doubt | None]:
         # the look-alike of another digit
         return _CONTRADICTION, Doubt.CONTRADICTS
     return _FOREIGN, Doubt.ILLEGIBLE
+
+
+def _between_digits(region: tuple[tuple[str, Gap, bool], ...], i: int) -> bool:
+    """Whether a glyph stands within figures, where no sign stands."""
+    return (
+        0 < i < len(region) - 1
+        and region[i - 1][0].isdigit()
+        and region[i + 1][0].isdigit()
+        and region[i][2]
+        and region[i + 1][2]
+    )
 
 
 def _alike(char: str) -> float:
@@ -247,13 +262,7 @@ def _extra(
             return _SPECK_INSIDE + 0.3, Doubt.LEFT_OVER
         return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
     if char == ".":
-        between = (
-            0 < i < len(region) - 1
-            and region[i - 1][0].isdigit()
-            and region[i + 1][0].isdigit()
-            and not parted
-        )
-        if between:
+        if _between_digits(region, i):
             return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
         return _SPECK, Doubt.LEFT_OVER
     inside = 0 < j < len(printed)
@@ -327,6 +336,8 @@ def _candidates(
                 keep(text + char, cost + blank)
                 if char == "+":
                     keep(text + "-", cost + blank + _LOOK_ALIKE + 0.1)
+                if char == "-" and "." not in text and _between_digits(region, index):
+                    keep(text + ".", cost + _DASH_FOR_POINT)
                 if char in "-.+" or (char == "0" and text in ("", "-")):
                     free = char == "-" and sign_free and index == 0
                     keep(text, cost + (0.2 if free else _SPECK_INSIDE))

@@ -24,7 +24,7 @@ from .alignment import Aligned, align
 from .anglerow import cut_in_five
 from .glyphs import Gap, Glyph, Page
 from .numerals import Region
-from .template import REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
+from .template import LETTER_LOST, REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -299,15 +299,18 @@ class _Reader:
         )
 
     def _misread_letters(self) -> int:
-        """Letters of labels, and asterisks, read as other letters or figures."""
+        """Letters of labels, and asterisks, read as other letters or figures; and lines whose first
+        letters were not read, as where a margin is cut off."""
         page = template()
         count = 0
         before = 0
         for index, state in enumerate(self._states):
             letter = page.letters.get(state, "")
-            char = self._glyphs[self._start + index].char
+            glyph = self._glyphs[self._start + index]
             if state != before and (letter.isalpha() or letter == "*"):
-                count += char != letter and char.isalnum()
+                count += glyph.char != letter and glyph.char.isalnum()
+                first = glyph.gap is Gap.LINE and page.line[before] != page.line[state]
+                count += first and bool(page.miss[state - 1] == LETTER_LOST)
             before = state
         return count
 

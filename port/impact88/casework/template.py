@@ -88,8 +88,9 @@ _LETTERS = {
 """Letter of a label -> what it is read as."""
 
 _MISS = {"=": 0.45, "(": 0.25, ")": 0.25, "%": 0.3, "*": 0.25, ":": 0.2, ",": 0.2, "?": 0.3}
-"""What it costs to miss a glyph of a label; other letters `_LETTER_LOST`."""
-_LETTER_LOST = 0.65
+"""What it costs to miss a glyph of a label; other letters `LETTER_LOST`."""
+LETTER_LOST = 0.65
+"""Of letters that nobody leaves out."""
 _LOOSE = 0.25
 """The same for words that retyped pages leave out (INITIAL, KE before LOSS, the prompts)."""
 _ALIKE, _WRONG, _DIGIT = 0.35, 1.1, 1.4
@@ -203,7 +204,7 @@ def template() -> Template:
             if number < 2:
                 for part in "_{}":
                     stay[ord(part), state] = 0.05
-            miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, _LETTER_LOST)
+            miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, LETTER_LOST)
     miss[1] = 1000.0  # a printout begins at a price, not by missing what is outside
     between = np.array([state for state, kind in enumerate(kinds) if kind[0] == "between"])
     closes = np.array([kind[0] == "slot" or kind[1] in ")%*" for kind in kinds])
