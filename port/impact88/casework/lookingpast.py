@@ -16,9 +16,10 @@ from .borneout import borne_out
 from .inversion import paper_cost, scenes_found
 from .judging import FieldCheck, Status, field_checks, machine_read, reply_checks, settled
 from .printout import Printout
-from .recovery import Recovered
+from .recovery import Recovered, recover
 from .rereading import Reread, Rereading
 from .search import MISMATCH, Scored
+from .ways import unreadable_digit
 
 _TRIED = 8
 """Scenes of each kind that are judged, those that explain most."""
@@ -85,6 +86,20 @@ class LookingPast:
         if not recovered.missing:
             yield recovered.search.replayed_scene(recovered.scene, recovered.assumed)
         yield from (one.scored for one in (self.rereads or [])[:_TRIED])
+        yield from self._unreadable_put_right()
+
+    def _unreadable_put_right(self) -> Iterator[Scored]:
+        """The scenes of a page whose reader cannot read one digit, that digit put right throughout;
+        and one slip besides."""
+        digit = "" if self._fixed else unreadable_digit(self._shown)
+        if not digit:
+            return
+        other = recover(self._shown, unreadable=digit)
+        if other.missing:
+            return
+        yield other.search.replayed_scene(other.scene, other.assumed)
+        if other.wrong:
+            yield from (one.scored for one in Rereading(other).best()[:_TRIED])
 
 
 def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Rejudged | None:

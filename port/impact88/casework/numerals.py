@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
 from enum import StrEnum
 from functools import lru_cache
+from itertools import combinations
 from typing import NamedTuple
 
 from ..applesoft.decimaltext import lay_out
@@ -66,6 +67,7 @@ _CONTRADICTION = 3.0
 SIMILAR = {frozenset(pair) for pair in "08 06 09 89 86 56 58 53 32 38 17 14 93 27 95 28".split()}
 """Digits that readers take for one another."""
 _LOOK_ALIKE, _ILLEGIBLE_MARK, _FOREIGN = 0.5, 0.7, 1.0
+_LESS_ALIKE = 0.1
 _COMMA, _DASH_FOR_POINT = 0.3, 0.6
 _SPECK, _SPECK_INSIDE, _BLANK_INSIDE = 0.4, 0.7, 0.3
 _BLANK_FOR_POINT = 1.0
@@ -211,7 +213,7 @@ def _substitution(char: str, printed: str) -> tuple[float, Doubt | None]:
             return _CONTRADICTION - 0.4, Doubt.CONTRADICTS
         return _CONTRADICTION, Doubt.CONTRADICTS
     if printed in LOOK_ALIKES.get(char, ""):
-        return _alike(char), Doubt.LOOK_ALIKE
+        return _alike(char, printed), Doubt.LOOK_ALIKE
     if printed in "-." and char in _SPECKS:
         return _LOOK_ALIKE + 0.1, Doubt.LOOK_ALIKE
     if len(LOOK_ALIKES.get(char, "")) and char in "OQØ©®@IL|!ZSB$&":
@@ -231,9 +233,10 @@ def _between_digits(region: tuple[tuple[str, Gap, bool], ...], i: int) -> bool:
     )
 
 
-def _alike(char: str) -> float:
-    """What it costs that a digit or sign was read as its look-alike."""
-    return _COMMA if char in ",~\u00adOIL" else _LOOK_ALIKE
+def _alike(char: str, printed: str) -> float:
+    """What it costs that a digit or sign was read as its look-alike: more, the less it is alike."""
+    cost = _COMMA if char in ",~\u00adOIL" else _LOOK_ALIKE
+    return cost + _LESS_ALIKE * LOOK_ALIKES[char].index(printed)
 
 
 def _extra(
@@ -303,6 +306,7 @@ def _lost(
 
 _BEAM = 48
 _MOST_ILLEGIBLE = 4
+_MOST_ALIKE = 5
 
 
 @lru_cache(maxsize=20000)
@@ -343,7 +347,7 @@ def _candidates(
                     keep(text, cost + (0.2 if free else _SPECK_INSIDE))
             else:
                 for alike in LOOK_ALIKES.get(char, ""):
-                    keep(text + alike, cost + blank + _alike(char))
+                    keep(text + alike, cost + blank + _alike(char, alike))
                 if foreign and wild <= _MOST_ILLEGIBLE:
                     price = _ILLEGIBLE_MARK if char == ILLEGIBLE else _FOREIGN
                     for digit in "0123456789" + ("-" if not text else "."):
@@ -376,6 +380,18 @@ def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[
     """The printable texts that glyphs may have been, with what each costs, cheapest first."""
     key = tuple((glyph.char, glyph.gap, glyph.joined) for glyph in region[:LONGEST])
     return list(_candidates(key, most, sign_free))
+
+
+def with_digit(text: str, digit: str) -> list[tuple[str, int]]:
+    """The printable texts in which digits like ``digit`` are that digit, with how many are."""
+    places = [at for at, char in enumerate(text) if frozenset((char, digit)) in SIMILAR]
+    texts = []
+    for count in range(1, len(places) + 1):
+        for some in combinations(places[:_MOST_ALIKE], count):
+            other = "".join(digit if at in some else char for at, char in enumerate(text))
+            if printable(other):
+                texts.append((other, count))
+    return texts
 
 
 def as_printed(text: str) -> str | None:

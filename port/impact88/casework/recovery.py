@@ -48,10 +48,13 @@ class Recovered:
         return {name: None if name in self.missing else self.scene[name] for name in SCENE}
 
 
-def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovered:
-    """The scene whose page explains the printout best. ``given``: inputs known from elsewhere."""
-    choices, missing = choices_of(shown, given)
-    search = Search(shown)
+def recover(
+    shown: Printout, given: Mapping[str, str] | None = None, unreadable: str = ""
+) -> Recovered:
+    """The scene whose page explains the printout best. ``given``: inputs known from elsewhere.
+    ``unreadable``: a digit that the page's reader takes for others."""
+    choices, missing = choices_of(shown, given, unreadable)
+    search = Search(shown, unreadable)
     best = search.best(choices)
     in_doubt = bool(shown.angles) and len(best.wrong) > _UNCONVINCING
     outcome = best.outcome

@@ -12,6 +12,7 @@ import heapq
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,7 @@ from ..fields import FIELDS, FINAL_SPINS, INPUTS
 from . import trial
 from .numerals import candidates
 from .printout import Printout, Reading
-from .ways import Choice, Choices, other_bits
+from .ways import Choice, Choices, other_bits, with_unreadable
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
@@ -38,7 +39,9 @@ _ABSENT = 0.7
 """What it costs that the program prints a result the page does not have."""
 _SCREENED = 30_000
 _REPLAYED = 160
-_ENERGY_KEPT = 60
+_ENERGY_KEPT, _FEWER_ENERGIES = 60, 12
+_FEW, _AT_ONCE = 500, 1_000_000
+"""Combinations up to which they are sought one by one, and that are laid out at once at most."""
 _VARIANTS = 3_000
 _CLOSELY = 5_000
 _TELLING = ("VAX", "VAY", "VBX", "VBY")
@@ -75,9 +78,13 @@ class Expected:
         return self.texts.get(text, self.default)
 
 
-def expected_results(shown: Printout) -> list[Expected]:
+def expected_results(shown: Printout, unreadable: str = "") -> list[Expected]:
     """The results of a printout as read."""
-    return [_expected(name, shown.fields[name]) for name in RESULTS if name in shown.fields]
+    results = [_expected(name, shown.fields[name]) for name in RESULTS if name in shown.fields]
+    if unreadable:
+        for one in results:
+            one.texts = with_unreadable(one.texts, unreadable)
+    return results
 
 
 def _expected(name: str, reading: Reading) -> Expected:
@@ -95,11 +102,14 @@ def _expected(name: str, reading: Reading) -> Expected:
 
 
 class Search:
-    """The search for one printout's scene."""
+    """The search for one printout's scene. ``unreadable``: a digit taken for others throughout."""
 
-    def __init__(self, shown: Printout) -> None:
+    def __init__(self, shown: Printout, unreadable: str = "") -> None:
         self.shown = shown
-        self.expected = expected_results(shown)
+        self.expected = expected_results(shown, unreadable)
+        self._energies, self._room = (
+            (_FEWER_ENERGIES, 8 * _SCREENED) if unreadable else (_ENERGY_KEPT, _SCREENED)
+        )
         self._lost_inputs = set(INPUTS) - set(shown.fields)
 
     def best(self, choices: Choices) -> Scored:
@@ -139,11 +149,20 @@ class Search:
 
     def _screened(self, choices: Choices) -> Picks:
         """The most promising combinations: those whose kinetic energy is the printed one first."""
-        kinetic = [place for place, some in enumerate(choices) if KINETIC & set(some[0].typed)]
+        still = _without_spin(choices)
+        kinetic = [
+            place for place, some in enumerate(choices) if (KINETIC - still) & set(some[0].typed)
+        ]
         others = [place for place in range(len(choices)) if place not in kinetic]
-        first = combinations([choices[place] for place in kinetic], _SCREENED)
-        first = self.by_energy([choices[place] for place in kinetic], first)
-        room = max(2, _SCREENED // len(first))
+        own = [
+            some if place in kinetic else some[:1]
+            for place, some in enumerate(choices)
+            if KINETIC & set(some[0].typed)
+        ]
+        first = self.by_energy(own, combinations(own, _SCREENED), self._energies)
+        moved = [place for place, some in enumerate(choices) if KINETIC & set(some[0].typed)]
+        first = first[:, [moved.index(place) for place in kinetic]]
+        room = max(2, self._room // len(first))
         second = combinations([choices[place] for place in others], room)
         picks = np.zeros((len(first) * len(second), len(choices)), np.intp)
         picks[:, kinetic] = np.repeat(first, len(second), axis=0)
@@ -234,7 +253,14 @@ def _cost(scored: Scored) -> float:
 
 def combinations(choices: Sequence[Sequence[Choice]], most: int) -> Picks:
     """The combinations of one choice each, cheapest first, up to ``most``."""
-    return np.array(list(islice(_cheapest(choices), most)), np.intp)
+    sizes = [len(options) for options in choices]
+    if most < _FEW or prod(sizes) > _AT_ONCE:
+        return np.array(list(islice(_cheapest(choices), most)), np.intp)
+    costs: Floats = np.zeros(())
+    for options in choices:
+        costs = np.add.outer(costs, [choice.cost for choice in options])
+    best = np.argsort(costs, axis=None, kind="stable")[:most]
+    return np.stack(np.unravel_index(best, sizes), axis=1).astype(np.intp)
 
 
 def _cheapest(choices: Sequence[Sequence[Choice]]) -> Iterator[tuple[int, ...]]:
@@ -251,6 +277,13 @@ def _cheapest(choices: Sequence[Sequence[Choice]]) -> Iterator[tuple[int, ...]]:
                 step = costs[place][index] - costs[place][index - 1]
                 following = (*pick[:place], index, *pick[place + 1 :])
                 heapq.heappush(heap, (cost + step, following, place))
+
+
+def _without_spin(choices: Choices) -> frozenset[str]:
+    """The inertias that do not spin, as first read: the energy says nothing of them."""
+    first = {name: text for some in choices for name, text in some[0].typed.items()}
+    spins = {"IA": "WA", "IB": "WB"}
+    return frozenset(name for name, spin in spins.items() if not _number(first[spin]))
 
 
 def _number(text: str) -> float:

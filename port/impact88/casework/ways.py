@@ -6,11 +6,12 @@ What a clean number says is never doubted here; misreadings of clean digits are 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 from ..fields import ANGLES, INPUTS
-from .numerals import candidates
+from .numerals import candidates, with_digit
 from .printout import Printout, Reading
 from .typedtext import stored_and_printed, texts_that_print
 
@@ -22,6 +23,12 @@ _OTHER_BITS = 0.02
 _FLIPPED = 0.001
 _REPLY_DISAGREES = 1.0
 _NO_FIELD = 0.8
+_UNREADABLE = 0.4
+"""What it costs that a digit which the reader cannot read was taken for another."""
+_NOUGHTS, _NOUGHTS_NEEDED = frozenset("@©®ØG€°"), 3
+_SIGN_LOST = 0.9
+_SIGNED = frozenset(("UX", "UY", "WA", "VX", "VY", "WB", "EM", "MUP"))
+_FIRST_WAYS, _FIRST_ROWS, _ROWS_EACH = 6, 6, 40
 _PROMPT_MARK = "7291?P"
 """What the prompt's question mark is read as."""
 
@@ -49,11 +56,12 @@ def opposite(text: str) -> str:
 
 
 def choices_of(
-    shown: Printout, given: Mapping[str, str] | None = None
+    shown: Printout, given: Mapping[str, str] | None = None, unreadable: str = ""
 ) -> tuple[Choices, list[str]]:
     """What each input may have been, cheapest first, and the inputs nothing tells of.
 
-    ``given``: texts of inputs known from elsewhere (a scene file)."""
+    ``given``: texts of inputs known from elsewhere (a scene file). ``unreadable``: a digit that the
+    page's reader takes for others (`unreadable_digit`)."""
     given = given or {}
     choices: Choices = []
     missing: list[str] = []
@@ -62,12 +70,14 @@ def choices_of(
         scene = scene_name(name)
         if name in ANGLES and joint:
             if name == ANGLES[0]:
-                choices.append([_row(texts, cost) for texts, cost in shown.angles[:_ROWS]])
+                rows = shown.angles[:_ROWS]
+                rows = [*rows, *_rows_with(rows[:_FIRST_ROWS], unreadable)] if unreadable else rows
+                choices.append([_row(texts, cost) for texts, cost in rows])
             continue
         if scene in given and name not in shown.fields:
             choices.append([Choice({scene: given[scene]}, {}, 0.0)])
             continue
-        options = input_choices(name, shown)
+        options = input_choices(name, shown, unreadable)
         if scene in given:
             options = _given_first(options, scene, given[scene])
         if not options:
@@ -124,7 +134,53 @@ def printed_ways(reading: Reading) -> dict[str, float]:
     return dict(candidates(reading.region, _MOST, reading.sign_free))
 
 
-def input_choices(name: str, shown: Printout) -> list[Choice]:
+def with_unreadable(ways: Mapping[str, float], digit: str) -> dict[str, float]:
+    """The same ways, and those in which a digit was taken for others."""
+    every = dict(ways)
+    for text, cost in sorted(ways.items(), key=lambda way: way[1])[:_FIRST_WAYS]:
+        for other, count in with_digit(text, digit):
+            price = cost + _UNREADABLE * count
+            every[other] = min(price, every.get(other, price))
+    return every
+
+
+def _signs_lost(ways: Mapping[str, float], name: str) -> dict[str, float]:
+    """The same ways, and those in which a minus was not read."""
+    signed = name in ANGLES or name in _SIGNED
+    every = dict(ways)
+    for text, cost in ways.items() if signed else ():
+        if not text.startswith("-") and float(text):
+            every.setdefault("-" + text, cost + _SIGN_LOST)
+    return every
+
+
+def _rows_with(
+    rows: Sequence[tuple[tuple[str, ...], float]], digit: str
+) -> Iterator[tuple[tuple[str, ...], float]]:
+    """The rows of angles in which a digit was taken for others and a minus not read, the likeliest
+    of each."""
+    for texts, cost in rows:
+        ways = [
+            _signs_lost(with_unreadable({text: 0.0}, digit), name).items()
+            for name, text in zip(ANGLES, texts, strict=True)
+        ]
+        some = [
+            (cost + sum(price for _, price in row), tuple(text for text, _ in row))
+            for row in product(*ways)
+        ]
+        for price, row in sorted(some)[1 : 1 + _ROWS_EACH]:
+            yield row, price
+
+
+def unreadable_digit(shown: Printout) -> str:
+    """The digit that the reader of a page cannot read, by the glyphs it puts where numbers stand: a
+    zero with a stroke through it comes out as @ here, as © there. Empty where there is none."""
+    glyphs = [glyph.char for one in shown.fields.values() for glyph in one.region]
+    count = sum(glyph in _NOUGHTS for glyph in glyphs)
+    return "0" if count >= _NOUGHTS_NEEDED else ""
+
+
+def input_choices(name: str, shown: Printout, unreadable: str = "") -> list[Choice]:
     """What one input may have been, cheapest first; empty when nothing tells."""
     angle = name in ANGLES
     scene = scene_name(name)
@@ -132,6 +188,8 @@ def input_choices(name: str, shown: Printout) -> list[Choice]:
     reply = shown.replies.get(name)
     answers = reply_ways(reply) if reply is not None else []
     ways = printed_ways(reading) if reading is not None else {}
+    if unreadable:
+        ways = _signs_lost(with_unreadable(ways, unreadable), name)
     choices: list[Choice] = []
     for text, cost in ways.items():
         same = [(typed, price) for typed, printed, price in answers if printed == text]
