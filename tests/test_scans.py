@@ -215,6 +215,55 @@ def test_a_digit_that_the_reader_cannot_read(elsewhere: int, settles: bool) -> N
     assert one(text.replace("XA= -29.84", "XA= -29.74")).verdict is Verdict.DIFFERS
 
 
+ZEROS = {"UX= -29.04": "UX= -29.84", "60      -30": "66      -38", "KE= 100904": "KE= 180904"}
+"""Zeros read as digits like them, in several numbers at once."""
+
+
+def test_a_page_of_zeros_misread_is_searched_with_all_of_them_put_right() -> None:
+    text = NOISE
+    for old, new in ZEROS.items():
+        text = text.replace(old, new)
+    for old, new in (("WB= 0", "WB= @"), ("YA= 0", "YA= @"), ("UY= 0", "UY= @")):
+        text = text.replace(old, new, 1)
+    result = one(text)
+    assert result.verdict in SETTLED
+    assert numbers(result) == sample(1).numbers()
+    assert {"UX", "TB", "GA", "KI"} <= {check.name for check in result.doubtful}
+    assert one(text.replace("MA= 143.5", "MA= 148.5")).verdict not in SETTLED
+
+
+def test_decimals_lost_behind_their_point_are_a_readers_only_where_a_reader_was() -> None:
+    """FORTRAN ends whole numbers so, and a person copies what it printed."""
+    for text, settles in ((NOISE, True), (SAMPLE, False)):
+        assert (one(text.replace("YA= 15.91", "YA= 15.")).verdict in SETTLED) is settles
+
+
+def test_a_dash_within_figures_is_a_point() -> None:
+    result = one(SAMPLE.replace("DA= 7.59", "DA= 7-59"))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert [doubt.printed for doubt in result.doubtful[0].doubts] == ["."]
+    assert one(SAMPLE.replace("DA= 7.59", "DA= 7-69")).verdict is Verdict.DIFFERS
+
+
+def test_a_page_whose_margin_is_cut_off_was_read_by_a_machine() -> None:
+    """With it goes the first angle, which the results bear out; not on a page that is whole."""
+    row = ROW.strip()
+    lost = row.split(None, 1)[1]
+    text = SAMPLE.replace(row, lost)
+    assert one(text).verdict is Verdict.INCOMPLETE
+    cut = "\n".join(line[2:] if "=" in line else line for line in text.split("\n"))
+    result = one(cut)
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert "PA" in result.guessed
+
+
+def test_a_mark_for_the_illegible_may_stand_for_a_whole_number() -> None:
+    """It was never read: nothing that hangs on it contradicts the page."""
+    result = one(SAMPLE.replace("UX= -29.04", "UX= ?"))
+    assert result.verdict is Verdict.INCOMPLETE
+    assert result.missing == ["UX"]
+
+
 def test_blanks_inside_numbers_are_a_readers() -> None:
     text = SAMPLE.replace("14.52", "14. 52").replace("25.15", "25. 15")
     assert not machine_read(read_printouts(text)[0])

@@ -34,6 +34,15 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
         AS_READ,
     ),
     "colons.txt": (SAMPLE.replace("=", ":"), EXACT),
+    "powers.txt": (SAMPLE.replace("5E-03", "5×10⁻³"), AS_READ),
+    "carets.txt": (SAMPLE.replace("5E-03", "5 x 10^-3"), AS_READ),
+    "numbered.txt": (
+        "\n".join(f"{row}  {line}" for row, line in enumerate(SAMPLE.split("\n"), 1)), EXACT
+    ),
+    "tens.txt": (
+        "".join(f"{row}0: {line}\n" for row, line in enumerate(filter(None, SAMPLE.split("\n")))),
+        EXACT,
+    ),
     "no-marks.txt": (SAMPLE.replace("=", ""), EXACT),
     "angles.txt": (SAMPLE.replace(ROW, "\n".join(f"{n}: {t}" for n, t in ANGLES.items())), EXACT),
     "table.md": (

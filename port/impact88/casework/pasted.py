@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import html
 import re
+from itertools import pairwise
 
 from ..errors import UserError
 
@@ -92,7 +93,7 @@ def _minus_signs(text: str) -> int:
 
 def unwrapped(text: str) -> str:
     """A text with markup blanked out: e-mail quotes, HTML, RTF, TeX, Markdown. Of equal length."""
-    text = _lines_kept(text)
+    text = _unnumbered(_lines_kept(text))
     if re.search(r"(?m)^\s*>", text):
         text = re.sub(r"(?m)^(\s*>)+", _blank, text)
     if "<" in text and re.search(r"<(?:/?[a-zA-Z][^<>\n]{0,80}|!--.*?--)>", text):
@@ -107,7 +108,36 @@ def unwrapped(text: str) -> str:
     if len(re.findall(r"(?m)^\s*\|.*\|\s*$", text)) >= 3:
         text = re.sub(r"(?m)^\s*\|[-:| \t]+\|\s*$", _blank, text)
         text = re.sub(r"(?m)^\s*\|.*\|\s*$", lambda row: row.group().replace("|", " "), text)
-    return _groups_joined(_table_parted(text))
+    return _POWER.sub(_exponent, _groups_joined(_table_parted(text)))
+
+
+_NUMBERED = re.compile(r"(?m)^[ \t]*([0-9]{1,5})[:.)]?(?=[ \t]|$)")
+_NUMBERED_LINES = 6
+"""So many lines, and all of them, numbered in equal steps: an editor or a listing did it."""
+
+
+def _unnumbered(text: str) -> str:
+    """A text whose every line begins with its number, those blanked out."""
+    lines = [line for line in text.split("\n") if line.strip()]
+    if len(lines) < _NUMBERED_LINES or not all(map(_NUMBERED.match, lines)):
+        return text
+    numbers = [int(number) for number in _NUMBERED.findall(text)]
+    steps = {after - before for before, after in pairwise(numbers)}
+    return _NUMBERED.sub(_blank, text) if len(steps) == 1 and min(steps) > 0 else text
+
+
+_SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−–", "0123456789---")
+_POWER = re.compile(
+    r"(?<=[0-9])[ ]?[×xX·*][ ]?10(?:\^[{(]?([-−–]?[0-9])[)}]?|([⁻−–]?[⁰¹²³⁴⁵⁶⁷⁸⁹]))"
+    r"(?![0-9⁰¹²³⁴⁵⁶⁷⁸⁹.])"
+)
+"""A power of ten written out."""
+
+
+def _exponent(match: re.Match[str]) -> str:
+    """It as an exponent, of one digit: so the program never prints it, and the verdict tells."""
+    power = (match.group(1) or match.group(2)).translate(_SMALL)
+    return f"E{power if power.startswith('-') else '+' + power}".ljust(len(match.group()))
 
 
 _ROW = re.compile(

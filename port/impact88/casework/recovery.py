@@ -6,21 +6,23 @@ of are given stand-ins, and only what does not depend on them is kept for compar
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from ..fields import ANGLES
+from ..fields import ANGLES, INPUTS
 from ..names import SCENE
 from . import trial
+from .glyphs import ILLEGIBLE
 from .printout import Printout
 from .search import Scored, Search
-from .ways import STAND_IN, Choices, choices_of
+from .ways import STAND_IN, Choices, choices_of, scene_name
 
 _STAND_INS = (STAND_IN, "230", "-41000")
 """Values put in place of a missing input: a field that prints the same with each of them does not
 depend on it."""
 _UNCONVINCING = 3
-"""A row of angles that had to be guessed counts as missing when more results than this differ."""
+"""What had to be guessed, a row of angles or a number of which no character is legible, counts as
+missing when more results than this differ."""
 
 
 @dataclass
@@ -56,6 +58,8 @@ def recover(
     choices, missing = choices_of(shown, given, unreadable)
     search = Search(shown, unreadable)
     best = search.best(choices)
+    if len(best.wrong) > _UNCONVINCING:
+        missing = [name for name in map(scene_name, INPUTS) if name in {*missing, *_blind(shown)}]
     in_doubt = bool(shown.angles) and len(best.wrong) > _UNCONVINCING
     outcome = best.outcome
     if missing:
@@ -66,6 +70,15 @@ def recover(
     recovered.m_unknown = not missing and _other_m_explains(recovered, best)
     recovered.row_in_doubt = in_doubt and not set(missing) & set(ANGLES)
     return recovered
+
+
+def _blind(shown: Printout) -> Iterator[str]:
+    """The inputs in whose place nothing but marks for the illegible stands: how many characters
+    they stand for nobody knows."""
+    for name in INPUTS:
+        reading = shown.fields.get(name)
+        if reading and all(glyph.char == ILLEGIBLE for glyph in reading.region):
+            yield scene_name(name)
 
 
 def without_angles(recovered: Recovered) -> Recovered:
