@@ -71,3 +71,9 @@ def test_the_judge_sees_what_it_is_for(
     monkeypatch.setattr(cli, "_dispatch", space["broken"])
     wrong = faults(Case("csv", ["solve", "t.csv"], files={"t.csv": b"MA\n1\n"}))
     assert any(fault in one for one in wrong), wrong
+
+
+def test_every_piece_of_a_printout_on_a_page_has_its_time():
+    page = b"VBX= -19.338 VBY= 41.456\n" * 50
+    assert Case("printout", ["verify", "p.txt"], files={"p.txt": page}).printouts() == 50
+    assert Case("printout", ["solve", "p.txt"], files={"p.txt": page}).printouts() == 0

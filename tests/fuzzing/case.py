@@ -8,6 +8,8 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
+_OF_A_PRINTOUT = (b"INITIAL KE", b"VBX=", b"IA=")
+
 
 @dataclass
 class Case:
@@ -20,10 +22,11 @@ class Case:
     seed: str = ""
 
     def printouts(self) -> int:
-        """How many printouts `verify` is given, at least."""
+        """How many printouts, or pieces of some, `verify` is given."""
         if self.arguments[:1] != ["verify"]:
             return 0
-        return sum(data.count(b"INITIAL KE") for data in (*self.files.values(), self.stdin))
+        texts = (*self.files.values(), self.stdin)
+        return max(sum(data.count(mark) for data in texts) for mark in _OF_A_PRINTOUT)
 
     def to_json(self) -> str:
         """The case as text; bytes packed."""

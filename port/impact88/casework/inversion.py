@@ -10,6 +10,7 @@ is a verdict: `judging` says what a scene that was found so explains.
 
 from __future__ import annotations
 
+from bisect import insort
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations, product
 from math import prod
@@ -73,15 +74,15 @@ class _Target(NamedTuple):
 
 
 def scenes_found(
-    shown: Printout, search: Search, scene: Mapping[str, str], missing: Sequence[str]
+    shown: Printout, search: Search, scene: Mapping[str, str], missing: Sequence[str], most: int
 ) -> list[Scored]:
-    """Scenes with a few inputs solved for, replayed, those first that explain most.
+    """Scenes with a few inputs solved for, replayed: the ``most`` that explain most, those first.
 
     ``scene``: the scene as read, with anything for the ``missing`` inputs. What a scene costs is
     what its inputs cost as read on the paper plus what the results cost."""
     if len(missing) > _MOST_MISSING and not shown.angle_row:
         return []
-    return _Inversion(shown, search).scenes(scene, missing)
+    return _Inversion(shown, search).scenes(scene, missing, most)
 
 
 class _Inversion:
@@ -96,20 +97,30 @@ class _Inversion:
         self._units = np.array([target.unit for target in self._targets])
         self._prices: dict[tuple[str, str], float] = {}
 
-    def scenes(self, scene: Mapping[str, str], missing: Sequence[str]) -> list[Scored]:
+    def scenes(self, scene: Mapping[str, str], missing: Sequence[str], most: int) -> list[Scored]:
         if len(self._targets) < 4:
             return []
         texts: list[dict[str, str]] = []
         for number, (base, unknown) in enumerate(self._bases(scene, missing)):
-            most = _AT_ONCE if not number else _AT_ONCE - 1
-            texts += self._typed(base, *self._solved(base, unknown, most))
+            at_once = _AT_ONCE if not number else _AT_ONCE - 1
+            texts += self._typed(base, *self._solved(base, unknown, at_once))
         texts = list({tuple(sorted(one.items())): one for one in texts}.values())
         if not texts:
             return []
         costs = self._rough_costs(texts)
         best = np.argsort(costs, kind="stable")[:_REPLAYED]
         replayed = self._search.replayed_scenes([texts[index] for index in best.tolist()])
-        return sorted(replayed, key=lambda one: paper_cost(self._shown, self._search, one))
+        return self._cheapest(replayed, most)
+
+    def _cheapest(self, replayed: Sequence[Scored], most: int) -> list[Scored]:
+        """The scenes of least `paper_cost`, the row's worked out where it may matter."""
+        least = [_without_row(self._shown, self._search, one) for one in replayed]
+        best: list[tuple[float, int]] = []
+        for index in np.argsort(least, kind="stable").tolist():
+            if len(best) >= most and least[index] >= best[most - 1][0]:
+                break
+            insort(best, (least[index] + _row_cost(self._shown, replayed[index]), index))
+        return [replayed[index] for _, index in best[:most]]
 
     # --- where to begin ---
 
@@ -258,16 +269,29 @@ class _Inversion:
 def paper_cost(shown: Printout, search: Search, scored: Scored) -> float:
     """What a replayed scene costs as the explanation of all that was read: inputs, replies and
     results alike, however the scene was come by."""
+    return _without_row(shown, search, scored) + _row_cost(shown, scored)
+
+
+def _row_cost(shown: Printout, scored: Scored) -> float:
+    """What the row of angles costs, where blanks alone do not cut it."""
     fields = scored.outcome.fields
     row = shown.angle_row if all(name in fields for name in ANGLES) else ()
+    texts = tuple(fields[name] for name in ANGLES) if row else ()
+    pieces = zip(texts, cut_as(row, texts) if row else (), strict=False)
+    return sum(
+        min(compare(row[start:stop], text).cost, _MOST_COST) for text, (start, stop) in pieces
+    )
+
+
+def _without_row(shown: Printout, search: Search, scored: Scored) -> float:
+    """What all the rest costs."""
+    fields = scored.outcome.fields
+    row = bool(shown.angle_row) and all(name in fields for name in ANGLES)
     cost = search.results_cost(scored)
     for name in INPUTS:
         reading = shown.fields.get(name)
         if name in fields and not (row and name in ANGLES):
             cost += _read_cost(reading, fields[name])
-    texts = tuple(fields[name] for name in ANGLES) if row else ()
-    for text, (start, stop) in zip(texts, cut_as(row, texts) if row else (), strict=False):
-        cost += min(compare(row[start:stop], text).cost, _MOST_COST)
     cost += sum(_TURNED for name in ANGLES if abs(float(scored.scene[name])) > _FULL_TURN)
     for name, reply in shown.replies.items():
         ways = reply_ways(reply)

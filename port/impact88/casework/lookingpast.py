@@ -66,9 +66,10 @@ class LookingPast:
         scenes = list(self._slips_put_right())
         costs = [paper_cost(shown, search, one) for one in scenes]
         if not self._fixed and min(costs, default=MISMATCH + _AS_WELL) >= MISMATCH + _AS_WELL:
-            found = scenes_found(shown, search, self._recovered.scene, self._recovered.missing)
-            scenes += found[:_TRIED]
-            costs += [paper_cost(shown, search, one) for one in found[:_TRIED]]
+            recovered = self._recovered
+            found = scenes_found(shown, search, recovered.scene, recovered.missing, _TRIED)
+            scenes += found
+            costs += [paper_cost(shown, search, one) for one in found]
         best: Rejudged | None = None
         for cost, _, scored in sorted(zip(costs, range(len(scenes)), scenes, strict=True)):
             if cost > min(costs) + _AS_WELL:
