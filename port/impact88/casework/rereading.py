@@ -15,11 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..closedform.solve import solve
 from ..fields import ANGLES, INPUTS
 from . import misreading
 from .numerals import as_printed, printable, value_of
 from .recovery import Recovered
-from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search
+from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search, columns, printed_mu
 from .typedtext import stored_and_printed, texts_that_print
 from .ways import Choice, Choices, opposite, scene_name
 
@@ -36,6 +37,11 @@ _UNLIKE = 0.05
 _SUMS = (("PA", "TA"), ("PB", "TB"))
 """Angles that enter only as their sum."""
 _FLIPPED = 0.001
+_TELLING = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "XAF", "YAF", "XBF", "YBF", "LOSS")
+_TELLING_MOST = 4
+"""Of many pairs so many results are looked at first: those that differ, in this order."""
+_BESIDES_ENERGY = 0.1
+"""What slips cost, next to whether they give the printed kinetic energy."""
 _SINGLES_KEPT = 220
 _PAIRS = 320_000
 _ENERGIES = 24
@@ -65,7 +71,8 @@ class Rereading:
         self._scene = recovered.scene
         self._base = {name: recovered.assumed[name] for name in INPUTS if name in recovered.assumed}
         self._names = list(INPUTS)
-        self._slips: dict[str, list[tuple[Change, Choice]]] = {}
+        self._mu = self._names.index("MUP")
+        self._wrong = recovered.wrong
 
     def best(self, deep: bool = False) -> list[Reread]:
         """Scenes with one input put right, or two, or (``deep``) two in the masses and velocities
@@ -100,7 +107,7 @@ class Rereading:
             block = singles[(singles[:, places] == 0).all(axis=1)][1:]
             for place, (name, text) in zip(places, exchange.items(), strict=True):
                 block[:, place] = len(choices[place])
-                choices[place].append(next(self._typed(name, text, 0.0)))
+                choices[place].append(self._typed(name, text, 0.0))
                 changes[place].append(None)
             rows.append(block)
             numbers += [number] * len(block)
@@ -167,33 +174,25 @@ class Rereading:
         choices: Choices = []
         rows: list[list[int]] = []
         made: list[Change] = []
-        columns: list[list[Choice]] = []
+        ways: Choices = []
         for place, name in enumerate(self._names):
             options = [self._unchanged(name)]
             for other in _two_digits(self._base.get(name, "")):
-                for choice in self._typed(name, other, COSTS[misreading.TWO_DIGITS]):
-                    change = Change(misreading.TWO_DIGITS, name, self._base[name], other)
-                    rows.append([0] * place + [len(options)] + [0] * (len(self._names) - place))
-                    options.append(choice)
-                    made.append(change)
-            columns.append(options)
-        choices = [*columns, self._m()]
+                rows.append([0] * place + [len(options)] + [0] * (len(self._names) - place))
+                options.append(self._typed(name, other, COSTS[misreading.TWO_DIGITS]))
+                made.append(Change(misreading.TWO_DIGITS, name, self._base[name], other))
+            ways.append(options)
+        choices = [*ways, self._m()]
         if not rows:
             return pairs
-        picks = np.array(rows, np.intp)
-        if float(self._scene["MU"] or 0):
-            # what is wrong may be what gives MU its sign (line 400)
-            mu = self._names.index("MUP")
-            typed = {"MU": opposite(self._scene["MU"])}
-            flipped = picks[picks[:, mu] == 0]
-            flipped[:, mu] = len(choices[mu])
-            choices[mu].append(choices[mu][0]._replace(typed=typed, cost=_FLIPPED))
-            made += [made[index] for index in np.flatnonzero(picks[:, mu] == 0).tolist()]
-            picks = np.concatenate([picks, flipped])
+        choices[self._mu] += [_flipped(one) for one in choices[self._mu]]
+        # what is wrong may be what gives MU its sign
+        picks = self._either_sign(choices, np.array(rows, np.intp))
         best = self._search.screened(choices, picks, 60)
-        where = {tuple(row): index for index, row in enumerate(picks.tolist())}
+        where = {tuple(row): index for index, row in enumerate(rows)}
         tried = self._search.replayed(self._proper(choices, best), best)
         for pick, scored in zip(best.tolist(), tried, strict=True):
+            pick[self._mu] %= len(choices[self._mu]) // 2
             pairs.append(Reread((made[where[tuple(pick)]],), scored))
         pairs.sort(key=lambda one: one.scored.cost)
         return pairs
@@ -205,19 +204,46 @@ class Rereading:
         choices: Choices = []
         changes: list[list[Change | None]] = []
         for name in self._names:
-            options, made = [self._unchanged(name)], [None]
-            if name == "MUP" and float(self._scene["MU"] or 0):
-                flipped = {"MU": opposite(self._scene["MU"])}
-                options.append(options[0]._replace(typed=flipped, cost=0.001))
-                made.append(None)
+            options: list[Choice] = [self._unchanged(name)]
+            made: list[Change | None] = [None]
             for change, choice in self._of(name):
                 options.append(choice)
-                made.append(change)  # type: ignore[arg-type]
+                made.append(change)
             choices.append(options)
-            changes.append(made)  # type: ignore[arg-type]
+            changes.append(made)
+        choices[self._mu] += [_flipped(one) for one in choices[self._mu]]
+        changes[self._mu] *= 2
         choices.append(self._m())
         changes.append([None])
         return choices, changes
+
+    # --- the sign of MU: every way to take it comes once more with the other sign typed ---
+
+    def _either_sign(self, choices: Choices, picks: Picks) -> Picks:
+        """The combinations, and the same with MU typed with the other sign, unless it is 0."""
+        options = choices[self._mu]
+        count = len(options) // 2
+        has_sign = [one != other for one, other in zip(options, options[count:], strict=False)]
+        flipped = picks[np.array(has_sign)[picks[:, self._mu]]]
+        flipped[:, self._mu] += count
+        return np.concatenate([picks, flipped])
+
+    def _signed(self, choices: Choices, picks: Picks) -> Picks:
+        """The combinations with MU typed with the sign that line 400 makes the printed one of;
+        where double precision does not follow the program (M = 4), with either."""
+        if self._scene["M"] != "6":
+            return self._either_sign(choices, picks)
+        with np.errstate(all="ignore"):
+            printed = solve(columns(choices, picks), ["MUP"])["MUP"]
+            wrong = printed * printed_mu(choices, picks) < 0
+        signed = picks.copy()
+        signed[wrong, self._mu] += len(choices[self._mu]) // 2
+        return signed
+
+    def _one_sign(self, choices: Choices, place: int) -> list[Choice]:
+        """The ways to take one input, of MU those with one sign."""
+        options = choices[place]
+        return options[: len(options) // 2] if place == self._mu else options
 
     def _m(self) -> list[Choice]:
         return [Choice({"M": self._scene["M"]}, {}, 0.0)]
@@ -235,14 +261,11 @@ class Rereading:
                 cost = COSTS[kind]
                 if kind == misreading.DIGIT:
                     cost += _UNLIKE * misreading.likeness(text, other)
-                for choice in self._typed(name, other, cost):
-                    yield Change(kind, name, text, other), choice
+                yield Change(kind, name, text, other), self._typed(name, other, cost)
 
-    def _typed(self, name: str, printed: str, cost: float) -> Iterator[Choice]:
-        """What is printed, as if typed so; for MU with either sign. `_proper` says what was."""
-        yield Choice({scene_name(name): printed}, {name: printed}, cost)
-        if name == "MUP" and value_of(printed):
-            yield Choice({"MU": opposite(printed)}, {name: printed}, cost + 0.001)
+    def _typed(self, name: str, printed: str, cost: float) -> Choice:
+        """What is printed, as if typed so. `_proper` says what was."""
+        return Choice({scene_name(name): printed}, {name: printed}, cost)
 
     def _proper(self, choices: Choices, picks: Picks) -> Choices:
         """The choices, those that are picked with what must have been typed to print so."""
@@ -267,15 +290,12 @@ class Rereading:
 
     def _singles(self, choices: Choices) -> Picks:
         rows = [[0] * len(choices)]
-        for place, options in enumerate(choices):
-            for index in range(1, len(options)):
+        for place in range(len(choices)):
+            for index in range(1, len(self._one_sign(choices, place))):
                 row = [0] * len(choices)
                 row[place] = index
                 rows.append(row)
-        mu = self._names.index("MUP")
-        if len(choices[mu]) > 1 and not choices[mu][1].cost >= 1:
-            rows += [[*row[:mu], 1, *row[mu + 1 :]] for row in rows if not row[mu]]
-        return np.array(rows, np.intp)
+        return self._either_sign(choices, np.array(rows, np.intp))
 
     def _in_energy(
         self, choices: Choices, kinetic: list[int], rest: list[int], deep: bool
@@ -286,8 +306,12 @@ class Rereading:
             choices[place][:1] if self._still(self._names[place]) else choices[place]
             for place in kinetic
         ]
-        first = self._search.by_energy(own, _two_changes(own, _PAIRS), _ENERGIES)
-        others = [choices[place] for place in rest]
+        pairs = _two_changes(own, _PAIRS)
+        cheaper = [
+            [one._replace(cost=_BESIDES_ENERGY * one.cost) for one in options] for options in own
+        ]
+        first = self._search.by_energy(cheaper, pairs, _ENERGIES)
+        others = [self._one_sign(choices, place) for place in rest]
         second = _one_change(others)
         if deep:
             best = self._best_of_rest(choices, kinetic, rest, first[:4])
@@ -295,24 +319,42 @@ class Rereading:
         picks = np.zeros((len(first) * len(second), len(choices)), np.intp)
         picks[:, kinetic] = np.repeat(first, len(second), axis=0)
         picks[:, rest] = np.tile(second, (len(first), 1))
-        return self._search.screened(choices, picks, _SINGLES_KEPT)
+        return self._screened(choices, picks, _SINGLES_KEPT)
 
     def _best_of_rest(
         self, choices: Choices, kinetic: list[int], rest: list[int], first: Picks
     ) -> Picks:
-        pairs = _two_changes([choices[place] for place in rest], _PAIRS)
+        pairs = _two_changes([self._one_sign(choices, place) for place in rest], _PAIRS)
         picks = np.zeros((len(first) * len(pairs), len(choices)), np.intp)
         picks[:, kinetic] = np.repeat(first, len(pairs), axis=0)
         picks[:, rest] = np.tile(pairs, (len(first), 1))
-        return self._search.screened(choices, picks, 60)[:, rest]
+        best = self._screened(choices, picks, 60)[:, rest]
+        mu = rest.index(self._mu)
+        best[:, mu] %= len(choices[self._mu]) // 2
+        return best
 
     def _pairs(self, choices: Choices, rest: list[int]) -> Picks:
         """Two slips in what does not enter the kinetic energy, and inertias."""
         wide = sorted({*rest, *(self._names.index(name) for name in ("IA", "IB"))})
-        pairs = _two_changes([choices[place] for place in wide], _PAIRS)
+        pairs = _two_changes([self._one_sign(choices, place) for place in wide], _PAIRS)
         picks = np.zeros((len(pairs), len(choices)), np.intp)
         picks[:, wide] = pairs
-        return self._search.screened(choices, picks, 60)
+        return self._screened(choices, picks, 60)
+
+    def _screened(self, choices: Choices, picks: Picks, most: int) -> Picks:
+        """The combinations that explain most; results that the page's own scene explains say
+        little of what is wrong with it, so that the others are looked at first."""
+        by_use = sorted(_TELLING, key=lambda name: name not in self._wrong)
+        signed = self._signed(choices, picks)
+        return self._search.screened(choices, signed, most, by_use[:_TELLING_MOST])
+
+
+def _flipped(choice: Choice) -> Choice:
+    """MU typed with the other sign: line 400 may have changed it before it was printed."""
+    typed = choice.typed["MU"]
+    if not float(typed or 0):
+        return choice
+    return choice._replace(typed={"MU": opposite(typed)}, cost=choice.cost + _FLIPPED)
 
 
 def _one_change(choices: Choices) -> Picks:

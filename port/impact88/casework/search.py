@@ -136,12 +136,19 @@ class Search:
         ]
         return min([best, *tried], key=_cost)
 
-    def screened(self, choices: Choices, picks: Picks, most: int = _REPLAYED) -> Picks:
-        """The combinations that explain most, by double precision."""
+    def screened(
+        self,
+        choices: Choices,
+        picks: Picks,
+        most: int = _REPLAYED,
+        telling: Sequence[str] = _TELLING,
+    ) -> Picks:
+        """The combinations that explain most, by double precision. ``telling``: the results that
+        are looked at first where there are many."""
         if len(picks) <= most:
             return picks
         if len(picks) > 4 * _CLOSELY:
-            few = [one for one in self.expected if one.name in _TELLING and one.default == MISMATCH]
+            few = [one for one in self.expected if one.name in telling and one.default == MISMATCH]
             costs = self._rough(choices, picks, few)
             picks = picks[np.argsort(costs, kind="stable")[:_CLOSELY]]
         costs = self._rough(choices, picks, self.expected)
@@ -185,7 +192,7 @@ class Search:
         costs = _believing(choices, picks)
         with np.errstate(all="ignore"):
             results = solve(value, [*(one.name for one in expected), "MUP"])
-        mu = _printed_mu(choices, picks)
+        mu = printed_mu(choices, picks)
         wrong_sign = np.abs(results["MUP"] - mu) > 1e-6 * np.abs(mu)
         costs = costs + np.where(wrong_sign, MISMATCH, 0.0)
         for one in expected:
@@ -312,7 +319,8 @@ def columns(choices: Choices, picks: Picks) -> dict[str, Floats]:
     return columns_by_name
 
 
-def _printed_mu(choices: Choices, picks: Picks) -> Floats:
+def printed_mu(choices: Choices, picks: Picks) -> Floats:
+    """The MU that each combination takes to be printed."""
     for place, options in enumerate(choices):
         if "MU" in options[0].typed:
             texts = [_number(one.printed.get("MUP", "")) for one in options]
