@@ -8,6 +8,7 @@ printed number counts as explained when it lies in the range that leaves open, w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 
@@ -115,14 +116,19 @@ class Machines:
     def _longer_energy(
         self, scene: Mapping[str, str], outcome: trial.Outcome, units: int = 1
     ) -> trial.Outcome:
-        """The outcome with KE to more digits than nine, if the page has as many; ``units``: how far
-        off its last digit may be."""
+        """The outcome with KE as the page has it, if that is another way to write it: to more
+        digits than nine (``units``: how far off the last of them may be), in full where Applesoft
+        has an exponent, or the ninth digit rounded otherwise where it is halfway."""
         text = self._texts.get("KI")
-        if text is None or "KI" not in outcome.fields or self._digits("KI") <= _APPLESOFT_DIGITS:
+        if text is None or "KI" not in outcome.fields:
             return outcome
-        if not is_rounding(text, energy(scene), units):
-            return outcome
-        return trial.Outcome({**outcome.fields, "KI": text}, outcome.ending)
+        if self._digits("KI") > _APPLESOFT_DIGITS:
+            same = is_rounding(text, energy(scene), units)
+        else:
+            same = value_of(text) == value_of(outcome.fields["KI"]) or _nine_digits(
+                text, energy(scene)
+            )
+        return trial.Outcome({**outcome.fields, "KI": text}, outcome.ending) if same else outcome
 
     # --- decimal machines ---
 
@@ -167,6 +173,15 @@ class Machines:
 
 
 _APPLESOFT_DIGITS = 9
+
+
+def _nine_digits(text: str, value: float) -> bool:
+    """Whether a text is a value to nine digits, halves up or down."""
+    shown = value_of(text)
+    if shown is None or not math.isfinite(value):
+        return False
+    unit = Decimal(1).scaleb(Decimal(value).adjusted() - _APPLESOFT_DIGITS + 1)
+    return abs(Decimal(value) - shown) <= unit * Decimal("0.5001")
 
 
 def _digits_of(text: str | None) -> int:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..closedform.solve import solve
 from ..fields import FIELDS, INPUTS
+from ..names import PIVOT
 from .hypothesis import Hypothesis
 from .numerals import as_printed
 from .recovery import Recovered
@@ -30,8 +31,8 @@ def nearest(
     every: Sequence[Hypothesis], expected: Sequence[Expected], most: int
 ) -> list[Hypothesis]:
     """The hypotheses whose scenes come nearest to the page, ``most`` of them; all of them where
-    double precision does not follow the program (M = 4)."""
-    if len(every) <= most or any(one.scene["M"] != "6" for one in every[:1]):
+    double precision does not follow the program (M = 4, MU past the pivot's -10)."""
+    if len(every) <= most or not all(_followed(one.scene) for one in every[:1]):
         return list(every)
     misses = np.zeros(len(every))
     for one, printed, values in _solved(every, expected):
@@ -43,6 +44,11 @@ def nearest(
     other = [one for one in every if one.scene["M"] != "6"]
     kept = [every[index] for index in sorted(order.tolist())]
     return kept + [one for one in other if one not in kept]
+
+
+def _followed(scene: dict[str, str]) -> bool:
+    mu = float(scene["MU"] or 0)
+    return scene["M"] == "6" and (abs(mu) < -PIVOT or mu == PIVOT)
 
 
 def _solved(
