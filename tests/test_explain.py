@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+import printouts
 from impact88.casework import trial
 from impact88.casework.explain import Explanation
 from impact88.casework.misreading import misreadings, slip
@@ -59,13 +60,81 @@ def test_the_sign_of_mu_typed() -> None:
 
 def _printed(scene: Scene, fields: dict[str, Any]) -> str:
     """A printout of a scene with some of its numbers replaced."""
-    import printouts
-
     text = run(scene).printout
     for place in reversed(printouts.places(text)):
         if place.name in fields:
             text = text[: place.start] + fields[place.name] + text[place.stop :]
     return text
+
+
+def _scene(text: str) -> Scene:
+    return Scene.from_mapping(dict(part.split("=") for part in text.split()))
+
+
+SLIDING_BACK = _scene(
+    "MA=163.69 MB=189 IA=5124 IB=7606.7 DA=7 DB=7 PA=90 PB=81.3 TA=14 TB=0 GA=14.1 UX=-24.5 UY=0 "
+    "WA=0 VX=35.3 VY=48 WB=-2.83 E=.6 MU=.149 EM=-.145 M=6"
+)
+"""With VY = -48 line 400 leaves MU the other sign."""
+SPINNING = _scene(
+    "MA=399 MB=174.73 IA=825 IB=3241.1 DA=2.39 DB=1 PA=0 PB=-3 TA=58 TB=180 GA=-1.4 UX=10.59 "
+    "UY=-39.246 WA=0 VX=78 VY=0 WB=0 E=.31 MU=1 EM=-.91 M=6"
+)
+"""Most slips in masses and speeds explain no more of its energy than none."""
+TURNED = _scene(
+    "MA=278 MB=102 IA=7819 IB=6580 DA=9.37 DB=8.81 PA=-169.7 PB=157 TA=60 TB=3.6 GA=30 UX=-60 "
+    "UY=64.11 WA=0 VX=-17.677 VY=-40 WB=0 E=.66 MU=1.113 EM=.5 M=6"
+)
+"""Its final velocities do not depend on PA and DA."""
+
+
+@pytest.mark.parametrize(
+    ("scene", "new"),
+    [
+        (sample(1), {"MUP": "-.911", "MA": "148.5"}),
+        (sample(1), {"MUP": "-.911", "UX": "29.04"}),
+        (SLIDING_BACK, {"VY": "-48", "GA": "14.2"}),
+        (SPINNING, {"UX": "105.9", "WA": "4"}),
+        (TURNED, {"DA": "7.37", "PA": "-1697"}),
+    ],
+    ids=["sign-of-mu-and-mass", "two-signs", "sliding-turned", "energy-of-both", "angle-and-arm"],
+)
+def test_two_slips_of_two_kinds(scene: Scene, new: dict[str, str]) -> None:
+    true = trial.run_once(scene).fields
+    found = first(_printed(scene, new))
+    assert {one["field"]: one["would_be"] for one in found.changes} == {
+        name: true[name] for name in new
+    }
+    assert found.remaining == 0
+
+
+IN_THE_LAST_PLACE = _scene(
+    "MA=289.8 MB=218.7 IA=1628 IB=2309 DA=2.79 DB=7.1 PA=180 PB=128 TA=168 TB=-104.3 GA=-155.2 "
+    "UX=-28.7 UY=97.921 WA=0 VX=-4.65 VY=82.598 WB=0 E=.4 MU=1.15 EM=-.19 M=6"
+)
+"""Double precision prints XA = -28.7 for the Apple's -28.71."""
+
+
+def test_one_in_the_last_place_is_another_arithmetic_or_a_digit_lost() -> None:
+    """That it is another machine is said first, and that it may be a misreading beside it."""
+    apple = trial.run_once(IN_THE_LAST_PLACE).fields
+    double = run(IN_THE_LAST_PLACE, "float64").printout
+    fields = {place.name: double[place.start : place.stop] for place in printouts.places(double)}
+    differ = {name: text for name, text in fields.items() if text != apple[name]}
+    assert differ
+    (shown,) = read_printouts(double)
+    best, *others = verify(shown).explanations
+    assert best.kind == "IEEE double arithmetic"
+    assert any(
+        {one["field"]: one["printed"] for one in other.changes} == differ for other in others
+    )
+
+
+def test_a_digit_far_from_the_last_place_is_misread_and_no_other_machine_is_named() -> None:
+    (shown,) = read_printouts(_printed(IN_THE_LAST_PLACE, {"XA": "-23.71"}))
+    (found, *others) = verify(shown).explanations
+    assert (found.kind, found.field, found.would_be) == ("digit misread", "XA", "-28.71")
+    assert all(one.rank > 1 for one in others)
 
 
 def test_rounded_instead_of_floored() -> None:

@@ -12,12 +12,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from dataclasses import field as default
+from decimal import Decimal
+from functools import cached_property
 from typing import Any
 
-from ..fields import INPUTS
+from ..fields import FIELDS, INPUTS
 from . import misreading, otherruns, refining
-from .hypothesis import NATURAL, Hypothesis
+from .hypothesis import NATURAL, NOT_APPLESOFT, Hypothesis
 from .judging import FieldCheck, Status
+from .numerals import value_of
 from .printout import Printout
 from .recovery import Recovered
 from .rereading import Change, Reread, Rereading
@@ -49,7 +52,11 @@ _COST = {
 }
 """How much a slip asks to be believed."""
 _LAST_PLACE = 0.8
-"""A result wrong by one in its last place is more likely another arithmetic than a misreading."""
+"""A result wrong by one in its last place is more likely another arithmetic than a misreading, and
+so is a page on which nothing worse is wrong."""
+_ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
+"""The kinetic energy is printed to so many digits; other arithmetics end within so many units of
+the last of them."""
 
 
 @dataclass
@@ -98,7 +105,7 @@ def explain(
     alone = work.by_results_alone(replies)
     explanations = [alone] if alone else []
     if not recovered.missing:
-        reread = _reread(recovered, base, rereads)
+        reread = list(Rereading(recovered).best() if rereads is None else rereads)
         explanations += work.rereads(reread, replies)
         hypotheses = otherruns.hypotheses(shown, recovered)
         explanations += work.others(hypotheses, replies)
@@ -114,20 +121,6 @@ def explain(
     return _chosen(explanations, len(base))
 
 
-def _reread(
-    recovered: Recovered, base: frozenset[str], tried: Sequence[Reread] | None
-) -> list[Reread]:
-    unchanged = Reread((), recovered.search.replayed_scene(recovered.scene, recovered.assumed))
-    rereads = [unchanged]
-    if len(base) <= 2 and not base & {"KI"} and not _input_may_be_wrong(base):
-        return rereads
-    return [*rereads, *(Rereading(recovered).best() if tried is None else tried)]
-
-
-def _input_may_be_wrong(base: frozenset[str]) -> bool:
-    return bool(base)
-
-
 @dataclass
 class _Work:
     """What all explanations are measured against: the names that differ."""
@@ -137,13 +130,24 @@ class _Work:
     base: frozenset[str]
     checks: dict[str, FieldCheck]
 
+    @cached_property
+    def last_places(self) -> bool:
+        """Whether nothing differs but results, in their last places."""
+        return all(
+            name in self.checks
+            and name not in INPUTS
+            and _in_last_places(name, self.checks[name].printed, self.checks[name].recomputed)
+            for name in self.base
+        )
+
     def by_results_alone(self, replies: Sequence[FieldCheck]) -> Explanation | None:
         """Results and replies that are one slip away from what they should be."""
         names = {name for name in self.base if name != "ENDING"}
         changes = list(self._slips(names, self.recovered.outcome.fields, replies))
         if not changes:
             return None
-        return self._explanation(changes, self.base, len(self.base) - len(changes))
+        unexplained = self.base - {change.field for change in changes}
+        return self._explanation(changes, unexplained, len(unexplained))
 
     def rereads(
         self, reread: Sequence[Reread], replies: Sequence[FieldCheck]
@@ -278,8 +282,10 @@ class _Work:
         kind = kinds[0] if len(kinds) == 1 else " and ".join(kinds)
         if believed is None:
             believed = sum(map(_believed, changes)) + 0.1 * (len(changes) - 1)
+        if all(change.field in INPUTS for change in changes) and self.last_places:
+            believed += _LAST_PLACE
         weight = believed + remaining
-        explains = len(self.base - unexplained) if unexplained is not self.base else len(changes)
+        explains = len(self.base - unexplained)
         name = first.field.removeprefix("reply ")
         note = "in the typed reply" if first.field.startswith("reply ") else ""
         described = [self._change(change) for change in changes]
@@ -318,10 +324,21 @@ def _believed(change: Change) -> float:
     cost = _COST[change.kind]
     if change.kind == misreading.DIGIT:
         cost += 0.04 * misreading.likeness(change.printed, change.would_be)
-        one_off = change.printed[:-1] == change.would_be[:-1] and change.printed[-1:].isdigit()
-        if one_off and abs(int(change.printed[-1]) - int(change.would_be[-1])) == 1:
-            cost += _LAST_PLACE
+    if change.field not in INPUTS:
+        cost += _LAST_PLACE * _in_last_places(change.field, change.printed, change.would_be)
     return cost
+
+
+def _in_last_places(name: str, printed: str | None, other: str | None) -> bool:
+    """Whether a result is another by no more than other arithmetics leave open: one in the last
+    place it is floored to, or the last of the digits of the kinetic energy."""
+    one, two = value_of(printed or ""), value_of(other or "")
+    if one is None or two is None or name not in FIELDS:
+        return False
+    places = FIELDS[name].places
+    if places is not None:
+        return abs(one - two) <= Decimal(1).scaleb(-places)
+    return abs(one - two) <= _ENERGY_UNITS * Decimal(1).scaleb(two.adjusted() - _ENERGY_DIGITS + 1)
 
 
 def _chosen(explanations: list[Explanation], base: int) -> list[Explanation]:
@@ -332,6 +349,7 @@ def _chosen(explanations: list[Explanation], base: int) -> list[Explanation]:
         for one in explanations
         if one.explains > 0 and one.remaining <= most_left and _few_slips(one)
     ]
+    kept = [one for one in kept if not any(_completes(other, one) for other in kept)]
     kept.sort(key=lambda one: one.weight)
     if kept:
         kept = [one for one in kept if one.weight <= kept[0].weight + _WORSE]
@@ -340,17 +358,25 @@ def _chosen(explanations: list[Explanation], base: int) -> list[Explanation]:
         # what only adds to a simpler cause, or says it again, is none of its own
         if not any(_adds_to(one, other) or _says(one) == _says(other) for other in chosen):
             chosen.append(one)
-    return _ranked(chosen[:MOST])
+    # a misreading that would do is not left out where another machine is named
+    shown, others = chosen[:MOST], chosen[MOST:]
+    innocent = next((one for one in others if not _accuses(one)), None)
+    if innocent is not None and all(map(_accuses, shown)):
+        shown[-1] = innocent
+    return _ranked(shown)
 
 
 def _ranked(chosen: list[Explanation]) -> list[Explanation]:
-    """The same, with ranks; those of one rank beside each other."""
+    """The same, with ranks; those of one rank beside each other. That another program or machine
+    made the page is said beside no misreading that explains it better."""
     leaders: list[Explanation] = []
     for one in chosen:
         alike = (
             rank
             for rank, other in enumerate(leaders, 1)
-            if one.unexplained == other.unexplained and one.weight <= other.weight + _ALIKE
+            if one.unexplained == other.unexplained
+            and one.weight <= other.weight + _ALIKE
+            and (_accuses(other) or not _accuses(one))
         )
         one.rank = next(alike, len(leaders) + 1)
         if one.rank > len(leaders):
@@ -358,9 +384,24 @@ def _ranked(chosen: list[Explanation]) -> list[Explanation]:
     return sorted(chosen, key=lambda one: (one.rank, one.weight))
 
 
+def _accuses(one: Explanation) -> bool:
+    return one.note.endswith(NOT_APPLESOFT)
+
+
 def _few_slips(one: Explanation) -> bool:
     slips = [change for change in one.changes if change["kind"] in misreading.KINDS_OF_SLIPS]
     return len(slips) <= _MOST_SLIPS
+
+
+def _completes(one: Explanation, other: Explanation) -> bool:
+    """Whether one puts right what the other does and, slip for slip, what that leaves."""
+    more = len(_changes(one)) - len(_changes(other))
+    return (
+        bool(other.changes)
+        and one.unexplained < other.unexplained
+        and _changes(other) < _changes(one)
+        and more <= len(other.unexplained - one.unexplained)
+    )
 
 
 def _adds_to(one: Explanation, other: Explanation) -> bool:
