@@ -67,6 +67,11 @@ class LookingPast:
         costs = [paper_cost(shown, search, one) for one in scenes]
         if not self._fixed and min(costs, default=MISMATCH + _AS_WELL) >= MISMATCH + _AS_WELL:
             recovered = self._recovered
+            for other in self._unreadable_put_right():
+                cost = paper_cost(shown, search, other)
+                if cost < min(costs, default=cost + 1):
+                    scenes.append(other)
+                    costs.append(cost)
             found = scenes_found(shown, search, recovered.scene, recovered.missing, _TRIED)
             scenes += found
             costs += [paper_cost(shown, search, one) for one in found]
@@ -87,12 +92,11 @@ class LookingPast:
         if not recovered.missing:
             yield recovered.search.replayed_scene(recovered.scene, recovered.assumed)
         yield from (one.scored for one in (self.rereads or [])[:_TRIED])
-        yield from self._unreadable_put_right()
 
     def _unreadable_put_right(self) -> Iterator[Scored]:
         """The scenes of a page whose reader cannot read one digit, that digit put right throughout;
         and one slip besides."""
-        digit = "" if self._fixed else unreadable_digit(self._shown)
+        digit = unreadable_digit(self._shown)
         if not digit:
             return
         other = recover(self._shown, unreadable=digit)
