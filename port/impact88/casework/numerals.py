@@ -74,6 +74,8 @@ _BLANK_FOR_POINT = 1.0
 _RETYPED = 0.2
 _WIDEST = 400
 """Powers of ten, either way, of the numbers that are taken for some."""
+_DIGITS = 28
+"""Their digits at most; so many the arithmetic of decimals keeps."""
 _IN_PIECES = 0.45
 _SPECKS = frozenset(".,:;'`|_~-\"“”’‘·•!*°^«»<>=/\\")
 
@@ -95,7 +97,9 @@ def value_of(text: str) -> Decimal | None:
         value = Decimal(text) if is_number(text) else None
     except InvalidOperation:
         return None
-    return value if value is None or abs(value.adjusted()) <= _WIDEST else None
+    if value is None or abs(value.adjusted()) > _WIDEST or len(value.as_tuple().digits) > _DIGITS:
+        return None
+    return value
 
 
 def plain(region: Sequence[Glyph]) -> str:
