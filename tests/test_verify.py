@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 import random
 
+import numpy as np
 import pytest
 
 import captures
 import printouts
 from impact88.casework.printout import read_printouts
+from impact88.casework.search import in_doubles
 from impact88.casework.typedtext import stored_and_printed, texts_that_print
 from impact88.casework.verify import Verdict, Verification, verify
-from impact88.fields import ANGLES, INPUTS
+from impact88.fields import ANGLES, INPUTS, outcome_fields
 from impact88.names import SCENE
 from impact88.program.run import run
 from impact88.scene import sample
@@ -178,6 +180,20 @@ def test_point_mass_without_final_spins() -> None:
     result = verified(text)
     assert result.scene["M"] == "4"
     assert "WAF" not in {check.name for check in result.fields}
+
+
+@pytest.mark.parametrize("m", ["4", "6"])
+def test_energies_are_screened_as_the_listing_counts_them(m: str) -> None:
+    """With M = 4 line 320 counts spins that line 580 does not; and a page that leaves the row of
+    angles open is searched by the energies."""
+    scene = sample(1).replaced({"M": m, "WB": ".8", "DA": "0", "DB": "0"})
+    printout = run(scene).printout
+    results = in_doubles({name: np.array([float(text)]) for name, text in scene.items()}, ["KI"])
+    printed = outcome_fields(printout)
+    assert f"{results['KI'][0]:.3f}".rstrip("0") == printed["KI"]
+    assert np.floor(100 * results["LOSS"][0]) / 100 == float(printed["LOSS"])
+    (shown,) = read_printouts(printout.replace(" ", "").replace("\n", ""))
+    assert verify(shown).verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
 
 
 def test_a_wrong_error_line_differs() -> None:

@@ -19,12 +19,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.solve import solve
 from ..fields import ANGLES, FIELDS, INPUTS
 from .anglerow import cut_as
 from .numerals import compare
 from .printout import Printout, Reading
-from .search import AGREES, MISMATCH, Scored, Search, mismatch
+from .search import AGREES, MISMATCH, Scored, Search, in_doubles, mismatch
 from .typedtext import stored_and_printed
 from .ways import reply_ways, scene_name
 
@@ -205,8 +204,7 @@ class _Inversion:
         """What each result exceeds its printed value by, for rows of inputs."""
         columns = {name: values[:, place] for place, name in enumerate(UNKNOWN)}
         columns["M"] = np.full(len(values), float(base["M"]))
-        with np.errstate(all="ignore"):
-            results = solve(columns, self._names)
+        results = in_doubles(columns, self._names)
         return np.stack([results[name] for name in self._names], axis=1) - self._values
 
     def _agreeing(self, base: Mapping[str, str], values: Floats) -> NDArray[np.intp]:
@@ -238,8 +236,7 @@ class _Inversion:
         columns = {
             name: np.array([float(scene[name]) for scene in scenes]) for name in (*UNKNOWN, "M")
         }
-        with np.errstate(all="ignore"):
-            results = solve(columns, [one.name for one in self._search.expected])
+        results = in_doubles(columns, [one.name for one in self._search.expected])
         costs: Floats = np.zeros(len(scenes))
         for one in self._search.expected:
             costs = costs + mismatch(one, results[one.name])
