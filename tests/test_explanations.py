@@ -17,6 +17,7 @@ from impact88.casework.verify import Verdict, Verification, verify
 
 COUNT = printouts.SWEEP or 1
 LEFT_TO_SWEEPS = (
+    "A and B exchanged, and a wrong digit",
     "a wrong input and a wrong result",
     "two slips of two kinds",
     "fewer decimals",
