@@ -265,6 +265,8 @@ def test_a_mark_for_the_illegible_may_stand_for_a_whole_number() -> None:
     result = one(SAMPLE.replace("UX= -29.04", "UX= ?"))
     assert result.verdict is Verdict.INCOMPLETE
     assert result.missing == ["UX"]
+    (shown,) = read_printouts(SAMPLE.replace("UX= -29.04", "UX= ?"))
+    assert verify(shown, given={"UX": "-39.04"}).verdict is Verdict.DIFFERS
 
 
 def test_blanks_inside_numbers_are_a_readers() -> None:

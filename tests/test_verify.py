@@ -188,7 +188,8 @@ def test_energies_are_screened_as_the_listing_counts_them(m: str) -> None:
     angles open is searched by the energies."""
     scene = sample(1).replaced({"M": m, "WB": ".8", "DA": "0", "DB": "0"})
     printout = run(scene).printout
-    results = in_doubles({name: np.array([float(text)]) for name, text in scene.items()}, ["KI"])
+    values = {name: np.array([float(text)]) for name, text in scene.items()}
+    results = in_doubles(values, ["KI", "LOSS"])
     printed = outcome_fields(printout)
     assert f"{results['KI'][0]:.3f}".rstrip("0") == printed["KI"]
     assert np.floor(100 * results["LOSS"][0]) / 100 == float(printed["LOSS"])

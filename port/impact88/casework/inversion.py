@@ -112,7 +112,7 @@ class _Inversion:
         return self._cheapest(replayed, most)
 
     def _cheapest(self, replayed: Sequence[Scored], most: int) -> list[Scored]:
-        """The scenes of least `paper_cost`, the row's worked out where it may matter."""
+        """The scenes of least `paper_cost`; the row is costed only where it may matter."""
         least = [_without_row(self._shown, self._search, one) for one in replayed]
         best: list[tuple[float, int]] = []
         for index in np.argsort(least, kind="stable").tolist():

@@ -58,9 +58,11 @@ def recover(
     choices, missing = choices_of(shown, given, unreadable)
     search = Search(shown, unreadable)
     best = search.best(choices)
-    if len(best.wrong) > _UNCONVINCING:
-        missing = [name for name in map(scene_name, INPUTS) if name in {*missing, *_blind(shown)}]
-    in_doubt = bool(shown.angles) and len(best.wrong) > _UNCONVINCING
+    unconvincing = len(best.wrong) > _UNCONVINCING
+    if unconvincing:
+        lost = {*missing, *(set(_blind(shown)) - set(given or ()))}
+        missing = [name for name in map(scene_name, INPUTS) if name in lost]
+    in_doubt = bool(shown.angles) and unconvincing
     outcome = best.outcome
     if missing:
         outcome = _independent_of(missing, best.scene, outcome)

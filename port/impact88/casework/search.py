@@ -157,18 +157,12 @@ class Search:
     def _screened(self, choices: Choices) -> Picks:
         """The most promising combinations: those whose kinetic energy is the printed one first."""
         still = _without_spin(choices)
-        kinetic = [
-            place for place, some in enumerate(choices) if (KINETIC - still) & set(some[0].typed)
-        ]
+        entering = [place for place, some in enumerate(choices) if KINETIC & set(some[0].typed)]
+        kinetic = [place for place in entering if not still & set(choices[place][0].typed)]
         others = [place for place in range(len(choices)) if place not in kinetic]
-        own = [
-            some if place in kinetic else some[:1]
-            for place, some in enumerate(choices)
-            if KINETIC & set(some[0].typed)
-        ]
+        own = [choices[place][: None if place in kinetic else 1] for place in entering]
         first = self.by_energy(own, combinations(own, _SCREENED), self._energies)
-        moved = [place for place, some in enumerate(choices) if KINETIC & set(some[0].typed)]
-        first = first[:, [moved.index(place) for place in kinetic]]
+        first = first[:, [entering.index(place) for place in kinetic]]
         room = max(2, self._room // len(first))
         second = combinations([choices[place] for place in others], room)
         picks = np.zeros((len(first) * len(second), len(choices)), np.intp)
@@ -343,10 +337,11 @@ def in_doubles(value: Mapping[str, Floats], names: Sequence[str]) -> dict[str, F
 
     With M = 4 the closed form leaves the spins out of both energies; the listing counts the initial
     ones (line 320) and, having no final ones, none after (lines 580, 590)."""
+    points = np.equal(value["M"], 4)
+    energies = ("KI", "LOSS") if np.any(points) else ()
     with np.errstate(all="ignore"):
-        results: dict[str, Floats] = dict(solve(value, list({*names, "KI", "LOSS"})))
-        points = np.equal(value["M"], 4)
-        if np.any(points):
+        results: dict[str, Floats] = dict(solve(value, list(dict.fromkeys([*names, *energies]))))
+        if energies:
             whole = kinetic_energy(value)
             after = results["KI"] * (1 - results["LOSS"] / 100)
             loss = 100 * (whole - after) / whole
