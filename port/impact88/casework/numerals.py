@@ -78,6 +78,8 @@ _DIGITS = 28
 """Their digits at most; so many the arithmetic of decimals keeps."""
 _IN_PIECES = 0.45
 _SPECKS = frozenset(".,:;'`|_~-\"“”’‘·•!*°^«»<>=/\\")
+_FULL = frozenset("@©®ØOQDCUZSBGRPYAH$&")
+"""Look-alikes of digits that are as large as one."""
 
 
 def printable(text: str) -> bool:
@@ -273,6 +275,8 @@ def _extra(
             return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
         return _SPECK, Doubt.LEFT_OVER
     inside = 0 < j < len(printed)
+    if char in _FULL and inside and joined and not last and region[i + 1][2]:
+        return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
     cost = _SPECK if char in _SPECKS else _SPECK + 0.2
     return (cost + 0.3 if inside else cost), Doubt.LEFT_OVER
 
