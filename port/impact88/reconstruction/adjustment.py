@@ -14,7 +14,7 @@ First-order deviations and correlations come from the same linear equations.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -46,6 +46,8 @@ _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES)
 _STARTS = 12
 _STEPS = 50
 _TINY = 1e-30
+_AT_ONCE = 4096
+"""Impacts whose derivatives are taken at once, times the variables: past it copies do not pay."""
 """Of a scaled variable: the imaginary step whose derivative has no error."""
 _RANK = 1e-10
 _NO_ROWS = np.zeros((0, 1))
@@ -68,12 +70,14 @@ class System:
         self.nominal = {name: item.nominal for name, item in known.items()}
         self.point = self.nominal.get("M", 6.0) == 4
         geometry = Geometry.of(self.nominal)
-        self.mass = float(1 / geometry.inverse_mass)
-        self.gyration = 1.0
+        # numpy's numbers: beyond the range of doubles they are infinite, where Python's raise
+        self.mass = np.float64(1 / geometry.inverse_mass)
+        self.gyration = np.float64(1.0)
         if not self.point:
-            self.gyration = float(np.sqrt(geometry.inverse_mass / geometry.inverse_spin_inertia))
+            turning = geometry.inverse_mass / geometry.inverse_spin_inertia
+            self.gyration = np.float64(np.sqrt(turning))
         still = self._still()
-        self.speed = self._typical_speed()
+        self.speed = np.float64(self._typical_speed())
         loose = {n for n, item in known.items() if adjusted and item.varies}
         parameters = [n for n in known if n in PARAMETERS and n in loose]
         unknown = [n for n in VELOCITIES if n not in still and (n not in known or n in loose)]
@@ -181,27 +185,38 @@ class System:
         return (state[name] - targets[name]) / self.scale(name)
 
     def jacobian(
-        self, x: Array, rows: Any, data: Mapping[str, Array] | None = None
+        self,
+        x: Array,
+        rows: Callable[[State, Mapping[str, Array] | None], Any],
+        data: Mapping[str, Array] | None = None,
+        targets: Mapping[str, Array] | None = None,
     ) -> NDArray[np.float64]:
-        """Derivatives of ``rows(state)`` over the scaled variables: rows, variables, impacts."""
-        size = len(self.variables)
-        if x.shape[1] == 1 and not data:
-            # all derivatives of the one impact at once, a column each
-            residuals = rows(self.state(x + 1j * _TINY * np.eye(size)))
-            slopes = np.imag(np.broadcast_to(residuals, (len(residuals), size))) / _TINY
-            return np.asarray(slopes, np.float64)[:, :, None]
-        columns = []
-        for i in range(size):
-            moved = x.astype(complex)
-            moved[i] += 1j * _TINY
-            columns.append(np.imag(rows(self.state(moved, data))) / _TINY)
-        return np.stack(columns, axis=1)
+        """Derivatives of ``rows(state, targets)`` over the scaled variables: rows, variables,
+        impacts. ``data`` as for `state`, ``targets`` as for `left`: a column an impact."""
+        size, count = len(self.variables), x.shape[1]
+        if not size:
+            return np.empty((len(rows(self.state(x, data), targets)), 0, count))
+        # of few impacts all derivatives at once, by a copy of the impacts each; of many in turn
+        copies = size if size * count <= _AT_ONCE else 1
+        again = [
+            given and {name: np.tile(column, copies) for name, column in given.items()}
+            for given in (data, targets)
+        ]
+        parts = []
+        for first in range(0, size, copies):
+            moved = np.tile(x.astype(complex), copies)
+            for i in range(copies):
+                moved[first + i, i * count : (i + 1) * count] += 1j * _TINY
+            residuals = rows(self.state(moved, again[0]), again[1])
+            slopes = np.imag(np.broadcast_to(residuals, (len(residuals), copies * count))) / _TINY
+            parts.append(slopes.reshape(len(residuals), copies, count))
+        return np.concatenate(parts, axis=1)
 
     def gradient(self, x: Array, name: str) -> Floats:
         """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
         if name in self.variables and name not in QUANTITIES:
             return self.scales * (np.array(self.variables) == name)
-        return self.jacobian(x, lambda state: np.reshape(state[name], (1, -1)))[0, :, 0]
+        return self.jacobian(x, lambda state, _: np.reshape(state[name], (1, -1)))[0, :, 0]
 
     # -- one impact
 
@@ -327,6 +342,7 @@ class Reconstruction:
             responses = responses * np.sqrt(self.squares / self.redundancy)
         return responses
 
+    @within_doubles
     def responses(self, names: Sequence[str]) -> Floats:
         """What an error of each known value (column) by its standard deviation does to quantities
         (rows), to first order."""
@@ -335,6 +351,7 @@ class Reconstruction:
         product: Floats = rows.reshape(len(names), len(self._responses)) @ self._responses
         return product
 
+    @within_doubles
     def covariance(self, names: Sequence[str]) -> Floats:
         """First-order covariances of quantities that are determined."""
         responses = self.responses(names)
@@ -346,19 +363,21 @@ class Reconstruction:
         """Whether anything known has a tolerance."""
         return bool(self.system.observations)
 
+    @within_doubles
     def deviations(self, names: Sequence[str]) -> dict[str, float]:
         """First-order standard deviations."""
         variances = np.maximum(np.diag(self.covariance(names)), 0.0)
         return dict(zip(names, np.sqrt(variances).tolist(), strict=True))
 
+    @within_doubles
     def correlations(self, names: Sequence[str]) -> Floats:
         """First-order correlations; nan where a quantity does not vary."""
         covariance = self.covariance(names)
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            matrix: Floats = covariance / np.outer(deviations, deviations)
+        matrix: Floats = covariance / np.outer(deviations, deviations)
         return matrix
 
+    @within_doubles
     def scene(self) -> dict[str, float]:
         """The impact as a scene's values, MU as line 280 would hold it.
 

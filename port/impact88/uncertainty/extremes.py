@@ -124,6 +124,7 @@ def extremes(
     poles = _Poles(piece, values.shape[1])
     poles.look_between(inside, rng)
     wanted = np.concatenate([~np.isinf(poles.lower), ~np.isinf(poles.upper)])
+    wanted &= ~np.isneginf(height).all(axis=0)  # nowhere to climb from
     place = points[starts].reshape(starts.size, coordinates)
     best = np.take_along_axis(height, starts, axis=0).reshape(-1)
     climbers = _Climbers(

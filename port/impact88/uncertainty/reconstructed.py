@@ -33,6 +33,8 @@ Floats = NDArray[np.float64]
 CHUNK = 1 << 14
 CHORDS = 24
 NEWTONS = 12
+IDLE = 3
+"""Steps without the half of what was left over, and no solution is in reach."""
 SETTLED = 1e-11
 """Scaled conditions below count as met by a draw."""
 ADJUSTMENTS = 12
@@ -100,6 +102,7 @@ def ranges(
 
     def outputs(points: Floats) -> Floats:
         state, usable = solver(data_at(points))
+        usable = np.broadcast_to(usable, len(points))  # one where nothing is left to vary
         for name in rest:
             low, high = limits[name]
             value, slack = state[name], 1e-9 * (high - low)
@@ -179,12 +182,16 @@ class _Solving:
         count = len(next(iter(data.values()))) if data else 1
         x = np.repeat(self.x, count, axis=1)
         residual = self.left(x, data, geometry)
+        left = np.abs(residual).max(axis=0, initial=0.0)
         for _ in range(CHORDS):
-            if not np.abs(residual).max(initial=0.0) > SETTLED:
-                break
+            before = left
             x = x - self.inverse @ residual
             residual = self.left(x, data, geometry)
-        settled = np.abs(residual).max(axis=0, initial=0.0) <= SETTLED
+            left = np.abs(residual).max(axis=0, initial=0.0)
+            # one that is not halved does not settle in time
+            if not ((left > SETTLED) & (left < 0.5 * before)).any():
+                break
+        settled = left <= SETTLED
         if not settled.all():
             wild = np.broadcast_to(~settled, (count,))
             x[:, wild] = self._newton({n: column[wild] for n, column in data.items()})
@@ -198,18 +205,22 @@ class _Solving:
         return np.asarray(self.system.left(self.system.state(x, data, geometry), data))
 
     def _newton(self, data: Mapping[str, Floats]) -> Floats:
-        """The same by Newton's method, from the nominal impact."""
-        x = np.repeat(self.x, len(next(iter(data.values()))), axis=1)
+        """The same by Newton's method, from the nominal impact. A point that comes no nearer a
+        solution for a while has none in reach."""
+        count = len(next(iter(data.values())))
+        x = np.repeat(self.x, count, axis=1)
+        least, idle = np.full(count, np.inf), np.zeros(count, int)
         for _ in range(NEWTONS):
             residual = self.left(x, data)
-            jacobian = self.system.jacobian(
-                x, lambda state: self.system.left(state, data), data
-            ).transpose(2, 0, 1)
-            jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
-            step = np.einsum("nij,jn->in", np.linalg.pinv(jacobian, rcond=1e-13), residual)
-            step = np.nan_to_num(step)
+            left = np.abs(residual).max(axis=0, initial=0.0)
+            idle = np.where(left < 0.5 * least, 0, idle + 1)
+            least = np.fmin(least, left)
+            jacobian = self.system.jacobian(x, self.system.left, data, data).transpose(2, 0, 1)
+            step = np.nan_to_num(_solved(jacobian, residual.T).T)
             x = x - step
-            if not np.abs(step).max(initial=0.0) > 1e-13 * (1 + np.abs(x).max(initial=0.0)):
+            far = np.abs(step).max(axis=0, initial=0.0)
+            near = far <= 1e-13 * (1 + np.abs(x).max(axis=0, initial=0.0))
+            if (near | (idle > IDLE)).all():
                 break
         return x
 
@@ -231,9 +242,7 @@ class _Adjusting:
         with np.errstate(all="ignore"):
             for _ in range(ADJUSTMENTS):
                 residual = left_of(system.state(x))
-                jacobian = np.broadcast_to(
-                    system.jacobian(x, left_of), (len(residual), size, x.shape[1])
-                ).transpose(2, 0, 1)
+                jacobian = system.jacobian(x, system.left, targets=data).transpose(2, 0, 1)
                 exact, loose = jacobian[:, :count], jacobian[:, count:]
                 # Lagrange: the normal equations bordered with the conditions
                 bordered = np.zeros((x.shape[1], size + count, size + count))
@@ -253,14 +262,23 @@ class _Adjusting:
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats:
+    """The solutions of so many systems of equations; the least ones where a matrix is singular or
+    not square, none (0) where it is not finite."""
     finite = np.asarray(np.isfinite(matrices).all(axis=(1, 2)))
-    matrices = np.where(finite[:, None, None], matrices, 0.0)
+    matrices = np.where(finite[:, None, None], matrices, np.eye(*matrices.shape[1:]))
+    right = np.where(finite[:, None], right, 0.0)
     try:
         solution = np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0], np.float64)
-        if np.nanmax(np.abs(solution), initial=0.0) < 1e6:
-            return solution
     except np.linalg.LinAlgError:
-        pass
+        return _least(matrices, right)
+    far = ~(np.abs(solution).max(axis=1, initial=0.0) < 1e6)
+    if far.any():
+        solution[far] = _least(matrices[far], right[far])
+    return solution
+
+
+def _least(matrices: Floats, right: Floats) -> Floats:
+    """The least solutions, of the equations that a singular matrix leaves."""
     product: Floats = (np.linalg.pinv(matrices, rcond=1e-12) @ right[:, :, None])[:, :, 0]
     return product
 
