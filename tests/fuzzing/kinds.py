@@ -425,6 +425,50 @@ def bounds_case(rng: Random) -> Case:
     return Case("bounds", arguments)
 
 
+EXTREMES = [
+    *"0 -0 1e155 -1e155 1e-155 1e308 -1.7e308 1e-308 5e-324 1e77 1e103 1e20 -1e20 1e-20".split(),
+    *"1e16 90 -90 180 360 1 -1 .5 1e30 1e-30 1e200 1e-200 inf -10 4 1e5".split(),
+]
+"""Numbers at which arithmetic in doubles has its ends and its corners."""
+
+
+def extremes_case(rng: Random) -> Case:
+    """A well-formed problem with a few extreme numbers, to everything that solves one."""
+
+    def value() -> str:
+        return rng.choice(EXTREMES) if rng.random() < 0.6 else f"{rng.uniform(-200, 200):.2f}"
+
+    texts = dict(sample(rng.randint(1, 3)))
+    for name in rng.sample(list(SCENE), rng.choice((0, 1, 2, 3))):
+        texts[name] = rng.choice(EXTREMES)
+    if rng.random() < 0.3:
+        texts["M"] = rng.choice("46")
+    others = ["bounds", "bounds", "bounds", "figure", "barrier", "colinear", "delta-v", "run"]
+    command = rng.choice(["reconstruct"] * 5 + ["oracle", *others])
+    if command == "oracle":
+        return Case("extremes", ["oracle"], stdin=json.dumps({"scene": texts}).encode() + b"\n")
+    if command == "reconstruct":
+        for name in rng.sample(["UX", "UY", "WA", "VX", "VY", "WB", "E", "MU"], rng.randint(0, 3)):
+            texts.pop(name, None)
+    files = {"s.toml": "".join(f'{name} = "{text}"\n' for name, text in texts.items()).encode()}
+    if command == "figure":
+        return Case("extremes", ["figure", "scene", "s.toml", "-o", "o.svg"], files=files)
+    arguments = [command, "s.toml"]
+    for _ in range(rng.randint(0, 3)):
+        text = f"{rng.choice([*SCENE, *RESULTS, *CHAPTER])}={value()}"
+        if command == "reconstruct" and rng.random() < 0.5:
+            text += f" +- {value()}"
+        arguments += ["--set", text]
+    if command == "bounds":
+        form = rng.choice(("+- {}", "{} .. {}", "normal {} {}", "triangular {} {} {}"))
+        text = form.format(value(), value(), value())
+        arguments += ["--range", f"{rng.choice(list(SCENE))}={text}", "--samples", "40"]
+        arguments += rng.choice(([], [], ["--reconstruct"]))
+    if rng.random() < 0.3:
+        arguments.append("--json")
+    return Case("extremes", arguments, files=files)
+
+
 def figure_case(rng: Random) -> Case:
     """A figure that matplotlib draws; slow."""
     kind = rng.choice(["friction", "scene", "planar", "histogram", "tornado"])
@@ -511,7 +555,8 @@ def _is_short_number(text: str) -> bool:
 KINDS: dict[str, tuple[Callable[[Random], Case], int]] = {
     "toml": (toml_case, 10),
     "options": (options_case, 10),
-    "csv": (csv_case, 14),
+    "extremes": (extremes_case, 4),
+    "csv": (csv_case, 10),
     "jsonl": (jsonl_case, 14),
     "oracle": (oracle_case, 3),
     "npz": (npz_case, 12),

@@ -55,6 +55,7 @@ ERROR = "rms 3.8, largest 8.2 ft/s over the 22 velocity changes of Table 2"
 """How far Equation 19 is from the measured velocity changes; a test holds the numbers."""
 
 
+@np.errstate(all="ignore")
 def loss_of(known: Mapping[str, Any], factor: float = AS_USED) -> Array:
     """Equation 19 the other way: LOSS in percent that a velocity change tells.
 
@@ -65,13 +66,15 @@ def loss_of(known: Mapping[str, Any], factor: float = AS_USED) -> Array:
     if absent or vehicle is None:
         raise UserError(missing(absent or ["DVA"]))
     unit = delta_v({**known, "LOSS": 100.0}, factor)[f"DV{vehicle}"]
-    return np.asarray(100 * (np.asarray(known[f"DV{vehicle}"]) / unit) ** 2)
+    return np.asarray(100 * np.square(np.asarray(known[f"DV{vehicle}"]) / unit))
 
 
+@np.errstate(all="ignore")
 def loss_of_energy(known: Mapping[str, Any]) -> Array:
     """LOSS in percent of the energy EL that crush (or whatever else) has taken: of the kinetic
     energy of MA MB at SA SB, no spins."""
-    initial = (known["MA"] * known["SA"] ** 2 + known["MB"] * known["SB"] ** 2) / 2
+    square_a, square_b = np.square(known["SA"]), np.square(known["SB"])
+    initial = (known["MA"] * square_a + known["MB"] * square_b) / 2
     return np.asarray(100 * np.asarray(known["EL"], np.float64) / initial)
 
 
@@ -82,7 +85,7 @@ def initial_velocity(change: float, along: float, across: float) -> float:
     the way it came and across it. Of the two roots the faster. Raises UserError when the final
     velocity across is larger than the whole change.
     """
-    square = change**2 - across**2
+    square = (change - across) * (change + across)
     if square < 0:
         raise UserError(
             f"a velocity change of {change:.4g} is less than the final velocity {abs(across):.4g} "

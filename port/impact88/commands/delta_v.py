@@ -57,6 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Print the estimate, or its range."""
     from ..chapter.deltav import AS_PRINTED, AS_USED, delta_v, described
+    from ..plaintable import plain
 
     known = known_values(args.file, args.set, KNOWABLE)
     for name in ("MA", "MB"):
@@ -84,7 +85,7 @@ def main(args: argparse.Namespace) -> int:
             "estimates": estimates,
             "units": {"DVA": "length/time", "DVB": "length/time", "LOSS": "percent"},
         }
-        print(json.dumps(whole, allow_nan=False))
+        print(json.dumps(plain(whole), allow_nan=False))
         return 0
     _show(given, estimates, source, described(factor))
     return 0
@@ -109,8 +110,8 @@ def _speeds(known: dict[str, float], args: argparse.Namespace, factor: float) ->
                 row = dict.fromkeys(("UX", "VY", "DVA", "DVB"), nan)
             found.append({"LOSS": loss, **row, "speeds": speeds})
     if args.json:
-        whole = {"equation": described(factor), "loss_from": source, "estimates": plain(found)}
-        print(json.dumps(whole, allow_nan=False))
+        whole = {"equation": described(factor), "loss_from": source, "estimates": found}
+        print(json.dumps(plain(whole), allow_nan=False))
         return 0
     names = ("LOSS", "UX", "VY", "DVA", "DVB")
     heading = [f"{name} [{quantity(name).unit}]" for name in names[1:]]
@@ -127,7 +128,7 @@ def _loss_told(
 ) -> int:
     """The loss that velocity changes tell."""
     from ..chapter.deltav import described, loss_of
-    from ..plaintable import number, table
+    from ..plaintable import number, plain, table
 
     if args.like or {"LOSS", "DT", "EL"} & set(known):
         raise UserError("both a loss and a velocity change are given; expected one")
@@ -138,7 +139,7 @@ def _loss_told(
     }
     if args.json:
         whole = {"equation": described(factor), "given": given, "LOSS_from": found}
-        print(json.dumps(whole, allow_nan=False))
+        print(json.dumps(plain(whole), allow_nan=False))
         return 0
     rows = [[name, number(known[name]), number(loss)] for name, loss in found.items()]
     print("\n".join(table(rows, ["from", "velocity change", "loss [percent]"], left=(0,))))

@@ -200,6 +200,6 @@ def course(x: Any, y: Any) -> Any:
     real = np.degrees(np.arctan2(np.real(y), np.real(x)))
     if not (np.iscomplexobj(x) or np.iscomplexobj(y)):
         return real
-    square = np.real(x) ** 2 + np.real(y) ** 2
+    square = np.square(np.real(x)) + np.square(np.real(y))
     turn = (np.real(x) * np.imag(y) - np.real(y) * np.imag(x)) / square
     return real + 1j * np.degrees(turn)

@@ -16,6 +16,7 @@ from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..plaintable import number, paragraph, plain, table
 from ..reconstruction import adjustment
 from ..reconstruction.adjustment import Reconstruction, typed_friction
+from ..reconstruction.doublerange import within_doubles
 from ..reconstruction.solutiontable import (
     CHANGES,
     completed,
@@ -51,6 +52,7 @@ class Uncertainty:
     ranges: dict[str, Range]
 
 
+@within_doubles
 def uncertainty(
     solution: Reconstruction,
     samples: int,
@@ -90,6 +92,7 @@ def _along_an_axis(solution: Reconstruction, name: str) -> bool:
     return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
 
 
+@within_doubles
 def completed_values(solution: Reconstruction, contact_time: float | None) -> dict[str, float]:
     """Everything that follows from a reconstruction, by name, in the tables' order."""
     values = dict(solution.values)
@@ -98,6 +101,7 @@ def completed_values(solution: Reconstruction, contact_time: float | None) -> di
     return completed(values, contact_time)
 
 
+@within_doubles
 def warnings(
     solution: Reconstruction, values: Mapping[str, float], spread: Uncertainty
 ) -> list[str]:
@@ -154,6 +158,7 @@ def _drivers(solution: Reconstruction, spread: Uncertainty, row: int) -> list[tu
     return [(solution.system.observations[i], float(squares[i] / total)) for i in ranked]
 
 
+@within_doubles
 def as_text(
     solution: Reconstruction,
     values: Mapping[str, float],
@@ -269,6 +274,7 @@ def _driving(solution: Reconstruction, spread: Uncertainty) -> list[str]:
     return table(rows, ["uncertain through", *[""] * DRIVERS], left=(0, 1, 2, 3)) if rows else []
 
 
+@within_doubles
 def as_json(
     solution: Reconstruction,
     values: Mapping[str, float],

@@ -207,6 +207,8 @@ def _of_form(
 
 
 def _range(low: float, nominal: float, high: float, kind: str, text: str, name: str) -> Uncertain:
+    if not math.isfinite(high - low):
+        raise UserError(f"{text!r} is wider than the range of doubles", name)
     if not low <= nominal <= high:
         raise UserError(f"{text!r} is out of order; expected the lower limit first", name)
     return Uncertain(kind, nominal, low, high) if low < high else fixed(nominal)
