@@ -82,6 +82,8 @@ class TestNotation:
             ("0.7 to 0.9", "no value or range"),
             ("0.9 .. 0.7", "out of order"),
             ("triangular 1 4 3", "out of order"),
+            ("-1e308 .. 1e308", "wider than the range of doubles"),
+            ("0 +- 1e308", "wider than the range of doubles"),
             ("normal 1 -1", "negative standard deviation"),
             ("normal 5 1 within 1 .. 2", "mean outside"),
             ("8 +- -2", "negative half width"),

@@ -191,6 +191,16 @@ def test_a_digit_that_is_another_is_never_looked_past_alone() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("old", "new"), [("19.982", "19@.982"), ("143.5", "14S3.5"), ("-8.78", "-8.7@8")]
+)
+def test_a_look_alike_within_a_number_is_a_digit(old: str, new: str) -> None:
+    """Not a speck, although the number without it is what the program prints."""
+    assert one(SAMPLE.replace(old, new)).verdict is Verdict.DIFFERS
+    speck = one(SAMPLE.replace(old, f"{old[:-1]}|{old[-1]}"))
+    assert speck.verdict is Verdict.IDENTICAL_AS_READ
+
+
 def test_a_lost_sign_is_a_readers_only_where_a_reader_was() -> None:
     text = NOISE.replace("WA= -1.745", "WA= 1.745")
     assert one(text).verdict is Verdict.IDENTICAL_AS_READ

@@ -271,19 +271,24 @@ def paper_cost(shown: Printout, search: Search, scored: Scored) -> float:
 
 def _row_cost(shown: Printout, scored: Scored) -> float:
     """What the row of angles costs, where blanks alone do not cut it."""
-    fields = scored.outcome.fields
-    row = shown.angle_row if all(name in fields for name in ANGLES) else ()
-    texts = tuple(fields[name] for name in ANGLES) if row else ()
-    pieces = zip(texts, cut_as(row, texts) if row else (), strict=False)
+    if not _in_one_row(shown, scored):
+        return 0.0
+    row, texts = shown.angle_row, tuple(scored.outcome.fields[name] for name in ANGLES)
+    pieces = zip(texts, cut_as(row, texts), strict=False)
     return sum(
         min(compare(row[start:stop], text).cost, _MOST_COST) for text, (start, stop) in pieces
     )
 
 
+def _in_one_row(shown: Printout, scored: Scored) -> bool:
+    """Whether the angles stand in a row that blanks alone do not cut."""
+    return bool(shown.angle_row) and all(name in scored.outcome.fields for name in ANGLES)
+
+
 def _without_row(shown: Printout, search: Search, scored: Scored) -> float:
     """What all the rest costs."""
     fields = scored.outcome.fields
-    row = bool(shown.angle_row) and all(name in fields for name in ANGLES)
+    row = _in_one_row(shown, scored)
     cost = search.results_cost(scored)
     for name in INPUTS:
         reading = shown.fields.get(name)

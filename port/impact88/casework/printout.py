@@ -24,7 +24,7 @@ from .alignment import Aligned, align
 from .anglerow import cut_in_five
 from .glyphs import Gap, Glyph, Page
 from .numerals import Region
-from .template import LETTER_LOST, REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
+from .template import REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -310,7 +310,7 @@ class _Reader:
             if state != before and (letter.isalpha() or letter == "*"):
                 count += glyph.char != letter and glyph.char.isalnum()
                 first = glyph.gap is Gap.LINE and page.line[before] != page.line[state]
-                count += first and bool(page.miss[state - 1] == LETTER_LOST)
+                count += first and state - 1 in page.always
             before = state
         return count
 

@@ -22,7 +22,7 @@ from .numerals import as_printed, printable, value_of
 from .recovery import Recovered
 from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search, columns, printed_mu
 from .typedtext import stored_and_printed, texts_that_print
-from .ways import Choice, Choices, opposite, scene_name
+from .ways import Choice, Choices, flipped, opposite, scene_name
 
 COSTS = {
     misreading.DIGIT: 2.7,
@@ -36,7 +36,6 @@ COSTS = {
 _UNLIKE = 0.05
 _SUMS = (("PA", "TA"), ("PB", "TB"))
 """Angles that enter only as their sum."""
-_FLIPPED = 0.001
 _TELLING = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "XAF", "YAF", "XBF", "YBF", "LOSS")
 _TELLING_MOST = 4
 """Of many pairs so many results are looked at first: those that differ, in this order."""
@@ -185,7 +184,7 @@ class Rereading:
         choices = [*ways, self._m()]
         if not rows:
             return pairs
-        choices[self._mu] += [_flipped(one) for one in choices[self._mu]]
+        choices[self._mu] += [flipped(one) for one in choices[self._mu]]
         # what is wrong may be what gives MU its sign
         picks = self._either_sign(choices, np.array(rows, np.intp))
         best = self._search.screened(choices, picks, 60)
@@ -211,7 +210,7 @@ class Rereading:
                 made.append(change)
             choices.append(options)
             changes.append(made)
-        choices[self._mu] += [_flipped(one) for one in choices[self._mu]]
+        choices[self._mu] += [flipped(one) for one in choices[self._mu]]
         changes[self._mu] *= 2
         choices.append(self._m())
         changes.append([None])
@@ -224,9 +223,9 @@ class Rereading:
         options = choices[self._mu]
         count = len(options) // 2
         has_sign = [one != other for one, other in zip(options, options[count:], strict=False)]
-        flipped = picks[np.array(has_sign)[picks[:, self._mu]]]
-        flipped[:, self._mu] += count
-        return np.concatenate([picks, flipped])
+        other = picks[np.array(has_sign)[picks[:, self._mu]]]
+        other[:, self._mu] += count
+        return np.concatenate([picks, other])
 
     def _signed(self, choices: Choices, picks: Picks) -> Picks:
         """The combinations with MU typed with the sign that line 400 makes the printed one of;
@@ -281,8 +280,7 @@ class Rereading:
                     proper[place][index] = choice._replace(cost=choice.cost + MISMATCH)
                     continue
                 (own, text), *_ = choice.typed.items()
-                flipped = own == "MU" and text != printed
-                typed = opposite(typed) if flipped else typed
+                typed = opposite(typed) if own == "MU" and text != printed else typed
                 proper[place][index] = choice._replace(typed={own: typed})
         return proper
 
@@ -347,14 +345,6 @@ class Rereading:
         by_use = sorted(_TELLING, key=lambda name: name not in self._wrong)
         signed = self._signed(choices, picks)
         return self._search.screened(choices, signed, most, by_use[:_TELLING_MOST])
-
-
-def _flipped(choice: Choice) -> Choice:
-    """MU typed with the other sign: line 400 may have changed it before it was printed."""
-    typed = choice.typed["MU"]
-    if not float(typed or 0):
-        return choice
-    return choice._replace(typed={"MU": opposite(typed)}, cost=choice.cost + _FLIPPED)
 
 
 def _one_change(choices: Choices) -> Picks:

@@ -88,8 +88,8 @@ _LETTERS = {
 """Letter of a label -> what it is read as."""
 
 _MISS = {"=": 0.45, "(": 0.25, ")": 0.25, "%": 0.3, "*": 0.25, ":": 0.2, ",": 0.2, "?": 0.3}
-"""What it costs to miss a glyph of a label; other letters `LETTER_LOST`."""
-LETTER_LOST = 0.65
+"""What it costs to miss a glyph of a label; other letters `_LETTER_LOST`."""
+_LETTER_LOST = 0.65
 """Of letters that nobody leaves out."""
 _LOOSE = 0.25
 """The same for words that retyped pages leave out (INITIAL, KE before LOSS, the prompts)."""
@@ -130,7 +130,8 @@ class Template(NamedTuple):
     without a glyph. ``between``: the states before the lines; ``absent``: of missing each line;
     ``closes``: whether text may end after a state. ``line``: where a state belongs; ``slots``:
     state -> field name; ``letters``: state -> a label's letter; ``slot_before``: state of a sign
-    that closes a number -> that number's field.
+    that closes a number -> that number's field;
+    ``always``: states of letters that nobody leaves out.
     """
 
     enter: Floats
@@ -146,6 +147,7 @@ class Template(NamedTuple):
     slots: dict[int, str]
     letters: dict[int, str]
     slot_before: dict[int, str]
+    always: frozenset[int]
 
 
 @lru_cache(maxsize=1)
@@ -204,7 +206,7 @@ def template() -> Template:
             if number < 2:
                 for part in "_{}":
                     stay[ord(part), state] = 0.05
-            miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, LETTER_LOST)
+            miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, _LETTER_LOST)
     miss[1] = 1000.0  # a printout begins at a price, not by missing what is outside
     between = np.array([state for state, kind in enumerate(kinds) if kind[0] == "between"])
     closes = np.array([kind[0] == "slot" or kind[1] in ")%*" for kind in kinds])
@@ -227,6 +229,11 @@ def template() -> Template:
             for state, (kind, name, _) in enumerate(kinds)
             if name in ("%", ")") and kinds[state - 1][0] == "slot"
         },
+        frozenset(
+            state
+            for state, (kind, name, _) in enumerate(kinds)
+            if kind == "letter" and name not in _MISS
+        ),
     )
 
 

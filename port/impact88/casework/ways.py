@@ -103,10 +103,17 @@ def _either_sign(options: list[Choice]) -> list[Choice]:
     both = []
     for option in options:
         both.append(option)
-        typed = option.typed["MU"]
-        if float(typed):
-            both.append(option._replace(typed={"MU": opposite(typed)}, cost=option.cost + _FLIPPED))
+        if (other := flipped(option)) != option:
+            both.append(other)
     return sorted(both, key=lambda choice: choice.cost)
+
+
+def flipped(choice: Choice) -> Choice:
+    """A choice of MU with the other sign typed; the same where it has none."""
+    typed = choice.typed["MU"]
+    if not float(typed or 0):
+        return choice
+    return choice._replace(typed={"MU": opposite(typed)}, cost=choice.cost + _FLIPPED)
 
 
 def _ms(shown: Printout, given: Mapping[str, str]) -> list[tuple[str, float]]:

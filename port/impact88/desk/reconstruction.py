@@ -121,7 +121,7 @@ def _row(
     name: str, value: float | None, values: Mapping[str, Any], system: System
 ) -> dict[str, Any]:
     # the object has uncertainties in base units
-    factor = system.shown(quantity(name).unit, 1.0)
+    factor = system.factor(name)
     spread = values.get("uncertainty", {}).get(name, {})
     quantiles = spread.get("quantiles", {})
     columns = {
@@ -164,7 +164,7 @@ def _text(value: float | None, digits: int) -> str:
 
 
 def _adjusted(one: Mapping[str, Any], system: System) -> dict[str, Any]:
-    factor = system.shown(quantity(one["name"]).unit, 1.0)
+    factor = system.factor(one["name"])
     return {
         **_what(one["name"], system),
         "measured": _text(factor * one["measured"], _DIGITS),
