@@ -290,6 +290,10 @@ def test_delta_v_says_which_equation_19(capsys: pytest.CaptureFixture[str]) -> N
         capsys, "delta-v", *sets("MA=96 MB=145 UX=-36.667 UY=0 VX=0 VY=58.667 LOSS=37.4")
     )
     assert velocities["estimates"][0]["DVA"] == pytest.approx(39.0981, abs=1e-4)
+    for beyond in ("SA=30 SB=0 DVA=1E200", "SA=30 SB=1E308 LOSS=0"):
+        status, out, err = run(capsys, "delta-v", *sets(f"MA=96 MB=145 {beyond}"))
+        assert (status, out) == (2, "")
+        assert "beyond the range of doubles" in err
 
 
 FINALS = "MA=96 MB=145 VAX=-10 VAY=20 VBX=-20 VBY=45"

@@ -5,6 +5,7 @@ from __future__ import annotations
 LONGEST_MESSAGE = 500
 LONGEST_PLACE = 200
 LONGEST_QUOTE = 60
+BEYOND_DOUBLES = "the values known lead beyond the range of doubles"
 
 
 def shown(text: str, longest: int = LONGEST_MESSAGE) -> str:

@@ -23,10 +23,11 @@ from __future__ import annotations
 
 import argparse
 import json
-from math import hypot, nan
+from collections.abc import Iterable
+from math import hypot, isfinite, nan
 from typing import Any
 
-from ..errors import UserError
+from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_VELOCITIES, SCENE
 from .options import add_json_argument, add_known_arguments, add_output_argument, known_values
 
@@ -76,6 +77,8 @@ def main(args: argparse.Namespace) -> int:
     for loss in losses:
         estimate = delta_v({**given, "LOSS": loss}, factor)
         estimates.append({"LOSS": loss, **{name: float(v) for name, v in estimate.items()}})
+    for row in estimates:
+        _check_finite(row.values(), args.file)
     if args.json:
         whole = {
             "equation": described(factor),
@@ -137,6 +140,7 @@ def _loss_told(
         for name in ("DVA", "DVB")
         if name in known
     }
+    _check_finite(found.values(), args.file)
     if args.json:
         whole = {"equation": described(factor), "given": given, "LOSS_from": found}
         print(json.dumps(plain(whole), allow_nan=False))
@@ -146,6 +150,11 @@ def _loss_told(
     print()
     _caution(described(factor))
     return 0
+
+
+def _check_finite(numbers: Iterable[float], source: str | None) -> None:
+    if not all(map(isfinite, numbers)):
+        raise UserError(BEYOND_DOUBLES, source)
 
 
 def _caution(equation: str) -> None:

@@ -8,7 +8,7 @@ from typing import ParamSpec, TypeVar
 
 import numpy as np
 
-from ..errors import UserError
+from ..errors import BEYOND_DOUBLES, UserError
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -24,6 +24,6 @@ def within_doubles(function: Callable[P, R]) -> Callable[P, R]:
             try:
                 return function(*arguments, **options)
             except np.linalg.LinAlgError:
-                raise UserError("the values known lead beyond the range of doubles") from None
+                raise UserError(BEYOND_DOUBLES) from None
 
     return quiet
