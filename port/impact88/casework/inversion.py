@@ -160,6 +160,7 @@ class _Inversion:
         found = found[:_KEPT]
         return [names for _, names, _ in found], np.array([values for _, _, values in found])
 
+    @np.errstate(all="ignore")  # a set that leads beyond doubles explains nothing
     def _least_squares(
         self, base: Mapping[str, str], start: Floats, sets: Sequence[tuple[str, ...]]
     ) -> Floats:
@@ -194,6 +195,7 @@ class _Inversion:
             normal = np.einsum("nrj,nrk->njk", weighted, slopes)
             trace = np.einsum("njj->n", normal)[:, None, None]
             normal += (1e-9 * trace + 1e-12) * np.eye(width)
+            normal[~np.isfinite(normal).all(axis=(1, 2))] = np.eye(width)
             right = np.einsum("nrj,nr->nj", weighted, error)
             change = -np.linalg.solve(normal, right[:, :, None])[:, :, 0] * size
             limit = np.where(limits > 0, limits, 0.8 * size + 5)
@@ -207,11 +209,11 @@ class _Inversion:
         results = in_doubles(columns, self._names)
         return np.stack([results[name] for name in self._names], axis=1) - self._values
 
+    @np.errstate(all="ignore")
     def _agreeing(self, base: Mapping[str, str], values: Floats) -> NDArray[np.intp]:
         """How many results agree."""
         slack = 0.75 * self._units + 4e-7 * abs(self._values)
-        with np.errstate(invalid="ignore"):
-            near = abs(self._residuals(base, values)) <= slack
+        near = abs(self._residuals(base, values)) <= slack
         count: NDArray[np.intp] = near.sum(axis=1)
         return count
 
@@ -231,6 +233,7 @@ class _Inversion:
             for texts in _alike_decimals(options):
                 yield {**base, **dict(zip(names, texts, strict=True))}
 
+    @np.errstate(all="ignore")
     def _rough_costs(self, scenes: Sequence[Mapping[str, str]]) -> Floats:
         """What scenes cost, their results in double precision."""
         columns = {
