@@ -96,7 +96,7 @@ def value_of(text: str) -> Decimal | None:
     """The number a text is; None when it is none, or one that no computer of the time could print
     and no later step could add to another."""
     try:
-        value = Decimal(text) if is_number(text) else None
+        value = Decimal(text) if len(text) <= LONGEST and is_number(text) else None
     except InvalidOperation:
         return None
     if value is None or abs(value.adjusted()) > _WIDEST or len(value.as_tuple().digits) > _DIGITS:

@@ -54,7 +54,9 @@ class Machines:
         self._shown = shown
         self._recovered = recovered
         self._texts = {
-            name: reading.text for name, reading in shown.fields.items() if reading.clean
+            name: reading.text
+            for name, reading in shown.fields.items()
+            if reading.clean and value_of(reading.text) is not None
         }
         known = all(reading.clean for reading in shown.fields.values())
         self._apart = f"; {NOT_APPLESOFT}" if known else ""
@@ -205,7 +207,8 @@ def _left_open(name: str, text: str, every: Sequence[str | None]) -> bool:
     """Whether a printed number lies within what the runs leave open, and that is little."""
     shown = value_of(text)
     places = FIELDS[name].places
-    if shown is not None and places is not None and shown != round(shown, places):
+    decimals = 0 if shown is None else -int(shown.normalize().as_tuple().exponent)
+    if places is not None and decimals > places:
         return False  # to more decimals than the listing floors to
     numbers = [value for one in every if (value := value_of(one or "")) is not None]
     if shown is None or len(numbers) < len(every):

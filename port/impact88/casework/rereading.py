@@ -323,10 +323,13 @@ class Rereading:
         self, choices: Choices, kinetic: list[int], rest: list[int], first: Picks
     ) -> Picks:
         pairs = _two_changes([self._one_sign(choices, place) for place in rest], _PAIRS)
-        picks = np.zeros((len(first) * len(pairs), len(choices)), np.intp)
-        picks[:, kinetic] = np.repeat(first, len(pairs), axis=0)
-        picks[:, rest] = np.tile(pairs, (len(first), 1))
-        best = self._screened(choices, picks, 60)[:, rest]
+        parts = []
+        for one in first:  # each alone: together they would take four times the memory
+            picks = np.zeros((len(pairs), len(choices)), np.intp)
+            picks[:, kinetic] = one
+            picks[:, rest] = pairs
+            parts.append(self._screened(choices, picks, 60))
+        best = self._search.screened(choices, np.concatenate(parts), 60)[:, rest]
         mu = rest.index(self._mu)
         best[:, mu] %= len(choices[self._mu]) // 2
         return best

@@ -11,7 +11,8 @@ from itertools import product
 from typing import NamedTuple
 
 from ..fields import ANGLES, INPUTS
-from .numerals import candidates, with_digit
+from ..scene import VALUE_LIMIT
+from .numerals import candidates, value_of, with_digit
 from .printout import Printout, Reading
 from .typedtext import stored_and_printed, texts_that_print
 
@@ -137,7 +138,7 @@ def printed_ways(reading: Reading) -> dict[str, float]:
     """The printed texts a reading may be, with what each costs."""
     if reading.clean:
         ways = dict(candidates(reading.region, 1, False))
-        return ways or {reading.text: 0.0}
+        return ways or ({} if value_of(reading.text) is None else {reading.text: 0.0})
     return dict(candidates(reading.region, _MOST, reading.sign_free))
 
 
@@ -235,7 +236,7 @@ def reply_ways(reply: Reading) -> list[tuple[str, str, float]]:
     readings = []
     for text, cost in ways.items():
         seen = stored_and_printed(text)
-        if seen is not None:
+        if seen is not None and len(text) <= VALUE_LIMIT:
             readings.append((text, seen[1], cost))
     return readings
 
