@@ -38,12 +38,16 @@ STARTS = 3
 FIRST_STEP = 0.25
 LAST_STEP = 1e-7
 """Of the cube's edge."""
+SURE_STEP = FIRST_STEP / 16
 DIFFERENCE = 1e-5
 """Half the distance a slope is taken over."""
 LENGTHS = 2.0 ** np.arange(2, -11, -1)
 """Of the quasi-Newton step: what is tried of it."""
 LEAST_GAIN = 1e-10
-"""Of a function's range over the points tried: smaller improvements are no reason to go on."""
+"""Of a function's range over the points tried: smaller improvements are no reason to go on, where
+nothing else is asked for."""
+ONE_HILL = 1e-2
+"""Of two points nearer than that the lower one climbs no farther: they are on one hill."""
 ROUNDS = 300
 """At most so many rounds of climbing."""
 SURFACE_PAIRS = 1024
@@ -92,10 +96,17 @@ class Extremes:
 
 
 def extremes(
-    piece: Piece, coordinates: int, rng: np.random.Generator, known: Array | None = None
+    piece: Piece,
+    coordinates: int,
+    rng: np.random.Generator,
+    known: Array | None = None,
+    scattered: int = SCATTERED,
+    least_gain: float = LEAST_GAIN,
 ) -> Extremes:
-    """Seek the extremes of a piece's functions. ``known``: further points to start from, n x k."""
-    groups = [_corners(coordinates, rng), interior := _spread_out(coordinates, rng)]
+    """Seek the extremes of a piece's functions. ``known``: further points to start from, n x k;
+    ``scattered`` and ``least_gain`` as `SCATTERED` and `LEAST_GAIN`, for functions that take
+    their time."""
+    groups = [_corners(coordinates, rng), interior := _spread_out(coordinates, scattered, rng)]
     on_faces = rng.random(interior.shape) < 0.5
     groups.append(np.where(on_faces, np.round(rng.random(interior.shape)), interior))
     middle = np.full((1, coordinates), 0.5)
@@ -124,18 +135,19 @@ def extremes(
     poles = _Poles(piece, values.shape[1])
     poles.look_between(inside, rng)
     wanted = np.concatenate([~np.isinf(poles.lower), ~np.isinf(poles.upper)])
-    wanted &= ~np.isneginf(height).all(axis=0)  # nowhere to climb from
     place = points[starts].reshape(starts.size, coordinates)
     best = np.take_along_axis(height, starts, axis=0).reshape(-1)
     climbers = _Climbers(
         piece.function,
         np.tile(number, len(starts)),
         np.tile(sense, len(starts)),
-        _least_gain(values),
+        _least_gain(values, least_gain),
         piece.margin,
         0.0 if margins is None else SHALLOW * float(np.abs(margins).max()),
     )
-    place, best = climbers.climb(place, best, rng, np.tile(wanted, len(starts)))
+    # nobody climbs from where there is no value
+    wanted = np.tile(wanted, len(starts)) & ~np.isneginf(best)
+    place, best = climbers.climb(place, best, rng, wanted)
     heights = best.reshape(len(starts), -1)
     winner = heights.argmax(axis=0)
     every = np.arange(2 * functions)
@@ -319,22 +331,22 @@ def _corners(coordinates: int, rng: np.random.Generator) -> Array:
     return np.round(rng.random((SCATTERED, coordinates)))
 
 
-def _spread_out(coordinates: int, rng: np.random.Generator) -> Array:
-    """A Latin hypercube: each coordinate visits every one of its SCATTERED strata once."""
-    strata = rng.permuted(np.tile(np.arange(SCATTERED), (coordinates, 1)), axis=1).T
-    return (strata + rng.random(strata.shape)) / SCATTERED
+def _spread_out(coordinates: int, count: int, rng: np.random.Generator) -> Array:
+    """A Latin hypercube: each coordinate visits every one of its ``count`` strata once."""
+    strata = rng.permuted(np.tile(np.arange(count), (coordinates, 1)), axis=1).T
+    return (strata + rng.random(strata.shape)) / count
 
 
 def _finite(height: Array) -> Array:
     return np.where(np.isfinite(height), height, -np.inf)
 
 
-def _least_gain(values: Array) -> Array:
+def _least_gain(values: Array, share: float) -> Array:
     """Of each function: the gain not worth another round."""
     finite = np.isfinite(values)
     high = np.where(finite, values, -np.inf).max(axis=0)
     low = np.where(finite, values, np.inf).min(axis=0)
-    return LEAST_GAIN * np.where(high > low, high - low, 0.0)
+    return share * np.where(high > low, high - low, 0.0)
 
 
 @dataclass
@@ -372,7 +384,9 @@ class _Climbers:
             slope = self.gradient(who, place[who])
             normal, margins = self.normals(place[who])
             slope = self.along_surface(slope, normal, margins)
-            along = model.direction(who, place[who], slope, step[who])
+            known = ~np.isnan(slope).any(axis=1)
+            slope = np.nan_to_num(slope)
+            along, uphill = model.direction(who, place[who], slope, step[who])
             aslant = rng.standard_normal((len(who), size, size))
             aslant /= np.sqrt(np.square(aslant).sum(axis=2, keepdims=True))
             around = np.concatenate(
@@ -386,14 +400,35 @@ class _Climbers:
             height = np.where(inside, self.heights(who, tried), -np.inf)
             choice = height.argmax(axis=1)
             reached = height[np.arange(len(who)), choice]
-            better = reached > best[who] + self.least[self.number[who]]
+            least = self.least[self.number[who]]
+            better = reached > best[who] + least
+            # a slope that promises nothing ends it, once shorter steps did not help either
+            there = ~better & known & (step[who] * uphill <= least) & (step[who] <= SURE_STEP)
             up, stuck = who[better], who[~better]
             place[up] = tried[better, choice[better]]
             best[up] = reached[better]
             step[up] = np.minimum(2 * step[up], FIRST_STEP)
             step[stuck] /= 4
+            step[who[there]] = LAST_STEP / 2
             model.forget(stuck)
+            step[self.overtaken(place, best, step > 0)] = 0.0
         return place, best
+
+    def overtaken(
+        self, place: Array, best: Array, climbing: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """Which points have a higher one of the same extreme beside them."""
+        extremes = len(np.unique([self.number, self.sense], axis=1).T)
+        places = place.reshape(-1, extremes, place.shape[1])
+        heights, going = best.reshape(-1, extremes), climbing.reshape(-1, extremes)
+        order = np.arange(len(heights))[:, None, None]
+        higher = heights[None] > heights[:, None]
+        higher |= (heights[None] == heights[:, None]) & (order.transpose(1, 0, 2) < order)
+        apart = np.zeros(higher.shape)
+        for i in range(place.shape[1]):
+            np.maximum(apart, np.abs(places[None, :, :, i] - places[:, None, :, i]), out=apart)
+        beside = higher & going[None] & (apart < ONE_HILL)
+        return np.asarray(beside.any(axis=1)).reshape(-1)
 
     def normals(self, place: Array) -> tuple[Array, Array]:
         """The margin's slopes at some points, a x k, and the margins there."""
@@ -445,13 +480,14 @@ class _Climbers:
         return tried, margins >= 0
 
     def gradient(self, who: NDArray[np.intp], place: Array) -> Array:
-        """Slopes by central differences, one-sided at the cube's faces; 0 where there is none."""
+        """Slopes by central differences, one-sided at the cube's faces; nan where none is known."""
         aside = DIFFERENCE * np.eye(place.shape[1])
         ahead = np.clip(place[:, None] + aside, 0.0, 1.0)
         behind = np.clip(place[:, None] - aside, 0.0, 1.0)
         height = self.heights(who, np.concatenate([ahead, behind], axis=1))
         rise = np.subtract(*np.split(np.where(np.isneginf(height), np.nan, height), 2, axis=1))
-        return np.nan_to_num(rise / np.einsum("aii->ai", ahead - behind))
+        slope: Array = rise / np.einsum("aii->ai", ahead - behind)
+        return slope
 
 
 class _Curvature:
@@ -468,9 +504,11 @@ class _Curvature:
         self.known[who] = False
         self.place[who] = np.nan
 
-    def direction(self, who: NDArray[np.intp], place: Array, slope: Array, step: Array) -> Array:
+    def direction(
+        self, who: NDArray[np.intp], place: Array, slope: Array, step: Array
+    ) -> tuple[Array, Array]:
         """The move to try: quasi-Newton where known, else a step of steepest ascent; no coordinate
-        leaves through a face it stands on."""
+        leaves through a face it stands on. And how steep it is uphill."""
         self._learn(who, place, slope)
         free = ~((place <= 0) & (slope < 0) | (place >= 1) & (slope > 0))
         uphill = np.where(free, slope, 0.0)
@@ -478,7 +516,7 @@ class _Curvature:
         steepest = step[:, None] * uphill / np.where(size > 0, size, 1.0)
         newton = np.where(free, np.einsum("aij,aj->ai", self.inverse[who], uphill), 0.0)
         usable = self.known[who] & ((newton * uphill).sum(axis=1) > 0)
-        return np.where(usable[:, None], newton, steepest)
+        return np.where(usable[:, None], newton, steepest), size[:, 0]
 
     def _learn(self, who: NDArray[np.intp], place: Array, slope: Array) -> None:
         moved, turned = place - self.place[who], self.slope[who] - slope

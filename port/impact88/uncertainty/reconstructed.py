@@ -31,13 +31,20 @@ from .uncertain import Uncertain
 Floats = NDArray[np.float64]
 
 CHUNK = 1 << 14
-CHORDS = 24
+CHORDS = 8
 NEWTONS = 12
 IDLE = 3
 """Steps without the half of what was left over, and no solution is in reach."""
 SETTLED = 1e-11
 """Scaled conditions below count as met by a draw."""
 ADJUSTMENTS = 12
+SCATTERED = 1024
+LEAST_GAIN = 1e-7
+"""For the search for bounds: each of its impacts takes a dozen iterations."""
+_SINGULAR = 1e-12
+"""Singular values of so little of the largest are none."""
+_GROWS = 1e10
+"""A solution so much larger than its right side may be a singular matrix's."""
 
 
 @dataclass(frozen=True)
@@ -111,8 +118,19 @@ def ranges(
         broad = [np.broadcast_to(column, usable.shape) for column in columns]
         return np.where(usable[:, None], np.stack(broad, axis=1), np.nan)
 
-    piece = Piece(outputs, len(names))
-    searched = extremes(piece, len(kept), np.random.default_rng([seed, 0]))
+    def each_once(points: Floats) -> Floats:
+        # climbers on one corner, or before a face, try the same points
+        different, of = np.unique(points, axis=0, return_inverse=True)
+        return outputs(different)[np.ravel(of)]
+
+    piece = Piece(each_once if kept else outputs, len(names))
+    searched = extremes(
+        piece,
+        len(kept),
+        np.random.default_rng([seed, 0]),
+        scattered=SCATTERED,
+        least_gain=LEAST_GAIN,
+    )
 
     def inputs(point: Floats) -> dict[str, float]:
         return {name: float(column[0]) for name, column in data_at(point[None]).items()}
@@ -183,13 +201,13 @@ class _Solving:
         x = np.repeat(self.x, count, axis=1)
         residual = self.left(x, data, geometry)
         left = np.abs(residual).max(axis=0, initial=0.0)
-        for _ in range(CHORDS):
+        for more in reversed(range(CHORDS)):
             before = left
             x = x - self.inverse @ residual
             residual = self.left(x, data, geometry)
             left = np.abs(residual).max(axis=0, initial=0.0)
-            # one that is not halved does not settle in time
-            if not ((left > SETTLED) & (left < 0.5 * before)).any():
+            # what is left over shrinks each time by the same factor
+            if not ((left > SETTLED) & (left * (left / before) ** more <= SETTLED)).any():
                 break
         settled = left <= SETTLED
         if not settled.all():
@@ -210,18 +228,21 @@ class _Solving:
         count = len(next(iter(data.values())))
         x = np.repeat(self.x, count, axis=1)
         least, idle = np.full(count, np.inf), np.zeros(count, int)
+        going = np.arange(count)
         for _ in range(NEWTONS):
-            residual = self.left(x, data)
+            here, known = x[:, going], {name: column[going] for name, column in data.items()}
+            residual = self.left(here, known)
             left = np.abs(residual).max(axis=0, initial=0.0)
             idle = np.where(left < 0.5 * least, 0, idle + 1)
             least = np.fmin(least, left)
-            jacobian = self.system.jacobian(x, self.system.left, data, data).transpose(2, 0, 1)
-            step = np.nan_to_num(_solved(jacobian, residual.T).T)
-            x = x - step
-            far = np.abs(step).max(axis=0, initial=0.0)
-            near = far <= 1e-13 * (1 + np.abs(x).max(axis=0, initial=0.0))
-            if (near | (idle > IDLE)).all():
+            more = (left > SETTLED) & (idle <= IDLE)
+            going, least, idle = going[more], least[more], idle[more]
+            if not len(going):
                 break
+            here, known = x[:, going], {name: column[going] for name, column in data.items()}
+            jacobian = self.system.jacobian(here, self.system.left, known, known)
+            step = _solved(jacobian.transpose(2, 0, 1), residual[:, more].T).T
+            x[:, going] = here - np.nan_to_num(step)
         return x
 
 
@@ -267,19 +288,29 @@ def _solved(matrices: Floats, right: Floats) -> Floats:
     finite = np.asarray(np.isfinite(matrices).all(axis=(1, 2)))
     matrices = np.where(finite[:, None, None], matrices, np.eye(*matrices.shape[1:]))
     right = np.where(finite[:, None], right, 0.0)
+    rows, columns = matrices.shape[1:]
     try:
-        solution = np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0], np.float64)
+        if rows < columns:  # the least solution lies in the rows' space
+            across = matrices.transpose(0, 2, 1)
+            weights = np.linalg.solve(matrices @ across, right[:, :, None])
+            solution = (across @ weights)[:, :, 0]
+            missed = np.abs((matrices @ solution[:, :, None])[:, :, 0] - right).max(axis=1)
+            far = ~(missed <= 1e-6 * np.abs(right).max(axis=1))
+        else:
+            solution = np.linalg.solve(matrices, right[:, :, None])[:, :, 0]
+            size = np.abs(matrices).max(axis=(1, 2), initial=0.0)
+            grown = size * np.abs(solution).max(axis=1, initial=0.0)
+            far = ~(grown <= _GROWS * np.abs(right).max(axis=1, initial=0.0))
     except np.linalg.LinAlgError:
         return _least(matrices, right)
-    far = ~(np.abs(solution).max(axis=1, initial=0.0) < 1e6)
     if far.any():
         solution[far] = _least(matrices[far], right[far])
-    return solution
+    return np.asarray(solution, np.float64)
 
 
 def _least(matrices: Floats, right: Floats) -> Floats:
     """The least solutions, of the equations that a singular matrix leaves."""
-    product: Floats = (np.linalg.pinv(matrices, rcond=1e-12) @ right[:, :, None])[:, :, 0]
+    product: Floats = (np.linalg.pinv(matrices, rcond=_SINGULAR) @ right[:, :, None])[:, :, 0]
     return product
 
 
