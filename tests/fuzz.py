@@ -40,7 +40,9 @@ def batch(kinds: list[str], seed: int, number: int) -> tuple[Counter[str], Found
     """Cases of one batch: how many of each kind, and those that went wrong."""
     resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
     rng = random.Random(f"{seed} {number}")
-    weights = [KINDS[kind][1] or (len(kinds) == 1) for kind in kinds]
+    weights = [KINDS[kind][1] for kind in kinds]
+    if not any(weights):  # those the mixture leaves out
+        weights = [1] * len(kinds)
     counts: Counter[str] = Counter()
     found: Found = []
     for index in range(BATCH):

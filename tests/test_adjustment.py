@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -310,6 +311,51 @@ class TestUncertainty:
         assert bound.lower == pytest.approx(-41, abs=1e-3)
         (against,) = reconstruct({**SECTION_7, "SA": read("60 .. 61", "SA")})
         assert math.isnan(ranges(against, ["UX"])["UX"].lower)
+
+    def test_bounds_with_more_known_than_needed_are_those_of_the_vertices(self):
+        """Direct impact of point masses, four velocities within limits and one momentum: what is
+        known is a box that a plane cuts. Linear functions of velocities, and their quotients, have
+        their extremes at the vertices of the cut."""
+        limits = {"UX": (19, 21), "VX": (-6, -4), "VAX": (4.5, 7.5), "VBX": (11.8, 13.8)}
+        share = {"UX": 100.0, "VX": 80.0, "VAX": -100.0, "VBX": -80.0}
+        across = dict.fromkeys(("UY", "VY", "VAY", "VBY", "GA"), 0.0)
+        vertices = []
+        for free, (low, high) in limits.items():
+            others = [name for name in limits if name != free]
+            for corner in product(*(limits[name] for name in others)):
+                point = dict(zip(others, corner, strict=True))
+                point[free] = -sum(share[n] * point[n] for n in others) / share[free]
+                if low <= point[free] <= high:
+                    vertices.append(point)
+        known = {"M": 4.0, "MA": 100.0, "MB": 80.0, **across}
+        known |= {name: read(f"{low} .. {high}", name) for name, (low, high) in limits.items()}
+        (solution,) = reconstruct(known)
+        assert solution.redundancy == 2  # in x and in y
+        found = ranges(solution, ["DVA", "DVB", "E", "UX"])
+        for name, value in {
+            "DVA": lambda v: v["UX"] - v["VAX"],
+            "DVB": lambda v: v["VBX"] - v["VX"],
+            "E": lambda v: (v["VBX"] - v["VAX"]) / (v["UX"] - v["VX"]),
+            "UX": lambda v: v["UX"],
+        }.items():
+            every = [value(vertex) for vertex in vertices]
+            width = max(every) - min(every)
+            assert found[name].lower == pytest.approx(min(every), abs=1e-5 * width)
+            assert found[name].upper == pytest.approx(max(every), abs=1e-5 * width)
+
+    @pytest.mark.parametrize(("tolerance", "endless"), [(1.0, False), (2.5, True)])
+    def test_what_is_divided_by_zero_has_no_bound(self, tolerance, endless):
+        """B, at rest, leaves with 2 +- 1 along n (P_n is not 0) or 2 +- 2.5 (it may be)."""
+        known = {"M": 4.0, "MA": 100.0, "MB": 80.0, **dict.fromkeys(("GA", "UY", "VY"), 0.0)}
+        known |= {"UX": 20.0, "VX": 0.0, "VBX": read(f"2 +- {tolerance}", "VBX")}
+        known |= {"VBY": read("1 +- .5", "VBY")}
+        (solution,) = reconstruct(known)
+        found = ranges(solution, ["MUP", "DVB"])
+        assert [math.isinf(found["MUP"].lower), math.isinf(found["MUP"].upper)] == [endless] * 2
+        if not endless:
+            sizes = sorted((abs(found["MUP"].lower), abs(found["MUP"].upper)))
+            assert sizes == pytest.approx([0.5 / 3, 1.5 / 1], rel=1e-5)
+        assert found["DVB"].upper == pytest.approx(math.hypot(2 + tolerance, 1.5), rel=1e-6)
 
     def test_near_e_0(self):
         after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP")).items()}

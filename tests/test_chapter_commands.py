@@ -394,6 +394,35 @@ def test_staged_as_json_holds_everything(capsys: pytest.CaptureFixture[str]) -> 
     assert eighth["measured"]["VAX"] is None
 
 
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ({"MB": "0"}, "MB is not positive; expected mass of B [mass]"),
+        ({"UX": "0"}, "the contact points do not approach one another; no e can be fitted"),
+        ({"VAX": "1e200"}, "the values known lead beyond the range of doubles"),
+        ({"WAF": ""}, "missing WAF (final spin of A)"),
+    ],
+)
+def test_staged_refuses_what_cannot_be_fitted(
+    setting: dict[str, str],
+    message: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    # each front to the other: A with 20 runs into B, which is at rest, both leave with 10
+    texts = dict.fromkeys("GA PA PB TA TB UY WA VX VY WB VAY WAF VBY WBF".split(), "0")
+    texts |= {"DA": "5", "DB": "5", "MA": "100", "MB": "100", "IA": "2000", "IB": "2000"}
+    texts |= {"UX": "20", "VAX": "10", "VBX": "10"}
+    path = tmp_path / "own.toml"
+    path.write_text("".join(f'{n} = "{text}"\n' for n, text in texts.items()))
+    status, out, err = run(capsys, "staged", str(path))
+    assert (status, err) == (0, "")
+    assert "sum of squares 0" in " ".join(out.split())
+    path.write_text("".join(f'{n} = "{text}"\n' for n, text in (texts | setting).items()))
+    status, out, err = run(capsys, "staged", str(path))
+    assert (status, out, err) == (2, "", f"impact88 staged: {path}: {message}\n")
+
+
 def test_example_step_by_step(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, err = run(capsys, "example")
     assert (status, err) == (0, "")

@@ -47,6 +47,9 @@ class TestConversion:
         texts = based(UX="-36.66700 ft/s", DA="3.50 ft", E=".250")
         assert texts == {"UX": "-36.66700", "DA": "3.50", "E": ".250"}
 
+    def test_an_exponent_of_nine_digits_is_not_worked_out(self):
+        assert based(UX="1e-999999999 mph")["UX"] == "0"
+
     def test_a_named_system_gives_bare_numbers_their_unit(self):
         values, system = to_base({"units": "us", "UX": "-30", "MA": "3217.4048556", "E": ".1"}, "f")
         assert float(values["UX"]) == pytest.approx(-44)
@@ -72,6 +75,11 @@ class TestConversion:
             ({"UX": "-25 mph", "MA": "960 kg"}, "units of two systems"),
             ({"UX": "-25 lb"}, "lb is no unit of its length/time"),
             ({"units": "imperial", "UX": "1"}, "'imperial' is no system of units"),
+            (
+                {"UX": "1.7e308 km/h", "MA": "1.7e308 t"},
+                r"MA = 1\.7e308 t is too large for a double",
+            ),
+            ({"UX": "1e999999999 mph"}, "UX = 1e999999999 mph is too large for a double"),
         ],
     )
     def test_what_is_refused(self, texts, message):

@@ -16,6 +16,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from fractions import Fraction
+from math import isinf
 from typing import NamedTuple
 
 from .errors import UserError, quoted
@@ -227,7 +228,17 @@ def _based(name: str, text: str, source: str, system: System, strict: bool) -> s
                 f"{name} = {text}: {unit} is no unit of its {rule.replace('·', ' ')}", source
             )
         factor = size / system.scale(rule)
-        return match[1] if factor == 1 else _decimal(Fraction(match[1]) * factor)
+        if factor == 1:
+            return match[1]
+        number = float(match[1])
+        try:
+            if isinf(number):
+                raise OverflowError
+            if not number:  # exponents of nine digits are not worked out
+                return "0"
+            return repr(float(Fraction(match[1]) * factor)).removesuffix(".0").upper()
+        except OverflowError:
+            raise UserError(f"{name} = {text} is too large for a double", source) from None
 
     return _AMOUNT.sub(based, text)
 
@@ -238,7 +249,3 @@ _UNITLESS = (NUMBER, ANGLE, SPIN, PERCENT)
 def _is_share(text: str, match: re.Match[str]) -> bool:
     """Whether a number is the percentage of a tolerance, "143.5 +- 5%"."""
     return match[2] == "%" and text[: match.start()].rstrip().endswith(("+-", "±"))
-
-
-def _decimal(value: Fraction) -> str:
-    return repr(float(value)).removesuffix(".0").upper()

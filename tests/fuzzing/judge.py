@@ -97,7 +97,8 @@ def faults(case: Case) -> list[str]:
         after = _listing(folder)
         if any(name.endswith(".part") for name in after):
             found.append(f"left behind: {sorted(after)}")
-        if any(after.get(name) != before[name] for name in before):
+        saved = set(re.findall(rb"SAVE[ ]*([^\n]+)", case.stdin))  # what the session was told to
+        if any(after.get(name) != before[name] and name.encode() not in saved for name in before):
             found.append("an input was changed")
         if status == 2 and set(after) != set(before) and case.arguments[:1] != ["basic"]:
             found.append(f"status 2 and written: {sorted(set(after) - set(before))}")

@@ -19,7 +19,7 @@ import captures
 import emulator_fuzz
 from impact88.applesoft.decimaltext import is_number
 from impact88.cli import COMMANDS
-from impact88.names import CHAPTER, RESULTS, SCENE
+from impact88.names import CHAPTER, FINAL_STATE, RESULTS, SCENE
 from impact88.scene import VALUE_LIMIT, sample, template
 
 from .case import Case
@@ -187,7 +187,8 @@ def _options(rng: Random, command: str, most: int = 3) -> list[str]:
 
 def toml_case(rng: Random) -> Case:
     """A scene file to a command that takes one."""
-    command = rng.choice(["run", "run", "reconstruct", "barrier", "colinear", "delta-v", "scene"])
+    solving = ["run", "run", "reconstruct", "barrier", "colinear", "delta-v", "staged"]
+    command = rng.choice([*solving, "scene"])
     data = toml(rng)
     if command == "scene":
         return Case("toml", ["figure", "scene", "s.toml", "-o", "o.svg"], files={"s.toml": data})
@@ -428,15 +429,28 @@ def bounds_case(rng: Random) -> Case:
 EXTREMES = [
     *"0 -0 1e155 -1e155 1e-155 1e308 -1.7e308 1e-308 5e-324 1e77 1e103 1e20 -1e20 1e-20".split(),
     *"1e16 90 -90 180 360 1 -1 .5 1e30 1e-30 1e200 1e-200 inf -10 4 1e5".split(),
+    *"1e999999999 1e-999999999".split(),
 ]
 """Numbers at which arithmetic in doubles has its ends and its corners."""
+
+
+_UNITS = (" mph", " lb", " kg", "ft", " m/s", " deg", " %", "%", " ft-lb", " in")
+_SYSTEMS = [["--units", name] for name in ("us", "si", "metric", "chapter")]
+_HOW = {
+    "reconstruct": [["--contact-time"], ["--for", "UX"], ["--scene", "o.toml"], *_SYSTEMS],
+    "barrier": [["--contact-time"], *_SYSTEMS],
+    "colinear": [["--contact-time"], *_SYSTEMS],
+    "delta-v": [["--as-printed"], ["--like", "rear"]],
+    "run": [["--arithmetic", "float64"], ["--move-contact=1e20,-1"], ["--raw"]],
+}
 
 
 def extremes_case(rng: Random) -> Case:
     """A well-formed problem with a few extreme numbers, to everything that solves one."""
 
     def value() -> str:
-        return rng.choice(EXTREMES) if rng.random() < 0.6 else f"{rng.uniform(-200, 200):.2f}"
+        text = rng.choice(EXTREMES) if rng.random() < 0.6 else f"{rng.uniform(-200, 200):.2f}"
+        return text + (rng.choice(_UNITS) if rng.random() < 0.05 else "")
 
     texts = dict(sample(rng.randint(1, 3)))
     for name in rng.sample(list(SCENE), rng.choice((0, 1, 2, 3))):
@@ -444,7 +458,14 @@ def extremes_case(rng: Random) -> Case:
     if rng.random() < 0.3:
         texts["M"] = rng.choice("46")
     others = ["bounds", "bounds", "bounds", "figure", "barrier", "colinear", "delta-v", "run"]
-    command = rng.choice(["reconstruct"] * 5 + ["oracle", *others])
+    command = rng.choice(["reconstruct"] * 5 + ["oracle", "staged", *others])
+    if command == "staged":
+        for name in ("E", "MU", "EM", "M"):
+            texts.pop(name, None)
+        texts |= {name: value() for name in FINAL_STATE if rng.random() < 0.8}
+        files = {"s.toml": "".join(f'{n} = "{text}"\n' for n, text in texts.items()).encode()}
+        options = rng.choice(([], [f"--spin-weight={value()}"], ["--json"]))
+        return Case("extremes", ["staged", "s.toml", *options], files=files)
     if command == "oracle":
         return Case("extremes", ["oracle"], stdin=json.dumps({"scene": texts}).encode() + b"\n")
     if command == "reconstruct":
@@ -452,8 +473,13 @@ def extremes_case(rng: Random) -> Case:
             texts.pop(name, None)
     files = {"s.toml": "".join(f'{name} = "{text}"\n' for name, text in texts.items()).encode()}
     if command == "figure":
-        return Case("extremes", ["figure", "scene", "s.toml", "-o", "o.svg"], files=files)
+        drawn = rng.choice(("scene", "planar"))
+        return Case("extremes", ["figure", drawn, "s.toml", "-o", "o.svg"], files=files)
     arguments = [command, "s.toml"]
+    if rng.random() < 0.3:
+        arguments += rng.choice(_HOW.get(command, [[]]))
+        if arguments[-1] == "--contact-time":
+            arguments.append(value())
     for _ in range(rng.randint(0, 3)):
         text = f"{rng.choice([*SCENE, *RESULTS, *CHAPTER])}={value()}"
         if command == "reconstruct" and rng.random() < 0.5:
@@ -471,13 +497,17 @@ def extremes_case(rng: Random) -> Case:
 
 def figure_case(rng: Random) -> Case:
     """A figure that matplotlib draws; slow."""
-    kind = rng.choice(["friction", "scene", "planar", "histogram", "tornado"])
+    kind = rng.choice(["friction", "scene", "planar", "histogram", "tornado", "sweep"])
     arguments = ["figure", kind, "--sample", rng.choice("123"), "-o", "f.png"]
     name = rng.choice(list(SCENE))
+    size = rng.choice(EXTREMES) if rng.random() < 0.5 else number(rng)
     if kind in ("histogram", "tornado"):
-        arguments += ["--samples", "50", "--range", f"{name}=+- {number(rng)}", "--outputs", "DVA"]
-    else:
-        arguments += ["--set", f"{name}={number(rng)}"]
+        arguments += ["--samples", "50", "--range", f"{name}=+- {size}", "--outputs", "DVA"]
+    elif kind == "sweep":
+        low, high = rng.sample(EXTREMES, 2)
+        arguments += ["--sweep", f"{name}={low}:{high}:{rng.choice('1279')}", "--outputs", "DVA"]
+    if kind != "sweep" or rng.random() < 0.5:
+        arguments += ["--set", f"{rng.choice(list(SCENE))}={size}"]
     return Case("figure", arguments)
 
 

@@ -287,7 +287,8 @@ class Fit:
 def fit(collision: Collision, em: float | None = None, spin_weight: float = SPIN_WEIGHT) -> Fit:
     """The least-squares fit: E, MUP and EM, or E and MUP with EM held at ``em``.
 
-    Velocities Table 1 lacks (8/A) are left out of the sum.
+    Velocities Table 1 lacks (8/A) are left out of the sum. Raises LinAlgError where doubles do not
+    hold the equations.
     """
     model = _Linear.of(collision, spin_weight)
     if em is not None:
@@ -372,6 +373,8 @@ class _Linear:
         offset = np.array([0.0, 0.0, constant])
         weighted = self.root_weight[:, None] * (self.jacobian @ lift)
         right = self.root_weight * (self.change - self.jacobian @ offset)
+        if not (np.isfinite(weighted).all() and np.isfinite(right).all()):
+            raise np.linalg.LinAlgError("not finite")  # LAPACK may seek without end
         free = np.linalg.lstsq(weighted, right, rcond=None)[0]
         slope = self.normal @ lift
         e = -(self.approach + slope @ free + self.normal @ offset) / self.approach

@@ -29,10 +29,10 @@ from __future__ import annotations
 
 import argparse
 import json
-from math import sqrt
+from math import isfinite, sqrt
 from typing import Any
 
-from ..errors import UserError
+from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_STATE, VELOCITIES, missing
 from .options import add_json_argument, add_output_argument, known_values
 
@@ -85,30 +85,48 @@ def main(args: argparse.Namespace) -> int:
 
 def _own(args: argparse.Namespace) -> int:
     """Fit a collision of the user's."""
-    from dataclasses import asdict
-
-    from ..chapter.staged import Collision, closure, fit, undetermined_range
-    from ..plaintable import fixed, paragraph, plain, table
-    from ..reconstruction.geometry import NAMES, Geometry
+    from ..reconstruction.doublerange import within_doubles
+    from ..reconstruction.geometry import NAMES
 
     if args.fit or args.cells or args.measured or args.claims or args.table:
         raise UserError("a collision of one's own is fitted; --fit and the like are the chapter's")
+    if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
+        raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number from 0 on")
     known = known_values(args.file, [], (*NAMES, *VELOCITIES, *FINAL_STATE))
     absent = [n for n in (*NAMES, *VELOCITIES, *FINAL_STATE) if n not in known]
     if absent:
         raise UserError(missing(absent), args.file)
+    try:
+        return within_doubles(_fitted)(known, args.spin_weight, args.json)
+    except UserError as error:
+        raise UserError(str(error), args.file) from None
+
+
+def _fitted(known: dict[str, float], weight: float | None, as_json: bool) -> int:
+    from dataclasses import asdict
+
+    import numpy as np
+
+    from ..chapter.staged import Collision, closure, fit, undetermined_range
+    from ..plaintable import fixed, paragraph, plain, table
+    from ..reconstruction.geometry import Geometry
+    from ..reconstruction.unknowns import check_physical
+
+    check_physical({name: np.asarray(value) for name, value in known.items()})
     scene = {name: value for name, value in known.items() if name not in FINAL_STATE}
     measured = {name: known[name] for name in FINAL_STATE}
     here = Geometry.of(scene)
-    weight = args.spin_weight
+    if not here.relative([scene[name] for name in VELOCITIES])[0]:
+        raise UserError("the contact points do not approach one another; no e can be fitted")
     if weight is None:
         weight = float(here.inverse_mass / here.inverse_spin_inertia)
-    if not 0 <= weight < float("inf"):
-        raise UserError(f"--spin-weight {weight:g}: expected a number from 0 on")
     own = Collision(0, "own", scene, measured, {})
-    found, low_high = fit(own, spin_weight=weight), undetermined_range(own, spin_weight=weight)
+    found = fit(own, spin_weight=weight)
+    if not isfinite(found.sum_of_squares):
+        raise UserError(BEYOND_DOUBLES)
+    low_high = undetermined_range(own, spin_weight=weight)
     as_measured = closure(own)
-    if args.json:
+    if as_json:
         whole = {"fit": asdict(found), "closure": asdict(as_measured), "spin_weight": weight}
         print(json.dumps(plain({**whole, "em_range": low_high}), allow_nan=False))
         return 0

@@ -17,7 +17,7 @@ from ..scene import numbers_of
 from ..status import Status
 from ..units import RULES, System, system_of
 from .canvas import new_figure, style
-from .drawing import BLACK, BLUE, COLUMN, GREY, ORANGE, VERMILION
+from .drawing import BLACK, BLUE, COLUMN, GREY, ORANGE, VERMILION, check_drawable
 from .sceneview import short
 
 if TYPE_CHECKING:
@@ -81,6 +81,7 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Figure:
         for name, axes in zip(names, panels, strict=False):
             draws = result.draws[name]
             draws = draws[np.isfinite(draws)]
+            check_drawable(draws, name)
             bound, spread = result.bounds[name], result.spreads[name]
             axes.hist(
                 draws,
@@ -142,6 +143,8 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Figure:
         for name, axes in zip(names, panels, strict=True):
             bound = result.bounds[name]
             drives = sorted(result.drives[name].items(), key=lambda entry: -entry[1].swing)
+            for _, drive in drives:
+                check_drawable((drive.lowest, drive.highest), name)
             ticks = []
             for place, (source, drive) in enumerate(drives[:bars]):
                 ends = [(drive.at_low, "#ffffff", ""), (drive.at_high, BLUE, "")]
@@ -207,6 +210,8 @@ def friction_sweep(scene: Any) -> Figure:
     low = min(0.0, 1.2 * own)  # a scene whose friction drives the sliding shows itself
     friction = np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP)
     results = solve({**values, "MU": friction}, ["LOSS", "DVA", "DVB", "STATUS"])
+    for name in ("LOSS", "DVA", "DVB"):
+        check_drawable(results[name], name)
     beyond = (results["STATUS"] & np.uint16(Status.SLIDING_REVERSED)) != 0
     own_results = {
         name: float(value) for name, value in solve(values, ["LOSS", "DVA", "DVB"]).items()
@@ -263,6 +268,9 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
     axis, shown = np.asarray(values), units.factor(name)
     results = solve({**numbers, name: axis}, [*outputs, "STATUS"])
     faulty = results["STATUS"] != 0
+    check_drawable(axis, name)
+    for output in outputs:
+        check_drawable(results[output], output)
     with style():
         figure = new_figure(COLUMN, 34 * len(outputs) + 12)
         figure.set_layout_engine("constrained", h_pad=0.03)

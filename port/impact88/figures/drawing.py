@@ -9,13 +9,17 @@ that do not overlap here overlap nowhere.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple
 
+from ..errors import UserError
+
 Point = tuple[float, float]
 
+DRAWABLE = 1e100
+"""The largest number that is drawn: products of some must be doubles too."""
 COLUMN = 85.0
 """Width in millimetres of a column in print."""
 MM_PER_POINT = 25.4 / 72
@@ -149,6 +153,13 @@ class Box(NamedTuple):
             first, second = sorted(((near - origin) / run, (far - origin) / run))
             low, high = max(low, first), min(high, second)
         return low <= high
+
+
+def check_drawable(values: Iterable[float], name: str) -> None:
+    """Raises UserError for a finite number too large to draw, of what ``name`` says."""
+    for value in values:
+        if DRAWABLE < abs(value) < math.inf:
+            raise UserError(f"{value:g} is too large to be drawn", name)
 
 
 @dataclass

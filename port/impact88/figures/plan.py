@@ -23,13 +23,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..errors import UserError
 from ..scene import numbers_of
 from ..status import sentences
-from .drawing import Point
+from .drawing import Point, check_drawable
 
-DRAWABLE = 1e100
-"""The largest number that is drawn: products of some must be doubles too."""
 PROPORTION = 2.6
 """Length over width."""
 WALL = 1e4
@@ -90,8 +87,7 @@ def plan(scene: Any, result: Mapping[str, Any] | None = None) -> Plan:
     """
     values = numbers_of(scene)
     for name, value in values.items():
-        if abs(value) > DRAWABLE:
-            raise UserError(f"{value:g} is too large to be drawn", name)
+        check_drawable([value], name)
     normal = direction(values["GA"])
     tangent = (-normal[1], normal[0])
     final = _finals(result)

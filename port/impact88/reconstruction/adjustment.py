@@ -193,9 +193,20 @@ class System:
     ) -> NDArray[np.float64]:
         """Derivatives of ``rows(state, targets)`` over the scaled variables: rows, variables,
         impacts. ``data`` as for `state`, ``targets`` as for `left`: a column an impact."""
+        return self.linearized(x, rows, data, targets)[1]
+
+    def linearized(
+        self,
+        x: Array,
+        rows: Callable[[State, Mapping[str, Array] | None], Any],
+        data: Mapping[str, Array] | None = None,
+        targets: Mapping[str, Array] | None = None,
+    ) -> tuple[Floats, Floats]:
+        """``rows(state, targets)`` themselves, rows and impacts, and their `jacobian`."""
         size, count = len(self.variables), x.shape[1]
         if not size:
-            return np.empty((len(rows(self.state(x, data), targets)), 0, count))
+            values = np.real(rows(self.state(x, data), targets))
+            return values, np.empty((len(values), 0, count))
         # of few impacts all derivatives at once, by a copy of the impacts each; of many in turn
         copies = size if size * count <= _AT_ONCE else 1
         again = [
@@ -207,10 +218,10 @@ class System:
             moved = np.tile(x.astype(complex), copies)
             for i in range(copies):
                 moved[first + i, i * count : (i + 1) * count] += 1j * _TINY
-            residuals = rows(self.state(moved, again[0]), again[1])
-            slopes = np.imag(np.broadcast_to(residuals, (len(residuals), copies * count))) / _TINY
-            parts.append(slopes.reshape(len(residuals), copies, count))
-        return np.concatenate(parts, axis=1)
+            values = rows(self.state(moved, again[0]), again[1])
+            values = np.broadcast_to(values, (len(values), copies * count))
+            parts.append((np.imag(values) / _TINY).reshape(len(values), copies, count))
+        return np.real(values[:, :count]), np.concatenate(parts, axis=1)
 
     def gradient(self, x: Array, name: str) -> Floats:
         """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
@@ -266,7 +277,13 @@ def _step(residual: Floats, jacobian: Floats, count: int) -> Floats:
 
 
 def pseudo_inverse(matrix: Floats) -> tuple[Floats, Floats]:
-    """The Moore-Penrose inverse, and a basis of the null space."""
+    """The Moore-Penrose inverse, and a basis of the null space.
+
+    Raises LinAlgError for a matrix that is not finite, whose singular values LAPACK may seek
+    without end.
+    """
+    if not np.isfinite(matrix).all():
+        raise np.linalg.LinAlgError("not finite")
     if not matrix.size:
         return np.zeros(matrix.shape[::-1]), np.eye(matrix.shape[1])
     u, s, vt = np.linalg.svd(matrix)

@@ -120,15 +120,22 @@ class State:
 
     # -- quantities
 
+    def divisor(self, coefficient: str) -> Any:
+        """What E, MUP or EM is divided by: where it is 0 the coefficient has no bound."""
+        if coefficient == "E":
+            return self.relative_before[0]
+        if coefficient == "MUP":
+            return self.impulse[0]
+        return self.relative_after[2] + self.impulse[2] * self.here.inverse_spin_inertia
+
     def _restitution(self) -> Any:
-        return -self.relative_after[0] / self.relative_before[0]
+        return -self.relative_after[0] / self.divisor("E")
 
     def _friction(self) -> Any:
-        return self.impulse[1] / self.impulse[0]
+        return self.impulse[1] / self.divisor("MUP")
 
     def _moment_coefficient(self) -> Any:
-        spin = self.relative_after[2]
-        return spin / (spin + self.impulse[2] * self.here.inverse_spin_inertia)
+        return self.relative_after[2] / self.divisor("EM")
 
     def _size_of_change(self, inverse_mass: Any) -> Any:
         pn, pt, _ = self.impulse

@@ -197,7 +197,7 @@ class _Problem:
             shapes = ", ".join(f"{name} {v.shape}" for name, v in given.items() if v.ndim)
             raise UserError(f"the arrays do not broadcast together: {shapes}") from None
         given = {name: np.broadcast_to(value, shape) for name, value in given.items()}
-        _check_physical(given)
+        check_physical(given)
         return cls(given, wanted, names, absent, shape, point)
 
     @property
@@ -394,7 +394,9 @@ def _is_point_mass(given: Mapping[str, Array]) -> bool:
     return bool(m.size) and bool((m == 4).all())
 
 
-def _check_physical(given: Mapping[str, Array]) -> None:
+def check_physical(given: Mapping[str, Array]) -> None:
+    """Raises UserError for what no vehicles have: masses that are not positive, two infinite ones,
+    values that are not finite."""
     mu = given.get("MUP", given.get("MU"))
     if mu is not None and (mu == PIVOT).any() and not (mu == PIVOT).all():
         raise UserError("MU is the pivot's -10 in some scenes only; solve pivots apart")

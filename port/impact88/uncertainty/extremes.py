@@ -52,11 +52,15 @@ ROUNDS = 300
 """At most so many rounds of climbing."""
 SURFACE_PAIRS = 1024
 """Pairs of points on both sides of a surface between which it is looked for."""
+SURFACE_HALVES = 34
+"""Times their distance is halved."""
 SHALLOW = 1e-9
 """How far inside its surface a piece is met, of the largest margin seen."""
 BESIDE_POLE = (1e-4, 1e-6)
 """Where functions are taken beside a denominator's zero, of the distance between two points on
 either side of it: a pole makes them a hundred times as large at the second as at the first."""
+POLE_HALVES = 28
+"""Times the distance is halved: a zero is then known well below the distances beside it."""
 POLE_GROWTH = 30.0
 POLE_PAIRS = 64
 """Pairs of points between which a denominator's zeros are looked for before climbing."""
@@ -116,7 +120,7 @@ def extremes(
     if piece.margin is not None:
         margins = piece.margin(np.concatenate(groups))
         surface = _surface(piece.margin, groups, margins, rng)
-        evaluations = len(margins) + 50 * len(surface)
+        evaluations = len(margins) + SURFACE_HALVES * len(surface)
         groups.append(surface)
         margins = np.concatenate([margins, piece.margin(surface)])
     points = np.concatenate(groups)
@@ -131,10 +135,15 @@ def extremes(
     height = _finite(values[:, number] * sense)
     corner_best = height[: len(groups[0])].max(axis=0)
     starts = _best_of_each(groups, height)
-    inside = points[np.isfinite(values[:, piece.size :]).all(axis=1)]
+    finite = np.isfinite(values[:, piece.size :]).all(axis=1)
+    inside, inside_values = points[finite], values[finite]
     poles = _Poles(piece, values.shape[1])
     poles.look_between(inside, rng)
     wanted = np.concatenate([~np.isinf(poles.lower), ~np.isinf(poles.upper)])
+    # a denominator seen on both sides of zero need not be followed to its ends
+    with np.errstate(invalid="ignore"):
+        both = (inside_values > 0).any(axis=0) & (inside_values < 0).any(axis=0)
+    wanted &= ~np.tile(both & (np.arange(functions) >= piece.size), 2)
     place = points[starts].reshape(starts.size, coordinates)
     best = np.take_along_axis(height, starts, axis=0).reshape(-1)
     climbers = _Climbers(
@@ -235,7 +244,7 @@ def _surface(
     if not inside:
         return np.empty((0, coordinates))
     near, far = np.concatenate(inside), np.concatenate(outside)
-    for _ in range(50):
+    for _ in range(SURFACE_HALVES):
         half = 0.5 * (near + far)
         within = (margin(half) >= 0)[:, None]
         near, far = np.where(within, half, near), np.where(within, far, half)
@@ -252,6 +261,8 @@ class _Poles:
         self.lower, self.upper = np.full((2, functions), np.nan)
         self.at_lower: dict[int, Array] = {}
         self.at_upper: dict[int, Array] = {}
+        self.crossed: set[int] = set()
+        """Denominators whose zeros were found."""
 
     def look_between(self, points: Array, rng: np.random.Generator) -> None:
         """Look between pairs of points of the piece, taken at random."""
@@ -263,7 +274,10 @@ class _Poles:
     def look(self, j: int, start: Array, end: Array) -> None:
         """Look for zeros of denominator ``j`` between two lots of points, and at the functions on
         either side of them. Zeros outside the piece are none."""
+        if j in self.crossed:
+            return
         for side in self._beside_zeros(j, start, end):
+            self.crossed.add(j)
             values = [self.piece.function(points) for points in side]
             values[1][:, self.piece.size :] = 0.0  # denominators have no poles
             with np.errstate(all="ignore"):
@@ -292,7 +306,7 @@ class _Poles:
             return []
         start, end, low, high = start[changes], end[changes], low[changes], high[changes]
         first = first[changes]
-        for _ in range(60):
+        for _ in range(POLE_HALVES):
             half = 0.5 * (low + high)
             same = sign_at(half) == first
             low, high = np.where(same, half, low), np.where(same, high, half)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import COEFFICIENTS
 from ..reconstruction.adjustment import (
     PARAMETERS,
     Reconstruction,
@@ -58,7 +59,8 @@ class Draws:
 @dataclass(frozen=True)
 class Range:
     """Lowest and highest value found of a quantity, and the known values that give them; NaN where
-    no impact was found within all limits, infinite where E = 0 lies within its limits."""
+    no impact was found within all limits, infinite where E = 0 lies within its limits, or what a
+    coefficient is divided by may be 0."""
 
     lower: float
     upper: float
@@ -99,6 +101,7 @@ def ranges(
     solver = _Solving(solution, {n: item for n, item in known.items() if n not in rest})
     limits = {name: known[name].limits(sigmas) for name in (*kept, *rest)}
     endless = _endless(solver, known, names)
+    ratios = [name for name in names if name in COEFFICIENTS and name not in known]
 
     def data_at(points: Floats) -> dict[str, Floats]:
         columns = {}
@@ -107,27 +110,39 @@ def ranges(
             columns[name] = np.where(points[:, i] < 1, low + points[:, i] * (high - low), high)
         return columns
 
-    def outputs(points: Floats) -> Floats:
+    def impacts(points: Floats) -> tuple[State, NDArray[np.bool_]]:
         state, usable = solver(data_at(points))
-        usable = np.broadcast_to(usable, len(points))  # one where nothing is left to vary
-        for name in rest:
-            low, high = limits[name]
-            value, slack = state[name], 1e-9 * (high - low)
-            usable = usable & (value >= low - slack) & (value <= high + slack)
-        columns = [_quantity(state, known, name) for name in names]
+        return state, np.broadcast_to(usable, len(points))  # one where nothing is left to vary
+
+    def outputs(points: Floats) -> Floats:
+        state, usable = impacts(points)
+        with np.errstate(all="ignore"):
+            columns = [_quantity(state, known, name) for name in names]
+        columns += [state.divisor(name) for name in ratios]
         broad = [np.broadcast_to(column, usable.shape) for column in columns]
         return np.where(usable[:, None], np.stack(broad, axis=1), np.nan)
 
-    def each_once(points: Floats) -> Floats:
-        # climbers on one corner, or before a face, try the same points
-        different, of = np.unique(points, axis=0, return_inverse=True)
-        return outputs(different)[np.ravel(of)]
+    def within(points: Floats) -> Floats:
+        """How far inside the redundant values' limits, of their widths."""
+        state, usable = impacts(points)
+        inside = np.full(len(points), 1.0)
+        for name in rest:
+            low, high = limits[name]
+            nearest = np.minimum(state[name] - low, high - state[name]) / (high - low)
+            inside = np.minimum(inside, nearest + 1e-9)
+        return np.where(usable & ~np.isnan(inside), inside, -1.0)
 
-    piece = Piece(each_once if kept else outputs, len(names))
+    adjusted = {item.name: item.adjusted for item in solution.adjusted}
+    nominal = [(adjusted[n] - limits[n][0]) / (limits[n][1] - limits[n][0]) for n in kept]
     searched = extremes(
-        piece,
+        Piece(
+            _each_once(outputs) if kept else outputs,
+            len(names),
+            (_each_once(within) if kept else within) if rest else None,
+        ),
         len(kept),
         np.random.default_rng([seed, 0]),
+        known=np.clip(np.array([nominal]), 0.0, 1.0),
         scattered=SCATTERED,
         least_gain=LEAST_GAIN,
     )
@@ -146,6 +161,16 @@ def ranges(
         )
         for i, name in enumerate(names)
     }
+
+
+def _each_once(function: Callable[[Floats], Floats]) -> Callable[[Floats], Floats]:
+    """Climbers on one corner, or before a face, try the same points."""
+
+    def once(points: Floats) -> Floats:
+        different, of = np.unique(points, axis=0, return_inverse=True)
+        return function(different)[np.ravel(of)]
+
+    return once
 
 
 def _quantity(state: State, known: Mapping[str, Uncertain], name: str) -> Floats:
@@ -231,7 +256,7 @@ class _Solving:
         going = np.arange(count)
         for _ in range(NEWTONS):
             here, known = x[:, going], {name: column[going] for name, column in data.items()}
-            residual = self.left(here, known)
+            residual, jacobian = self.system.linearized(here, self.system.left, known, known)
             left = np.abs(residual).max(axis=0, initial=0.0)
             idle = np.where(left < 0.5 * least, 0, idle + 1)
             least = np.fmin(least, left)
@@ -239,10 +264,8 @@ class _Solving:
             going, least, idle = going[more], least[more], idle[more]
             if not len(going):
                 break
-            here, known = x[:, going], {name: column[going] for name, column in data.items()}
-            jacobian = self.system.jacobian(here, self.system.left, known, known)
-            step = _solved(jacobian.transpose(2, 0, 1), residual[:, more].T).T
-            x[:, going] = here - np.nan_to_num(step)
+            step = _solved(jacobian[:, :, more].transpose(2, 0, 1), residual[:, more].T).T
+            x[:, going] = here[:, more] - np.nan_to_num(step)
         return x
 
 
@@ -333,7 +356,10 @@ def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
     for i in order:
         row = jacobian[count + i]
         tried = np.vstack([basis, row / np.linalg.norm(row)])
-        if _rank(tried) > rank:
+        if system.observations[i] in GEOMETRY:  # what is no quantity cannot be redundant
+            kept.append(i)
+            basis, rank = tried, _rank(tried)
+        elif _rank(tried) > rank:
             basis, rank = tried, rank + 1
             kept.append(i)
         else:

@@ -332,6 +332,11 @@ def _drawn(values: NDArray[np.float64], bound: Range) -> dict[str, Any]:
         },
         "lower": bound.lower,
         "upper": bound.upper,
+        "unbounded": [
+            side
+            for side, value in (("lower", bound.lower), ("upper", bound.upper))
+            if math.isinf(value)
+        ],
         "at_lower": bound.at_lower,
         "at_upper": bound.at_upper,
     }
