@@ -169,6 +169,12 @@ class TestContactPoint:
         path.write_text("\n".join(lines[:-1]))
         with pytest.raises(UserError, match="CBL is missing"):
             Scene.from_toml(str(path))
+        # numbers as INPUT takes them: a bare E is a zero exponent
+        path.write_text("\n".join([*lines[:-2], 'CBF = "3E"', 'CBL = "4."']))
+        assert float(dict(Scene.from_toml(str(path)).items())["DB"]) == 5
+        path.write_text("\n".join([*lines[:-2], 'CBF = "1e308"', 'CBL = "1.7e308"']))
+        with pytest.raises(UserError, match="CBF CBL: the values known lead beyond"):
+            Scene.from_toml(str(path))
 
     def contact(self, scene):
         """From A's and B's center of gravity, along x and y (line 330)."""

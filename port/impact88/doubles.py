@@ -35,6 +35,11 @@ def double(text: str) -> float:
 
     Raises ValueError for a text that INPUT would not take for one number.
     """
+    if _PLAIN.issuperset(text):
+        try:
+            return float(text)
+        except ValueError:
+            pass
     if not is_number(text):
         raise ValueError(f"{text!r} is no number")
     return read(text)[0]

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from . import estimates, notebook
 from .doubles import double, is_number
-from .errors import UserError
+from .errors import BEYOND_DOUBLES, UserError
 from .files import called, packaged_text, read_text
 from .names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing, quantity
 
@@ -185,8 +185,11 @@ def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
         both = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in values]
         if both:
             raise UserError(f"{both[0]} and {names[0]} are both given; expected one pair", source)
-        forward, left = (float(check_value(name, values.pop(name), source)) for name in names)
-        values[f"D{vehicle}"] = repr(math.hypot(forward, left)).upper()
+        forward, left = (double(check_value(name, values.pop(name), source)) for name in names)
+        distance = math.hypot(forward, left)
+        if math.isinf(distance):
+            raise UserError(f"{' '.join(names)}: {BEYOND_DOUBLES}", source)
+        values[f"D{vehicle}"] = repr(distance).upper()
         values[f"P{vehicle}"] = repr(math.degrees(math.atan2(left, forward))).upper()
     return values
 

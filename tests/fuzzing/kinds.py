@@ -408,14 +408,29 @@ def _printouts() -> list[bytes]:
 
 
 def printout_case(rng: Random) -> Case:
-    """A printout to verify."""
-    data = spoilt(rng, rng.choice(_printouts()), rng.choice((1, 3, 12)))
+    """A printout to verify, often with its inputs apart."""
+    data = rng.choice(_printouts())
     arguments = [
         "verify",
         "p.txt",
         *rng.choice(([], ["--brief"], ["--json"], ["--report", "r.html"])),
     ]
-    return Case("printout", arguments, files={"p.txt": data})
+    files = {}
+    if rng.random() < 0.4:
+        texts = dict(sample(rng.randint(1, 3)))
+        for name in rng.sample(list(SCENE), rng.choice((0, 0, 1, 2, 5))):
+            texts[name] = rng.choice(EXTREMES) if rng.random() < 0.5 else number(rng)
+        for name in rng.sample(list(SCENE), rng.choice((0, 0, 1, 3))):
+            texts.pop(name, None)
+        files["s.toml"] = "".join(f"{n} = {json.dumps(t)}\n" for n, t in texts.items()).encode()
+        arguments += ["--scene", "s.toml"]
+        lines = data.split(b"\n")
+        if rng.random() < 0.7:
+            data = b"\n".join(lines[rng.randint(0, len(lines)) :])
+    if "--report" in arguments and rng.random() < 0.5:
+        arguments += [f"{rng.choice(('--case', '--date', '--examiner'))}={rng.choice(SCRAPS)}"]
+    files["p.txt"] = spoilt(rng, data, rng.choice((1, 3, 12)))
+    return Case("printout", arguments, files=files)
 
 
 def bounds_case(rng: Random) -> Case:

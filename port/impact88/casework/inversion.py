@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
 from .anglerow import cut_as
 from .numerals import compare
@@ -143,7 +144,7 @@ class _Inversion:
     ) -> tuple[list[tuple[str, ...]], Floats]:
         """The unknowns that explain the results best, and their values (a row each)."""
         others = [name for name in UNKNOWN if name not in lost]
-        start = np.array([float(base[name]) for name in UNKNOWN])
+        start = np.array([double(base[name]) for name in UNKNOWN])
         found: list[tuple[int, tuple[str, ...], Floats]] = []
         for count in range(most + 1):
             if not count and not lost:
@@ -205,7 +206,7 @@ class _Inversion:
     def _residuals(self, base: Mapping[str, str], values: Floats) -> Floats:
         """What each result exceeds its printed value by, for rows of inputs."""
         columns = {name: values[:, place] for place, name in enumerate(UNKNOWN)}
-        columns["M"] = np.full(len(values), float(base["M"]))
+        columns["M"] = np.full(len(values), double(base["M"]))
         results = in_doubles(columns, self._names)
         return np.stack([results[name] for name in self._names], axis=1) - self._values
 
@@ -228,7 +229,7 @@ class _Inversion:
             for name in names:
                 value = float(row[UNKNOWN.index(name)])
                 if name in ANGLES:
-                    value = _within_a_turn(value, float(base[name]))
+                    value = _within_a_turn(value, double(base[name]))
                 options.append(_roundings(value) if abs(value) < 1e8 else [])
             for texts in _alike_decimals(options):
                 yield {**base, **dict(zip(names, texts, strict=True))}
@@ -237,7 +238,7 @@ class _Inversion:
     def _rough_costs(self, scenes: Sequence[Mapping[str, str]]) -> Floats:
         """What scenes cost, their results in double precision."""
         columns = {
-            name: np.array([float(scene[name]) for scene in scenes]) for name in (*UNKNOWN, "M")
+            name: np.array([double(scene[name]) for scene in scenes]) for name in (*UNKNOWN, "M")
         }
         results = in_doubles(columns, [one.name for one in self._search.expected])
         costs: Floats = np.zeros(len(scenes))
@@ -297,10 +298,10 @@ def _without_row(shown: Printout, search: Search, scored: Scored) -> float:
         reading = shown.fields.get(name)
         if name in fields and not (row and name in ANGLES):
             cost += _read_cost(reading, fields[name])
-    cost += sum(_TURNED for name in ANGLES if abs(float(scored.scene[name])) > _FULL_TURN)
+    cost += sum(_TURNED for name in ANGLES if abs(double(scored.scene[name])) > _FULL_TURN)
     for name, reply in shown.replies.items():
         ways = reply_ways(reply)
-        prices = [price for text, _, price in ways if float(text) == float(scored.scene[name])]
+        prices = [price for text, _, price in ways if double(text) == double(scored.scene[name])]
         cost += min(prices, default=MISMATCH)
     return cost
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from decimal import Decimal
 from itertools import combinations
 
+from ..applesoft import decimaltext
+from ..doubles import double
 from ..fields import ANGLES, INPUTS
 from .hypothesis import (
     AS_RADIANS,
@@ -121,7 +122,7 @@ class _Inputs:
             return
         scene = {**self._scene, **typed}
         yield Hypothesis(kind, note, weight, changes, scene, None, _NONE, assumed, within)
-        if float(scene["MU"] or 0):
+        if double(scene["MU"] or "0"):
             flipped = {**scene, "MU": opposite(scene["MU"])}
             yield Hypothesis(kind, note, weight, changes, flipped, None, _NONE, assumed, within)
 
@@ -156,12 +157,14 @@ class _Inputs:
         groups: list[tuple[str, ...]] = [*((name,) for name in ANGLES), tuple(ANGLES)]
         groups += [("PA", "PB"), ("TA", "TB"), ("PA", "PB", "TA", "TB")]
         for names in groups:
+            if any(math.isinf(double(self._scene[name])) for name in names):
+                continue
             seen = []
             for typed in self._converted(names, 180 / math.pi):
                 if typed not in seen:
                     yield from self._made(RADIANS, ", ".join(names), UNIT, typed)
                 seen.append(typed)
-            back = {name: _short(float(self._scene[name]) * math.pi / 180) for name in names}
+            back = {name: _short(double(self._scene[name]) * (math.pi / 180)) for name in names}
             yield from self._made(AS_RADIANS, ", ".join(names), UNIT + 0.2, back)
 
     def units(self) -> Iterator[Hypothesis]:
@@ -184,21 +187,23 @@ class _Inputs:
         decimals = max(_decimals(self._scene[scene_name(name)]) for name in names)
         half = 0.5 * 10.0**-decimals * abs(scale)
         return {
-            scene_name(name): half for name in names if float(self._scene[scene_name(name)] or 0)
+            scene_name(name): half for name in names if double(self._scene[scene_name(name)] or "0")
         }
 
     def _converted(self, names: tuple[str, ...], scale: float) -> Iterator[dict[str, str]]:
         """The inputs times a factor: to all their digits, to so many decimals, and the shortest
         that round to what is shown."""
         shown = {name: self._scene[scene_name(name)] for name in names}
-        values = {name: float(text) * scale for name, text in shown.items()}
+        values = {name: double(text) * scale for name, text in shown.items()}
+        if not all(map(math.isfinite, values.values())):
+            return  # nobody types what doubles do not hold
         decimals = max(map(_decimals, shown.values()))
         half = 0.5 * 10.0**-decimals * abs(scale)
         ways: list[Callable[[float], str]] = [_short, lambda value: _shortest(value, half)]
         ways += [_to(places) for places in (0, 1, 2, 3, 4)]
         for way in ways:
             typed = {scene_name(name): way(value) for name, value in values.items()}
-            if all(float(typed[scene_name(name)]) or not value for name, value in values.items()):
+            if all(double(typed[scene_name(name)]) or not value for name, value in values.items()):
                 yield typed
 
 
@@ -208,8 +213,9 @@ def _shown(name: str, typed: str, assumed: Mapping[str, str] | None) -> str:
 
 
 def _decimals(text: str) -> int:
-    exponent = Decimal(text).as_tuple().exponent
-    return max(0, -int(exponent))
+    """Of a number as INPUT takes it; no more than doubles tell apart."""
+    _, _, decimals, sign, exponent, _ = decimaltext.scan(text.upper())
+    return min(max(0, len(decimals) - int(f"{sign}{exponent or 0}")), 400)
 
 
 def _shortest(value: float, half: float) -> str:

@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 
+from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
 from . import otherarithmetic, trial
 from .hypothesis import (
@@ -90,7 +91,7 @@ class Machines:
                 spared.add(name)
         self._spared = frozenset(spared)
         yield scene
-        if float(scene["MU"] or 0):
+        if double(scene["MU"] or "0"):
             yield {**scene, "MU": opposite(scene["MU"])}
 
     def _digits(self, name: str) -> int:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 from itertools import combinations
 
+from ..doubles import double
 from ..fields import FIELDS, INPUTS
 from . import trial
 from .hypothesis import (
@@ -179,9 +180,11 @@ class Prints:
 
 def energy(scene: Mapping[str, str]) -> float:
     """Line 320 in double precision."""
+    import numpy as np
+
     from .search import kinetic_energy
 
-    return float(kinetic_energy({name: float(scene[name]) for name in scene}))  # type: ignore[misc]
+    return float(kinetic_energy({name: np.array(double(scene[name])) for name in scene}))
 
 
 def _decimals(printed: str) -> int:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from ..doubles import double
 from ..fields import INPUTS
 from . import trial
 from .hypothesis import (
@@ -151,10 +152,10 @@ def _other_programs(recovered: Recovered) -> Iterator[Hypothesis]:
     other = "4" if scene["M"] == "6" else "6"
     change = (Change(OTHER_M, "M", scene["M"], other),)
     yield Hypothesis(OTHER_M, "", PROGRAM, change, {**scene, "M": other})
-    if float(scene["MU"] or 0):
+    if double(scene["MU"] or "0"):
         flipped = {**scene, "MU": opposite(scene["MU"])}
         yield Hypothesis(MU_SIGN, "typed with the other sign", 1.2, (), flipped)
-    if any(float(scene[name] or 0) for name in ("DA", "DB")):
+    if any(double(scene[name] or "0") for name in ("DA", "DB")):
         run = {**scene, "M": "4", "DA": "0", "DB": "0"}
         note = "as if computed with DA = DB = 0, though the printout shows others"
         yield Hypothesis(POINT_MASS, note, PROGRAM, (), run)
@@ -162,7 +163,7 @@ def _other_programs(recovered: Recovered) -> Iterator[Hypothesis]:
 
 def _either_sign(scene: dict[str, str]) -> Iterator[dict[str, str]]:
     yield scene
-    if float(scene["MU"] or 0):
+    if double(scene["MU"] or "0"):
         yield {**scene, "MU": opposite(scene["MU"])}
 
 

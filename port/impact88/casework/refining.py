@@ -7,10 +7,12 @@ with. All of them are tried: screened in double precision, the kinetic energy fi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import isfinite
 
 import numpy as np
 
 from ..closedform.solve import solve
+from ..doubles import double
 from ..fields import FIELDS, INPUTS
 from ..names import PIVOT
 from .hypothesis import Hypothesis
@@ -47,7 +49,7 @@ def nearest(
 
 
 def _followed(scene: dict[str, str]) -> bool:
-    mu = float(scene["MU"] or 0)
+    mu = double(scene["MU"] or "0")
     return scene["M"] == "6" and (abs(mu) < -PIVOT or mu == PIVOT)
 
 
@@ -56,7 +58,7 @@ def _solved(
 ) -> Iterator[tuple[Expected, float, Floats]]:
     """Each printed result, what it is as a number, and what the scenes give for it."""
     columns = {
-        name: np.array([float(one.scene[name] or 0) for one in every]) for name in every[0].scene
+        name: np.array([double(one.scene[name] or "0") for one in every]) for name in every[0].scene
     }
     numbers = {one.name: min(one.texts, key=one.texts.__getitem__) for one in expected if one.texts}
     with np.errstate(all="ignore"):
@@ -106,13 +108,13 @@ def _choices(recovered: Recovered, unit: Hypothesis) -> Choices:
     choices: Choices = []
     for name in INPUTS:
         own = scene_name(name)
-        if own in within:
-            texts = _near(float(unit.scene[own]), within[own], min(_CANDIDATES, most))
+        if own in within and isfinite(double(unit.scene[own])):
+            texts = _near(double(unit.scene[own]), within[own], min(_CANDIDATES, most))
             choices.append([Choice({own: text}, {}, 0.0) for text in texts])
             continue
         printed = {name: recovered.assumed[name]} if name in recovered.assumed else {}
         choices.append([Choice({own: unit.scene[own]}, printed, 0.0)])
-        if own == "MU" and float(unit.scene[own] or 0):
+        if own == "MU" and double(unit.scene[own] or "0"):
             choices[-1].append(Choice({own: opposite(unit.scene[own])}, printed, 0.0))
     choices.append([Choice({"M": unit.scene["M"]}, {}, 0.0)])
     return choices

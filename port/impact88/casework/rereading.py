@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closedform.solve import solve
+from ..doubles import double
 from ..fields import ANGLES, INPUTS
 from . import misreading
 from .numerals import as_printed, printable, value_of
@@ -132,7 +133,7 @@ class Rereading:
     def _still(self, name: str) -> bool:
         """Whether an input is an inertia that does not spin: the energy says nothing of it."""
         spin = {"IA": "WA", "IB": "WB"}.get(name)
-        return spin is not None and not float(self._scene[spin] or 0)
+        return spin is not None and not double(self._scene[spin] or "0")
 
     def twins(self, rereads: Sequence[Reread]) -> Iterator[Reread]:
         """The same pages by the other angle of a sum: what is wrong in TB may be wrong in PB."""

@@ -18,8 +18,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..closedform import energy as closed_form
 from ..closedform.solve import solve
+from ..doubles import double
 from ..fields import FIELDS, FINAL_SPINS, INPUTS
+from ..names import VELOCITIES
 from . import trial
 from .numerals import candidates
 from .printout import Printout, Reading
@@ -288,7 +291,7 @@ def _without_spin(choices: Choices) -> frozenset[str]:
 
 def _number(text: str) -> float:
     try:
-        return float(text)
+        return double(text)
     except ValueError:
         return float("nan")
 
@@ -323,12 +326,10 @@ def printed_mu(choices: Choices, picks: Picks) -> Floats:
 
 def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
     """Line 320 in double precision."""
-    energy: Floats = (
-        value["MA"] * (value["UX"] ** 2 + value["UY"] ** 2)
-        + value["MB"] * (value["VX"] ** 2 + value["VY"] ** 2)
-        + value["IA"] * value["WA"] ** 2
-        + value["IB"] * value["WB"] ** 2
-    ) / 2
+    with np.errstate(all="ignore"):
+        energy: Floats = closed_form.kinetic_energy(
+            [value[name] for name in ("MA", "MB", "IA", "IB")], [value[n] for n in VELOCITIES]
+        )
     return energy
 
 

@@ -6,8 +6,10 @@ M = 4 that is a third of all inputs. Angles that enter only as a sum are told to
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
+from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
 from . import trial
 from .ways import scene_name
@@ -62,14 +64,16 @@ def _others(text: str, name: str) -> list[str]:
     """Other values of an input, not near any symmetry."""
     if name in ANGLES:
         return [_plus(text, int(step)) for step in _ANGLE_STEPS]
-    value = float(text)
+    value = double(text)
     if name == "E":
         return [_short(value * 0.7 + 0.11)]
-    return [_short(value * 1.37 + 0.53)]
+    other = value * 1.37 + 0.53
+    return [_short(other if math.isfinite(other) else 1.0)]
 
 
 def _plus(text: str, step: int) -> str:
-    return _short(float(text) + step)
+    turned = double(text) + step
+    return _short(turned if math.isfinite(turned) else step)
 
 
 def _short(value: float) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from typing import NamedTuple
 
+from ..doubles import double
 from ..fields import ANGLES, INPUTS
 from ..scene import VALUE_LIMIT
 from .numerals import candidates, value_of, with_digit
@@ -112,7 +113,7 @@ def _either_sign(options: list[Choice]) -> list[Choice]:
 def flipped(choice: Choice) -> Choice:
     """A choice of MU with the other sign typed; the same where it has none."""
     typed = choice.typed["MU"]
-    if not float(typed or 0):
+    if not double(typed or "0"):
         return choice
     return choice._replace(typed={"MU": opposite(typed)}, cost=choice.cost + _FLIPPED)
 
@@ -157,7 +158,7 @@ def _signs_lost(ways: Mapping[str, float], name: str) -> dict[str, float]:
     signed = name in ANGLES or name in _SIGNED
     every = dict(ways)
     for text, cost in ways.items() if signed else ():
-        if not text.startswith("-") and float(text):
+        if not text.startswith("-") and double(text):
             every.setdefault("-" + text, cost + _SIGN_LOST)
     return every
 
