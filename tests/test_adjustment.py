@@ -343,6 +343,26 @@ class TestUncertainty:
             assert found[name].lower == pytest.approx(min(every), abs=1e-5 * width)
             assert found[name].upper == pytest.approx(max(every), abs=1e-5 * width)
 
+    def test_bounds_with_more_known_than_needed_reach_a_corner_of_all_limits(self):
+        """A scene within all limits, at the corner of four of them, as the closed form has it: the
+        bounds hold it. Where the edge of the redundant limits was met as a hole the lowest UX was
+        17.29 and the lowest course of B -61.4."""
+        exact = {"EM": -0.34781, "DA": 6.1171, "DB": 3.411, "PA": -18.41, "PB": -41.845}
+        exact |= {"TA": 9.401, "TB": 67.49, "MA": 130.05, "MB": 67.52, "IA": 2747.0, "IB": 2378.5}
+        exact |= {"M": 6.0, "UY": 0.0, "WA": 0.0, "VX": 1.9278, "VY": 6.0812, "WB": 0.0}
+        within = {"E": ".21085 +- .0244", "GA": "-29.012 +- 5.71", "WAF": "-1.417 +- .046"}
+        within |= {"VAX": "18.31 +- 1.72", "VBY": "-5.139 +- .69"}
+        measured = {name: read(text, name) for name, text in within.items()}
+        scene = {**exact, "E": 0.186455, "GA": -34.7217, "UX": 16.98026, "MU": 1.263738}
+        after = {n: float(v) for n, v in solve(scene, ("VAX", "VBX", "VBY", "WAF")).items()}
+        for name, limits in measured.items():
+            assert limits.low <= {**scene, **after}[name] <= limits.high, name
+        (solution,) = reconstruct({**exact, **measured})
+        found = ranges(solution, ["UX", "HBF"])
+        assert found["UX"].lower <= scene["UX"] <= found["UX"].upper
+        course = math.degrees(math.atan2(after["VBY"], after["VBX"]))
+        assert found["HBF"].lower <= course <= found["HBF"].upper
+
     @pytest.mark.parametrize(("tolerance", "endless"), [(1.0, False), (2.5, True)])
     def test_what_is_divided_by_zero_has_no_bound(self, tolerance, endless):
         """B, at rest, leaves with 2 +- 1 along n (P_n is not 0) or 2 +- 2.5 (it may be)."""
