@@ -28,7 +28,7 @@ from .hypothesis import (
 from .numerals import as_printed
 from .recovery import Recovered
 from .rereading import Change
-from .ways import opposite, scene_name
+from .ways import scene_name, with_opposite_mu
 
 _SIDES = (*((f"{x}A", f"{x}B") for x in "MIDPTW"), ("UX", "VX"), ("UY", "VY"))
 _AXES = (("UX", "UY"), ("VX", "VY"))
@@ -122,8 +122,7 @@ class _Inputs:
             return
         scene = {**self._scene, **typed}
         yield Hypothesis(kind, note, weight, changes, scene, None, _NONE, assumed, within)
-        if double(scene["MU"] or "0"):
-            flipped = {**scene, "MU": opposite(scene["MU"])}
+        for flipped in with_opposite_mu(scene):
             yield Hypothesis(kind, note, weight, changes, flipped, None, _NONE, assumed, within)
 
     def exchanged(self) -> Iterator[Hypothesis]:

@@ -12,7 +12,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 
-from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
 from . import otherarithmetic, trial
 from .hypothesis import (
@@ -33,7 +32,7 @@ from .numerals import as_printed, value_of
 from .otherprints import Cut, energy, floored_text, is_rounding, rounded_text, truncated_text
 from .printout import Printout
 from .recovery import Recovered
-from .ways import opposite
+from .ways import with_opposite_mu
 
 _SHAKEN = 6
 """Runs in single precision, each with other last bits."""
@@ -91,8 +90,7 @@ class Machines:
                 spared.add(name)
         self._spared = frozenset(spared)
         yield scene
-        if double(scene["MU"] or "0"):
-            yield {**scene, "MU": opposite(scene["MU"])}
+        yield from with_opposite_mu(scene)
 
     def _digits(self, name: str) -> int:
         """How many digits a number has on the page."""

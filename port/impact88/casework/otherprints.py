@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 from itertools import combinations
 
-from ..doubles import double
+from ..doubles import doubles_of
 from ..fields import FIELDS, INPUTS
 from . import trial
 from .hypothesis import (
@@ -184,7 +184,9 @@ def energy(scene: Mapping[str, str]) -> float:
 
     from .search import kinetic_energy
 
-    return float(kinetic_energy({name: np.array(double(scene[name])) for name in scene}))
+    return float(
+        kinetic_energy({name: np.array(value) for name, value in doubles_of(scene).items()})
+    )
 
 
 def _decimals(printed: str) -> int:

@@ -30,7 +30,7 @@ from .recovery import Recovered
 from .refining import nearest
 from .rereading import Change
 from .search import AGREES, Expected, expected_results
-from .ways import opposite
+from .ways import with_opposite_mu
 
 _ROUGHLY = 1e-3
 _REPLAYED = 80
@@ -152,8 +152,7 @@ def _other_programs(recovered: Recovered) -> Iterator[Hypothesis]:
     other = "4" if scene["M"] == "6" else "6"
     change = (Change(OTHER_M, "M", scene["M"], other),)
     yield Hypothesis(OTHER_M, "", PROGRAM, change, {**scene, "M": other})
-    if double(scene["MU"] or "0"):
-        flipped = {**scene, "MU": opposite(scene["MU"])}
+    for flipped in with_opposite_mu(scene):
         yield Hypothesis(MU_SIGN, "typed with the other sign", 1.2, (), flipped)
     if any(double(scene[name] or "0") for name in ("DA", "DB")):
         run = {**scene, "M": "4", "DA": "0", "DB": "0"}
@@ -163,8 +162,7 @@ def _other_programs(recovered: Recovered) -> Iterator[Hypothesis]:
 
 def _either_sign(scene: dict[str, str]) -> Iterator[dict[str, str]]:
     yield scene
-    if double(scene["MU"] or "0"):
-        yield {**scene, "MU": opposite(scene["MU"])}
+    yield from with_opposite_mu(scene)
 
 
 __all__ = ["Hypothesis", "Tried", "hypotheses", "tried"]

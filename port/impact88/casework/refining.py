@@ -19,7 +19,7 @@ from .hypothesis import Hypothesis
 from .numerals import as_printed
 from .recovery import Recovered
 from .search import Expected, Floats, Picks
-from .ways import Choice, Choices, opposite, scene_name
+from .ways import Choice, Choices, scene_name, with_opposite_mu
 
 _SLACK = 1e-6
 """Relative error allowed to the Apple's arithmetic."""
@@ -114,8 +114,9 @@ def _choices(recovered: Recovered, unit: Hypothesis) -> Choices:
             continue
         printed = {name: recovered.assumed[name]} if name in recovered.assumed else {}
         choices.append([Choice({own: unit.scene[own]}, printed, 0.0)])
-        if own == "MU" and double(unit.scene[own] or "0"):
-            choices[-1].append(Choice({own: opposite(unit.scene[own])}, printed, 0.0))
+        if own == "MU":
+            for typed in with_opposite_mu({own: unit.scene[own]}):
+                choices[-1].append(Choice(typed, printed, 0.0))
     choices.append([Choice({"M": unit.scene["M"]}, {}, 0.0)])
     return choices
 

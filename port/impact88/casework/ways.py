@@ -57,6 +57,12 @@ def opposite(text: str) -> str:
     return text[1:] if text.startswith("-") else "-" + text
 
 
+def with_opposite_mu(scene: Mapping[str, str]) -> Iterator[dict[str, str]]:
+    """The scene with MU typed with the other sign; none where MU has no sign."""
+    if double(scene["MU"] or "0"):
+        yield {**scene, "MU": opposite(scene["MU"])}
+
+
 def choices_of(
     shown: Printout, given: Mapping[str, str] | None = None, unreadable: str = ""
 ) -> tuple[Choices, list[str]]:
@@ -112,10 +118,9 @@ def _either_sign(options: list[Choice]) -> list[Choice]:
 
 def flipped(choice: Choice) -> Choice:
     """A choice of MU with the other sign typed; the same where it has none."""
-    typed = choice.typed["MU"]
-    if not double(typed or "0"):
-        return choice
-    return choice._replace(typed={"MU": opposite(typed)}, cost=choice.cost + _FLIPPED)
+    for typed in with_opposite_mu(choice.typed):
+        return choice._replace(typed=typed, cost=choice.cost + _FLIPPED)
+    return choice
 
 
 def _ms(shown: Printout, given: Mapping[str, str]) -> list[tuple[str, float]]:

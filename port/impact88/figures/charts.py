@@ -81,7 +81,7 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Figure:
         for name, axes in zip(names, panels, strict=False):
             draws = result.draws[name]
             draws = draws[np.isfinite(draws)]
-            check_drawable(draws, name)
+            check_drawable((draws.min(), draws.max()), name)
             bound, spread = result.bounds[name], result.spreads[name]
             axes.hist(
                 draws,

@@ -46,9 +46,9 @@ _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES)
 _STARTS = 12
 _STEPS = 50
 _TINY = 1e-30
+"""Of a scaled variable: the imaginary step whose derivative has no error."""
 _AT_ONCE = 4096
 """Impacts whose derivatives are taken at once, times the variables: past it copies do not pay."""
-"""Of a scaled variable: the imaginary step whose derivative has no error."""
 _RANK = 1e-10
 _NO_ROWS = np.zeros((0, 1))
 _OPEN = 1e-7

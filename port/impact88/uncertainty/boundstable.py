@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from textwrap import wrap
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from ..plaintable import table as columns
 from ..units import system_of
 from .draws import Drive, Spread
 from .uncertain import Uncertain
+
+if TYPE_CHECKING:
+    from .reconstructed import Range
 
 DRIVERS_SHOWN = 4
 
@@ -114,7 +117,7 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
                 "nominal": bound.nominal,
                 "lower": _plain(bound.lower),
                 "upper": _plain(bound.upper),
-                "unbounded": [side for side, value in _sides(bound) if math.isinf(value)],
+                "unbounded": unbounded(bound),
                 "corner_lower": _plain(bound.corner_lower),
                 "corner_upper": _plain(bound.corner_upper),
                 "lower_warnings": list(bound.lower_warnings),
@@ -143,7 +146,12 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
     }
 
 
-def _sides(bound: Bound) -> tuple[tuple[str, float], tuple[str, float]]:
+def unbounded(bound: Bound | Range) -> list[str]:
+    """The sides on which there is no bound."""
+    return [side for side, value in _sides(bound) if math.isinf(value)]
+
+
+def _sides(bound: Bound | Range) -> tuple[tuple[str, float], tuple[str, float]]:
     return ("lower", bound.lower), ("upper", bound.upper)
 
 
@@ -199,7 +207,7 @@ def table(bounds: Bounds) -> str:
     lines.append("")
     if inside:
         lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
-    if any(math.isinf(value) for bound in bounds.bounds.values() for _, value in _sides(bound)):
+    if any(map(unbounded, bounds.bounds.values())):
         lines.append("inf: unbounded; somewhere in the ranges the equations have no solution")
     lines += _warnings_at_bounds(bounds)
     corners = "all corners" if bounds.corners_in_full else "corners at random"

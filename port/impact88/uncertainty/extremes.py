@@ -39,6 +39,7 @@ FIRST_STEP = 0.25
 LAST_STEP = 1e-7
 """Of the cube's edge."""
 SURE_STEP = FIRST_STEP / 16
+"""From this step down a slope that promises nothing ends a climb."""
 DIFFERENCE = 1e-5
 """Half the distance a slope is taken over."""
 LENGTHS = 2.0 ** np.arange(2, -11, -1)
@@ -148,6 +149,7 @@ def extremes(
     best = np.take_along_axis(height, starts, axis=0).reshape(-1)
     climbers = _Climbers(
         piece.function,
+        len(number),
         np.tile(number, len(starts)),
         np.tile(sense, len(starts)),
         _least_gain(values, least_gain),
@@ -365,9 +367,11 @@ def _least_gain(values: Array, share: float) -> Array:
 
 @dataclass
 class _Climbers:
-    """c points that climb at once, each its own function up (``sense`` +1) or down (-1)."""
+    """c points that climb at once, each its own function up (``sense`` +1) or down (-1), to as many
+    ``extremes`` in turn."""
 
     function: Callable[[Array], Array]
+    extremes: int
     number: NDArray[np.intp]
     sense: Array
     least: Array
@@ -396,10 +400,9 @@ class _Climbers:
             if not len(who):
                 break
             slope = self.gradient(who, place[who])
-            normal, margins = self.normals(place[who])
-            slope = self.along_surface(slope, normal, margins)
             known = ~np.isnan(slope).any(axis=1)
-            slope = np.nan_to_num(slope)
+            normal, margins = self.normals(place[who])
+            slope = self.along_surface(np.nan_to_num(slope), normal, margins)
             along, uphill = model.direction(who, place[who], slope, step[who])
             aslant = rng.standard_normal((len(who), size, size))
             aslant /= np.sqrt(np.square(aslant).sum(axis=2, keepdims=True))
@@ -432,9 +435,8 @@ class _Climbers:
         self, place: Array, best: Array, climbing: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
         """Which points have a higher one of the same extreme beside them."""
-        extremes = len(np.unique([self.number, self.sense], axis=1).T)
-        places = place.reshape(-1, extremes, place.shape[1])
-        heights, going = best.reshape(-1, extremes), climbing.reshape(-1, extremes)
+        places = place.reshape(-1, self.extremes, place.shape[1])
+        heights, going = best.reshape(-1, self.extremes), climbing.reshape(-1, self.extremes)
         order = np.arange(len(heights))[:, None, None]
         higher = heights[None] > heights[:, None]
         higher |= (heights[None] == heights[:, None]) & (order.transpose(1, 0, 2) < order)

@@ -136,9 +136,9 @@ def ranges(
     nominal = [(adjusted[n] - limits[n][0]) / (limits[n][1] - limits[n][0]) for n in kept]
     searched = extremes(
         Piece(
-            _each_once(outputs) if kept else outputs,
+            _each_once(outputs),
             len(names),
-            (_each_once(within) if kept else within) if rest else None,
+            _each_once(within) if rest else None,
         ),
         len(kept),
         np.random.default_rng([seed, 0]),
@@ -167,6 +167,8 @@ def _each_once(function: Callable[[Floats], Floats]) -> Callable[[Floats], Float
     """Climbers on one corner, or before a face, try the same points."""
 
     def once(points: Floats) -> Floats:
+        if not points.shape[1]:
+            return function(points)
         different, of = np.unique(points, axis=0, return_inverse=True)
         return function(different)[np.ravel(of)]
 

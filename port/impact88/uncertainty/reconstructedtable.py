@@ -27,6 +27,7 @@ from ..reconstruction.solutiontable import (
 from ..reconstruction.state import COURSES, SPEEDS
 from ..status import sentences
 from ..units import RULES, System, base_of
+from .boundstable import unbounded
 from .reconstructed import Draws, Range, draws, ranges
 from .uncertain import Uncertain
 
@@ -332,11 +333,7 @@ def _drawn(values: NDArray[np.float64], bound: Range) -> dict[str, Any]:
         },
         "lower": bound.lower,
         "upper": bound.upper,
-        "unbounded": [
-            side
-            for side, value in (("lower", bound.lower), ("upper", bound.upper))
-            if math.isinf(value)
-        ],
+        "unbounded": unbounded(bound),
         "at_lower": bound.at_lower,
         "at_upper": bound.at_upper,
     }
