@@ -9,10 +9,11 @@ import pytest
 import printouts
 from impact88.casework import trial
 from impact88.casework.explain import Explanation
-from impact88.casework.misreading import misreadings, slip
+from impact88.casework.misreading import misreadings, opposite, slip
 from impact88.casework.otherprints import rounded_text
 from impact88.casework.printout import FIELDS, read_printouts
 from impact88.casework.verify import Verdict, verify
+from impact88.doubles import double
 from impact88.program.run import run
 from impact88.scene import Scene, sample
 from test_printout import SAMPLE
@@ -177,3 +178,11 @@ def test_rounding_text() -> None:
     assert rounded_text(-13.2626, 3) == "-13.263"
     assert rounded_text(0.5, 0) == "1"
     assert rounded_text(100.0, 2) == "100"
+
+
+@pytest.mark.parametrize(
+    "typed", [".911", "+.911", " + .911 ", "-.911", " - .911", "9.11E-1", "5E-01"]
+)
+def test_the_other_sign_of_what_may_be_typed(typed: str) -> None:
+    assert double(opposite(typed)) == -double(typed)
+    assert double(opposite(opposite(typed))) == double(typed)

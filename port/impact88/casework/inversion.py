@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
 from .anglerow import cut_as
+from .misreading import opposite
 from .numerals import compare
 from .printout import Printout, Reading
 from .search import AGREES, MISMATCH, Scored, Search, in_doubles, mismatch
@@ -261,8 +262,7 @@ class _Inversion:
             printed = seen[1] if seen else text
             price = _read_cost(reading, printed)
             if name == "MUP" and text.strip("-0."):
-                other = printed[1:] if printed.startswith("-") else "-" + printed
-                price = min(price, _read_cost(reading, other))
+                price = min(price, _read_cost(reading, opposite(printed)))
             self._prices[key] = price
         return self._prices[key]
 

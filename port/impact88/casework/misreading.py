@@ -69,13 +69,19 @@ def likeness(text: str, other: str) -> int:
     return 4
 
 
+def opposite(text: str) -> str:
+    """A number with the other sign; it may be written with a plus sign and blanks."""
+    size = text.strip()
+    return size[1:] if size.startswith("-") else "-" + size.removeprefix("+")
+
+
 def _slips(text: str) -> Iterator[tuple[str, str]]:
     places = [index for index, glyph in enumerate(text) if glyph.isdigit()]
     for place in places:
         alike = _ALIKE[text[place]]
         for digit in alike + "".join(sorted(set("0123456789") - set(alike))):
             yield DIGIT, text[:place] + digit + text[place + 1 :]
-    yield SIGN, text[1:] if text.startswith("-") else "-" + text
+    yield SIGN, opposite(text)
     if "E" in text:
         yield SIGN, re.sub("E.", "E+" if "E-" in text else "E-", text)
     for place in places[:-1]:

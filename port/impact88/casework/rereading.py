@@ -23,7 +23,7 @@ from .numerals import as_printed, printable, value_of
 from .recovery import Recovered
 from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search, columns, printed_mu
 from .typedtext import stored_and_printed, texts_that_print
-from .ways import Choice, Choices, flipped, opposite, scene_name
+from .ways import Choice, Choices, flipped, scene_name
 
 COSTS = {
     misreading.DIGIT: 2.7,
@@ -281,7 +281,7 @@ class Rereading:
                     proper[place][index] = choice._replace(cost=choice.cost + MISMATCH)
                     continue
                 (own, text), *_ = choice.typed.items()
-                typed = opposite(typed) if own == "MU" and text != printed else typed
+                typed = misreading.opposite(typed) if own == "MU" and text != printed else typed
                 proper[place][index] = choice._replace(typed={own: typed})
         return proper
 

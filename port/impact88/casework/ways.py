@@ -13,6 +13,7 @@ from typing import NamedTuple
 from ..doubles import double
 from ..fields import ANGLES, INPUTS
 from ..scene import VALUE_LIMIT
+from .misreading import opposite
 from .numerals import candidates, value_of, with_digit
 from .printout import Printout, Reading
 from .typedtext import stored_and_printed, texts_that_print
@@ -50,11 +51,6 @@ Choices = list[list[Choice]]
 def scene_name(name: str) -> str:
     """The scene's value a printed input stands for."""
     return "MU" if name == "MUP" else name
-
-
-def opposite(text: str) -> str:
-    """A number with the other sign."""
-    return text[1:] if text.startswith("-") else "-" + text
 
 
 def with_opposite_mu(scene: Mapping[str, str]) -> Iterator[dict[str, str]]:
@@ -163,8 +159,8 @@ def _signs_lost(ways: Mapping[str, float], name: str) -> dict[str, float]:
     signed = name in ANGLES or name in _SIGNED
     every = dict(ways)
     for text, cost in ways.items() if signed else ():
-        if not text.startswith("-") and double(text):
-            every.setdefault("-" + text, cost + _SIGN_LOST)
+        if double(text) > 0:
+            every.setdefault(opposite(text), cost + _SIGN_LOST)
     return every
 
 
@@ -256,7 +252,7 @@ def other_bits(scene: Mapping[str, str], assumed: Mapping[str, str]) -> Choices:
         printed = assumed.get(field)
         if printed is not None and name != "M":
             others = list(texts_that_print(printed, name in ANGLES))
-            if name == "MU" and typed.startswith("-") != printed.startswith("-"):
+            if name == "MU" and (double(typed) < 0) != printed.startswith("-"):
                 others = [opposite(text) for text in others]
             seen = stored_and_printed(typed, name in ANGLES)
             for text in others:
