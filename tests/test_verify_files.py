@@ -8,8 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from impact88.casework.printout import read_printouts
+from impact88.casework.verify import Verdict, verify
+from impact88.doubles import double
 from impact88.scene import sample
 from installed import impact88
+from printouts import SWEEP
 from test_printout import SAMPLE
 
 ROW = " PA PB TA TB GA\n -19.8      -38.7      0      60      -30"
@@ -142,6 +146,50 @@ def test_results_alone_with_another_scene(tmp_path: Path, scene: Path) -> None:
     one, _, status = apart(tmp_path, RESULTS, scene)
     assert (one["verdict"], status) == ("differs", 1)
     assert any("not what it prints" in line for line in one["findings"])
+
+
+SLIPS = [
+    ("PA", "+19.8"), ("E", "0.005E1"), ("MU", "-.911"), ("TB", "90"), ("UX", " 29.04"),
+    ("MA", "134.5"), ("MB", "98.8"), ("IB", "1961.0E1"), ("DA", "+75.9"), ("GA", "-33"),
+    ("VY", "25.51"), ("MU", "9.11"), ("EM", "-.775"), ("IA", "3827"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "typed", "noise"),
+    [(*slip, noise) for slip in SLIPS for noise in (False, True)][:: 1 if SWEEP else 5],
+)
+def test_a_slip_in_what_was_given_apart_is_found(name: str, typed: str, noise: bool) -> None:
+    """And no reader's mistake is made of it, however bad the scan of the results is."""
+    true = dict(sample(1).items())
+    page = RESULTS.replace("*****", "KKKKK").replace("INITIAL", "1NITIAL") if noise else RESULTS
+    (shown,) = read_printouts(page)
+    result = verify(shown, given={**true, name: typed})
+    assert result.verdict is Verdict.DIFFERS
+    said = [
+        {change["field"]: double(change["would_be"]) for change in one.changes}
+        for one in result.explanations
+        if one.rank == 1 and one.note == "in the inputs given apart"
+    ]
+    field = "MUP" if name == "MU" else name
+    assert any(
+        changes.keys() == {field} and abs(changes[field]) == abs(double(true[name]))
+        for changes in said
+    ), result.explanations
+
+
+def test_scenes_given_apart_otherwise_than_the_page_has_them() -> None:
+    """The page counts, and that the scene is another is said."""
+    (shown,) = read_printouts(SAMPLE)
+    true = dict(sample(1).items())
+    same = {**true, "DA": "7.590", "PA": " - 19.8", "MU": "+.911", "E": "5E-3", "UY": "-0"}
+    assert not any("given apart" in line for line in verify(shown, given=same).findings)
+    result = verify(shown, given={**same, "MA": "143.51", "PA": "+19.8", "MU": "-.911"})
+    assert result.verdict is Verdict.IDENTICAL
+    (line,) = [line for line in result.findings if "given apart" in line]
+    assert line.endswith(
+        "MA 143.51 (by the page 143.5); PA +19.8 (by the page -19.8); MU -.911 (by the page .911)"
+    )
 
 
 @pytest.mark.parametrize(

@@ -105,12 +105,12 @@ def explain(
     alone = work.by_results_alone(replies)
     explanations = [alone] if alone else []
     if not recovered.missing:
-        reread = list(Rereading(recovered).best() if rereads is None else rereads)
+        reread = list(work.rereading.best() if rereads is None else rereads)
         explanations += work.rereads(reread, replies)
         hypotheses = otherruns.hypotheses(shown, recovered)
         explanations += work.others(hypotheses, replies)
         if not explanations or min(one.weight for one in explanations) > _GOOD:
-            doubles = Rereading(recovered).double_slips()
+            doubles = work.rereading.double_slips()
             explanations += work.rereads(doubles, replies)
             reread += doubles
         explanations += work.twins(reread, replies)
@@ -129,6 +129,11 @@ class _Work:
     recovered: Recovered
     base: frozenset[str]
     checks: dict[str, FieldCheck]
+
+    @cached_property
+    def rereading(self) -> Rereading:
+        """Slips in inputs, wherever they come from."""
+        return Rereading(self.recovered, apart=True)
 
     @cached_property
     def last_places(self) -> bool:
@@ -169,7 +174,7 @@ class _Work:
     ) -> Iterator[Explanation]:
         """The best of the same by the other angle of a sum."""
         best = sorted(reread, key=lambda one: one.scored.cost)[:_TWINS]
-        return self.rereads(list(Rereading(self.recovered).twins(best)), replies)
+        return self.rereads(list(self.rereading.twins(best)), replies)
 
     def others(
         self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
@@ -221,7 +226,7 @@ class _Work:
         ]
         if not texts:
             return
-        for number, one in Rereading(self.recovered).besides(texts, _SLIPS_BESIDES):
+        for number, one in self.rereading.besides(texts, _SLIPS_BESIDES):
             hypothesis = exchanges[number]
             wrong = self._wrong(one.scored, replies)
             wrong |= self._inputs_left([*hypothesis.changes, *one.changes])
@@ -287,7 +292,13 @@ class _Work:
         weight = believed + remaining
         explains = len(self.base - unexplained)
         name = first.field.removeprefix("reply ")
-        note = "in the typed reply" if first.field.startswith("reply ") else ""
+        note = ""
+        if first.field.startswith("reply "):
+            note = "in the typed reply"
+        elif any(
+            one.field in INPUTS and one.field not in self.recovered.assumed for one in changes
+        ):
+            note = "in the inputs given apart"
         described = [self._change(change) for change in changes]
         look = [one["look"] for one in described if one["look"]]
         return Explanation(

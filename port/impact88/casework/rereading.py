@@ -19,7 +19,7 @@ from ..closedform.solve import solve
 from ..doubles import double
 from ..fields import ANGLES, INPUTS
 from . import misreading
-from .numerals import as_printed, printable, value_of
+from .numerals import as_printed, is_number, printable, value_of
 from .recovery import Recovered
 from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search, columns, printed_mu
 from .typedtext import stored_and_printed, texts_that_print
@@ -44,11 +44,14 @@ _BESIDES_ENERGY = 0.1
 """What slips cost, next to whether they give the printed kinetic energy."""
 _SINGLES_KEPT = 220
 _PAIRS = 320_000
+_DIGITS = 9
+"""Of a number the Apple keeps so many."""
 _ENERGIES = 24
 
 
 class Change(NamedTuple):
-    """One printed input put right: the kind of slip, the field, its printed text, the true one."""
+    """One input put right: the kind of slip, the field, its text as printed or given apart, the
+    true one."""
 
     kind: str
     field: str
@@ -57,19 +60,24 @@ class Change(NamedTuple):
 
 
 class Reread(NamedTuple):
-    """A scene with some printed inputs put right."""
+    """A scene with some inputs put right."""
 
     changes: tuple[Change, ...]
     scored: Scored
 
 
 class Rereading:
-    """The slips of one printout's inputs, tried."""
+    """The slips of one printout's inputs, tried. ``apart``: those in inputs that stand nowhere on
+    the page and were given apart, too; they are slips of what was typed there."""
 
-    def __init__(self, recovered: Recovered) -> None:
+    def __init__(self, recovered: Recovered, apart: bool = False) -> None:
         self._search: Search = recovered.search
         self._scene = recovered.scene
-        self._base = {name: recovered.assumed[name] for name in INPUTS if name in recovered.assumed}
+        self._printed = recovered.assumed
+        self._base = {name: self._printed[name] for name in INPUTS if name in self._printed}
+        if apart:
+            typed = {name: recovered.scene[scene_name(name)] for name in INPUTS}
+            self._base = {**typed, **self._base}
         self._names = list(INPUTS)
         self._mu = self._names.index("MUP")
         self._wrong = recovered.wrong
@@ -164,7 +172,9 @@ class Rereading:
     def _instead(self, one: Reread, change: Change, other: Change) -> Reread:
         scene = {**one.scored.scene, change.field: self._scene[change.field]}
         scene[other.field] = typed_for(other.would_be, True) or other.would_be
-        assumed = {**one.scored.assumed, change.field: change.printed, other.field: other.would_be}
+        texts = {change.field: change.printed, other.field: other.would_be}
+        on_page = {name: text for name, text in texts.items() if name in self._printed}
+        assumed = {**one.scored.assumed, **on_page}
         changes = tuple(other if each == change else each for each in one.changes)
         return Reread(changes, self._search.replayed_scene(scene, assumed))
 
@@ -178,6 +188,8 @@ class Rereading:
         for place, name in enumerate(self._names):
             options = [self._unchanged(name)]
             for other in _two_digits(self._base.get(name, "")):
+                if not self._possible(name, other):
+                    continue
                 rows.append([0] * place + [len(options)] + [0] * (len(self._names) - place))
                 options.append(self._typed(name, other, COSTS[misreading.TWO_DIGITS]))
                 made.append(Change(misreading.TWO_DIGITS, name, self._base[name], other))
@@ -185,7 +197,7 @@ class Rereading:
         choices = [*ways, self._m()]
         if not rows:
             return pairs
-        choices[self._mu] += [flipped(one) for one in choices[self._mu]]
+        self._add_signs(choices[self._mu])
         # what is wrong may be what gives MU its sign
         picks = self._either_sign(choices, np.array(rows, np.intp))
         best = self._search.screened(choices, picks, 60)
@@ -211,7 +223,7 @@ class Rereading:
                 made.append(change)
             choices.append(options)
             changes.append(made)
-        choices[self._mu] += [flipped(one) for one in choices[self._mu]]
+        self._add_signs(choices[self._mu])
         changes[self._mu] *= 2
         choices.append(self._m())
         changes.append([None])
@@ -240,6 +252,11 @@ class Rereading:
         signed[wrong, self._mu] += len(choices[self._mu]) // 2
         return signed
 
+    def _add_signs(self, ways: list[Choice]) -> None:
+        """The ways to take MU, and each with the other sign: what was typed where the page prints
+        it is not known."""
+        ways += map(flipped, ways[:]) if "MUP" in self._printed else ways[:]
+
     def _one_sign(self, choices: Choices, place: int) -> list[Choice]:
         """The ways to take one input, of MU those with one sign."""
         options = choices[place]
@@ -249,7 +266,7 @@ class Rereading:
         return [Choice({"M": self._scene["M"]}, {}, 0.0)]
 
     def _unchanged(self, name: str) -> Choice:
-        printed = {name: self._base[name]} if name in self._base else {}
+        printed = {name: self._printed[name]} if name in self._printed else {}
         return Choice({scene_name(name): self._scene[scene_name(name)]}, printed, 0.0)
 
     def _of(self, name: str) -> Iterator[tuple[Change, Choice]]:
@@ -257,15 +274,19 @@ class Rereading:
         if text is None:
             return
         for kind, other in misreading.misreadings(text):
-            if printable(other):
+            if self._possible(name, other):
                 cost = COSTS[kind]
                 if kind == misreading.DIGIT:
                     cost += _UNLIKE * misreading.likeness(text, other)
                 yield Change(kind, name, text, other), self._typed(name, other, cost)
 
-    def _typed(self, name: str, printed: str, cost: float) -> Choice:
-        """What is printed, as if typed so. `_proper` says what was."""
-        return Choice({scene_name(name): printed}, {name: printed}, cost)
+    def _possible(self, name: str, text: str) -> bool:
+        """Whether a text may stand where an input is printed, or was typed apart."""
+        return printable(text) if name in self._printed else is_number(text)
+
+    def _typed(self, name: str, text: str, cost: float) -> Choice:
+        """What is printed, as if typed so (`_proper` says what was); or what was typed apart."""
+        return Choice({scene_name(name): text}, {name: text} if name in self._printed else {}, cost)
 
     def _proper(self, choices: Choices, picks: Picks) -> Choices:
         """The choices, those that are picked with what must have been typed to print so."""
@@ -385,15 +406,13 @@ def _cheapest(options: list[Choice], share: float) -> Picks:
 
 
 def _two_digits(text: str) -> Iterator[str]:
-    """Texts that differ in two digits."""
-    places = [index for index, glyph in enumerate(text) if glyph.isdigit()]
+    """Texts that differ in two of the digits that count."""
+    places = [index for index, glyph in enumerate(text) if glyph.isdigit()][:_DIGITS]
     for one, two in pairs_of(places, 2):
         for first in "0123456789":
             for second in "0123456789":
                 if first != text[one] and second != text[two]:
-                    other = text[:one] + first + text[one + 1 : two] + second + text[two + 1 :]
-                    if printable(other):
-                        yield other
+                    yield text[:one] + first + text[one + 1 : two] + second + text[two + 1 :]
 
 
 def typed_for(printed: str, angle: bool) -> str | None:

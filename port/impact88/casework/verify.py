@@ -107,7 +107,8 @@ def verify(
     if result.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE) and not tried:
         looked_past = past.judged()
     if result.verdict is Verdict.DIFFERS and looked_past is None:
-        result.explanations = explain(shown, recovered, checks, replies, ending, past.rereads)
+        rereads = None if given else past.rereads  # there slips in what was given apart are none
+        result.explanations = explain(shown, recovered, checks, replies, ending, rereads)
     if looked_past is not None:
         result.verdict = Verdict.IDENTICAL_AS_READ
         result.scene, result.fields = looked_past.scene, looked_past.fields
@@ -118,6 +119,7 @@ def verify(
         *wording.given_apart(
             [name for name in given or () if _not_printed(result, name)], result.fields
         ),
+        *wording.given_otherwise(given or {}, result.scene, result.fields),
     ]
     result.unseen = unseen(result.scene, result.missing)
     if result.runnable:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from ..fields import ANGLES, INPUTS
 from .explain import Explanation
 from .judging import FieldCheck, Status, Verdict
 from .numerals import Doubt
 from .printout import Piece, Printout
 from .recovery import Recovered
+from .typedtext import stored_and_printed
+from .ways import scene_name
 
 TITLES = {
     Verdict.IDENTICAL: "IDENTICAL",
@@ -140,6 +143,24 @@ def given_apart(names: Sequence[str], fields: Sequence[FieldCheck]) -> list[str]
     elif differing:
         agree = f"{differing} of {len(compared)} numbers read are not what it prints for them"
     return [f"not on the page, and taken from the scene given apart: {', '.join(names)}; {agree}"]
+
+
+def given_otherwise(
+    given: Mapping[str, str], scene: Mapping[str, str | None], fields: Sequence[FieldCheck]
+) -> list[str]:
+    """That inputs were given apart which the page has, and which in its ``scene`` are others."""
+    otherwise = []
+    for check in fields:
+        name = scene_name(check.name)
+        by_page = scene[name] if check.name in INPUTS else None
+        if by_page is None or check.printed is None or name not in given:
+            continue
+        one, other = (stored_and_printed(text, name in ANGLES) for text in (given[name], by_page))
+        if one is None or other is None or one[1] != other[1]:
+            otherwise.append(f"{name} {given[name]} (by the page {by_page})")
+    if not otherwise:
+        return []
+    return [f"given apart otherwise than the page has it, which counts: {'; '.join(otherwise)}"]
 
 
 def commas(shown: Printout) -> bool:
