@@ -302,6 +302,24 @@ class TestUncertainty:
             assert drawn.values[name].std() == pytest.approx(deviations[name], rel=0.05)
             assert drawn.values[name].mean() == pytest.approx(solution.values[name], abs=0.1)
 
+    @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6])
+    def test_draws_are_adjusted_however_tight_the_tolerances(self, tolerance):
+        """So near the impact the equations are straight: draws spread as to first order."""
+        true = {**VEHICLES, **dict.fromkeys(("UY", "WA", "VX", "WB"), 0.0), "UX": -36.0, "VY": 58.0}
+        result = solve({**true, "E": 0.25, "MU": 0.6, "EM": -0.9, "M": 6}, FINAL)
+        known = {n: true[n] for n in (*GEOMETRY, "WA", "WB")}
+        known |= within({"UY": 0.0, "VX": 0.0}, tolerance)
+        known |= within({n: float(result[n]) for n in ("VAX", "VAY", "VBX", "VBY")}, 10 * tolerance)
+        known |= within({"E": 0.25}, 1e3 * tolerance) | within({"WAF": float(result["WAF"])}, 1e-5)
+        (solution,) = reconstruct(known)
+        assert solution.redundancy > 0
+        drawn = draws(solution, ["UX", "VY"], 2000)
+        assert drawn.failed == 0
+        for name in ("UX", "VY"):
+            values = drawn.values[name]
+            assert values.mean() == pytest.approx(true[name], abs=0.1 * values.std() + 1e-9)
+            assert values.std() == pytest.approx(solution.deviations([name])[name], rel=0.08)
+
     def test_bounds_lie_within_all_limits(self):
         """A redundant value narrows the bounds; one that contradicts leaves none."""
         loose = ranges(reconstruct(SECTION_7)[0], ["UX"])["UX"]

@@ -39,6 +39,10 @@ IDLE = 3
 SETTLED = 1e-11
 """Scaled conditions below count as met by a draw."""
 ADJUSTMENTS = 12
+ADJUSTED = 1e-10
+"""A step so short, scaled, is the last."""
+DAMPING = 1e-12
+"""Of the largest square of a slope: holds still what next to nothing determines."""
 SCATTERED = 1024
 LEAST_GAIN = 1e-7
 """For the search for bounds: each of its impacts takes a dozen iterations."""
@@ -239,7 +243,7 @@ class _Solving:
         settled = left <= SETTLED
         if not settled.all():
             wild = np.broadcast_to(~settled, (count,))
-            x[:, wild] = self._newton({n: column[wild] for n, column in data.items()})
+            x[:, wild] = self._newton({n: column[wild] for n, column in data.items()}, wild.sum())
             residual = self.left(x, data, geometry)
             settled = np.abs(residual).max(axis=0, initial=0.0) <= 100 * SETTLED
         return x, np.broadcast_to(settled, (count,))
@@ -249,10 +253,9 @@ class _Solving:
     ) -> Floats:
         return np.asarray(self.system.left(self.system.state(x, data, geometry), data))
 
-    def _newton(self, data: Mapping[str, Floats]) -> Floats:
+    def _newton(self, data: Mapping[str, Floats], count: int) -> Floats:
         """The same by Newton's method, from the nominal impact. A point that comes no nearer a
         solution for a while has none in reach."""
-        count = len(next(iter(data.values())))
         x = np.repeat(self.x, count, axis=1)
         least, idle = np.full(count, np.inf), np.zeros(count, int)
         going = np.arange(count)
@@ -280,30 +283,33 @@ class _Adjusting:
     def __call__(self, data: Mapping[str, Floats]) -> tuple[State, NDArray[np.bool_]]:
         system, count = self.system, len(self.system.conditions)
         x = np.repeat(self.x, len(next(iter(data.values()))), axis=1)
-        size = len(system.variables)
-
-        def left_of(state: State) -> Floats:
-            return np.asarray(system.left(state, data))
-
+        size, going = len(system.variables), np.arange(x.shape[1])
         with np.errstate(all="ignore"):
             for _ in range(ADJUSTMENTS):
-                residual = left_of(system.state(x))
-                jacobian = system.jacobian(x, system.left, targets=data).transpose(2, 0, 1)
+                targets = {name: column[going] for name, column in data.items()}
+                residual, slopes = system.linearized(x[:, going], system.left, targets=targets)
+                jacobian = slopes.transpose(2, 0, 1)
                 exact, loose = jacobian[:, :count], jacobian[:, count:]
+                # tight tolerances must not drown the conditions
+                weight = np.abs(loose).max(axis=(1, 2), initial=1e-300)
+                loose = loose / weight[:, None, None]
                 # Lagrange: the normal equations bordered with the conditions
-                bordered = np.zeros((x.shape[1], size + count, size + count))
-                bordered[:, :size, :size] = loose.transpose(0, 2, 1) @ loose
+                bordered = np.zeros((len(going), size + count, size + count))
+                bordered[:, :size, :size] = loose.transpose(0, 2, 1) @ loose + DAMPING * np.eye(
+                    size
+                )
                 bordered[:, :size, size:] = exact.transpose(0, 2, 1)
                 bordered[:, size:, :size] = exact
-                right = np.zeros((x.shape[1], size + count))
-                right[:, :size] = np.einsum("nji,jn->ni", loose, residual[count:])
+                right = np.zeros((len(going), size + count))
+                right[:, :size] = np.einsum("nji,jn->ni", loose, residual[count:] / weight)
                 right[:, size:] = residual[:count].T
                 step = _solved(bordered, right).T[:size]
-                x = x - step
-                if not np.abs(step).max(initial=0.0) > 1e-10:
+                x[:, going] -= step
+                going = going[np.abs(step).max(axis=0, initial=0.0) > ADJUSTED]
+                if not len(going):
                     break
             state = system.state(x)
-            met = np.abs(left_of(state)[:count]).max(axis=0, initial=0.0) <= 1e-9
+            met = np.abs(system.left(state, data)[:count]).max(axis=0, initial=0.0) <= 1e-9
         return state, np.broadcast_to(met, x.shape[1:])
 
 
@@ -314,23 +320,33 @@ def _solved(matrices: Floats, right: Floats) -> Floats:
     matrices = np.where(finite[:, None, None], matrices, np.eye(*matrices.shape[1:]))
     right = np.where(finite[:, None], right, 0.0)
     rows, columns = matrices.shape[1:]
-    try:
-        if rows < columns:  # the least solution lies in the rows' space
-            across = matrices.transpose(0, 2, 1)
-            weights = np.linalg.solve(matrices @ across, right[:, :, None])
-            solution = (across @ weights)[:, :, 0]
-            missed = np.abs((matrices @ solution[:, :, None])[:, :, 0] - right).max(axis=1)
-            far = ~(missed <= 1e-6 * np.abs(right).max(axis=1))
-        else:
-            solution = np.linalg.solve(matrices, right[:, :, None])[:, :, 0]
-            size = np.abs(matrices).max(axis=(1, 2), initial=0.0)
-            grown = size * np.abs(solution).max(axis=1, initial=0.0)
-            far = ~(grown <= _GROWS * np.abs(right).max(axis=1, initial=0.0))
-    except np.linalg.LinAlgError:
+    if rows > columns:
         return _least(matrices, right)
+    if rows < columns:  # the least solution lies in the rows' space
+        across = matrices.transpose(0, 2, 1)
+        solution = (across @ _eliminated(matrices @ across, right)[:, :, None])[:, :, 0]
+        missed = np.abs((matrices @ solution[:, :, None])[:, :, 0] - right).max(axis=1)
+        far = ~(missed <= 1e-6 * np.abs(right).max(axis=1))
+    else:
+        solution = _eliminated(matrices, right)
+        size = np.abs(matrices).max(axis=(1, 2), initial=0.0)
+        grown = size * np.abs(solution).max(axis=1, initial=0.0)
+        far = ~(grown <= _GROWS * np.abs(right).max(axis=1, initial=0.0))
     if far.any():
         solution[far] = _least(matrices[far], right[far])
     return np.asarray(solution, np.float64)
+
+
+def _eliminated(matrices: Floats, right: Floats) -> Floats:
+    """The solutions by elimination, NaN where a matrix is singular: one must not cost the others
+    theirs."""
+    solution = np.full(right.shape, np.nan)
+    try:
+        solution[:] = np.linalg.solve(matrices, right[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:
+        regular = np.linalg.slogdet(matrices)[0] != 0  # the same elimination, which raises nothing
+        solution[regular] = np.linalg.solve(matrices[regular], right[regular, :, None])[:, :, 0]
+    return solution
 
 
 def _least(matrices: Floats, right: Floats) -> Floats:
