@@ -5,11 +5,22 @@ from __future__ import annotations
 import base64
 import gzip
 import json
+import re
+from collections import Counter
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
-_OF_A_PRINTOUT = {b"INITIAL KE": 1, b"VBX=": 1, b"IA=": 1, b"WB=": 2}
-"""Labels, and how often each stands on one."""
+import captures
+
+_LABEL = re.compile(rb"\b[A-Z]+=")
+
+
+@cache
+def _labels() -> Counter[bytes]:
+    """How often each label stands on a printout."""
+    page = captures.ROOT / "legacy" / "run1-as-printed.txt"
+    return Counter(_LABEL.findall(page.read_bytes()))
 
 
 @dataclass
@@ -26,11 +37,8 @@ class Case:
         """How many printouts, or pieces of some, `verify` is given."""
         if self.arguments[:1] != ["verify"]:
             return 0
-        texts = (*self.files.values(), self.stdin)
-        return max(
-            sum(data.count(mark) for data in texts) // often
-            for mark, often in _OF_A_PRINTOUT.items()
-        )
+        found = Counter(_LABEL.findall(b"\n".join((*self.files.values(), self.stdin))))
+        return max((found[label] // often for label, often in _labels().items()), default=0)
 
     def to_json(self) -> str:
         """The case as text; bytes packed."""
