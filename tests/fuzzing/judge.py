@@ -28,8 +28,8 @@ from .case import Case
 
 SECONDS = 10
 """Of the processor's time a case may take: what else the machine does is not the case's fault."""
-STILL_SECONDS = 120
-"""Of the clock's, for what waits without working."""
+STILL = 12
+"""Times as long of the clock's, for what waits without working."""
 A_PRINTOUT = 2
 """Of the processor's time each printout of a page may take."""
 BYTES = 1_000_000_000
@@ -70,7 +70,7 @@ def faults(case: Case) -> list[str]:
         began, before, memory = time.process_time(), _listing(folder), _most_memory()
         seconds = max(SECONDS, A_PRINTOUT * case.printouts())
         try:
-            with _no_longer_than(seconds, STILL_SECONDS):
+            with _no_longer_than(seconds, STILL * seconds):
                 status = cli.main(case.arguments)
         except Hang as hang:
             return [f"took too long: {hang}"]
