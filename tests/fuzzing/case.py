@@ -13,12 +13,12 @@ from pathlib import Path
 
 import captures
 
-_LABEL = re.compile(rb"\b[A-Z]+=")
+_LABEL = re.compile(rb"\b[A-Z]+=|COMPONENTS OF M[AB]")
 
 
 @cache
 def _labels() -> Counter[bytes]:
-    """How often each label stands on a printout."""
+    """How often each label, or prompt, stands on a printout."""
     page = captures.ROOT / "legacy" / "run1-as-printed.txt"
     return Counter(_LABEL.findall(page.read_bytes()))
 
