@@ -95,7 +95,7 @@ def explain(
     rereads: Sequence[Reread] | None = None,
 ) -> list[Explanation]:
     """Causes that make more of a differing printout agree, those that ask least first. ``rereads``:
-    slips that were tried already."""
+    slips that were tried already, all of them on the page."""
     base = frozenset(
         [check.name for check in checks if check.status == Status.CONTRADICTED]
         + [f"reply {check.name}" for check in replies if check.status == Status.CONTRADICTED]
@@ -105,7 +105,9 @@ def explain(
     alone = work.by_results_alone(replies)
     explanations = [alone] if alone else []
     if not recovered.missing:
-        reread = list(work.rereading.best() if rereads is None else rereads)
+        if rereads is None or recovered.apart:
+            rereads = work.rereading.best()
+        reread = list(rereads)
         explanations += work.rereads(reread, replies)
         hypotheses = otherruns.hypotheses(shown, recovered)
         explanations += work.others(hypotheses, replies)
@@ -295,9 +297,7 @@ class _Work:
         note = ""
         if first.field.startswith("reply "):
             note = "in the typed reply"
-        elif any(
-            one.field in INPUTS and one.field not in self.recovered.assumed for one in changes
-        ):
+        elif any(one.field in self.recovered.apart for one in changes):
             note = "in the inputs given apart"
         described = [self._change(change) for change in changes]
         look = [one["look"] for one in described if one["look"]]

@@ -45,6 +45,15 @@ class Recovered:
     m_unknown: bool = False
     row_in_doubt: bool = False
 
+    @property
+    def apart(self) -> list[str]:
+        """The inputs, by field, that are neither the page's nor missing: they were given apart."""
+        return [
+            name
+            for name in INPUTS
+            if name not in self.assumed and scene_name(name) not in self.missing
+        ]
+
     def scene_or_missing(self) -> dict[str, str | None]:
         """The scene in the table's order, None for what is missing."""
         return {name: None if name in self.missing else self.scene[name] for name in SCENE}

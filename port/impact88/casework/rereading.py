@@ -68,16 +68,16 @@ class Reread(NamedTuple):
 
 class Rereading:
     """The slips of one printout's inputs, tried. ``apart``: those in inputs that stand nowhere on
-    the page and were given apart, too; they are slips of what was typed there."""
+    the page and were given apart, too; they are slips of what was typed there, as INPUT reads it:
+    blanks and small letters make no difference."""
 
     def __init__(self, recovered: Recovered, apart: bool = False) -> None:
         self._search: Search = recovered.search
         self._scene = recovered.scene
         self._printed = recovered.assumed
         self._base = {name: self._printed[name] for name in INPUTS if name in self._printed}
-        if apart:
-            typed = {name: recovered.scene[scene_name(name)] for name in INPUTS}
-            self._base = {**typed, **self._base}
+        for name in recovered.apart if apart else ():
+            self._base[name] = recovered.scene[scene_name(name)].replace(" ", "").upper()
         self._names = list(INPUTS)
         self._mu = self._names.index("MUP")
         self._wrong = recovered.wrong

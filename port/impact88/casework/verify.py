@@ -107,8 +107,7 @@ def verify(
     if result.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE) and not tried:
         looked_past = past.judged()
     if result.verdict is Verdict.DIFFERS and looked_past is None:
-        rereads = None if given else past.rereads  # there slips in what was given apart are none
-        result.explanations = explain(shown, recovered, checks, replies, ending, rereads)
+        result.explanations = explain(shown, recovered, checks, replies, ending, past.rereads)
     if looked_past is not None:
         result.verdict = Verdict.IDENTICAL_AS_READ
         result.scene, result.fields = looked_past.scene, looked_past.fields

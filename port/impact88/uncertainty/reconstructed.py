@@ -295,9 +295,8 @@ class _Adjusting:
                 loose = loose / weight[:, None, None]
                 # Lagrange: the normal equations bordered with the conditions
                 bordered = np.zeros((len(going), size + count, size + count))
-                bordered[:, :size, :size] = loose.transpose(0, 2, 1) @ loose + DAMPING * np.eye(
-                    size
-                )
+                normal = loose.transpose(0, 2, 1) @ loose
+                bordered[:, :size, :size] = normal + DAMPING * np.eye(size)
                 bordered[:, :size, size:] = exact.transpose(0, 2, 1)
                 bordered[:, size:, :size] = exact
                 right = np.zeros((len(going), size + count))
