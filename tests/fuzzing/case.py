@@ -37,7 +37,8 @@ class Case:
         """How many printouts, or pieces of some, `verify` is given."""
         if self.arguments[:1] != ["verify"]:
             return 0
-        found = Counter(_LABEL.findall(b"\n".join((*self.files.values(), self.stdin))))
+        pages = b"\n".join((*self.files.values(), self.stdin))
+        found = Counter(_LABEL.findall(pages.replace(b"\0", b"")))  # UTF-16 is read, too
         return max((found[label] // often for label, often in _labels().items()), default=0)
 
     def to_json(self) -> str:

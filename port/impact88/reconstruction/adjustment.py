@@ -4,10 +4,11 @@ What is known of an impact, velocities and spins, speeds and courses, coefficien
 velocity changes, masses and angles, each exactly or within a tolerance, is adjusted so that the
 laws hold exactly: Equations 13, 14 and 17 by the way an impact is written (`State`), Equations 15,
 16 and 18 and the exact values as conditions. Among all impacts that meet them the one is sought
-whose sum of squared adjustments, each in units of its standard deviation, is least (Gauss, Newton,
-with the conditions' null space at each step). With as many known values as unknowns nothing is
-adjusted and the solution is that of `unknowns`; with fewer, what is determined is found and the
-rest is told.
+whose sum of squared adjustments, each in units of its standard deviation, is least: by Gauss and
+Newton's steps, or Levenberg and Marquardt's while tolerances are tightened little by little, and at
+last by Newton's method, curvature and all, which shows that it is least. With as many known values
+as unknowns nothing is adjusted and the solution is that of `unknowns`; with fewer, what is
+determined is found and the rest is told.
 
 First-order deviations and correlations come from the same linear equations.
 """
@@ -17,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,25 @@ _SPINS = ("WA", "WB", "WAF", "WBF")
 _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES)
 """Quantities that more than one impact may have: solutions are sought from several starts."""
 _STARTS = 12
+_ENOUGH = 10_000
+"""No start follows once the equations have been taken so often."""
 _STEPS = 50
+_LONGEST = 2.0
+_LAST = 1e-14
+"""The longest and the last step in scaled variables, the last as a share of them."""
+_TIGHTER = 0.1
+_TIGHTEST = 1e-12
+"""Tolerances are tightened by so much at a time, to so much of an ordinary size at most."""
+_ROUGHLY = (12, 0.1)
+_CLOSELY = (100, 1e-9)
+"""Steps of a descent, and the share of the squares below which one gains too little."""
+_CORRECTIONS = 30
+_NEARLY = 1e-3
+"""Where conditions leave over no more, the exact solution is sought."""
+_CLOSE = 0.5
+"""Of the variables: no longer step leads there."""
+_DIFFERENCE = 1e-6
+"""Of scaled variables: half the distance slopes are compared over, for curvatures."""
 _TINY = 1e-30
 """Of a scaled variable: the imaginary step whose derivative has no error."""
 _AT_ONCE = 4096
@@ -58,6 +77,15 @@ _HOLDS = 1e-10
 DEGREES = float(np.degrees(1.0))
 
 
+class Solved(NamedTuple):
+    """``x``: scaled variables; ``left_over``: the largest of what conditions leave over;
+    ``ended``: whether adjustments are least there."""
+
+    x: Floats
+    left_over: float
+    ended: bool
+
+
 class System:
     """The equations of one reading of what is known, in scaled variables (rows) of n impacts.
 
@@ -66,7 +94,7 @@ class System:
     """
 
     def __init__(self, known: Mapping[str, Uncertain], adjusted: bool) -> None:
-        self.known, self.adjusted = dict(known), adjusted
+        self.known, self.adjusted, self.taken = dict(known), adjusted, 0
         self.nominal = {name: item.nominal for name, item in known.items()}
         self.point = self.nominal.get("M", 6.0) == 4
         geometry = Geometry.of(self.nominal)
@@ -157,6 +185,7 @@ class System:
 
     def left(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
         """What conditions, then observations leave over, scaled: rows, one column an impact."""
+        self.taken += 1
         targets = {**self.nominal, **(targets or {})}
         rows = [state.law(n) / self._law_scale(n) for n in self.laws]
         rows += [self._exact(state, n, targets) for n in self.exact]
@@ -239,16 +268,38 @@ class System:
                 x[i] = self.nominal[name] / self.scales[i]
         return x[:, None]
 
-    def solved(self, x: Floats) -> tuple[Floats, float]:
-        """The adjusted impact near ``x``, and what its conditions leave over (largest)."""
+    def solved(self, x: Floats, *, far: bool = False) -> Solved:
+        """The adjusted impact near ``x``; from ``far`` away tolerances are tightened little by
+        little first."""
+        count = len(self.conditions)
+        found = Solved(x, np.inf, False)
+        ways = [self._straight]
+        if self.observations:
+            ways.insert(0 if far else 1, self._tightened)
+        for way in ways:
+            try:
+                nearby, residual = way(x)
+                left_over = float(np.abs(residual[:count]).max(initial=0.0))
+                found = Solved(nearby, min(found.left_over, left_over), not self.observations)
+                if self.observations and left_over <= _NEARLY:
+                    polished, left_over = self._polished(nearby)
+                    if left_over <= _HOLDS:
+                        return Solved(polished, left_over, True)
+            except np.linalg.LinAlgError:
+                continue  # something is not finite there
+        return found
+
+    def _straight(self, x: Floats) -> tuple[Floats, Floats]:
+        """Gauss and Newton: where their steps end, and what is left over there. They may climb, as
+        long as the conditions hold no worse."""
         count = len(self.conditions)
         residual = self.left(self.state(x))
         for _ in range(_STEPS):
             step = _step(residual[:, 0], self.jacobian(x, self.left)[:, :, 0], count)
             size = np.abs(step).max(initial=0.0)
             if not np.isfinite(size):
-                return x, np.inf
-            step *= min(1.0, 2.0 / size) if size else 1.0
+                return x, np.full_like(residual, np.inf)
+            step *= min(1.0, _LONGEST / size) if size else 1.0
             before = np.abs(residual[:count]).max(initial=0.0)
             for _ in range(12):
                 tried = x + step[:, None]
@@ -257,13 +308,128 @@ class System:
                     break
                 step = step / 2
             x, residual = tried, after
-            if size < 1e-14 * (1 + np.abs(x).max(initial=0.0)):
+            if size < _LAST * (1 + np.abs(x).max(initial=0.0)):
                 break
-        return x, float(np.abs(residual[:count]).max(initial=0.0))
+        return x, residual
+
+    def _tightened(self, x: Floats) -> tuple[Floats, Floats]:
+        """Least squares, and what is left over there. Tight tolerances among loose ones make a
+        narrow curved valley: all begin loose and are tightened little by little."""
+        held = np.full(len(self.conditions), 100.0)
+        shares = np.array(
+            [standard_deviation(self.known[n]) / self.scale(n) for n in self.observations]
+        )
+        # vehicles and coefficients are known about well enough to begin with
+        spared = np.array([n in GEOMETRY or n in COEFFICIENTS for n in self.observations])
+        loosest, tightest = 1.0, max(float(shares.min()), _TIGHTEST)
+        while loosest > tightest:
+            weights = np.where(spared, 1.0, np.minimum(1.0, shares / loosest))
+            rows = np.concatenate([held / loosest, weights])
+            x = self._descended(x, rows[:, None], *_ROUGHLY)
+            loosest *= _TIGHTER
+        rows = np.concatenate([held / tightest, np.ones(len(shares))])
+        x = self._descended(x, rows[:, None], *_CLOSELY)
+        return x, self.left(self.state(x))
+
+    def _descended(self, x: Floats, rows: Floats, steps: int, enough: float) -> Floats:
+        """Least squares of what conditions and observations leave over, ``rows`` times as much, in
+        damped steps (Levenberg, Marquardt) until three gain less than the share ``enough``."""
+        residual = rows * self.left(self.state(x))
+        squares, damping, idle = _squares(residual), 1e-3, 0
+        for _ in range(steps):
+            jacobian = rows * self.jacobian(x, self.left)[:, :, 0]
+            u, s, vt, _ = _decomposed(jacobian)
+            while True:
+                inverse = (vt.T * (s / (s * s + damping * s.max(initial=0.0) ** 2))) @ u.T
+                step = -inverse @ residual
+                size = np.abs(step).max(initial=0.0)
+                if not size > _LAST:
+                    return x
+                step *= min(1.0, _LONGEST / size)
+                tried, after = self._bent(x + step, residual + jacobian @ step, inverse, rows)
+                less = _squares(after)
+                if less < squares:
+                    break
+                damping *= 10
+            damping = max(damping / 10, 1e-16)
+            idle = 0 if squares - less > enough * squares else idle + 1
+            x, residual, squares = tried, after, less
+            if idle == 3:
+                break
+        return x
+
+    def _bent(
+        self, x: Floats, promised: Floats, inverse: Floats, rows: Floats
+    ) -> tuple[Floats, Floats]:
+        """A straight step's end brought to where what is left over is what the slopes promised, as
+        long as that lessens it: so steps follow narrow curved valleys."""
+        after = rows * self.left(self.state(x))
+        squares, straight = _squares(after), _squares(promised)
+        for _ in range(_CORRECTIONS):
+            if squares <= 1.1 * straight:
+                break
+            tried = x - inverse @ (after - promised)
+            residual = rows * self.left(self.state(tried))
+            less = _squares(residual)
+            if not less < 0.9 * squares:
+                break
+            x, after, squares = tried, residual, less
+        return x, after
+
+    def _polished(self, x: Floats) -> tuple[Floats, float]:
+        """Newton's method from close by, for conditions that hold exactly and adjustments that are
+        least, curvature and all; as `solved`."""
+        count, last, begin = len(self.conditions), np.inf, x
+        for _ in range(_STEPS):
+            residual, slopes = self.linearized(x, self.left)
+            step = self._newton(x, residual[:, 0], slopes[:, :, 0])
+            size, far = np.abs(step).max(initial=0.0), 1 + np.abs(x).max(initial=0.0)
+            if not size < _CLOSE * far:
+                return x, np.inf
+            x = x + step[:, None]
+            if size < _LAST * far or 1e-9 * far > size > 0.5 * last:
+                break
+            last = size
+        before, after = self.left(self.state(begin)), self.left(self.state(x))
+        # neither a saddle nor another hill
+        if _squares(after[count:]) > 1.01 * _squares(before[count:]) + 1e-9:
+            return x, np.inf
+        return x, float(np.abs(after[:count]).max(initial=0.0))
+
+    def _newton(self, x: Floats, residual: Floats, jacobian: Floats) -> Floats:
+        """The step to where the gradient of the squares has no part along the conditions. What
+        nothing determines to first order stays."""
+        count, size = len(self.conditions), len(x)
+        inverse, _ = pseudo_inverse(jacobian[:count])
+        loose, measured = jacobian[count:], residual[count:]
+        multipliers = np.concatenate([-inverse.T @ (loose.T @ measured), measured])
+        aside = _DIFFERENCE * np.eye(size)
+        slopes = self.jacobian(np.concatenate([x + aside, x - aside], axis=1), self.left)
+        ahead, behind = np.split(np.einsum("r,rik->ik", multipliers, slopes), 2, axis=1)
+        curvature = (ahead - behind) / (2 * _DIFFERENCE)
+        # the step along what is determined, the adjustments after it, and the multipliers
+        *_, along, _ = _decomposed(jacobian)
+        weight = np.abs(loose).max(initial=0.0) or 1.0
+        tight, narrow = jacobian[:count] @ along.T, loose @ along.T / weight
+        free, rows = len(along), len(loose)
+        whole = np.zeros((free + rows + count,) * 2)
+        whole[:free, :free] = along @ (curvature + curvature.T) @ along.T / (2 * weight * weight)
+        whole[:free, free : free + rows], whole[:free, free + rows :] = narrow.T, tight.T
+        whole[free : free + rows, :free], whole[free + rows :, :free] = narrow, tight
+        whole[free : free + rows, free : free + rows] = -np.eye(rows)
+        right = np.zeros(len(whole))
+        right[free : free + rows], right[free + rows :] = -measured / weight, -residual[:count]
+        solution = np.linalg.lstsq(whole, right, rcond=1e-15)[0]
+        step: Floats = along.T @ solution[:free]
+        return step
 
 
 _VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES} - {*_SPINS}
 _COURSE_OF = {speed: course for course, speed in COURSES.items()}
+
+
+def _squares(rows: Floats) -> float:
+    return float(np.square(rows).sum())
 
 
 def _step(residual: Floats, jacobian: Floats, count: int) -> Floats:
@@ -282,13 +448,23 @@ def pseudo_inverse(matrix: Floats) -> tuple[Floats, Floats]:
     Raises LinAlgError for a matrix that is not finite, whose singular values LAPACK may seek
     without end.
     """
+    u, s, vt, null = _decomposed(matrix)
+    return (vt.T / s) @ u.T, null
+
+
+def _decomposed(matrix: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """U, the singular values above rounding and V^T of a matrix, and a basis of its null space.
+
+    Raises LinAlgError for a matrix that is not finite.
+    """
     if not np.isfinite(matrix).all():
         raise np.linalg.LinAlgError("not finite")
+    rows, columns = matrix.shape
     if not matrix.size:
-        return np.zeros(matrix.shape[::-1]), np.eye(matrix.shape[1])
+        return np.zeros((rows, 0)), np.zeros(0), np.zeros((0, columns)), np.eye(columns)
     u, s, vt = np.linalg.svd(matrix)
-    rank = int((s > _RANK * s[0]).sum()) if len(s) and s[0] else 0
-    return (vt[:rank].T / s[:rank]) @ u[:, :rank].T, vt[rank:].T
+    rank = int((s > _RANK * s[0]).sum()) if s[0] else 0
+    return u[:, :rank], s[:rank], vt[:rank], vt[rank:].T
 
 
 def standard_deviation(item: Uncertain) -> float:
@@ -517,26 +693,42 @@ def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
     rng = np.random.default_rng(1988)
     plain = System(known, adjusted=False)
     curved = any(name in known for name in _CURVED if _COURSE_OF.get(name) not in known)
-    starts = [plain.solved(plain.start(rng, 0.3)) for _ in range(_STARTS if curved else 1)]
+    number = _STARTS if curved else 1
+    # more conditions than variables: no start meets them, unless all do
+    tried = 1 if len(plain.conditions) > len(plain.variables) else number
+    starts = [plain.solved(plain.start(rng, 0.3)) for _ in range(tried)]
     assumed = False
-    if all(residual > _HOLDS for _, residual in starts):
+    if all(start.left_over > _HOLDS for start in starts):
         known, assumed = _with_tolerances(known)
     system = System(known, adjusted=True)
     solutions: list[Reconstruction] = []
-    for x, _ in starts:
-        begin = system.start(rng, 0.0)
-        state = plain.state(x)
-        for i, name in enumerate(system.variables):
-            if name in VELOCITIES or name in IMPULSES:
-                begin[i] = np.ravel(state[name])[0] / system.scales[i]
-        x, residual = system.solved(begin)
-        if residual > _HOLDS:
+    met = False
+    if starts[0].left_over > _HOLDS:
+        starts = starts * (number // tried)
+    for i, start in enumerate(starts):
+        at_hand = start.left_over <= _HOLDS
+        begin = system.start(rng, 0.0 if at_hand else 0.3)
+        if at_hand:
+            state = plain.state(start.x)
+            for row, name in enumerate(system.variables):
+                if name in VELOCITIES or name in IMPULSES:
+                    begin[row] = np.ravel(state[name])[0] / system.scales[row]
+        x, residual, ended = system.solved(begin, far=not at_hand and i % 2 == 0)
+        met = met or residual <= _HOLDS
+        if residual > _HOLDS or not ended:
             continue
         solution = _described(system, x, residual, assumed)
-        if not any(_same(solution, other) for other in solutions):
+        if solution.undetermined:  # from elsewhere they would only come out otherwise
+            solutions = [min((*solutions, solution), key=lambda s: round(s.squares, 9))]
+        elif not any(_same(solution, other) for other in solutions):
             solutions.append(solution)
-        if solution.undetermined:
-            break  # from elsewhere the undetermined would only come out otherwise
+        if system.taken > _ENOUGH:
+            break
+    if met and not solutions:
+        raise UnsolvableError(
+            "the search for the impact nearest to what is known came to no end; expected wider "
+            "tolerances, or fewer values"
+        )
     if not solutions:
         raise UnsolvableError(
             "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
