@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import io
 import os
 import re
@@ -13,7 +14,7 @@ import tempfile
 import time
 import traceback
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -66,7 +67,7 @@ def faults(case: Case) -> list[str]:
     """What is wrong with how the case goes; nothing, when all is well."""
     if case.kind == "replay":
         return _replay_faults(case)
-    with _folder(case) as folder, _streams(case.stdin) as (out, err):
+    with _folder(case) as folder, _streams(case.stdin) as (out, err), _past_python() as past:
         began, before, memory = time.process_time(), _listing(folder), _most_memory()
         seconds = max(SECONDS, A_PRINTOUT * case.printouts())
         try:
@@ -78,6 +79,8 @@ def faults(case: Case) -> list[str]:
             return [f"escaped: {traceback.format_exc()}"]
         found = []
         said, shown = err.text(), out.text()
+        if remarks := past():
+            found.append(f"libraries wrote of themselves: {remarks[:300]!r}")
         if status not in STATUSES and not (status == INTERRUPTED and CONTROL_C in case.stdin):
             found.append(f"status {status}: {said[:500]}")
         if "Traceback" in said or "Traceback" in shown:
@@ -146,6 +149,30 @@ def _streams(stdin: bytes) -> Iterator[tuple[_Stream, _Stream]]:
             yield out, err
     finally:
         sys.stdin, sys.stdout, sys.stderr, sys.warnoptions = before
+
+
+@contextmanager
+def _past_python() -> Iterator[Callable[[], bytes]]:
+    """What libraries of other languages write on the process's own stdout and stderr, LAPACK's
+    remarks above all."""
+    flush = ctypes.CDLL(None).fflush
+    with tempfile.TemporaryFile() as file:
+        kept = [os.dup(number) for number in (1, 2)]
+
+        def so_far() -> bytes:
+            flush(None)
+            return os.pread(file.fileno(), 10_000, 0)
+
+        flush(None)
+        for number in (1, 2):
+            os.dup2(file.fileno(), number)
+        try:
+            yield so_far
+        finally:
+            flush(None)
+            for number, own in zip((1, 2), kept, strict=True):
+                os.dup2(own, number)
+                os.close(own)
 
 
 @contextmanager

@@ -419,6 +419,8 @@ class System:
         whole[free : free + rows, free : free + rows] = -np.eye(rows)
         right = np.zeros(len(whole))
         right[free : free + rows], right[free + rows :] = -measured / weight, -residual[:count]
+        if not (np.isfinite(whole).all() and np.isfinite(right).all()):
+            raise np.linalg.LinAlgError("not finite")
         solution = np.linalg.lstsq(whole, right, rcond=1e-15)[0]
         step: Floats = along.T @ solution[:free]
         return step
