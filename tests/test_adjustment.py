@@ -14,12 +14,12 @@ from impact88.chapter.staged import collisions, fit
 from impact88.cli import main
 from impact88.closedform.solve import solve
 from impact88.errors import UserError
-from impact88.reconstruction.adjustment import reconstruct
+from impact88.reconstruction.adjustment import System, reconstruct
 from impact88.reconstruction.unknowns import solve_for
 from impact88.scene import Scene, sample
 from impact88.uncertainty.reconstructed import draws, ranges
 from impact88.uncertainty.reconstructedtable import uncertainty
-from impact88.uncertainty.uncertain import Uncertain, read
+from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 INITIAL = ("UX", "UY", "WA", "VX", "VY", "WB")
@@ -33,6 +33,10 @@ SPINS = {"WAF": (-2.9, 0.3), "WBF": (-0.9, 0.3)}
 
 def within(values, tolerance):
     return {name: read(f"{value!r} +- {tolerance}", name) for name, value in values.items()}
+
+
+def normal(value, deviation=1.0):
+    return Uncertain("normal", value, -math.inf, math.inf, deviation)
 
 
 SECTION_7 = VEHICLES | NO_SWERVE | within(ESTIMATES, 2)
@@ -153,9 +157,7 @@ class TestLeastOfAll:
         for word in problem.split():
             name, _, text = word.partition("=")
             value, *deviation = map(float, text.split("+-"))
-            known[name] = value
-            if deviation:
-                known[name] = Uncertain("normal", value, -math.inf, math.inf, *deviation)
+            known[name] = normal(value, *deviation) if deviation else value
         solutions = reconstruct(known)
         assert min(one.squares for one in solutions) == pytest.approx(squares, rel=1e-7)
         for one in solutions:
@@ -174,6 +176,25 @@ class TestLeastOfAll:
         known["WAF"] = read("-165.43 +- 360", "WAF")
         (solution,) = reconstruct(known)
         assert max(abs(one.moved) for one in solution.adjusted) < 0.5
+
+    def test_a_saddle_is_no_solution(self):
+        """Of UX = 1, UY = 0 and a speed of 10, each within 1, squares are least at UX = 5.5. At
+        UX = -4.5 their slope is nothing, too, but to the left and right it goes down."""
+        known = {name: fixed(value) for name, value in TABLE_3.items() if name != "MU"}
+        known |= {"MUP": fixed(0.5), "SA": normal(10.0), "UX": normal(1.0), "UY": normal(0.0)}
+        system = System(known, adjusted=True)
+
+        def solved(ux):
+            start = system.start(np.random.default_rng(0), 0.0)
+            for name, value in (("UX", ux), ("UY", 0.0), ("SA", abs(ux))):
+                row = system.variables.index(name)
+                start[row] = value / system.scales[row]
+            return system.solved(start)
+
+        assert solved(5.5).ended
+        assert not solved(-4.5).ended
+        for solution in reconstruct(known):
+            assert solution.values["UX"] == pytest.approx(5.5, rel=1e-9)
 
 
 class TestLeastSquares:

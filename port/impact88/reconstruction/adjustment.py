@@ -64,6 +64,8 @@ _CLOSE = 0.5
 """Of the variables: no longer step leads there."""
 _DIFFERENCE = 1e-6
 """Of scaled variables: half the distance slopes are compared over, for curvatures."""
+_DOWNWARD = 1e-9
+"""Curvatures up to that are rounding."""
 _TINY = 1e-30
 """Of a scaled variable: the imaginary step whose derivative has no error."""
 _AT_ONCE = 4096
@@ -382,7 +384,7 @@ class System:
         count, last, begin = len(self.conditions), np.inf, x
         for _ in range(_STEPS):
             residual, slopes = self.linearized(x, self.left)
-            step = self._newton(x, residual[:, 0], slopes[:, :, 0])
+            step, least = self._newton(x, residual[:, 0], slopes[:, :, 0])
             size, far = np.abs(step).max(initial=0.0), 1 + np.abs(x).max(initial=0.0)
             if not size < _CLOSE * far:
                 return x, np.inf
@@ -390,17 +392,19 @@ class System:
             if size < _LAST * far or 1e-9 * far > size > 0.5 * last:
                 break
             last = size
+        else:
+            return x, np.inf
         before, after = self.left(self.state(begin)), self.left(self.state(x))
-        # neither a saddle nor another hill
-        if _squares(after[count:]) > 1.01 * _squares(before[count:]) + 1e-9:
+        # neither a saddle nor another valley
+        if not least or _squares(after[count:]) > 1.01 * _squares(before[count:]) + 1e-9:
             return x, np.inf
         return x, float(np.abs(after[:count]).max(initial=0.0))
 
-    def _newton(self, x: Floats, residual: Floats, jacobian: Floats) -> Floats:
-        """The step to where the gradient of the squares has no part along the conditions. What
-        nothing determines to first order stays."""
+    def _newton(self, x: Floats, residual: Floats, jacobian: Floats) -> tuple[Floats, bool]:
+        """The step to where the gradient of the squares has no part along the conditions, and
+        whether they curve upward there. What nothing determines to first order stays."""
         count, size = len(self.conditions), len(x)
-        inverse, _ = pseudo_inverse(jacobian[:count])
+        inverse, null = pseudo_inverse(jacobian[:count])
         loose, measured = jacobian[count:], residual[count:]
         multipliers = np.concatenate([-inverse.T @ (loose.T @ measured), measured])
         aside = _DIFFERENCE * np.eye(size)
@@ -422,8 +426,10 @@ class System:
         if not (np.isfinite(whole).all() and np.isfinite(right).all()):
             raise np.linalg.LinAlgError("not finite")
         solution = np.linalg.lstsq(whole, right, rcond=1e-15)[0]
+        # for every residual and every condition that says something, one curves downward
+        downward = np.linalg.eigvalsh(_balanced(whole)) < -_DOWNWARD
         step: Floats = along.T @ solution[:free]
-        return step
+        return step, bool(downward.sum() <= rows + size - null.shape[1])
 
 
 _VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES} - {*_SPINS}
@@ -432,6 +438,16 @@ _COURSE_OF = {speed: course for course, speed in COURSES.items()}
 
 def _squares(rows: Floats) -> float:
     return float(np.square(rows).sum())
+
+
+def _balanced(matrix: Floats) -> Floats:
+    """A symmetric matrix in other units, so that no row is much larger than others: as many of its
+    eigenvalues are negative."""
+    for _ in range(3):
+        largest = np.sqrt(np.abs(matrix).max(axis=1, initial=0.0))
+        unit = np.where(largest > 0, largest, 1.0)
+        matrix = matrix / np.outer(unit, unit)
+    return matrix
 
 
 def _step(residual: Floats, jacobian: Floats, count: int) -> Floats:
