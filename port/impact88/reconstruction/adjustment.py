@@ -16,9 +16,9 @@ First-order deviations and correlations come from the same linear equations.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +44,14 @@ KNOWABLE = ("M", *PARAMETERS, "MU", *MEASURABLE)
 _SPINS = ("WA", "WB", "WAF", "WBF")
 _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES)
 """Quantities that more than one impact may have: solutions are sought from several starts."""
-_STARTS = 12
+_STARTS = 60
+_NEAR, _FAR = 0.3, 1.0
+"""How far apart starts lie, in scaled variables, in turn."""
+_TIGHTENED_AT_LEAST = 4
+_TIGHTENED = 12
 _ENOUGH = 10_000
-"""No start follows once the equations have been taken so often."""
+"""Of the starts so many with tolerances tightened little by little, up to the second number while
+nothing is found; none follows once the equations have been taken so often."""
 _STEPS = 50
 _LONGEST = 2.0
 _LAST = 1e-14
@@ -60,6 +65,10 @@ _CLOSELY = (100, 1e-9)
 _CORRECTIONS = 30
 _NEARLY = 1e-3
 """Where conditions leave over no more, the exact solution is sought."""
+_BESIDE = 1e-5
+"""Of two ends no farther apart one is followed."""
+_OPEN_FOLLOWED = 8
+"""So many ends are followed, where the solution found leaves something undetermined."""
 _CLOSE = 0.5
 """Of the variables: no longer step leads there."""
 _DIFFERENCE = 1e-6
@@ -77,15 +86,6 @@ _OPEN = 1e-7
 _HOLDS = 1e-10
 """What scaled conditions may leave over."""
 DEGREES = float(np.degrees(1.0))
-
-
-class Solved(NamedTuple):
-    """``x``: scaled variables; ``left_over``: the largest of what conditions leave over;
-    ``ended``: whether adjustments are least there."""
-
-    x: Floats
-    left_over: float
-    ended: bool
 
 
 class System:
@@ -270,53 +270,37 @@ class System:
                 x[i] = self.nominal[name] / self.scales[i]
         return x[:, None]
 
-    def solved(self, x: Floats, *, far: bool = False) -> Solved:
-        """The adjusted impact near ``x``; from ``far`` away tolerances are tightened little by
-        little first."""
-        count = len(self.conditions)
-        found = Solved(x, np.inf, False)
-        ways = [self._straight]
-        if self.observations:
-            ways.insert(0 if far else 1, self._tightened)
-        for way in ways:
-            try:
-                nearby, residual = way(x)
-                left_over = float(np.abs(residual[:count]).max(initial=0.0))
-                found = Solved(nearby, min(found.left_over, left_over), not self.observations)
-                if self.observations and left_over <= _NEARLY:
-                    polished, left_over = self._polished(nearby)
-                    if left_over <= _HOLDS:
-                        return Solved(polished, left_over, True)
-            except np.linalg.LinAlgError:
-                continue  # something is not finite there
-        return found
-
-    def _straight(self, x: Floats) -> tuple[Floats, Floats]:
-        """Gauss and Newton: where their steps end, and what is left over there. They may climb, as
-        long as the conditions hold no worse."""
-        count = len(self.conditions)
-        residual = self.left(self.state(x))
+    def straight(self, starts: Floats) -> tuple[Floats, Floats]:
+        """Gauss and Newton from several starts, a column each: where their steps end, and the
+        largest of what conditions leave over there. Steps may climb, as long as the conditions hold
+        no worse."""
+        count, x = len(self.conditions), starts.copy()
+        going = np.arange(x.shape[1])
         for _ in range(_STEPS):
-            step = _step(residual[:, 0], self.jacobian(x, self.left)[:, :, 0], count)
-            size = np.abs(step).max(initial=0.0)
-            if not np.isfinite(size):
-                return x, np.full_like(residual, np.inf)
-            step *= min(1.0, _LONGEST / size) if size else 1.0
-            before = np.abs(residual[:count]).max(initial=0.0)
+            here = x[:, going]
+            residual, slopes = self.linearized(here, self.left)
+            steps = _steps(residual, slopes, count)
+            size = np.abs(steps).max(axis=0, initial=0.0)
+            steps = steps * np.minimum(1.0, _LONGEST / np.maximum(size, _LONGEST))
+            before = np.abs(residual[:count]).max(axis=0, initial=0.0)
             for _ in range(12):
-                tried = x + step[:, None]
-                after = self.left(self.state(tried))
-                if not np.abs(after[:count]).max(initial=0.0) > max(1.5 * before, 1e-9):
+                tried = here + steps
+                after = np.abs(self.left(self.state(tried))[:count]).max(axis=0, initial=0.0)
+                worse = after > np.maximum(1.5 * before, 1e-9)
+                if not worse.any():
                     break
-                step = step / 2
-            x, residual = tried, after
-            if size < _LAST * (1 + np.abs(x).max(initial=0.0)):
+                steps = np.where(worse, steps / 2, steps)
+            x[:, going] = tried
+            going = going[size >= _LAST * (1 + np.abs(tried).max(axis=0, initial=0.0))]
+            if not len(going):
                 break
-        return x, residual
+        left_over = np.abs(self.left(self.state(x))[:count]).max(axis=0, initial=0.0)
+        return x, np.broadcast_to(left_over, x.shape[1:])
 
-    def _tightened(self, x: Floats) -> tuple[Floats, Floats]:
-        """Least squares, and what is left over there. Tight tolerances among loose ones make a
-        narrow curved valley: all begin loose and are tightened little by little."""
+    def tightened(self, x: Floats) -> tuple[Floats, float]:
+        """Least squares from one start, and the largest of what conditions leave over there. Tight
+        tolerances among loose ones make a narrow curved valley: all begin loose and are tightened
+        little by little."""
         held = np.full(len(self.conditions), 100.0)
         shares = np.array(
             [standard_deviation(self.known[n]) / self.scale(n) for n in self.observations]
@@ -331,7 +315,8 @@ class System:
             loosest *= _TIGHTER
         rows = np.concatenate([held / tightest, np.ones(len(shares))])
         x = self._descended(x, rows[:, None], *_CLOSELY)
-        return x, self.left(self.state(x))
+        left_over = np.abs(self.left(self.state(x))[: len(held)]).max(initial=0.0)
+        return x, float(left_over)
 
     def _descended(self, x: Floats, rows: Floats, steps: int, enough: float) -> Floats:
         """Least squares of what conditions and observations leave over, ``rows`` times as much, in
@@ -378,9 +363,10 @@ class System:
             x, after, squares = tried, residual, less
         return x, after
 
-    def _polished(self, x: Floats) -> tuple[Floats, float]:
+    def polished(self, x: Floats) -> tuple[Floats, float]:
         """Newton's method from close by, for conditions that hold exactly and adjustments that are
-        least, curvature and all; as `solved`."""
+        least, curvature and all: the adjusted impact, and the largest of what its conditions leave
+        over, infinite where no impact is found that is least."""
         count, last, begin = len(self.conditions), np.inf, x
         for _ in range(_STEPS):
             residual, slopes = self.linearized(x, self.left)
@@ -450,14 +436,21 @@ def _balanced(matrix: Floats) -> Floats:
     return matrix
 
 
-def _step(residual: Floats, jacobian: Floats, count: int) -> Floats:
-    """The Gauss-Newton step that meets the first ``count`` rows and brings the others nearest."""
-    inverse, free = pseudo_inverse(jacobian[:count])
-    step: Floats = -inverse @ residual[:count]
-    if len(residual) > count and free.shape[1]:
-        narrowed, _ = pseudo_inverse(jacobian[count:] @ free)
-        step = step - free @ (narrowed @ (residual[count:] + jacobian[count:] @ step))
-    return step
+def _steps(residual: Floats, slopes: Floats, count: int) -> Floats:
+    """The Gauss-Newton steps, a column an impact, that meet the first ``count`` rows and bring the
+    others nearest; none (nan) where something is not finite."""
+    finite = np.isfinite(residual).all(axis=0) & np.isfinite(slopes).all(axis=(0, 1))
+    steps = np.full(slopes.shape[1:], np.nan)
+    matrices, over = slopes[:, :, finite].transpose(2, 0, 1), residual[:, finite].T[:, :, None]
+    inverse = np.linalg.pinv(matrices[:, :count], rcond=_RANK)
+    step = -inverse @ over[:, :count]
+    if len(residual) > count:
+        loose = matrices[:, count:]
+        free = np.eye(slopes.shape[1]) - inverse @ matrices[:, :count]
+        narrowed = np.linalg.pinv(loose @ free, rcond=_RANK)
+        step = step - free @ (narrowed @ (over[:, count:] + loose @ step))
+    steps[:, finite] = step[:, :, 0].T
+    return steps
 
 
 def pseudo_inverse(matrix: Floats) -> tuple[Floats, Floats]:
@@ -708,52 +701,98 @@ def _agrees(solution: Reconstruction, mu: float) -> bool:
 
 
 def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
-    rng = np.random.default_rng(1988)
-    plain = System(known, adjusted=False)
-    curved = any(name in known for name in _CURVED if _COURSE_OF.get(name) not in known)
-    number = _STARTS if curved else 1
-    # more conditions than variables: no start meets them, unless all do
-    tried = 1 if len(plain.conditions) > len(plain.variables) else number
-    starts = [plain.solved(plain.start(rng, 0.3)) for _ in range(tried)]
-    assumed = False
-    if all(start.left_over > _HOLDS for start in starts):
-        known, assumed = _with_tolerances(known)
-    system = System(known, adjusted=True)
-    solutions: list[Reconstruction] = []
-    met = False
-    if starts[0].left_over > _HOLDS:
-        starts = starts * (number // tried)
-    for i, start in enumerate(starts):
-        at_hand = start.left_over <= _HOLDS
-        begin = system.start(rng, 0.0 if at_hand else 0.3)
-        if at_hand:
-            state = plain.state(start.x)
-            for row, name in enumerate(system.variables):
-                if name in VELOCITIES or name in IMPULSES:
-                    begin[row] = np.ravel(state[name])[0] / system.scales[row]
-        x, residual, ended = system.solved(begin, far=not at_hand and i % 2 == 0)
-        met = met or residual <= _HOLDS
-        if residual > _HOLDS or not ended:
-            continue
-        solution = _described(system, x, residual, assumed)
-        if solution.undetermined:  # from elsewhere they would only come out otherwise
-            solutions = [min((*solutions, solution), key=lambda s: round(s.squares, 9))]
-        elif not any(_same(solution, other) for other in solutions):
-            solutions.append(solution)
-        if system.taken > _ENOUGH:
+    begin, at_hand, found = _starts(known)
+    system = found.system
+    ends, over = system.straight(begin)
+    squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
+    for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
+        if over[i] <= _NEARLY:
+            found.follow(ends[:, i : i + 1])
+    met = bool((over <= _NEARLY).any())
+    for i in range(0 if at_hand else min(begin.shape[1], _TIGHTENED)):
+        if found.solutions and (i >= _TIGHTENED_AT_LEAST or system.taken > _ENOUGH):
             break
-    if met and not solutions:
+        try:
+            nearby, left_over = system.tightened(begin[:, i : i + 1])
+        except np.linalg.LinAlgError:
+            continue  # something is not finite there
+        if left_over <= _NEARLY:
+            met = True
+            found.follow(nearby)
+    if not (met or np.isfinite(over).any()):
+        raise np.linalg.LinAlgError("not finite")
+    if met and not found.solutions:
         raise UnsolvableError(
             "the search for the impact nearest to what is known came to no end; expected wider "
             "tolerances, or fewer values"
         )
-    if not solutions:
+    if not found.solutions:
         raise UnsolvableError(
             "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
             "what is measured"
         )
-    least = min(s.squares for s in solutions)
-    return [s for s in solutions if s.squares <= max(4 * least, 1e-9)]
+    least = min(s.squares for s in found.solutions)
+    return [s for s in found.solutions if s.squares <= max(4 * least, 1e-9)]
+
+
+def _starts(known: Mapping[str, Uncertain]) -> tuple[Floats, bool, _Found]:
+    """Where to begin, a column each; whether measured values agree with one another there; and
+    what is to be found."""
+    rng = np.random.default_rng(1988)
+    plain = System(known, adjusted=False)
+    curved = any(name in known for name in _CURVED if _COURSE_OF.get(name) not in known)
+    curved = curved or any(known[name].varies for name in PARAMETERS if name in known)
+    count = _STARTS if curved else 1
+    spreads = [_FAR if i % 2 else _NEAR for i in range(count)]
+    # more conditions than variables: no start meets them, unless all do
+    tried = spreads[: 1 if len(plain.conditions) > len(plain.variables) else count]
+    x, left_over = plain.straight(np.hstack([plain.start(rng, spread) for spread in tried]))
+    at_hand = left_over <= _HOLDS
+    assumed = False
+    if not at_hand.any():
+        known, assumed = _with_tolerances(known)
+    system = System(known, adjusted=True)
+    if at_hand.any():
+        state = plain.state(x[:, at_hand])
+        begin = np.repeat(system.start(rng, 0.0), at_hand.sum(), axis=1)
+        for row, name in enumerate(system.variables):
+            if name in VELOCITIES or name in IMPULSES:
+                begin[row] = state[name] / system.scales[row]
+    else:
+        begin = np.hstack([system.start(rng, spread) for spread in spreads])
+    return begin, bool(at_hand.any()), _Found(system, assumed)
+
+
+@dataclass
+class _Found:
+    """The solutions of a system, each once."""
+
+    system: System
+    assumed: bool
+    solutions: list[Reconstruction] = field(default_factory=list)
+    followed: list[Floats] = field(default_factory=list)
+
+    def follow(self, nearby: Floats) -> None:
+        """Keep the solution beside ``nearby``, if there is one."""
+        if any(np.abs(nearby - other).max(initial=0.0) < _BESIDE for other in self.followed):
+            return
+        # from elsewhere what is not determined only comes out otherwise
+        is_open = bool(self.solutions) and bool(self.solutions[0].undetermined)
+        if is_open and len(self.followed) >= _OPEN_FOLLOWED:
+            return
+        self.followed.append(nearby)
+        try:
+            x, left_over = self.system.polished(nearby)
+        except np.linalg.LinAlgError:
+            return  # something is not finite there
+        if not left_over <= _HOLDS:
+            return
+        solution = _described(self.system, x, left_over, self.assumed)
+        if solution.undetermined:
+            both = (*self.solutions, solution)
+            self.solutions = [min(both, key=lambda one: round(one.squares, 9))]
+        elif not any(_same(solution, other) for other in self.solutions):
+            self.solutions.append(solution)
 
 
 def _with_tolerances(known: Mapping[str, Uncertain]) -> tuple[Mapping[str, Uncertain], bool]:
