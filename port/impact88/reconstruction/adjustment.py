@@ -67,8 +67,8 @@ _NEARLY = 1e-3
 """Where conditions leave over no more, the exact solution is sought."""
 _BESIDE = 1e-5
 """Of two ends no farther apart one is followed."""
-_OPEN_FOLLOWED = 8
-"""So many ends are followed, where the solution found leaves something undetermined."""
+_FEW = 8
+"""So many ends of steps that may climb are followed, where something is not determined."""
 _CLOSE = 0.5
 """Of the variables: no longer step leads there."""
 _DIFFERENCE = 1e-6
@@ -706,6 +706,8 @@ def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
     ends, over = system.straight(begin)
     squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
     for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
+        if found.solutions and found.solutions[0].undetermined and len(found.followed) >= _FEW:
+            break
         if over[i] <= _NEARLY:
             found.follow(ends[:, i : i + 1])
     met = bool((over <= _NEARLY).any())
@@ -776,10 +778,6 @@ class _Found:
         """Keep the solution beside ``nearby``, if there is one."""
         if any(np.abs(nearby - other).max(initial=0.0) < _BESIDE for other in self.followed):
             return
-        # from elsewhere what is not determined only comes out otherwise
-        is_open = bool(self.solutions) and bool(self.solutions[0].undetermined)
-        if is_open and len(self.followed) >= _OPEN_FOLLOWED:
-            return
         self.followed.append(nearby)
         try:
             x, left_over = self.system.polished(nearby)
@@ -788,7 +786,7 @@ class _Found:
         if not left_over <= _HOLDS:
             return
         solution = _described(self.system, x, left_over, self.assumed)
-        if solution.undetermined:
+        if solution.undetermined:  # from elsewhere it would only come out otherwise
             both = (*self.solutions, solution)
             self.solutions = [min(both, key=lambda one: round(one.squares, 9))]
         elif not any(_same(solution, other) for other in self.solutions):
