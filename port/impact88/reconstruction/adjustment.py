@@ -51,7 +51,8 @@ _TIGHTENED_AT_LEAST = 4
 _TIGHTENED = 12
 _ENOUGH = 10_000
 """Of the starts so many with tolerances tightened little by little, up to the second number while
-nothing is found; none follows once the equations have been taken so often."""
+nothing is found, or something not determined; none follows once the equations have been taken so
+often."""
 _STEPS = 50
 _LONGEST = 2.0
 _LAST = 1e-14
@@ -706,13 +707,14 @@ def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
     ends, over = system.straight(begin)
     squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
     for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
-        if found.solutions and found.solutions[0].undetermined and len(found.followed) >= _FEW:
+        if found.is_open and len(found.followed) >= _FEW:
             break
         if over[i] <= _NEARLY:
             found.follow(ends[:, i : i + 1])
     met = bool((over <= _NEARLY).any())
     for i in range(0 if at_hand else min(begin.shape[1], _TIGHTENED)):
-        if found.solutions and (i >= _TIGHTENED_AT_LEAST or system.taken > _ENOUGH):
+        enough = i >= _TIGHTENED_AT_LEAST and not found.is_open
+        if found.solutions and (enough or system.taken > _ENOUGH):
             break
         try:
             nearby, left_over = system.tightened(begin[:, i : i + 1])
@@ -773,6 +775,11 @@ class _Found:
     assumed: bool
     solutions: list[Reconstruction] = field(default_factory=list)
     followed: list[Floats] = field(default_factory=list)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the solution leaves something undetermined: there may be many as good."""
+        return bool(self.solutions) and bool(self.solutions[0].undetermined)
 
     def follow(self, nearby: Floats) -> None:
         """Keep the solution beside ``nearby``, if there is one."""
