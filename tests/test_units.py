@@ -193,6 +193,8 @@ class TestContactPoint:
         moved = RUN_1 | values | {"PA": float(angles[0]), "PB": float(angles[1])}
         for before, after in zip(self.contact(RUN_1), self.contact(moved), strict=True):
             assert after == pytest.approx((before[0] + 1, before[1] - 0.5), abs=1e-6)
+        assert main(["run", "--sample", "1", "--move-contact", "1,1", "--set", "TA=1E999"]) == 2
+        assert "DA would be nan" in capsys.readouterr().err
         assert main(["run", "--sample", "1", "--move-contact", "1"]) == 2
 
     def test_bounds_of_a_real_move(self):

@@ -7,12 +7,14 @@ varied apart they tear it in two.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from ..doubles import double
+from ..errors import UserError
 
 MOVES = ("CX", "CY")
 """How far the contact point moves along the scene's x and y."""
@@ -22,6 +24,13 @@ def moved(values: Mapping[str, Any]) -> dict[str, Any]:
     """``values`` (a scene's geometry, numbers or arrays, with CX and CY) with DA PA DB PB of the
     contact point moved, and without CX and CY."""
     kept = {name: value for name, value in values.items() if name not in MOVES}
+    with np.errstate(all="ignore"):  # what is beyond doubles is infinite or nan, and no remark
+        kept.update(_moved(values))
+    return kept
+
+
+def _moved(values: Mapping[str, Any]) -> dict[str, Any]:
+    kept = {}
     dx, dy = (np.asarray(values.get(name, 0.0), np.float64) for name in MOVES)
     for vehicle, sign in (("A", -1.0), ("B", 1.0)):
         heading = np.asarray(values[f"T{vehicle}"], np.float64)
@@ -36,7 +45,17 @@ def moved(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def moved_texts(texts: Mapping[str, str], dx: float, dy: float) -> dict[str, str]:
-    """What a move of the contact point changes in a scene's texts: DA PA DB PB."""
+    """What a move of the contact point changes in a scene's texts: DA PA DB PB.
+
+    Raises UserError where a number of it lies beyond the range of doubles.
+    """
     names = [kind + vehicle for vehicle in "AB" for kind in "DPT"]
     values = moved({**{name: double(texts[name]) for name in names}, "CX": dx, "CY": dy})
-    return {name: repr(float(values[name])).upper() for name in ("DA", "PA", "DB", "PB")}
+    changed = {name: float(values[name]) for name in ("DA", "PA", "DB", "PB")}
+    for name, value in changed.items():
+        if not math.isfinite(value):
+            raise UserError(
+                f"the contact point cannot be moved: {name} would be {value}; expected numbers "
+                "within the range of doubles"
+            )
+    return {name: repr(value).upper() for name, value in changed.items()}
