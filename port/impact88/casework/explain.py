@@ -95,7 +95,7 @@ def explain(
     rereads: Sequence[Reread] | None = None,
 ) -> list[Explanation]:
     """Causes that make more of a differing printout agree, those that ask least first. ``rereads``:
-    slips that were tried already, all of them on the page."""
+    slips that were tried already, where those are all there can be."""
     base = frozenset(
         [check.name for check in checks if check.status == Status.CONTRADICTED]
         + [f"reply {check.name}" for check in replies if check.status == Status.CONTRADICTED]
@@ -105,9 +105,7 @@ def explain(
     alone = work.by_results_alone(replies)
     explanations = [alone] if alone else []
     if not recovered.missing:
-        if rereads is None or recovered.apart:
-            rereads = work.rereading.best()
-        reread = list(rereads)
+        reread = list(work.rereading.best() if rereads is None else rereads)
         explanations += work.rereads(reread, replies)
         hypotheses = otherruns.hypotheses(shown, recovered)
         explanations += work.others(hypotheses, replies)

@@ -107,7 +107,8 @@ def verify(
     if result.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE) and not tried:
         looked_past = past.judged()
     if result.verdict is Verdict.DIFFERS and looked_past is None:
-        result.explanations = explain(shown, recovered, checks, replies, ending, past.rereads)
+        rereads = None if recovered.apart else past.rereads  # those try the page's inputs alone
+        result.explanations = explain(shown, recovered, checks, replies, ending, rereads)
     if looked_past is not None:
         result.verdict = Verdict.IDENTICAL_AS_READ
         result.scene, result.fields = looked_past.scene, looked_past.fields

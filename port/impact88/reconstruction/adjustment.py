@@ -6,9 +6,9 @@ laws hold exactly: Equations 13, 14 and 17 by the way an impact is written (`Sta
 16 and 18 and the exact values as conditions. Among all impacts that meet them the one is sought
 whose sum of squared adjustments, each in units of its standard deviation, is least: by Gauss and
 Newton's steps, or Levenberg and Marquardt's while tolerances are tightened little by little, and at
-last by Newton's method, curvature and all, which shows that it is least. With as many known values
-as unknowns nothing is adjusted and the solution is that of `unknowns`; with fewer, what is
-determined is found and the rest is told.
+last by Newton's method, curvature and all, which shows that nothing beside it is less. With as many
+known values as unknowns nothing is adjusted and the solution is that of `unknowns`; with fewer,
+what is determined is found and the rest is told.
 
 First-order deviations and correlations come from the same linear equations.
 """
@@ -43,7 +43,7 @@ KNOWABLE = ("M", *PARAMETERS, "MU", *MEASURABLE)
 """What may be known."""
 _SPINS = ("WA", "WB", "WAF", "WBF")
 _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES)
-"""Quantities that more than one impact may have: solutions are sought from several starts."""
+"""Quantities that more than one impact may have."""
 _STARTS = 60
 _NEAR, _FAR = 0.3, 1.0
 """How far apart starts lie, in scaled variables, in turn."""
@@ -64,6 +64,9 @@ _ROUGHLY = (12, 0.1)
 _CLOSELY = (100, 1e-9)
 """Steps of a descent, and the share of the squares below which one gains too little."""
 _CORRECTIONS = 30
+"""Of a step's end at most."""
+_HELD = 100.0
+"""Conditions count so many times as much as the tightest tolerance."""
 _NEARLY = 1e-3
 """Where conditions leave over no more, the exact solution is sought."""
 _BESIDE = 1e-5
@@ -302,7 +305,7 @@ class System:
         """Least squares from one start, and the largest of what conditions leave over there. Tight
         tolerances among loose ones make a narrow curved valley: all begin loose and are tightened
         little by little."""
-        held = np.full(len(self.conditions), 100.0)
+        held = np.full(len(self.conditions), _HELD)
         shares = np.array(
             [standard_deviation(self.known[n]) / self.scale(n) for n in self.observations]
         )
@@ -712,8 +715,9 @@ def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
         if over[i] <= _NEARLY:
             found.follow(ends[:, i : i + 1])
     met = bool((over <= _NEARLY).any())
-    for i in range(0 if at_hand else min(begin.shape[1], _TIGHTENED)):
-        enough = i >= _TIGHTENED_AT_LEAST and not found.is_open
+    starts = begin.shape[1]
+    for i in range(0 if at_hand else min(starts, _TIGHTENED)):
+        enough = starts == 1 or (i >= _TIGHTENED_AT_LEAST and not found.is_open)
         if found.solutions and (enough or system.taken > _ENOUGH):
             break
         try:
@@ -744,9 +748,8 @@ def _starts(known: Mapping[str, Uncertain]) -> tuple[Floats, bool, _Found]:
     what is to be found."""
     rng = np.random.default_rng(1988)
     plain = System(known, adjusted=False)
-    curved = any(name in known for name in _CURVED if _COURSE_OF.get(name) not in known)
-    curved = curved or any(known[name].varies for name in PARAMETERS if name in known)
-    count = _STARTS if curved else 1
+    loose = any(known[name].varies for name in PARAMETERS if name in known)
+    count = 1 if plain.linear and not loose else _STARTS  # one valley, without bends
     spreads = [_FAR if i % 2 else _NEAR for i in range(count)]
     # more conditions than variables: no start meets them, unless all do
     tried = spreads[: 1 if len(plain.conditions) > len(plain.variables) else count]

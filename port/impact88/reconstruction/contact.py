@@ -15,22 +15,17 @@ import numpy as np
 
 from ..doubles import double
 from ..errors import UserError
+from .doublerange import within_doubles
 
 MOVES = ("CX", "CY")
 """How far the contact point moves along the scene's x and y."""
 
 
+@within_doubles
 def moved(values: Mapping[str, Any]) -> dict[str, Any]:
     """``values`` (a scene's geometry, numbers or arrays, with CX and CY) with DA PA DB PB of the
     contact point moved, and without CX and CY."""
     kept = {name: value for name, value in values.items() if name not in MOVES}
-    with np.errstate(all="ignore"):  # what is beyond doubles is infinite or nan, and no remark
-        kept.update(_moved(values))
-    return kept
-
-
-def _moved(values: Mapping[str, Any]) -> dict[str, Any]:
-    kept = {}
     dx, dy = (np.asarray(values.get(name, 0.0), np.float64) for name in MOVES)
     for vehicle, sign in (("A", -1.0), ("B", 1.0)):
         heading = np.asarray(values[f"T{vehicle}"], np.float64)
