@@ -23,11 +23,11 @@ from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
 from .anglerow import cut_as
 from .misreading import opposite
-from .numerals import compare
+from .numerals import Habit, compare
 from .printout import Printout, Reading
 from .search import AGREES, MISMATCH, Scored, Search, in_doubles, mismatch
 from .typedtext import stored_and_printed
-from .ways import reply_ways, scene_name
+from .ways import printed_ways, reply_ways, scene_name, without
 
 Floats = NDArray[np.float64]
 
@@ -269,7 +269,8 @@ class _Inversion:
 
 def paper_cost(shown: Printout, search: Search, scored: Scored) -> float:
     """What a replayed scene costs as the explanation of all that was read: inputs, replies and
-    results alike, however the scene was come by."""
+    results alike, however the scene was come by. What its reader's habit made of a digit costs
+    little where ``search`` knows of one."""
     return _without_row(shown, search, scored) + _row_cost(shown, scored)
 
 
@@ -297,7 +298,7 @@ def _without_row(shown: Printout, search: Search, scored: Scored) -> float:
     for name in INPUTS:
         reading = shown.fields.get(name)
         if name in fields and not (row and name in ANGLES):
-            cost += _read_cost(reading, fields[name])
+            cost += _read_cost(reading, fields[name], search.habit)
     cost += sum(_TURNED for name in ANGLES if abs(double(scored.scene[name])) > _FULL_TURN)
     for name, reply in shown.replies.items():
         ways = reply_ways(reply)
@@ -306,11 +307,14 @@ def _without_row(shown: Printout, search: Search, scored: Scored) -> float:
     return cost
 
 
-def _read_cost(reading: Reading | None, printed: str) -> float:
+def _read_cost(reading: Reading | None, printed: str, habit: Habit | None = None) -> float:
     if reading is None:
         return _UNREAD * len(printed)
     match = compare(reading.region, printed, reading.cut, reading.sign_free, reading.closing)
-    return min(match.cost, _MOST_COST)
+    cost = min(match.cost, _MOST_COST)
+    if habit:
+        cost = min(cost, without(printed_ways(reading), habit).get(printed, cost))
+    return cost
 
 
 def _begun(start: Floats, sets: Sequence[tuple[str, ...]], turn: int) -> Floats:

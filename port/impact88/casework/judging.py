@@ -19,7 +19,7 @@ from .numerals import SIMILAR, Doubt, Match, Region, Spot, compare
 from .printout import Printout, Reading
 from .recovery import Recovered
 from .typedtext import stored_and_printed
-from .ways import reply_ways
+from .ways import reply_ways, without_mark
 
 
 class Verdict(StrEnum):
@@ -217,15 +217,24 @@ def _reply_status(shown: Printout, reading: Reading, value: str) -> tuple[Status
     ways = reply_ways(reading)
     if any(same_value(text, value) for text, _, _ in ways):
         return Status.DOUBTFUL, [mark]
+    part, match = _likest(reading, value)
+    if match.contradicts and (reading.clean or not _hardly_read(match, part.region, value)):
+        return Status.CONTRADICTED, _doubts(shown, part, match.spots)
     if reading.clean:
         mark.how = str(Doubt.CONTRADICTS)
         return Status.CONTRADICTED, [mark]
-    seen = stored_and_printed(value)
-    match = compare(reading.region, seen[1] if seen else value)
-    if match.contradicts and not _hardly_read(match, reading.region, value):
-        return Status.CONTRADICTED, _doubts(shown, reading, match.spots)
     mark.how = str(Doubt.ILLEGIBLE)
     return Status.NOT_READ, [mark]
+
+
+def _likest(reading: Reading, value: str) -> tuple[Reading, Match]:
+    """A reply, with or without its first glyph, laid beside a value as typed or as printed: the way
+    that explains it best."""
+    seen = stored_and_printed(value)
+    texts = {value, seen[1]} if seen else {value}
+    parts = [reading, without_mark(reading)]
+    ways = [(part, compare(part.region, text)) for part in parts if part for text in sorted(texts)]
+    return min(ways, key=lambda way: way[1].cost)
 
 
 def same_value(one: str, other: str) -> bool:
@@ -300,9 +309,9 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
 
     A reader loses and adds signs and points, and a digit of a number here and there, and where it
     takes one digit for another it does so in more places than one. A digit altered on the paper
-    stands alone: a digit cleanly read as another is never looked past unless the page shows the
-    same mistake again, or shows that this reader cannot read the digit that is printed there
-    (`_readers_own`).
+    stands alone: a digit cleanly read as another is not looked past unless the page shows the
+    same mistake again, or shows that this reader cannot read the digit that is printed there, or
+    cannot read the page well anywhere (`_readers_own`).
     """
     every = [*checks, *replies]
     wrong = [check for check in every if check.status == Status.CONTRADICTED]
@@ -311,7 +320,7 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
     read = sum(check.status in (Status.READ, Status.DOUBTFUL) for check in every)
     if not machine_read(shown) or read < _READ_WELL * len(every):
         return False
-    if not _readers_own(every):
+    if not _readers_own(checks, replies):
         return False
     if any(_digits_lost_or_added(check) > 1 for check in wrong):
         return False
@@ -325,21 +334,46 @@ UNREADABLE = 3
 """So many other misreadings of a digit on one page, and its shape is beyond the reader of it."""
 
 
-def _readers_own(checks: Sequence[FieldCheck]) -> bool:
+BADLY_READ = 7
+"""So many other printed numbers misread, a fifth of a page, and its reader may have taken one digit
+for its look-alike and done so nowhere else."""
+
+
+def _readers_own(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
     """Whether every digit cleanly read as another is one of its reader's mistakes.
 
     It is where the page shows the same mistake again. And it is where the printed digit was misread
     in `UNREADABLE` other places, as whatever else, and the two look alike: a zero with a stroke
-    through it comes out as 8 once, as 6 once, as @ and © elsewhere.
+    through it comes out as 8 once, as 6 once, as @ and © elsewhere. One digit besides may be taken
+    for its look-alike where `BADLY_READ` other printed numbers are misread: there a digit that was
+    altered would pass, too, and what was looked past is told (`wording.looked_past`).
     """
-    swapped = Counter(pair for check in checks for pair in swapped_digits(check))
+    every = [*checks, *replies]
+    swapped = Counter(pair for check in every for pair in swapped_digits(check))
     misread = Counter(
-        doubt.printed for check in checks for doubt in check.doubts if _misread_digit(doubt)
+        doubt.printed for check in every for doubt in check.doubts if _misread_digit(doubt)
     )
-    return all(
-        count > 1 or (frozenset(pair) in SIMILAR and misread[pair[0]] > UNREADABLE)
+    alone = [
+        pair
         for pair, count in swapped.items()
-    )
+        if count == 1 and not (_alike(pair) and misread[pair[0]] > UNREADABLE)
+    ]
+    if len(alone) != 1:
+        return not alone
+    others = [check for check in checks if alone[0] not in swapped_digits(check)]
+    return _alike(alone[0]) and sum(map(misread_at_all, others)) >= BADLY_READ
+
+
+def _alike(pair: tuple[str, str]) -> bool:
+    return frozenset(pair) in SIMILAR
+
+
+_MISREADINGS = frozenset((Doubt.LOOK_ALIKE, Doubt.ILLEGIBLE, Doubt.CONTRADICTS))
+
+
+def misread_at_all(check: FieldCheck) -> bool:
+    """Whether glyphs of a number were read as others, lost or added."""
+    return any(doubt.how in _MISREADINGS and doubt.read != doubt.printed for doubt in check.doubts)
 
 
 def _misread_digit(doubt: Doubtful) -> bool:

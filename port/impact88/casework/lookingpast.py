@@ -8,21 +8,35 @@ and `borneout` whether what was not read hangs on what was.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from .borneout import borne_out
 from .inversion import paper_cost, scenes_found
-from .judging import FieldCheck, Status, field_checks, machine_read, reply_checks, settled
+from .judging import (
+    FieldCheck,
+    Status,
+    field_checks,
+    machine_read,
+    reply_checks,
+    settled,
+    swapped_digits,
+)
+from .numerals import SIMILAR, Habit
 from .printout import Printout
 from .recovery import Recovered, recover
 from .rereading import Reread, Rereading
-from .search import MISMATCH, Scored
-from .ways import unreadable_digit
+from .search import KINETIC, MISMATCH, Scored
+from .ways import noughts_unreadable
 
 _TRIED = 8
 """Scenes of each kind that are judged, those that explain most."""
+_HABITS = 2
+"""Digits taken for another that are put right throughout the page, one at a time."""
+_A_HABIT = 1.0
+"""What it costs to believe in a habit, besides each place where it shows."""
 _AS_WELL = 1.0
 """Scenes that cost so little more than the best explain the page as well."""
 
@@ -66,13 +80,11 @@ class LookingPast:
         scenes = list(self._slips_put_right())
         costs = [paper_cost(shown, search, one) for one in scenes]
         if not self._fixed and min(costs, default=MISMATCH + _AS_WELL) >= MISMATCH + _AS_WELL:
-            recovered = self._recovered
-            for other in self._unreadable_put_right():
-                cost = paper_cost(shown, search, other)
+            for other, cost in self._habits_put_right():
                 if cost < min(costs, default=cost + 1):
                     scenes.append(other)
                     costs.append(cost)
-            found = scenes_found(shown, search, recovered.scene, recovered.missing, _TRIED)
+            found = scenes_found(shown, search, *self._to_begin_with(), _TRIED)
             scenes += found
             costs += [paper_cost(shown, search, one) for one in found]
         best: Rejudged | None = None
@@ -93,18 +105,47 @@ class LookingPast:
             yield recovered.search.replayed_scene(recovered.scene, recovered.assumed)
         yield from (one.scored for one in (self.rereads or [])[:_TRIED])
 
-    def _unreadable_put_right(self) -> Iterator[Scored]:
-        """The scenes of a page whose reader cannot read one digit, that digit put right throughout;
-        and one slip besides."""
-        digit = unreadable_digit(self._shown)
-        if not digit:
-            return
-        other = recover(self._shown, unreadable=digit)
-        if other.missing:
-            return
-        yield other.search.replayed_scene(other.scene, other.assumed)
-        if other.wrong:
-            yield from (one.scored for one in Rereading(other).best()[:_TRIED])
+    @cached_property
+    def _by_habit(self) -> list[Recovered]:
+        """The printout recovered with a habit of its reader put right throughout."""
+        return [recover(self._shown, habit=habit) for habit in self._habits()]
+
+    def _habits_put_right(self) -> Iterator[tuple[Scored, float]]:
+        """The scenes of the page with a habit put right, and one slip besides; with what each
+        costs."""
+        for other in self._by_habit:
+            if other.missing:
+                continue
+            scenes = [other.search.replayed_scene(other.scene, other.assumed)]
+            if other.wrong:
+                scenes += [one.scored for one in Rereading(other).best()[:_TRIED]]
+            for one in scenes:
+                yield one, _A_HABIT + paper_cost(self._shown, other.search, one)
+
+    def _to_begin_with(self) -> tuple[Mapping[str, str], list[str]]:
+        """The scene to solve for inputs from, and what is missing of it: as read where the printed
+        kinetic energy comes out, else with a habit or slips put right so that it does."""
+        for one in (self._recovered, *self._by_habit):
+            if "KI" not in one.wrong:
+                return one.scene, one.missing
+            if not KINETIC & set(one.missing) and (scored := Rereading(one).with_energy()):
+                return scored.scene, one.missing
+        return self._recovered.scene, self._recovered.missing
+
+    def _habits(self) -> list[Habit]:
+        """What the reader may take a digit for throughout: zeros for whatever is like them, or one
+        digit for another as in a number where nothing else is wrong."""
+        noughts = noughts_unreadable(self._shown)
+        swapped = Counter(
+            pair
+            for check in field_checks(self._shown, self._recovered)
+            if len(pairs := list(swapped_digits(check))) == 1
+            for pair in pairs
+            if frozenset(pair) in SIMILAR
+        )
+        often = [pair for pair, _ in swapped.most_common(_HABITS)]
+        seen = [Habit(printed, frozenset(read)) for printed, read in often]
+        return [noughts, *seen] if noughts else seen
 
 
 def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Rejudged | None:

@@ -390,13 +390,25 @@ def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[
     return list(_candidates(key, most, sign_free))
 
 
-def with_digit(text: str, digit: str) -> list[tuple[str, int]]:
-    """The printable texts in which digits like ``digit`` are that digit, with how many are."""
-    places = [at for at, char in enumerate(text) if frozenset((char, digit)) in SIMILAR]
+class Habit(NamedTuple):
+    """What the reader of a page does again and again: a printed digit, and those it is read as."""
+
+    printed: str
+    read: frozenset[str]
+
+
+def unreadable(digit: str) -> Habit:
+    """The habit of a reader that takes a digit for any that is like it."""
+    return Habit(digit, frozenset(other for pair in SIMILAR if digit in pair for other in pair))
+
+
+def without_habit(text: str, habit: Habit) -> list[tuple[str, int]]:
+    """The printable texts that a habit may have made this one of, with how many digits change."""
+    places = [at for at, char in enumerate(text) if char in habit.read - {habit.printed}]
     texts = []
     for count in range(1, len(places) + 1):
         for some in combinations(places[:_MOST_ALIKE], count):
-            other = "".join(digit if at in some else char for at, char in enumerate(text))
+            other = "".join(habit.printed if at in some else char for at, char in enumerate(text))
             if printable(other):
                 texts.append((other, count))
     return texts

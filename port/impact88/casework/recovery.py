@@ -13,6 +13,7 @@ from ..fields import ANGLES, INPUTS
 from ..names import SCENE
 from . import trial
 from .glyphs import ILLEGIBLE
+from .numerals import Habit
 from .printout import Printout
 from .search import Scored, Search
 from .ways import STAND_IN, Choices, choices_of, scene_name
@@ -60,12 +61,12 @@ class Recovered:
 
 
 def recover(
-    shown: Printout, given: Mapping[str, str] | None = None, unreadable: str = ""
+    shown: Printout, given: Mapping[str, str] | None = None, habit: Habit | None = None
 ) -> Recovered:
     """The scene whose page explains the printout best. ``given``: inputs known from elsewhere.
-    ``unreadable``: a digit that the page's reader takes for others."""
-    choices, missing = choices_of(shown, given, unreadable)
-    search = Search(shown, unreadable)
+    ``habit``: what the page's reader takes a digit for."""
+    choices, missing = choices_of(shown, given, habit)
+    search = Search(shown, habit)
     best = search.best(choices)
     unconvincing = len(best.wrong) > _UNCONVINCING
     if unconvincing:

@@ -8,9 +8,10 @@ energy first, and the best replayed. Nothing here is a verdict: `explain` names 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import combinations as pairs_of
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -42,6 +43,8 @@ _TELLING_MOST = 4
 """Of many pairs so many results are looked at first: those that differ, in this order."""
 _BESIDES_ENERGY = 0.1
 """What slips cost, next to whether they give the printed kinetic energy."""
+_ALIKE = 1
+"""Of three digits misread each is taken for one of so many more than the likeliest."""
 _SINGLES_KEPT = 220
 _PAIRS = 320_000
 _DIGITS = 9
@@ -86,7 +89,7 @@ class Rereading:
         """Scenes with one input put right, or two, or (``deep``) two in the masses and velocities
         and two in the rest, those that explain most first."""
         choices, changes = self._choices()
-        kinetic = [place for place, name in enumerate(self._names) if scene_name(name) in KINETIC]
+        kinetic = self._kinetic()
         rest = [
             place
             for place in range(len(choices))
@@ -99,6 +102,17 @@ class Rereading:
         ranked = [reread for _, reread in self._tried(choices, changes, every, 320)]
         ranked.sort(key=lambda one: one.scored.cost)
         return ranked
+
+    def with_energy(self) -> Scored | None:
+        """The scene with a few masses and velocities put right, so that the printed kinetic energy
+        comes out; None where none is found. The rest stands as it was read."""
+        choices, _ = self._choices()
+        kinetic = self._kinetic()
+        first = self._by_energy(choices, kinetic, _three_digits)
+        picks = np.zeros((len(first), len(choices)), np.intp)
+        picks[:, kinetic] = first
+        tried = self._search.replayed(self._proper(choices, picks), picks)
+        return next((one for one in tried if "KI" not in one.wrong), None)
 
     def besides(
         self, exchanges: Sequence[Mapping[str, str]], most: int
@@ -322,15 +336,7 @@ class Rereading:
     ) -> Picks:
         """Up to two slips in masses and velocities, with up to one (or two) in the rest; inertias
         that do not spin are of the rest."""
-        own = [
-            choices[place][:1] if self._still(self._names[place]) else choices[place]
-            for place in kinetic
-        ]
-        pairs = _two_changes(own, _PAIRS)
-        cheaper = [
-            [one._replace(cost=_BESIDES_ENERGY * one.cost) for one in options] for options in own
-        ]
-        first = self._search.by_energy(cheaper, pairs, _ENERGIES)
+        first = self._by_energy(choices, kinetic)
         others = [self._one_sign(choices, place) for place in rest]
         second = _one_change(others)
         if deep:
@@ -340,6 +346,27 @@ class Rereading:
         picks[:, kinetic] = np.repeat(first, len(second), axis=0)
         picks[:, rest] = np.tile(second, (len(first), 1))
         return self._screened(choices, picks, _SINGLES_KEPT)
+
+    def _kinetic(self) -> list[int]:
+        """Where the masses, inertias and velocities stand."""
+        return [place for place, name in enumerate(self._names) if scene_name(name) in KINETIC]
+
+    def _by_energy(
+        self, choices: Choices, kinetic: list[int], more: Callable[[Choices], Picks] | None = None
+    ) -> Picks:
+        """Up to two slips in masses and velocities, and ``more``: those that give the printed
+        energy first. An inertia that does not spin says nothing there."""
+        own = [
+            choices[place][:1] if self._still(self._names[place]) else choices[place]
+            for place in kinetic
+        ]
+        some = _two_changes(own, _PAIRS)
+        if more:
+            some = np.concatenate([some, more(own)])
+        cheaper = [
+            [one._replace(cost=_BESIDES_ENERGY * one.cost) for one in options] for options in own
+        ]
+        return self._search.by_energy(cheaper, some, _ENERGIES)
 
     def _best_of_rest(
         self, choices: Choices, kinetic: list[int], rest: list[int], first: Picks
@@ -394,6 +421,23 @@ def _two_changes(choices: Choices, most: int) -> Picks:
         block = np.zeros((len(kept[0]) * len(kept[1]), len(choices)), np.intp)
         block[:, one] = np.repeat(kept[0], len(kept[1]))
         block[:, two] = np.tile(kept[1], len(kept[0]))
+        parts.append(block)
+    return np.concatenate(parts)
+
+
+def _three_digits(choices: Choices) -> Picks:
+    """A digit taken for its look-alike in each of three columns."""
+    likely = COSTS[misreading.DIGIT]
+    alike = likely + _ALIKE * _UNLIKE
+    places = [
+        [index for index, one in enumerate(options) if likely <= one.cost <= alike]
+        for options in choices
+    ]
+    parts = [np.zeros((0, len(choices)), np.intp)]
+    for columns_changed in pairs_of(range(len(choices)), 3):
+        some = np.array(list(product(*(places[column] for column in columns_changed))), np.intp)
+        block = np.zeros((len(some), len(choices)), np.intp)
+        block[:, columns_changed] = some.reshape(len(some), 3)
         parts.append(block)
     return np.concatenate(parts)
 

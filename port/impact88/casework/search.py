@@ -24,9 +24,9 @@ from ..doubles import double
 from ..fields import FIELDS, FINAL_SPINS, INPUTS
 from ..names import VELOCITIES
 from . import trial
-from .numerals import candidates
+from .numerals import Habit, candidates
 from .printout import Printout, Reading
-from .ways import Choice, Choices, other_bits, with_unreadable
+from .ways import Choice, Choices, other_bits, without
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
@@ -81,12 +81,12 @@ class Expected:
         return self.texts.get(text, self.default)
 
 
-def expected_results(shown: Printout, unreadable: str = "") -> list[Expected]:
+def expected_results(shown: Printout, habit: Habit | None = None) -> list[Expected]:
     """The results of a printout as read."""
     results = [_expected(name, shown.fields[name]) for name in RESULTS if name in shown.fields]
-    if unreadable:
+    if habit:
         for one in results:
-            one.texts = with_unreadable(one.texts, unreadable)
+            one.texts = without(one.texts, habit)
     return results
 
 
@@ -105,13 +105,14 @@ def _expected(name: str, reading: Reading) -> Expected:
 
 
 class Search:
-    """The search for one printout's scene. ``unreadable``: a digit taken for others throughout."""
+    """The search for one printout's scene. ``habit``: what its reader takes a digit for."""
 
-    def __init__(self, shown: Printout, unreadable: str = "") -> None:
+    def __init__(self, shown: Printout, habit: Habit | None = None) -> None:
         self.shown = shown
-        self.expected = expected_results(shown, unreadable)
+        self.habit = habit
+        self.expected = expected_results(shown, habit)
         self._energies, self._room = (
-            (_FEWER_ENERGIES, 8 * _SCREENED) if unreadable else (_ENERGY_KEPT, _SCREENED)
+            (_FEWER_ENERGIES, 8 * _SCREENED) if habit else (_ENERGY_KEPT, _SCREENED)
         )
         self._lost_inputs = set(INPUTS) - set(shown.fields)
 

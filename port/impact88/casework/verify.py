@@ -115,6 +115,7 @@ def verify(
         result.replies, result.explanations = looked_past.replies, []
     result.guessed = _guessed(result)
     result.findings = [
+        *(wording.looked_past(result.fields, result.replies) if looked_past else ()),
         *wording.findings(shown, result.fields, recovered),
         *wording.given_apart(
             [name for name in given or () if _not_printed(result, name)], result.fields

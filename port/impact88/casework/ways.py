@@ -14,7 +14,7 @@ from ..doubles import double
 from ..fields import ANGLES, INPUTS
 from ..scene import VALUE_LIMIT
 from .misreading import opposite
-from .numerals import candidates, value_of, with_digit
+from .numerals import Habit, candidates, unreadable, value_of, without_habit
 from .printout import Printout, Reading
 from .typedtext import stored_and_printed, texts_that_print
 
@@ -26,8 +26,8 @@ _OTHER_BITS = 0.02
 _FLIPPED = 0.001
 _REPLY_DISAGREES = 1.0
 _NO_FIELD = 0.8
-_UNREADABLE = 0.4
-"""What it costs that a digit which the reader cannot read was taken for another."""
+_HABIT = 0.4
+"""What it costs that a digit was taken for one that the reader takes it for."""
 _NOUGHTS, _NOUGHTS_NEEDED = frozenset("@©®ØG€°"), 3
 _SIGN_LOST = 0.9
 _SIGNED = frozenset(("UX", "UY", "WA", "VX", "VY", "WB", "EM", "MUP"))
@@ -60,12 +60,12 @@ def with_opposite_mu(scene: Mapping[str, str]) -> Iterator[dict[str, str]]:
 
 
 def choices_of(
-    shown: Printout, given: Mapping[str, str] | None = None, unreadable: str = ""
+    shown: Printout, given: Mapping[str, str] | None = None, habit: Habit | None = None
 ) -> tuple[Choices, list[str]]:
     """What each input may have been, cheapest first, and the inputs nothing tells of.
 
-    ``given``: texts of inputs known from elsewhere (a scene file). ``unreadable``: a digit that the
-    page's reader takes for others (`unreadable_digit`)."""
+    ``given``: texts of inputs known from elsewhere (a scene file). ``habit``: what the page's
+    reader takes a digit for."""
     given = given or {}
     choices: Choices = []
     missing: list[str] = []
@@ -75,13 +75,13 @@ def choices_of(
         if name in ANGLES and joint:
             if name == ANGLES[0]:
                 rows = shown.angles[:_ROWS]
-                rows = [*rows, *_rows_with(rows[:_FIRST_ROWS], unreadable)] if unreadable else rows
+                rows = [*rows, *_rows_with(rows[:_FIRST_ROWS], habit)] if habit else rows
                 choices.append([_row(texts, cost) for texts, cost in rows])
             continue
         if scene in given and name not in shown.fields:
             choices.append([Choice({scene: given[scene]}, {}, 0.0)])
             continue
-        options = input_choices(name, shown, unreadable)
+        options = input_choices(name, shown, habit)
         if scene in given:
             options = _given_first(options, scene, given[scene])
         if not options:
@@ -144,12 +144,12 @@ def printed_ways(reading: Reading) -> dict[str, float]:
     return dict(candidates(reading.region, _MOST, reading.sign_free))
 
 
-def with_unreadable(ways: Mapping[str, float], digit: str) -> dict[str, float]:
-    """The same ways, and those in which a digit was taken for others."""
+def without(ways: Mapping[str, float], habit: Habit) -> dict[str, float]:
+    """The same ways, and those in which the reader's habit is put right."""
     every = dict(ways)
     for text, cost in sorted(ways.items(), key=lambda way: way[1])[:_FIRST_WAYS]:
-        for other, count in with_digit(text, digit):
-            price = cost + _UNREADABLE * count
+        for other, count in without_habit(text, habit):
+            price = cost + _HABIT * count
             every[other] = min(price, every.get(other, price))
     return every
 
@@ -165,13 +165,13 @@ def _signs_lost(ways: Mapping[str, float], name: str) -> dict[str, float]:
 
 
 def _rows_with(
-    rows: Sequence[tuple[tuple[str, ...], float]], digit: str
+    rows: Sequence[tuple[tuple[str, ...], float]], habit: Habit
 ) -> Iterator[tuple[tuple[str, ...], float]]:
-    """The rows of angles in which a digit was taken for others and a minus not read, the likeliest
-    of each."""
+    """The rows of angles with a reader's habit put right and a minus not read, the likeliest of
+    each."""
     for texts, cost in rows:
         ways = [
-            _signs_lost(with_unreadable({text: 0.0}, digit), name).items()
+            _signs_lost(without({text: 0.0}, habit), name).items()
             for name, text in zip(ANGLES, texts, strict=True)
         ]
         some = [
@@ -182,15 +182,15 @@ def _rows_with(
             yield row, price
 
 
-def unreadable_digit(shown: Printout) -> str:
-    """The digit that the reader of a page cannot read, by the glyphs it puts where numbers stand: a
-    zero with a stroke through it comes out as @ here, as © there. Empty where there is none."""
+def noughts_unreadable(shown: Printout) -> Habit | None:
+    """The habit of a reader that cannot read zeros, by the glyphs it puts where numbers stand: one
+    with a stroke through it comes out as @ here, as © there. None where it can."""
     glyphs = [glyph.char for one in shown.fields.values() for glyph in one.region]
     count = sum(glyph in _NOUGHTS for glyph in glyphs)
-    return "0" if count >= _NOUGHTS_NEEDED else ""
+    return unreadable("0") if count >= _NOUGHTS_NEEDED else None
 
 
-def input_choices(name: str, shown: Printout, unreadable: str = "") -> list[Choice]:
+def input_choices(name: str, shown: Printout, habit: Habit | None = None) -> list[Choice]:
     """What one input may have been, cheapest first; empty when nothing tells."""
     angle = name in ANGLES
     scene = scene_name(name)
@@ -198,8 +198,8 @@ def input_choices(name: str, shown: Printout, unreadable: str = "") -> list[Choi
     reply = shown.replies.get(name)
     answers = reply_ways(reply) if reply is not None else []
     ways = printed_ways(reading) if reading is not None else {}
-    if unreadable:
-        ways = _signs_lost(with_unreadable(ways, unreadable), name)
+    if habit:
+        ways = _signs_lost(without(ways, habit), name)
     choices: list[Choice] = []
     for text, cost in ways.items():
         same = [(typed, price) for typed, printed, price in answers if printed == text]
@@ -223,15 +223,21 @@ def input_choices(name: str, shown: Printout, unreadable: str = "") -> list[Choi
     return choices[:_MOST]
 
 
+def without_mark(reply: Reading) -> Reading | None:
+    """A reply without its first glyph, where that may be the prompt's own question mark."""
+    if reply.region[0].char not in _PROMPT_MARK or len(reply.region) < 2:
+        return None
+    return Reading(
+        reply.text[1:], reply.line, reply.column, reply.start, reply.stop, reply.region[1:]
+    )
+
+
 def reply_ways(reply: Reading) -> list[tuple[str, str, float]]:
     """What was typed at a prompt, what it then prints, and what it costs to believe. The prompt's
     own question mark may have been read as a digit before the number."""
     ways = {reply.text: 0.0} if reply.clean else dict(candidates(reply.region, 8))
-    first = reply.region[0].char
-    if first in _PROMPT_MARK and len(reply.region) > 1:
-        rest = Reading(
-            reply.text[1:], reply.line, reply.column, reply.start, reply.stop, reply.region[1:]
-        )
+    rest = without_mark(reply)
+    if rest is not None:
         others = {rest.text: 0.0} if rest.clean else dict(candidates(rest.region, 8))
         for text, cost in others.items():
             ways.setdefault(text, cost + 0.5)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from ..fields import ANGLES, INPUTS
 from .explain import Explanation
-from .judging import FieldCheck, Status, Verdict
+from .judging import FieldCheck, Status, Verdict, misread_at_all, swapped_digits
 from .numerals import Doubt
 from .printout import Piece, Printout
 from .recovery import Recovered
@@ -129,6 +129,23 @@ def findings(shown: Printout, fields: Sequence[FieldCheck], recovered: Recovered
     elif recovered.scene["M"] == "4" and "M" not in recovered.missing and not shown.has_final_spins:
         sentences.append("no line of final spins: the results are those of M = 4, not of M = 6")
     return sentences
+
+
+def looked_past(fields: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> list[str]:
+    """That digits which were cleanly read as others are put down to the page's reader."""
+    others = [
+        f"{check.name} ({read} for {printed})"
+        for check in [*fields, *replies]
+        for printed, read in swapped_digits(check)
+    ]
+    if not others:
+        return []
+    misread = sum(map(misread_at_all, fields))
+    return [
+        f"read as another digit than the program prints: {', '.join(others)}; put down to the "
+        f"reader of the page, who misread {misread} of {len(fields)} numbers: if the paper shows "
+        "one of these digits as it was read, it differs from the program's page"
+    ]
 
 
 def given_apart(names: Sequence[str], fields: Sequence[FieldCheck]) -> list[str]:
