@@ -110,12 +110,20 @@ def _gaps(glyphs: Sequence[Glyph]) -> list[int]:
     """The gap before every glyph, and whether it stands within figures."""
     gaps = []
     before = ""
-    for glyph in glyphs:
+    for place, glyph in enumerate(glyphs):
         gap = 0 if glyph.wrapped else int(glyph.gap)
-        figures = glyph.char in _FIGURES and before in _FIGURES
-        gaps.append(WITHIN if figures and not gap else gap)
+        figures = glyph.char in _FIGURES or _exponent(glyphs[place : place + 3])
+        gaps.append(WITHIN if figures and before in _FIGURES and not gap else gap)
         before = glyph.char
     return gaps
+
+
+def _exponent(glyphs: Sequence[Glyph]) -> bool:
+    """Whether glyphs are the E of an exponent, its sign and a digit, in one piece."""
+    mark, *rest = glyphs
+    if mark.char != "E" or len(rest) < 2 or any(glyph.gap for glyph in rest):
+        return False
+    return rest[0].char in "+-" and rest[1].char.isdigit()
 
 
 def _states(glyphs: Sequence[Glyph]) -> list[int]:

@@ -48,8 +48,11 @@ def borne_out(shown: Printout, recovered: Recovered, checks: Sequence[FieldCheck
 
 def _reads_as_a_number(shown: Printout, check: FieldCheck) -> bool:
     """Whether what stands in a number's place can be read as one, if not as the one printed: an
-    ``&`` may be an 8 or a 6, and is no 0 that nobody can read."""
+    ``&`` may be an 8 or a 6, and is no 0 that nobody can read. What an edge left of a number is
+    none."""
     if check.start is None or check.stop is None or shown.page is None:
+        return False
+    if any(doubt.how == Doubt.CUT for doubt in check.doubts):
         return False
     glyphs = shown.page.glyphs
     region = tuple(one for one in glyphs if check.start <= one.offset < check.stop)

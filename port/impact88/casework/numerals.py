@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
-from enum import StrEnum
+from enum import Flag, StrEnum, auto
 from functools import lru_cache
 from itertools import combinations
 from typing import NamedTuple
@@ -33,6 +33,14 @@ class Doubt(StrEnum):
     RETYPED = "never printed so"
     CUT = "cut off"
     CONTRADICTS = "contradicts"
+
+
+class Cut(Flag):
+    """Where the text ends at a number, so that more of it may have stood there."""
+
+    NONE = 0
+    BEFORE = auto()
+    AFTER = auto()
 
 
 class Spot(NamedTuple):
@@ -117,12 +125,16 @@ def clean(region: Sequence[Glyph]) -> str | None:
 
 
 def compare(
-    region: Region, printed: str, cut: bool = False, sign_free: bool = False, closing: str = ""
+    region: Region,
+    printed: str,
+    cut: Cut = Cut.NONE,
+    sign_free: bool = False,
+    closing: str = "",
 ) -> Match:
     """How the glyphs are explained by what the program prints.
 
-    ``cut``: the text ends after the region. ``sign_free``: a minus before the number may belong to
-    the label. ``closing``: digits that the glyph printed after the number is read as, where that
+    ``cut``: where the text ends at the region. ``sign_free``: a minus before the number may belong
+    to the label. ``closing``: digits that the glyph printed after the number is read as, where that
     glyph itself was not read."""
     text = plain(region)
     if text == printed and clean(region) is not None:
@@ -145,7 +157,7 @@ def compare(
 
 @lru_cache(maxsize=20000)
 def _compared(
-    region: tuple[tuple[str, Gap, bool], ...], printed: str, cut: bool, sign_free: bool
+    region: tuple[tuple[str, Gap, bool], ...], printed: str, cut: Cut, sign_free: bool
 ) -> Match:
     """The cheapest explanation, by dynamic programming over glyphs and printed characters."""
     rows, columns = len(region), len(printed)
@@ -293,10 +305,10 @@ def _in_a_note(region: tuple[tuple[str, Gap, bool], ...], i: int) -> bool:
 
 
 def _lost(
-    region: tuple[tuple[str, Gap, bool], ...], i: int, j: int, printed: str, cut: bool
+    region: tuple[tuple[str, Gap, bool], ...], i: int, j: int, printed: str, cut: Cut
 ) -> tuple[float, Doubt]:
     """A printed character for which there is no glyph."""
-    if cut and i == len(region) and j:
+    if (Cut.AFTER in cut and i == len(region) and j) or (Cut.BEFORE in cut and not i):
         return 0.3, Doubt.CUT
     if printed[j] == "." and i < len(region) and i and region[i][1] is Gap.BLANK:
         return _BLANK_FOR_POINT, Doubt.ILLEGIBLE

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from .. import files
@@ -23,7 +23,8 @@ from . import glyphs, numerals, pasted
 from .alignment import Aligned, align
 from .anglerow import cut_in_five
 from .glyphs import Gap, Glyph, Page
-from .numerals import Region
+from .margins import cut_after, cut_before
+from .numerals import Cut, Region
 from .template import REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
 
 LARGEST_FILE = 2_000_000
@@ -50,9 +51,10 @@ class Reading:
 
     ``text``: what it is taken for, ``?`` for illegible glyphs; ``line``, ``column`` (from 1),
     ``start``, ``stop`` (offsets in the text): where it stands; ``region``: its glyphs;
-    ``alternatives``: other numbers it may be; ``cut``: the text ends right after it, so more digits
-    may have followed; ``sign_free``: a minus before it may be the label's own sign, damaged;
-    ``closing``: digits that the bracket or percent sign after it, not itself read, is read as."""
+    ``alternatives``: other numbers it may be; ``cut``: where the text ends right at it, so that
+    more of it may have stood there; ``sign_free``: a minus before it may be the label's own sign,
+    damaged; ``closing``: digits that the bracket or percent sign after it, not itself read, is read
+    as."""
 
     text: str
     line: int
@@ -61,7 +63,7 @@ class Reading:
     stop: int
     region: Region
     alternatives: tuple[str, ...] = ()
-    cut: bool = False
+    cut: Cut = Cut.NONE
     sign_free: bool = False
     closing: str = ""
 
@@ -283,6 +285,7 @@ class _Reader:
                 self._read_reply(name, self._slots[name][0])
         if any(name in self._slots for name in ANGLES):
             self._read_angles()
+        self._cut_at_margins()
         shown.misread_letters = self._misread_letters()
         shown.ended = STARS[1] in self._lines
         shown.spin_line = self._letters(SPINS) >= 2
@@ -341,6 +344,21 @@ class _Reader:
     def _remark(self, name: str, message: str, index: int) -> None:
         place = self._page.place(self._page.span(index, index + 1)[0])
         self._printout.remarks.append(Remark(name, message, *place))
+
+    def _cut_at_margins(self) -> None:
+        """Numbers at an edge that cut lines off may have lost digits there."""
+        page, fields = self._page, self._printout.fields
+        before = cut_before(page, self._start, self._states)
+        after = cut_after(page, self._start, self._states)
+        for name, reading in [*fields.items()] if before or after else []:
+            cut = reading.cut
+            following = self._slots[name][1]
+            ends = following == len(self._glyphs) or self._glyphs[following].gap is Gap.LINE
+            if before and reading.region[0].gap is Gap.LINE:
+                cut |= Cut.BEFORE
+            if after and ends and page.place(reading.stop - 1)[1] >= after:
+                cut |= Cut.AFTER
+            fields[name] = replace(reading, cut=cut)
 
     def _closing(self, name: str) -> str:
         """The digits that the glyph after a field is read as, where that glyph is lost although
@@ -471,7 +489,8 @@ def _reading(
         text = illegibly(region) if not ways or _foreign_inside(region) else ways[0]
     if text is None:
         return None
-    cut = end == len(page.text) and region[-1].offset == page.glyphs[-1].offset
+    last = end == len(page.text) and region[-1].offset == page.glyphs[-1].offset
+    cut = Cut.AFTER if last else Cut.NONE
     line, column = page.place(begin)
     return Reading(text, line, column, begin, end, region, tuple(ways[1:]), cut, sign_free, closing)
 
