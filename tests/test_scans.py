@@ -229,6 +229,128 @@ def test_a_digit_that_the_reader_cannot_read(elsewhere: int, settles: bool) -> N
     assert one(text.replace("XA= -29.84", "XA= -29.74")).verdict is Verdict.DIFFERS
 
 
+WORN = {
+    "MA= 143.5": "MA= l43.5",
+    "IB= 1961": "IB= l961",
+    "DA= 7.59": "DA= 7.S9",
+    "VX= 14.52": "VX= l4.52",
+    "EM= -.715": "EM= ~.715",
+    "KE= 100904": "KE= l00904",
+    "57.47": "S7.47",
+}
+"""Numbers in which a glyph was read for another; a fifth of a page's."""
+
+
+def worn(most: int) -> str:
+    """A page whose reader misread so many numbers."""
+    text = NOISE
+    for old, new in [*WORN.items()][:most]:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+@pytest.mark.parametrize(("misread", "settles"), [(7, True), (6, False)])
+def test_a_digit_taken_for_its_look_alike_on_a_badly_read_page(misread: int, settles: bool) -> None:
+    """One is the reader's where a fifth of the numbers is, and that is told; two are not, and a
+    digit that nothing like it was read for never is."""
+    text = worn(misread)
+    assert one(text).verdict in SETTLED
+    assert not any("another digit" in line for line in one(text).findings)
+    alone = one(text.replace("-8.78", "-3.78"))
+    assert (alone.verdict in SETTLED) is settles
+    told = [line for line in alone.findings if "XAF (3 for 8)" in line]
+    assert len(told) == settles
+    assert all(f"misread {misread + 1} of 36" in line for line in told)
+    assert one(text.replace("-8.78", "-4.78")).verdict is Verdict.DIFFERS
+    assert one(text.replace("-8.78", "-3.78").replace("15.91", "16.91")).verdict is Verdict.DIFFERS
+
+
+def test_a_habit_of_the_reader_is_put_right_throughout() -> None:
+    """5 for 6 in two inputs and a result; in one input alone it is an alteration."""
+    text = NOISE.replace("143.5", "143.6").replace("25.15", "26.16").replace("14.51", "14.61")
+    result = one(text)
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert numbers(result) == sample(1).numbers()
+    assert one(NOISE.replace("143.5", "143.6")).verdict is Verdict.DIFFERS
+    assert one(text.replace("IB= 1961", "IB= 1981")).verdict is Verdict.DIFFERS
+
+
+def test_masses_and_velocities_are_put_right_by_the_energy_before_the_rest_is_solved_for() -> None:
+    """Two of them and three other inputs, each with a digit for its look-alike."""
+    text = NOISE
+    for old, new in (
+        ("MB= 95.8", "MB= 95.3"),
+        ("UX= -29.04", "UX= -29.64"),
+        ("-19.8", "-19.3"),
+        ("60      -30", "66      -36"),
+    ):
+        assert old in text
+        text = text.replace(old, new, 1)
+    result = one(text)
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert numbers(result) == sample(1).numbers()
+    assert one(text.replace("57.47", "51.47")).verdict not in SETTLED
+
+
+PROMPTS = run(sample(1)).page.replace("*****", "KKKKK").replace("INITIAL KE", "1NITIAL KE")
+
+
+def test_a_digit_misread_in_a_reply_counts_like_any_other() -> None:
+    """A zero with a stroke through it: read as 8 in the reply and in a number, and with a comma
+    run into it; the prompt's own mark is none of the reply's."""
+    assert one(PROMPTS).verdict in SETTLED
+    text = PROMPTS.replace("XA= -29.04", "XA= -29.84", 1)
+    assert one(text).verdict is Verdict.DIFFERS
+    for old, new in (("?-29.04", "7-29.84"), (",25.15,0", ",25.15,68")):
+        assert old in text
+        assert one(text.replace(old, new, 1)).verdict is Verdict.IDENTICAL_AS_READ
+    told = [check for check in one(text.replace("?-29.04", "7-29.84", 1)).replies if check.doubts]
+    assert [(one.read, one.printed) for check in told for one in check.doubts][-1] == ("8", "0")
+
+
+# --- margins -------------------------------------------------------------------------------------
+
+
+def cropped(text: str, start: int | None = None, stop: int | None = None) -> str:
+    """A text of which a margin is cut off."""
+    return "\n".join(line[start:stop] for line in text.split("\n"))
+
+
+@pytest.mark.parametrize("lost", [1, 2, 3])
+def test_what_an_edge_left_of_an_angle_is_borne_out(lost: int) -> None:
+    """First letters and first digits are gone together."""
+    text = run(sample(1)).page.replace(ROW, ROW.lstrip())
+    result = one(cropped(text, lost))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert "PA" in result.guessed
+    assert numbers(result) == sample(1).numbers()
+
+
+def test_digits_lost_at_no_edge_are_another_number() -> None:
+    text = run(sample(1)).page.replace(ROW, ROW.lstrip()[2:])
+    assert one(text).verdict is Verdict.DIFFERS
+    two = text.replace("MA= 143.5", "= 143.5").replace("DA= 7.59", "= 7.59")
+    assert one(two).verdict is Verdict.DIFFERS
+    other = run(sample(1)).page.replace(ROW, ROW.lstrip().replace("-19.8", "-17.8"))
+    assert one(cropped(other, 2)).verdict not in SETTLED
+
+
+def test_a_last_digit_cut_off_is_not_read() -> None:
+    text = run(sample(1)).page
+    width = next(len(line) for line in text.split("\n") if line.endswith("YB= 25.14")) - 1
+    cut = one(cropped(text, None, width))
+    assert cut.verdict is Verdict.INCOMPLETE
+    assert cut.not_read == ["YB"]
+    assert one(text.replace("25.14", "25.1")).verdict is Verdict.DIFFERS
+    assert one(cropped(text.replace("25.14", "26.14"), None, width)).verdict is Verdict.DIFFERS
+
+
+def test_an_exponent_is_no_label() -> None:
+    (shown,) = read_printouts(SAMPLE.replace("E= 5E-03", "5E-03"))
+    assert shown.text("E") == "5E-03"
+
+
 ZEROS = {"UX= -29.04": "UX= -29.84", "60      -30": "66      -38", "KE= 100904": "KE= 180904"}
 """Zeros read as digits like them, in several numbers at once."""
 

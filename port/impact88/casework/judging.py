@@ -139,7 +139,7 @@ def status_of(match: Match, region: Region, text: str) -> Status:
     """What a number is, by how its glyphs are explained by what the program prints."""
     if not match.spots:
         return Status.READ
-    if any(spot.doubt is Doubt.CUT for spot in match.spots):
+    if any(spot.doubt is Doubt.CUT for spot in match.spots) and not match.contradicts:
         return Status.NOT_READ
     damaged = any(not glyph.char.isdigit() and glyph.char not in "-.+" for glyph in region)
     if damaged and _hardly_read(match, region, text):

@@ -23,7 +23,7 @@ from . import glyphs, numerals, pasted
 from .alignment import Aligned, align
 from .anglerow import cut_in_five
 from .glyphs import Gap, Glyph, Page
-from .margins import cut_after, cut_before
+from .margins import begun_within, cut_after, cut_before
 from .numerals import Cut, Region
 from .template import REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
 
@@ -267,6 +267,7 @@ class _Reader:
         start, stop = page.span(self._start, base + aligned.stop)
         self._printout = Printout(*page.place(start), start, stop, page=page)
         self._lines = set(aligned.lines)
+        self._begun_within = begun_within(page, self._start, self._states)
 
     def read(self) -> Printout | None:
         """The printout; None when there is nothing of one."""
@@ -305,15 +306,13 @@ class _Reader:
         """Letters of labels, and asterisks, read as other letters or figures; and lines whose first
         letters were not read, as where a margin is cut off."""
         page = template()
-        count = 0
+        count = sum(self._begun_within)
         before = 0
         for index, state in enumerate(self._states):
             letter = page.letters.get(state, "")
             glyph = self._glyphs[self._start + index]
             if state != before and (letter.isalpha() or letter == "*"):
                 count += glyph.char != letter and glyph.char.isalnum()
-                first = glyph.gap is Gap.LINE and page.line[before] != page.line[state]
-                count += first and state - 1 in page.always
             before = state
         return count
 
@@ -348,7 +347,7 @@ class _Reader:
     def _cut_at_margins(self) -> None:
         """Numbers at an edge that cut lines off may have lost digits there."""
         page, fields = self._page, self._printout.fields
-        before = cut_before(page, self._start, self._states)
+        before = cut_before(self._begun_within)
         after = cut_after(page, self._start, self._states)
         for name, reading in [*fields.items()] if before or after else []:
             cut = reading.cut
