@@ -83,6 +83,17 @@ def test_most_scans_of_the_sample_are_settled() -> None:
     assert sum(verdicts) >= len(verdicts) // 2
 
 
+@pytest.mark.parametrize("name", ["1-015", "1-018", "1-113"])
+def test_scans_whose_scene_is_hard_to_find(name: str) -> None:
+    """Several inputs misread at once: by the energy first, or by a habit; each was accused once."""
+    (page,) = (page for page in scans() if page["name"] == name)
+    (result,) = judged(page["read"])
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    (paper,) = map(outcome_fields, page["printed"])
+    assert {check.name: check.recomputed for check in result.fields} == paper
+    assert any("put down to the reader" in line for line in result.findings)
+
+
 # --- one thing wrong -----------------------------------------------------------------------------
 
 

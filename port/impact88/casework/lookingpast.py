@@ -34,7 +34,7 @@ from .ways import noughts_unreadable
 _TRIED = 8
 """Scenes of each kind that are judged, those that explain most."""
 _HABITS = 2
-"""Digits taken for another that are put right throughout the page, one at a time."""
+"""So many are put right throughout the page, one at a time."""
 _A_HABIT = 1.0
 """What it costs to believe in a habit, besides each place where it shows."""
 _AS_WELL = 1.0
@@ -117,7 +117,7 @@ class LookingPast:
             if other.missing:
                 continue
             scenes = [other.search.replayed_scene(other.scene, other.assumed)]
-            if other.wrong:
+            if 0 < len(other.wrong) < len(self._recovered.wrong):
                 scenes += [one.scored for one in Rereading(other).best()[:_TRIED]]
             for one in scenes:
                 yield one, _A_HABIT + paper_cost(self._shown, other.search, one)
@@ -145,7 +145,7 @@ class LookingPast:
         )
         often = [pair for pair, _ in swapped.most_common(_HABITS)]
         seen = [Habit(printed, frozenset(read)) for printed, read in often]
-        return [noughts, *seen] if noughts else seen
+        return [noughts, *seen][:_HABITS] if noughts else seen
 
 
 def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Rejudged | None:
