@@ -11,6 +11,7 @@ import pytest
 
 from captures import ROOT
 from impact88.casework.judging import Status, machine_read, settled
+from impact88.casework.margins import cut_before
 from impact88.casework.printout import Printout, read_bytes, read_printouts
 from impact88.casework.verify import Verdict, Verification, verify
 from impact88.errors import UserError
@@ -278,8 +279,9 @@ def test_a_digit_taken_for_its_look_alike_on_a_badly_read_page(misread: int, set
 
 
 def test_a_habit_of_the_reader_is_put_right_throughout() -> None:
-    """5 for 6 in two inputs and a result; in one input alone it is an alteration."""
+    """6 for 5 in four inputs and a result; in one input alone it is an alteration."""
     text = NOISE.replace("143.5", "143.6").replace("25.15", "26.16").replace("14.51", "14.61")
+    text = text.replace("7.59", "7.69").replace("EM= -.715", "EM= -.716")
     result = one(text)
     assert result.verdict is Verdict.IDENTICAL_AS_READ
     assert numbers(result) == sample(1).numbers()
@@ -336,6 +338,12 @@ def test_what_an_edge_left_of_an_angle_is_borne_out(lost: int) -> None:
     assert result.verdict is Verdict.IDENTICAL_AS_READ
     assert "PA" in result.guessed
     assert numbers(result) == sample(1).numbers()
+
+
+def test_an_edge_is_where_most_lines_begin_within_their_labels() -> None:
+    assert cut_before([True] * 3 + [False] * 2)
+    assert not cut_before([True] * 3 + [False] * 3)
+    assert not cut_before([True] * 2)
 
 
 def test_digits_lost_at_no_edge_are_another_number() -> None:
