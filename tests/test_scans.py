@@ -322,6 +322,18 @@ def test_a_digit_misread_in_a_reply_counts_like_any_other() -> None:
     assert [(one.read, one.printed) for check in told for one in check.doubts][-1] == ("8", "0")
 
 
+@pytest.mark.parametrize("prompt", ["?", "7"])
+def test_a_comma_for_a_point_in_a_reply(prompt: str) -> None:
+    """The numbers printed below say which of the commas it is; numbers that are not those are too
+    many."""
+    assert PROMPTS.count("?14.52,25.15,0") == 1
+    read = PROMPTS.replace("?14.52,25.15,0", f"{prompt}14.52,25,15,0")
+    result = one(read)
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert [reply.same for reply in result.replies if reply.name == "WB"] == [True]
+    assert one(read.replace("25,15,0", "26,15,0")).verdict is Verdict.DIFFERS
+
+
 # --- margins -------------------------------------------------------------------------------------
 
 

@@ -411,6 +411,8 @@ class _Reader:
             stop += 1
         names = REPLIES["A" if name == REPLY_A else "B"]
         parts = _reply_parts(list(self._glyphs[start:stop]))
+        printed = [self._printout.text(field_name) for field_name in names]
+        parts = _comma_for_point(self._glyphs[start:stop], parts, printed) or parts
         if len(parts) > len(names) and all(map(numerals.clean, parts[:3])):
             extra = "".join(map(numerals.plain, parts[3:]))
             self._remark("", f"reply: {_quoted(extra)} after the third number", start)
@@ -545,6 +547,31 @@ def _reply_parts(glyphs_: list[Glyph]) -> list[Region]:
             parts[-1].append(glyph)
         index += 1
     return [tuple(part) for part in parts]
+
+
+def _comma_for_point(
+    glyphs_: Sequence[Glyph], parts: Sequence[Region], printed: Sequence[str | None]
+) -> list[Region]:
+    """The parts of a reply with two of them as one number whose point was read as a comma, where
+    all are then what is printed below; else none."""
+    if len(parts) != len(printed) + 1 or not all(parts):
+        return []
+    for place in range(len(printed)):
+        one, other = parts[place : place + 2]
+        whole = tuple(
+            glyph for glyph in glyphs_ if one[0].offset <= glyph.offset <= other[-1].offset
+        )
+        joined = [*parts[:place], whole, *parts[place + 2 :]]
+        texts = [numerals.plain(part).replace(",", ".") for part in joined]
+        if all(map(_reads_as, texts, printed)):
+            return joined
+    return []
+
+
+def _reads_as(text: str, printed: str | None) -> bool:
+    """Whether a part of a reply, the prompt's mark before it or not, is a printed number."""
+    value = numerals.value_of(printed) if printed else None
+    return value is not None and value in map(numerals.value_of, (text, text[1:]))
 
 
 def _quoted(text: str) -> str:
