@@ -52,7 +52,8 @@ def _reads_as_a_number(shown: Printout, check: FieldCheck) -> bool:
     none."""
     if check.start is None or check.stop is None or shown.page is None:
         return False
-    if any(doubt.how == Doubt.CUT for doubt in check.doubts):
+    hows = {doubt.how for doubt in check.doubts}
+    if Doubt.CUT in hows and Doubt.CONTRADICTS not in hows:
         return False
     glyphs = shown.page.glyphs
     region = tuple(one for one in glyphs if check.start <= one.offset < check.stop)

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import combinations as pairs_of
 from itertools import product
+from math import comb
 from typing import NamedTuple
 
 import numpy as np
@@ -426,13 +427,15 @@ def _two_changes(choices: Choices, most: int) -> Picks:
 
 
 def _three_digits(choices: Choices) -> Picks:
-    """A digit taken for its look-alike in each of three columns."""
+    """A digit taken for its look-alike in each of three columns; of too many the likeliest."""
     likely = COSTS[misreading.DIGIT]
     alike = likely + _ALIKE * _UNLIKE
-    places = [
-        [index for index, one in enumerate(options) if likely <= one.cost <= alike]
-        for options in choices
-    ]
+    most = int((_PAIRS / comb(len(choices), 3)) ** (1 / 3))
+    places = []
+    for options in choices:
+        costs = [one.cost for one in options]
+        digits = [index for index, cost in enumerate(costs) if likely <= cost <= alike]
+        places.append(sorted(digits, key=costs.__getitem__)[:most])
     parts = [np.zeros((0, len(choices)), np.intp)]
     for columns_changed in pairs_of(range(len(choices)), 3):
         some = np.array(list(product(*(places[column] for column in columns_changed))), np.intp)
