@@ -12,6 +12,7 @@ import pytest
 from captures import ROOT
 from impact88.casework.judging import Status, machine_read, settled
 from impact88.casework.margins import cut_before
+from impact88.casework.numerals import printable
 from impact88.casework.printout import Printout, read_bytes, read_printouts
 from impact88.casework.verify import Verdict, Verification, verify
 from impact88.errors import UserError
@@ -519,6 +520,28 @@ def test_what_a_page_cannot_show() -> None:
     assert one(text).verdict is Verdict.IDENTICAL  # the program prints just that
     sums = one(SAMPLE).unseen
     assert any("PA and TA" in line for line in sums)
+
+
+def test_digits_too_small_to_show_are_told_and_no_others() -> None:
+    """Against runs of the program one by one: a mass of 1.6 against one of 260542."""
+    (page,) = (page for page in scans() if page["name"] == "1-018")
+    (text,) = page["printed"]
+    told = one(text).unseen[-1]
+    assert "IB 64(44291)" in told
+    scene = {name: value or "" for name, value in one(text).scene.items()}
+    paper = outcome_fields(text)
+    for name in ("MB", "IB", "DA", "UY"):
+        marked = next((word for word in told.split(", ") if word.startswith(f"{name} ")), "")
+        faint = set()
+        for place, old in enumerate(paper[name]):
+            for new in set("0123456789") - {old} if old.isdigit() else ():
+                other = paper[name][:place] + new + paper[name][place + 1 :]
+                fields = outcome_fields(run({**scene, name: other}).printout)
+                if printable(other) and {**fields, name: ""} == {**paper, name: ""}:
+                    faint.add(place)
+        digits = "".join(f"({c})" if at in faint else c for at, c in enumerate(paper[name]))
+        assert marked == (f"{name} {digits.replace(')(', '')}" if faint else "")
+    assert not any("brackets" in line for line in one(SAMPLE).unseen)
 
 
 # --- what people paste, and what is hostile ------------------------------------------------------

@@ -1,17 +1,22 @@
 """What a page cannot show: inputs that nothing else printed on it depends on.
 
 A misreading of such an input leaves a page that agrees with itself, so no verdict covers it. With
-M = 4 that is a third of all inputs. Angles that enter only as a sum are told together.
+M = 4 that is a third of all inputs. Angles that enter only as a sum are told together, and single
+digits that are too small to show, most often an inertia's last.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+
+import numpy as np
 
 from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
 from . import trial
+from .misreading import opposite
+from .numerals import printable
 from .ways import scene_name
 
 _SUMS = (("PA", "TA"), ("PB", "TB"))
@@ -57,7 +62,54 @@ def unseen(scene: Mapping[str, str | None], missing: list[str]) -> list[str]:
                 f"{one} and {two} enter only as their sum, so which of the two is misread would "
                 "not show"
             )
+    faint = _faint(base, first, set(alone))
+    if faint:
+        sentences.append(
+            "any one digit in brackets may be another with all else on the page the same: "
+            + ", ".join(faint)
+        )
     return sentences
+
+
+def _faint(base: Mapping[str, str], first: trial.Outcome, alone: set[str]) -> list[str]:
+    """The inputs, as printed, in which one digit can be another that changes nothing else on the
+    page; each such digit in brackets."""
+    tried: list[tuple[str, int]] = []
+    scenes: list[Mapping[str, str]] = [base]
+    for name in INPUTS:
+        printed, own = first.fields.get(name), scene_name(name)
+        if printed is None or name in alone:
+            continue
+        turned = own == "MU" and (double(base[own]) < 0) != printed.startswith("-")
+        for place, text in _other_digits(printed):
+            tried.append((name, place))
+            scenes.append({**base, own: opposite(text) if turned else text})
+    if not tried:
+        return []
+    endings, columns = trial.run_columns(scenes, tuple(FIELDS))
+    differ = {name: texts != texts[0] for name, texts in columns.items()}
+    ended = np.array(endings) != endings[0]
+    shows = ended + sum(differ.values())
+    faint: dict[str, set[int]] = {}
+    for row, (name, place) in enumerate(tried, 1):
+        if shows[row] == differ[name][row]:
+            faint.setdefault(name, set()).add(place)
+    return [f"{scene_name(name)} {_marked(first.fields[name], at)}" for name, at in faint.items()]
+
+
+def _other_digits(printed: str) -> Iterator[tuple[int, str]]:
+    """The numbers that differ in one digit from one, and where; exponents apart."""
+    for place, old in enumerate(printed.partition("E")[0]):
+        for new in "0123456789" if old.isdigit() else "":
+            text = printed[:place] + new + printed[place + 1 :]
+            if new != old and printable(text):
+                yield place, text
+
+
+def _marked(text: str, places: set[int]) -> str:
+    """A number with some of its digits in brackets."""
+    marked = "".join(f"({glyph})" if at in places else glyph for at, glyph in enumerate(text))
+    return marked.replace(")(", "")
 
 
 def _others(text: str, name: str) -> list[str]:
