@@ -23,6 +23,8 @@ _SUMS = (("PA", "TA"), ("PB", "TB"))
 _STEP = 7
 _ANGLE_STEPS = ("11", "-23")
 _LAST_PLACES = 2.0
+_DEPENDENT = tuple(name for name in FIELDS if name not in INPUTS or name == "MUP")
+"""What is printed that other inputs than itself may change: MU's sign is chosen."""
 
 
 def unseen(scene: Mapping[str, str | None], missing: list[str]) -> list[str]:
@@ -86,13 +88,12 @@ def _faint(base: Mapping[str, str], first: trial.Outcome, alone: set[str]) -> li
             scenes.append({**base, own: opposite(text) if turned else text})
     if not tried:
         return []
-    endings, columns = trial.run_columns(scenes, tuple(FIELDS))
+    endings, columns = trial.run_columns(scenes, _DEPENDENT)
     differ = {name: texts != texts[0] for name, texts in columns.items()}
-    ended = np.array(endings) != endings[0]
-    shows = ended + sum(differ.values())
+    shows = (np.array(endings) != endings[0]) + sum(differ.values())
     faint: dict[str, set[int]] = {}
     for row, (name, place) in enumerate(tried, 1):
-        if shows[row] == differ[name][row]:
+        if shows[row] == (name in differ and differ[name][row]):
             faint.setdefault(name, set()).add(place)
     return [f"{scene_name(name)} {_marked(first.fields[name], at)}" for name, at in faint.items()]
 
@@ -137,7 +138,7 @@ def _agree(one: trial.Outcome, other: trial.Outcome, names: set[str], exact: boo
     if one.ending != other.ending:
         return False
     for name, field in FIELDS.items():
-        if (name in INPUTS and name != "MUP") or name in names:
+        if name not in _DEPENDENT or name in names:
             continue
         text, second = one.fields.get(name), other.fields.get(name)
         if text == second:
