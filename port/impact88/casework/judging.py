@@ -356,15 +356,16 @@ def _readers_own(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) ->
     alone = [
         pair
         for pair, count in swapped.items()
-        if count == 1 and not (_alike(pair) and misread[pair[0]] > UNREADABLE)
+        if count == 1 and not (alike(pair) and misread[pair[0]] > UNREADABLE)
     ]
     if len(alone) != 1:
         return not alone
     others = [check for check in checks if alone[0] not in swapped_digits(check)]
-    return _alike(alone[0]) and sum(map(misread_at_all, others)) >= BADLY_READ
+    return alike(alone[0]) and sum(map(misread_at_all, others)) >= BADLY_READ
 
 
-def _alike(pair: tuple[str, str]) -> bool:
+def alike(pair: tuple[str, str]) -> bool:
+    """Whether readers take one digit of a pair for the other."""
     return frozenset(pair) in SIMILAR
 
 

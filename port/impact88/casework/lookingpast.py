@@ -18,13 +18,14 @@ from .inversion import paper_cost, scenes_found
 from .judging import (
     FieldCheck,
     Status,
+    alike,
     field_checks,
     machine_read,
     reply_checks,
     settled,
     swapped_digits,
 )
-from .numerals import SIMILAR, Habit
+from .numerals import Habit
 from .printout import Printout
 from .recovery import Recovered, recover
 from .rereading import Reread, Rereading
@@ -141,7 +142,7 @@ class LookingPast:
             for check in field_checks(self._shown, self._recovered)
             if len(pairs := list(swapped_digits(check))) == 1
             for pair in pairs
-            if frozenset(pair) in SIMILAR
+            if alike(pair)
         )
         often = [pair for pair, _ in swapped.most_common(_HABITS)]
         seen = [Habit(printed, frozenset(read)) for printed, read in often]

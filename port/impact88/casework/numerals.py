@@ -411,12 +411,13 @@ class Habit(NamedTuple):
 
 def unreadable(digit: str) -> Habit:
     """The habit of a reader that takes a digit for any that is like it."""
-    return Habit(digit, frozenset(other for pair in SIMILAR if digit in pair for other in pair))
+    others = frozenset(other for pair in SIMILAR if digit in pair for other in pair - {digit})
+    return Habit(digit, others)
 
 
 def without_habit(text: str, habit: Habit) -> list[tuple[str, int]]:
     """The printable texts that a habit may have made this one of, with how many digits change."""
-    places = [at for at, char in enumerate(text) if char in habit.read - {habit.printed}]
+    places = [at for at, char in enumerate(text) if char in habit.read]
     texts = []
     for count in range(1, len(places) + 1):
         for some in combinations(places[:_MOST_ALIKE], count):

@@ -17,7 +17,7 @@ from ..fields import ANGLES, FIELDS, INPUTS
 from . import trial
 from .misreading import opposite
 from .numerals import printable
-from .ways import scene_name
+from .ways import mu_turned, scene_name
 
 _SUMS = (("PA", "TA"), ("PB", "TB"))
 _STEP = 7
@@ -82,7 +82,7 @@ def _faint(base: Mapping[str, str], first: trial.Outcome, alone: set[str]) -> li
         printed, own = first.fields.get(name), scene_name(name)
         if printed is None or name in alone:
             continue
-        turned = own == "MU" and (double(base[own]) < 0) != printed.startswith("-")
+        turned = own == "MU" and mu_turned(base[own], printed)
         for place, text in _other_digits(printed):
             tried.append((name, place))
             scenes.append({**base, own: opposite(text) if turned else text})

@@ -59,6 +59,11 @@ def with_opposite_mu(scene: Mapping[str, str]) -> Iterator[dict[str, str]]:
         yield {**scene, "MU": opposite(scene["MU"])}
 
 
+def mu_turned(typed: str, printed: str) -> bool:
+    """Whether line 400 gave MU the other sign than it was typed with."""
+    return (double(typed) < 0) != printed.startswith("-")
+
+
 def choices_of(
     shown: Printout, given: Mapping[str, str] | None = None, habit: Habit | None = None
 ) -> tuple[Choices, list[str]]:
@@ -258,7 +263,7 @@ def other_bits(scene: Mapping[str, str], assumed: Mapping[str, str]) -> Choices:
         printed = assumed.get(field)
         if printed is not None and name != "M":
             others = list(texts_that_print(printed, name in ANGLES))
-            if name == "MU" and (double(typed) < 0) != printed.startswith("-"):
+            if name == "MU" and mu_turned(typed, printed):
                 others = [opposite(text) for text in others]
             seen = stored_and_printed(typed, name in ANGLES)
             for text in others:
