@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from impact88.closedform.formulas import Book
-from impact88.closedform.passes import Plan
+from impact88.closedform.formulas import ExpressionTable
+from impact88.closedform.plan import Plan
 
 LENGTH = 7
 PLAIN = {"+": operator.add, "-": operator.sub, "*": operator.mul}
@@ -35,12 +35,12 @@ def run(plan):
 @given(st.data())
 def test_any_formulas_give_what_numpy_gives(data):
     """Random formulas over columns and constants, several results sharing parts."""
-    book = Book()
+    table = ExpressionTable()
     pool = [
-        (book.column("a", True), COLUMNS["a"]),
-        (book.column("b", True), COLUMNS["b"]),
-        (book.column("fixed", False), COLUMNS["fixed"]),
-        *((book.constant(c), np.array([c])) for c in (0.0, 1.0, -1.0, 2.5)),
+        (table.column("a", True), COLUMNS["a"]),
+        (table.column("b", True), COLUMNS["b"]),
+        (table.column("fixed", False), COLUMNS["fixed"]),
+        *((table.constant(c), np.array([c])) for c in (0.0, 1.0, -1.0, 2.5)),
     ]
     pick = st.integers(0, 10**6)
     for _ in range(data.draw(st.integers(1, 25))):
@@ -56,16 +56,16 @@ def test_any_formulas_give_what_numpy_gives(data):
             elif kind == "n":
                 pool.append((-x, -vx))
             elif kind == "c":
-                s, c = book.sine_and_cosine(x)
+                s, c = table.sine_and_cosine(x)
                 pool.append((c, np.cos(np.radians(vx))))
                 pool.append((s, np.sin(np.radians(vx))))
             elif kind == "h":
-                pool.append((book.hypotenuse(x, y), np.hypot(vx, vy)))
+                pool.append((table.hypotenuse(x, y), np.hypot(vx, vy)))
             elif kind == "s":
-                pool.append((book.against(x, y), np.where(vy > 0, -vx, vx)))
+                pool.append((table.against(x, y), np.where(vy > 0, -vx, vx)))
             else:
-                condition = book.equals(x, 1.75)
-                pool.append((book.choose(condition, x, y), np.where(vx == 1.75, vx, vy)))
+                condition = table.equals(x, 1.75)
+                pool.append((table.choose(condition, x, y), np.where(vx == 1.75, vx, vy)))
         if not np.all(np.abs(pool[-1][1]) < 1e6):
             pool.pop()
     wanted = [pool[data.draw(pick) % len(pool)] for _ in range(data.draw(st.integers(1, 4)))]
@@ -77,9 +77,9 @@ def test_any_formulas_give_what_numpy_gives(data):
 
 
 def test_what_disappears():
-    book = Book()
-    a, b = book.column("a", True), book.column("b", True)
-    zero, one, endless = book.constant(0.0), book.constant(1.0), book.constant(math.inf)
+    table = ExpressionTable()
+    a, b = table.column("a", True), table.column("b", True)
+    zero, one, endless = table.constant(0.0), table.constant(1.0), table.constant(math.inf)
     assert a + zero is a
     assert zero + a is a
     assert a - zero is a
@@ -87,35 +87,35 @@ def test_what_disappears():
     assert a / one is a
     assert (a * zero).is_zero
     assert (zero - a) is -a
-    assert book.negative(-a) is a
+    assert table.negative(-a) is a
     assert a + -b is a - b
     assert a - -b is a + b
     assert (-a) * (-b) is a * b
     assert (one / endless).is_zero
     assert a * b is a * b
     assert not (zero / a).is_zero  # a may be 0
-    assert book.sine_and_cosine(zero)[1].is_constant(1.0)
-    assert book.sine_and_cosine(-a)[1] is book.sine_and_cosine(a)[1]
+    assert table.sine_and_cosine(zero)[1].is_constant(1.0)
+    assert table.sine_and_cosine(-a)[1] is table.sine_and_cosine(a)[1]
 
 
 def test_only_what_is_wanted_is_planned():
-    book = Book()
-    a, b = book.column("a", True), book.column("b", True)
+    table = ExpressionTable()
+    a, b = table.column("a", True), table.column("b", True)
     shared = a * b
-    costly = book.hypotenuse(shared, a)
+    costly = table.hypotenuse(shared, a)
     plan = Plan({"x": shared + a})
     assert plan.passes == 2
     assert Plan({"x": costly, "y": costly + 1.0}).passes == 3
     assert Plan({"x": a * 2.0}).columns == ["a"]
-    constant = Plan({"x": book.column("fixed", False) * 2.0})
+    constant = Plan({"x": table.column("fixed", False) * 2.0})
     assert constant.passes == 0
     assert run(constant)["x"].tolist() == [3.5] * LENGTH
 
 
 @pytest.mark.parametrize("zero", [0.0, -0.0])
 def test_sign_rule_keeps_the_sign_on_either_zero(zero):
-    book = Book()
-    plan = Plan({"x": book.against(book.column("a", True), book.column("b", True))})
+    table = ExpressionTable()
+    plan = Plan({"x": table.against(table.column("a", True), table.column("b", True))})
     found = {"x": np.empty(3)}
     columns = {"a": np.array([1.5, -1.5, 2.0]), "b": np.array([zero, zero, 5e-324])}
     plan.run(plan.fixed_values({}), columns, found, plan.workspace(3))

@@ -26,18 +26,18 @@ class Expression:
     ``varies`` is False when the value is the same for every scene of a block.
     """
 
-    __slots__ = ("book", "dtype", "key", "operands", "operation", "value", "varies")
+    __slots__ = ("dtype", "key", "operands", "operation", "table", "value", "varies")
 
     def __init__(
         self,
-        book: Book,
+        table: ExpressionTable,
         operation: str,
         operands: tuple[Expression, ...],
         varies: bool,
         dtype: str,
         value: float | str | None = None,
     ) -> None:
-        self.book = book
+        self.table = table
         self.operation = operation
         self.operands = operands
         self.varies = varies
@@ -53,34 +53,34 @@ class Expression:
         return self.is_constant(0.0)
 
     def __add__(self, other: Expression | float) -> Expression:
-        return self.book.add(self, self.book.wrap(other))
+        return self.table.add(self, self.table.wrap(other))
 
     def __radd__(self, other: float) -> Expression:
-        return self.book.add(self.book.wrap(other), self)
+        return self.table.add(self.table.wrap(other), self)
 
     def __sub__(self, other: Expression | float) -> Expression:
-        return self.book.subtract(self, self.book.wrap(other))
+        return self.table.subtract(self, self.table.wrap(other))
 
     def __rsub__(self, other: float) -> Expression:
-        return self.book.subtract(self.book.wrap(other), self)
+        return self.table.subtract(self.table.wrap(other), self)
 
     def __mul__(self, other: Expression | float) -> Expression:
-        return self.book.multiply(self, self.book.wrap(other))
+        return self.table.multiply(self, self.table.wrap(other))
 
     def __rmul__(self, other: float) -> Expression:
-        return self.book.multiply(self.book.wrap(other), self)
+        return self.table.multiply(self.table.wrap(other), self)
 
     def __truediv__(self, other: Expression | float) -> Expression:
-        return self.book.divide(self, self.book.wrap(other))
+        return self.table.divide(self, self.table.wrap(other))
 
     def __rtruediv__(self, other: float) -> Expression:
-        return self.book.divide(self.book.wrap(other), self)
+        return self.table.divide(self.table.wrap(other), self)
 
     def __neg__(self) -> Expression:
-        return self.book.negative(self)
+        return self.table.negative(self)
 
 
-class Book:
+class ExpressionTable:
     """Where the expressions of one plan are kept, each once."""
 
     def __init__(self) -> None:

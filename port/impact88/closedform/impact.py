@@ -37,7 +37,7 @@ from functools import cached_property
 from ..names import PIVOT
 from . import statusbits  # noqa: F401 - makes "status" an operation of plans
 from .energy import kinetic_energy
-from .formulas import Book, Expression
+from .formulas import Expression, ExpressionTable
 
 Pair = tuple[Expression, Expression]
 
@@ -51,14 +51,14 @@ class Impact:
 
     def __init__(
         self,
-        book: Book,
+        table: ExpressionTable,
         scene: Mapping[str, Expression],
         pivot: bool | Expression,
         point: bool | Expression,
         infinite: bool,
         sign: float | None = None,
     ) -> None:
-        self.book = book
+        self.table = table
         self.scene = scene
         self.pivot = pivot
         self.point = point
@@ -76,8 +76,8 @@ class Impact:
         if self.point is False:
             return value
         if self.point is True:
-            return self.book.constant(instead)
-        return self.book.choose(self.point, self.book.constant(instead), value)
+            return self.table.constant(instead)
+        return self.table.choose(self.point, self.table.constant(instead), value)
 
     def _by_kind(
         self, friction: Callable[[], Expression], pivot: Callable[[], Expression]
@@ -86,13 +86,13 @@ class Impact:
             return friction()
         if self.pivot is True:
             return pivot()
-        return self.book.choose(self.pivot, pivot(), friction())
+        return self.table.choose(self.pivot, pivot(), friction())
 
     # -- geometry
 
     @cached_property
     def _n(self) -> Pair:
-        s, c = self.book.sine_and_cosine(self.GA)
+        s, c = self.table.sine_and_cosine(self.GA)
         return c, s
 
     def _arms(self, d: str, phi: str, theta: str) -> Pair:
@@ -101,7 +101,7 @@ class Impact:
         distance = self.DA if d == "DA" else self.DB
         if distance.is_zero:
             return distance, distance
-        s, c = self.book.sine_and_cosine(self.scene[theta] + self.scene[phi] - self.GA)
+        s, c = self.table.sine_and_cosine(self.scene[theta] + self.scene[phi] - self.GA)
         return distance * s, -(distance * c)
 
     @cached_property
@@ -117,7 +117,7 @@ class Impact:
         distance = self.DA if d == "DA" else self.DB
         if distance.is_zero:
             return distance, distance
-        s, c = self.book.sine_and_cosine(self.scene[theta] + self.scene[phi])
+        s, c = self.table.sine_and_cosine(self.scene[theta] + self.scene[phi])
         return distance * s, distance * c
 
     @cached_property
@@ -213,7 +213,7 @@ class Impact:
     def mu(self) -> Expression:
         """MU after the sign rule of line 400: changed where gt > 0, kept on a tie."""
         if self.sign is None:
-            return self.book.against(self.MU, self.gt)
+            return self.table.against(self.MU, self.gt)
         return self.sign * self.MU
 
     @cached_property
@@ -452,7 +452,7 @@ class Impact:
             return spin
         if self.point is True:
             return self.scene[name]
-        return self.book.choose(self.point, self.scene[name], spin)
+        return self.table.choose(self.point, self.scene[name], spin)
 
     # -- contact velocities, lines 340, 700 and 710
 
@@ -493,11 +493,11 @@ class Impact:
     def _finite(self, inertia: Expression) -> Expression:
         """An infinite body is at rest and adds no energy."""
         if inertia.is_constant(math.inf):
-            return self.book.constant(0.0)
+            return self.table.constant(0.0)
         if not self.infinite:
             return inertia
-        return self.book.choose(
-            self.book.combine("isinf", inertia, dtype="bool"), self.book.constant(0.0), inertia
+        return self.table.choose(
+            self.table.combine("isinf", inertia, dtype="bool"), self.table.constant(0.0), inertia
         )
 
     def _energy(self, velocities: Sequence[Expression]) -> Expression:
@@ -527,7 +527,7 @@ class Impact:
                 + self.kappa[1] * self.H
             )
 
-        return self._by_kind(friction, lambda: self.book.constant(0.0))
+        return self._by_kind(friction, lambda: self.table.constant(0.0))
 
     @cached_property
     def _lost(self) -> Expression:
@@ -548,7 +548,7 @@ class Impact:
 
     @cached_property
     def _P(self) -> Expression:
-        return self.book.hypotenuse(self.PN, self.PT)
+        return self.table.hypotenuse(self.PN, self.PT)
 
     @cached_property
     def DVA(self) -> Expression:
@@ -560,7 +560,7 @@ class Impact:
 
     @cached_property
     def MUP(self) -> Expression:
-        return self._by_kind(lambda: self.mu, lambda: self.book.constant(PIVOT))
+        return self._by_kind(lambda: self.mu, lambda: self.table.constant(PIVOT))
 
     @cached_property
     def MUC(self) -> Expression:
@@ -578,7 +578,7 @@ class Impact:
         |A^-1||A|. Measured over the benchmark's populations: within a factor 5 of it for 98 % of
         the scenes of each, and within 50 always.
         """
-        absolute = self.book.absolute
+        absolute = self.table.absolute
         an, at, bn, bt = (absolute(arm) for arm in (*self._a, *self._b))
         sn, st = an + bn, at + bt
         kn, kt = an * self._ia + bn * self._ib, at * self._ia + bt * self._ib
@@ -600,9 +600,9 @@ class Impact:
 
     @cached_property
     def STATUS(self) -> Expression:
-        zero = self.book.constant(0.0)
+        zero = self.table.constant(0.0)
         velocities = self.VAX + self.VAY + self.VBX + self.VBY + self.WAF + self.WBF
-        return self.book.combine(
+        return self.table.combine(
             "status",
             self.gn,
             self.gt,

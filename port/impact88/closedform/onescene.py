@@ -21,9 +21,9 @@ import numpy as np
 from ..names import DEFAULT_M, PIVOT, SCENE
 from . import degrees
 from .columns import ANGLES, INERTIAS, LARGE_ANGLE, UNUSED_BY_POINTS
-from .formulas import Book, Expression
+from .formulas import Expression, ExpressionTable
 from .impact import Impact
-from .passes import OPERATIONS, in_order
+from .plan import OPERATIONS, in_order
 
 NAMES = tuple(SCENE)
 _PLAIN = {float, int, np.float64}
@@ -75,9 +75,9 @@ def _plain(value: Any) -> float:
 @lru_cache(maxsize=256)
 def _function(wanted: tuple[str, ...], point: bool, pivot: bool) -> Callable[..., tuple[float]]:
     """The function of the scene's values, in the table's order, that gives the results."""
-    book = Book()
-    scene = {name: book.column(name, varies=True) for name in NAMES}
-    impact = Impact(book, scene, pivot, point, infinite=False)
+    table = ExpressionTable()
+    scene = {name: table.column(name, varies=True) for name in NAMES}
+    impact = Impact(table, scene, pivot, point, infinite=False)
     source, constants = _written([getattr(impact, name) for name in wanted], point)
     names = {
         "fmod": math.fmod,

@@ -20,10 +20,10 @@ from ..names import PIVOT, RESULTS, SCENE
 from ..processors import processors
 from ..status import Status
 from .columns import Block, Buffers, Source, examine, sources
-from .formulas import Book, Expression
+from .formulas import Expression, ExpressionTable
 from .impact import Impact
 from .onescene import solve_one
-from .passes import Plan
+from .plan import Plan
 
 Array = NDArray[Any]
 
@@ -267,24 +267,24 @@ class _Worker:
 def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...], sign: float | None = None) -> Plan:
     """The plan for a kind of block (see `closedform.columns.Block`) and the results wanted, with
     MU's sign by line 400's rule or as `quantities` has it."""
-    book = Book()
+    table = ExpressionTable()
     kind = dict(zip(SCENE, kinds, strict=True))
     scene: dict[str, Expression] = {}
     for name, what in kind.items():
         if what in ("0", "1", "inf"):
-            scene[name] = book.constant(float(what))
+            scene[name] = table.constant(float(what))
         elif what == "unused":
-            scene[name] = book.constant(0.0)
+            scene[name] = table.constant(0.0)
         else:
-            scene[name] = book.column(name, varies=what.startswith(("array", "mixed")))
+            scene[name] = table.column(name, varies=what.startswith(("array", "mixed")))
     pivot: bool | Expression = kind["MU"] == "pivot"
     if kind["MU"] == "mixed":
-        pivot = book.equals(scene["MU"], PIVOT)
+        pivot = table.equals(scene["MU"], PIVOT)
     point: bool | Expression = kind["M"] == "4"
     if kind["M"] == "mixed":
-        point = book.equals(scene["M"], 4.0)
+        point = table.equals(scene["M"], 4.0)
     infinite = any("inf" in what for what in kinds)
-    impact = Impact(book, scene, pivot, point, infinite, sign)
+    impact = Impact(table, scene, pivot, point, infinite, sign)
     return Plan({name: _expression(impact, name) for name in wanted})
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..names import PIVOT
 from ..status import Status
-from .passes import register
+from .plan import register
 
 Array = NDArray[Any]
 

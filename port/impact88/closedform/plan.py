@@ -143,7 +143,7 @@ class Plan:
                 continue
             operands = tuple(self._index[id(operand)] for operand in e.operands)
             if e.operation == "sine_and_cosine":
-                halves = [e.book.half(e, half) for half in _PROJECTIONS]
+                halves = [e.table.half(e, half) for half in _PROJECTIONS]
                 places = [slots.take(half) for half in halves]
                 self._steps.append((None, (*operands, *places, *slots.spare("float", 4))))
                 for half in halves:
