@@ -114,7 +114,7 @@ def test_populations_of_the_table_can_be_typed():
 def test_files_are_timed_beside_the_computation(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("impact88.commands.bench.FILE_ROWS", 300)
+    monkeypatch.setattr("impact88.commands.bench_command.FILE_ROWS", 300)
     assert main(["bench", "--files", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["files"]
     assert found["rows"] == 300

@@ -11,7 +11,7 @@ import sys
 import pytest
 
 from impact88.cli import main
-from impact88.commands import bounds as command
+from impact88.commands import bounds_command as command
 from impact88.scene import sample
 
 RANGES = ["--range", "MU=0.7 .. 1", "--range", "UX=+- 10%"]

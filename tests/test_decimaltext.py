@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from impact88.applesoft import decimaltext, real
-from impact88.applesoft.errors import ApplesoftError
+from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.applesoft.operators import Real
 
 stored_numbers = st.tuples(

@@ -31,7 +31,7 @@ from installed import impact88 as command
 pytest.importorskip("flask", reason="the desk's extra is not installed")
 pytest.importorskip("waitress", reason="the desk's extra is not installed")
 
-from impact88.desk import app, bench, collision, guard, paper, reconstruction, serving
+from impact88.desk import app, collision, guard, paper, reconstruction, serving, workers
 
 PORT, TOKEN = 8088, "a-token"
 OWN = f"http://127.0.0.1:{PORT}"
@@ -488,7 +488,7 @@ def in_thread(work: Any) -> tuple[threading.Thread, list[Any]]:
 
 
 def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
-    asking = bench.Bench("collision")
+    asking = workers.Bench("collision")
     question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
         first, first_outcome = in_thread(lambda: asking.ask("page", question))
@@ -498,21 +498,21 @@ def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
         newer, newer_outcome = in_thread(lambda: asking.ask("page", question))
         for thread in (first, other, newer):
             thread.join()
-        assert [type(outcome) for outcome in first_outcome] == [bench.SupersededError]
+        assert [type(outcome) for outcome in first_outcome] == [workers.SupersededError]
         assert process is not None
         assert process.poll() is not None
         assert newer_outcome[0]["inputs"]["MU"]["limits"] == [0.7, 0.9]
         assert newer_outcome == other_outcome
         with pytest.raises(UserError, match="no ranges"):
             asking.ask("page", {"task": "bounds", "values": dict(sample(1))})
-        with pytest.raises(bench.BrokenError, match="KeyError"):
+        with pytest.raises(workers.BrokenError, match="KeyError"):
             asking.ask("page", {"task": "nothing of the sort"})
     finally:
         asking.close()
 
 
 def test_stopping_ends_what_a_page_waits_for_and_no_other_pages() -> None:
-    asking = bench.Bench("collision")
+    asking = workers.Bench("collision")
     question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
         thread, outcome = in_thread(lambda: asking.ask("page", question))
@@ -523,7 +523,7 @@ def test_stopping_ends_what_a_page_waits_for_and_no_other_pages() -> None:
         assert process.poll() is None
         asking.stop("page")
         thread.join()
-        assert [type(one) for one in outcome] == [bench.SupersededError]
+        assert [type(one) for one in outcome] == [workers.SupersededError]
         assert process.poll() is not None
     finally:
         asking.close()

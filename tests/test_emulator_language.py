@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from impact88.applesoft.console import EndOfInput
-from impact88.applesoft.errors import ApplesoftError
+from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.checking.captured import displayed, session
 from impact88.emulator.emulator import Applesoft
 from impact88.emulator.lister import untokenised

@@ -16,8 +16,8 @@ import pytest
 from impact88.chapter.staged import collisions, experimental, forward, predicted
 from impact88.cli import main
 from impact88.closedform.solve import solve
-from impact88.commands import figure as command
-from impact88.commands.figure import solved
+from impact88.commands import figure_command as command
+from impact88.commands.figure_command import solved
 from impact88.errors import UserError
 from impact88.figures import canvas, charts, freebody
 from impact88.figures.configurations import configurations

@@ -18,7 +18,7 @@ WITH_SET = "run --sample 1|solve cases.csv|compare cases.csv|reconstruct|barrier
 def declared(command: str) -> dict[str, argparse.Action]:
     """The options of a command, by spelling."""
     parser = argparse.ArgumentParser()
-    module = importlib.import_module(f"impact88.commands.{command.replace('-', '_')}")
+    module = importlib.import_module(f"impact88.commands.{command.replace('-', '_')}_command")
     module.add_arguments(parser)
     return {name: action for action in parser._actions for name in action.option_strings}
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from impact88.applesoft import decimaltext, real
-from impact88.applesoft.errors import CODES, ApplesoftError
+from impact88.applesoft.errorcodes import CODES, ApplesoftError
 from impact88.applesoft.operators import Real
 
 numbers = st.one_of(

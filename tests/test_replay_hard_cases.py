@@ -17,9 +17,9 @@ import pytest
 from impact88.applesoft import decimaltext as scalar_text
 from impact88.applesoft import functions as scalar_functions
 from impact88.applesoft import real
-from impact88.applesoft.errors import ApplesoftError
+from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.applesoft.real import Number
-from impact88.replay import decimaltext, functions
+from impact88.replay import polynomials, textcolumns
 from impact88.replay.reals import Reals, compare, floor, from_floats
 from impact88.replay.unit import Unit
 
@@ -103,19 +103,19 @@ BINARY = {
     "subtract": (real.subtract, Reals.__sub__),
     "multiply": (real.multiply, Reals.__mul__),
     "divide": (real.divide, Reals.__truediv__),
-    "power": (scalar_functions.power, functions.power),
+    "power": (scalar_functions.power, polynomials.power),
 }
 UNARY = {
     "rounded": (real.rounded, Reals.rounded),
     "floor": (real.floor, floor),
-    "logarithm": (scalar_functions.logarithm, functions.log),
-    "exponential": (scalar_functions.exponential, functions.exp),
-    "sine": (scalar_functions.sine, functions.sin),
-    "cosine": (scalar_functions.cosine, functions.cos),
-    "tangent": (scalar_functions.tangent, functions.tan),
-    "arc tangent": (scalar_functions.arc_tangent, functions.atn),
-    "times ten": (scalar_text.times_ten, decimaltext.times_ten),
-    "over ten": (scalar_text.over_ten, decimaltext.over_ten),
+    "logarithm": (scalar_functions.logarithm, polynomials.log),
+    "exponential": (scalar_functions.exponential, polynomials.exp),
+    "sine": (scalar_functions.sine, polynomials.sin),
+    "cosine": (scalar_functions.cosine, polynomials.cos),
+    "tangent": (scalar_functions.tangent, polynomials.tan),
+    "arc tangent": (scalar_functions.arc_tangent, polynomials.atn),
+    "times ten": (scalar_text.times_ten, textcolumns.times_ten),
+    "over ten": (scalar_text.over_ten, textcolumns.over_ten),
 }
 
 
@@ -204,7 +204,7 @@ def test_written_numbers() -> None:
         for off in range(-0x300, 0x300, 0x20)
     ]
     unit = Unit(len(operands))
-    written = decimaltext.write(from_floats(as_floats(operands), unit)).tolist()
+    written = textcolumns.write(from_floats(as_floats(operands), unit)).tolist()
     assert written == [scalar_text.write(x) for x in operands]
 
 
@@ -240,6 +240,6 @@ def test_read_numbers() -> None:
         texts.append(text)
     texts += ["1E100", "1E-100", "1E999", "1E-999", "9" * 39, "9" * 38, "0" * 45 + "1", "1E039"]
     unit = Unit(len(texts))
-    x = decimaltext.read(texts, unit, str)
+    x = textcolumns.read(texts, unit, str)
     expected = [outcome(lambda t: scalar_text.read(t.upper())[0], t) for t in texts]  # type: ignore[arg-type]
     assert not differing([(t,) for t in texts], expected, outcomes(x, unit))  # type: ignore[misc]

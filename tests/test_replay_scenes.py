@@ -19,10 +19,10 @@ import captures
 import impact88
 from impact88.errors import UserError
 from impact88.names import SCENE
-from impact88.replay import Replay, field_names, listing
+from impact88.replay import Replay, field_names, statements
 from impact88.replay.blocks import replay_scenes
-from impact88.replay.columns import read_columns
-from impact88.replay.elimination import DONE
+from impact88.replay.pivoting import DONE
+from impact88.replay.realcolumns import read_columns
 from impact88.replay.reals import from_floats
 from impact88.replay.unit import Unit
 
@@ -125,7 +125,7 @@ def check_matrix(runs: list[dict[str, Any]]) -> None:
         values = {name: from_floats(v, unit, True) for name, v in scenes.values.items()}
         pivot = bool(values["MU"].v[0] == -10)
         with np.errstate(all="ignore"):
-            results = listing.run(unit, values, listing.Kind(M, pivot), matrix=True)
+            results = statements.run(unit, values, statements.Kind(M, pivot), matrix=True)
         if not unit.reached(DONE)[0]:
             continue
         for row in range(1, 7):

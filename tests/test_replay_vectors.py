@@ -12,7 +12,7 @@ import pytest
 
 import captures
 from impact88.applesoft.decimaltext import scan
-from impact88.replay import decimaltext, functions
+from impact88.replay import polynomials, textcolumns
 from impact88.replay.reals import Reals, compare, floor, from_floats
 from impact88.replay.unit import Unit
 
@@ -23,20 +23,20 @@ BINARY: dict[str, Callable[[Reals, Reals], Reals]] = {
     "sub": operator.sub,
     "mul": operator.mul,
     "div": operator.truediv,
-    "pow": functions.power,
+    "pow": polynomials.power,
 }
 UNARY: dict[str, Callable[[Reals], Reals]] = {
     "neg": operator.neg,
     "abs": abs,
-    "sgn": functions.sgn,
+    "sgn": polynomials.sgn,
     "int": floor,
-    "sqr": functions.sqr,
-    "exp": functions.exp,
-    "log": functions.log,
-    "sin": functions.sin,
-    "cos": functions.cos,
-    "tan": functions.tan,
-    "atn": functions.atn,
+    "sqr": polynomials.sqr,
+    "exp": polynomials.exp,
+    "log": polynomials.log,
+    "sin": polynomials.sin,
+    "cos": polynomials.cos,
+    "tan": polynomials.tan,
+    "atn": polynomials.atn,
 }
 
 
@@ -93,7 +93,7 @@ def test_a_zero_does_not_look_at_its_power() -> None:
     """FF7FFFFFFF with an extension of 80 overflows when rounded; to the power of it, 0 is 0."""
     unit = Unit(2)
     base = values(["0000000000", "8100000000"], ["00", "00"], unit)
-    result = functions.power(base, values(["ff7fffffff"] * 2, ["80"] * 2, unit))
+    result = polynomials.power(base, values(["ff7fffffff"] * 2, ["80"] * 2, unit))
     assert result.v[0] == 0
     assert unit.code().tolist() == [0, 69]
 
@@ -114,14 +114,14 @@ def test_vectors(path: Path) -> None:
         assert [f"{int(x) & 0xFF:02x}" for x in order] == results
         return
     elif name == "fout":
-        written = decimaltext.write(values(first, extensions, unit)).tolist()
+        written = textcolumns.write(values(first, extensions, unit)).tolist()
         codes = unit.code().tolist()
         assert [f"E{e}" if e else text for e, text in zip(codes, written, strict=True)] == results
         return
     elif name == "fin":
         # the engine takes whole texts only; where a number ends inside one is the scanner's affair
         numbers = [text[: scan(text)[-1]].strip() or "0" for text in first]
-        result = decimaltext.read(numbers, unit, str)
+        result = textcolumns.read(numbers, unit, str)
     else:
         pytest.fail(f"no array operation for {name}")
     got = shown(result, unit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from graphlib import CycleError, TopologicalSorter
 from importlib.util import resolve_name
 from pathlib import Path
@@ -94,3 +95,11 @@ def test_faithful_path_imports_no_third_party(name: str) -> None:
             for node in ast.walk(ast.parse(text))
             if isinstance(node, ast.Import | ast.ImportFrom)
         }, module
+
+
+def test_no_module_name_is_used_twice() -> None:
+    """A traceback, a test and a search name a module by its last part."""
+    names = Counter(
+        name.rpartition(".")[2] for name, path in FILES.items() if path.stem != "__init__"
+    )
+    assert not [name for name, uses in names.items() if uses > 1]

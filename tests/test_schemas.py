@@ -142,7 +142,7 @@ def test_compare_right_wrong_and_incomplete(tmp_path) -> None:
 def test_selfcheck(tmp_path, monkeypatch, capsys) -> None:
     """The command on no captures, which is quick: every check fails but the published runs'."""
     (tmp_path / "printouts").symlink_to(ROOT / "golden" / "printouts")
-    monkeypatch.setattr("impact88.commands.selfcheck.checks", lambda: checks(tmp_path))
+    monkeypatch.setattr("impact88.commands.selfcheck_command.checks", lambda: checks(tmp_path))
     assert main(["selfcheck", "--json"]) == 1
     found = check("selfcheck", capsys.readouterr().out)
     assert [one["name"] for one in found["checks"] if one["passed"]] == ["published"]

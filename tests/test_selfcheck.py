@@ -12,7 +12,7 @@ import pytest
 import captures
 from impact88.casework.provenance import capture_hashes, listing_hash, sha256
 from impact88.checking import selfcheck
-from impact88.commands.selfcheck import _line
+from impact88.commands.selfcheck_command import _line
 
 GOLDEN = captures.ROOT / "golden"
 FEW = 12

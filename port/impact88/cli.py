@@ -5,7 +5,7 @@ Applesoft error, a bad row, a printout that differs), 2 unusable input, 3 a bug 
 Control-C, a broken pipe and a signal to leave end with the shell's usual 130, 141 and 128 + signal.
 There is never a traceback, unless IMPACT88_DEBUG=1 asks for a bug's.
 
-Each command lives in ``impact88.commands.NAME`` and is imported only when it is asked for.
+Each command lives in ``impact88.commands.NAME_command`` and is imported only when it is asked for.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 
-from .endings import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
 from .errors import UserError, shown
 from .files import ESCAPED
-from .talk import tell
+from .signals import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
+from .stderr import note
 from .version import __version__
 
 TYPE_CHECKING = False
@@ -109,7 +109,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
 
         hint = did_you_mean(name, COMMANDS)
         raise UserError(f"{name!r} is no command{hint} (expected one of: {' '.join(COMMANDS)})")
-    module = import_module(f".commands.{name.replace('-', '_')}", __package__)
+    module = import_module(f".commands.{name.replace('-', '_')}_command", __package__)
     parser = _Parser(
         prog=f"impact88 {name}",
         description=COMMANDS[name][0].upper() + COMMANDS[name][1:] + ".",
@@ -178,13 +178,13 @@ def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
             _speak_any_character()
             status = _dispatch(arguments)
         except UserError as error:
-            tell(called, str(error))
+            note(called, str(error))
             status = UNUSABLE
         except MemoryError:
-            tell(called, "not enough memory; expected a smaller input, or more memory")
+            note(called, "not enough memory; expected a smaller input, or more memory")
             status = UNUSABLE
         except RecursionError:
-            tell(called, "the input is nested too deeply; expected a plainer one")
+            note(called, "the input is nested too deeply; expected a plainer one")
             status = UNUSABLE
         sys.stdout.flush()
     except KeyboardInterrupt:
@@ -200,7 +200,7 @@ def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
         return BROKEN_PIPE
     except OSError as error:  # a full disk, most likely
         place = shown(str(error.filename)) if error.filename else "standard output"
-        tell(called, f"{place}: {error.strerror or error}")
+        note(called, f"{place}: {error.strerror or error}")
         _drop_output()
         return UNUSABLE
     except Exception as error:
@@ -222,7 +222,7 @@ def _tell_bug(called: str | None, error: Exception, debug: bool) -> None:
     if step is not None:
         place = f" at {os.path.basename(step.tb_frame.f_code.co_filename)}:{step.tb_lineno}"
     what = shown(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
-    tell(
+    note(
         called,
         f"a bug of impact88, not of your input: {what}{place}"
         f"{'' if debug else ' (IMPACT88_DEBUG=1 shows the way there)'}",

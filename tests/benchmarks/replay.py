@@ -20,9 +20,9 @@ import numpy as np
 
 from impact88.names import SCENE
 from impact88.program.run import run
-from impact88.replay import decimaltext, functions
+from impact88.replay import polynomials, textcolumns
 from impact88.replay.blocks import replay_scenes
-from impact88.replay.columns import read_columns
+from impact88.replay.realcolumns import read_columns
 from impact88.replay.reals import Reals, compare, floor, from_floats
 from impact88.replay.unit import Unit
 
@@ -80,11 +80,11 @@ def primitives(size: int) -> dict[str, Callable[[], object]]:
         "divide": lambda: left / right,
         "INT": lambda: floor(flying),
         "compare": lambda: compare(left, flying),
-        "SIN": lambda: functions.sin(left),
-        "LOG": lambda: functions.log(positive),
-        "EXP": lambda: functions.exp(left),
-        "x ^ 2": lambda: functions.power(left, functions.constant(2)),
-        "write a field": lambda: decimaltext.write(flying),
+        "SIN": lambda: polynomials.sin(left),
+        "LOG": lambda: polynomials.log(positive),
+        "EXP": lambda: polynomials.exp(left),
+        "x ^ 2": lambda: polynomials.power(left, polynomials.constant(2)),
+        "write a field": lambda: textcolumns.write(flying),
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .errors import ApplesoftError, illegal_quantity
+from .errorcodes import ApplesoftError, illegal_quantity
 from .operators import Real
 from .real import integer
 

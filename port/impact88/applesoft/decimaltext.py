@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from .errors import overflow
+from .errorcodes import overflow
 from .real import (
     BIAS,
     ZERO,

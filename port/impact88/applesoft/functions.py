@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from .errors import illegal_quantity, overflow
+from .errorcodes import illegal_quantity, overflow
 from .real import (
     BIAS,
     INTEGER_EXPONENT,

@@ -23,7 +23,7 @@ missing carry (`compare`).
 
 from __future__ import annotations
 
-from .errors import division_by_zero, overflow
+from .errorcodes import division_by_zero, overflow
 
 Number = tuple[int, int, int]
 """Exponent, 40-bit mantissa, sign."""

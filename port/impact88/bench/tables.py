@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..plaintable import table
-from .files import Door
+from .filespeed import Door
 from .measure import Measured
 from .paths import GENERAL, Floor, Path, Size
 from .populations import POPULATIONS

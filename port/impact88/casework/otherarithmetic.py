@@ -21,7 +21,7 @@ from functools import lru_cache
 from typing import Any
 
 from ..applesoft import decimaltext
-from ..applesoft.errors import ApplesoftError, division_by_zero, overflow
+from ..applesoft.errorcodes import ApplesoftError, division_by_zero, overflow
 from ..program.arithmetics import FLOAT64, Arithmetic
 
 PI = "3.14159265"

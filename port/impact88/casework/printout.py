@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from .. import files
-from ..applesoft.errors import CODES
+from ..applesoft.errorcodes import CODES
 from ..errors import UserError
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
 from . import glyphs, numerals, pasted

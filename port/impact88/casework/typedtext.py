@@ -13,7 +13,7 @@ from decimal import ROUND_HALF_EVEN, Decimal
 from functools import lru_cache
 
 from ..applesoft import decimaltext
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import Number, divide, multiply, rounded, to_stored
 from .numerals import value_of
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..applesoft import decimaltext, functions, real
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 
 if TYPE_CHECKING:
     from ..emulator.emulator import Applesoft

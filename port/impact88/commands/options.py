@@ -17,7 +17,7 @@ from ..estimates import told
 from ..files import called, check_apart
 from ..names import SCENE, check_names
 from ..scene import SAMPLES, Scene, check_value, file_values, in_base_units, sample, toml_file
-from ..talk import tell
+from ..stderr import note
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -130,16 +130,16 @@ def _entries(
     """The values of a file in base units, and their system."""
     source = called(path)
     entries, units, estimated = file_values(toml_file(path), source, units)
-    tell_estimates(estimated, entries)
+    note_estimates(estimated, entries)
     entries.pop("title", None)
     check_names(entries, allowed, "value here", source)
     return entries, units
 
 
-def tell_estimates(estimated: Mapping[str, str], values: Mapping[str, str]) -> None:
+def note_estimates(estimated: Mapping[str, str], values: Mapping[str, str]) -> None:
     """Say on stderr which values are estimates, and how each was found."""
     for line in told(estimated, values):
-        tell(None, line)
+        note(None, line)
 
 
 def _changes(texts: Sequence[str], allowed: Collection[str]) -> dict[str, str]:
@@ -252,7 +252,7 @@ def one_scene(args: argparse.Namespace) -> Scene:
     scene = Scene.from_toml(args.scene, units) if args.scene else sample(args.sample)
     changes = settings(args.set, units=scene.units)
     scene = scene.replaced(changes) if changes else scene
-    tell_estimates(scene.estimated, scene)
+    note_estimates(scene.estimated, scene)
     return with_contact_moved(scene, getattr(args, "move_contact", None))
 
 

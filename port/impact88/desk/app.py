@@ -20,8 +20,8 @@ from ..errors import UserError
 from ..files import packaged_text
 from ..version import __version__
 from . import collision, page, reconstruction
-from .bench import Bench, BrokenError, SupersededError
 from .guard import HEADERS, LARGEST_BODY, refusal
+from .workers import Bench, BrokenError, SupersededError
 
 BENCHES = {
     "edit": "paper",

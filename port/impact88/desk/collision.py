@@ -23,7 +23,7 @@ from ..schemas import stamped
 from ..uncertainty import uncertain
 from .entries import entries
 from .entries import told as told_units
-from .files import small_toml
+from .uploads import small_toml
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""

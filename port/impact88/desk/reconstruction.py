@@ -18,7 +18,7 @@ from ..schemas import stamped
 from ..uncertainty import uncertain
 from .entries import Entries, entries
 from .entries import told as told_units
-from .files import small_toml
+from .uploads import small_toml
 
 if TYPE_CHECKING:
     from ..uncertainty.uncertain import Uncertain

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals, keyed
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import to_stored
 from .lister import source
 from .machine import Machine

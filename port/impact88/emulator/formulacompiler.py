@@ -22,7 +22,7 @@ extension (`accumulator`). ``Operand.tracked`` is its text when that is to be fo
 from __future__ import annotations
 
 from ..applesoft import decimaltext
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import INTEGER_EXPONENT, Number
 from .operand import (
     ALL_RELATIONS,

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..applesoft import decimaltext
 from ..applesoft.console import CONTROL_C, Console
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import rounded
 from .programtext import START, ProgramText
 from .strings import StringArea

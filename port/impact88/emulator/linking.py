@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import MutableSequence
 from typing import Any
 
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from .compiledline import Namespace, compiled
 from .control import GOSUB, Control, Frame
 from .operand import ROOM

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..applesoft import decimaltext, functions
 from ..applesoft.console import Device, Keyboard
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import Number, rounded
 from . import memory
 from .accumulator import AFTER_TYPING

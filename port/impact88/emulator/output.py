@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from ..applesoft.console import Console
-from ..applesoft.errors import illegal_quantity
+from ..applesoft.errorcodes import illegal_quantity
 from ..applesoft.real import Number, integer
 from .lister import INDENT, WRAP_COLUMN, pieces
 from .screen import FLASHING, HEIGHT, INVERSE, NORMAL, WIDTH, Screen

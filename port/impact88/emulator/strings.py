@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from ..applesoft.errors import ApplesoftError, illegal_quantity
+from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 
 LONGEST = 255
 PLACES = 3

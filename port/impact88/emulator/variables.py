@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from ..applesoft.errors import ApplesoftError, illegal_quantity
+from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
 from .strings import EMPTY, Descriptor, StringArea
 from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..applesoft import functions
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import (
     ZERO,
     absolute,

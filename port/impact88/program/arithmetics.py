@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 from .. import doubles
 from ..applesoft import decimaltext, functions
-from ..applesoft.errors import ApplesoftError, division_by_zero, illegal_quantity, overflow
+from ..applesoft.errorcodes import ApplesoftError, division_by_zero, illegal_quantity, overflow
 from ..applesoft.operators import Real
 from ..applesoft.real import ZERO, Number, absolute, floor, integer
 from ..errors import UserError

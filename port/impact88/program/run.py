@@ -13,7 +13,7 @@ from contextlib import nullcontext
 
 from .. import notebook
 from ..applesoft.console import Console
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.operators import Real
 from ..scene import Scene
 from . import arithmetics, listing, stepping

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .blocks import replay_scenes
-from .columns import read_columns
+from .realcolumns import read_columns
 from .result import Replay, field_names
 
 __all__ = ["Replay", "field_names", "replay"]

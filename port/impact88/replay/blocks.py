@@ -7,8 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from ..processors import processors
-from . import listing
-from .columns import Scenes
+from . import statements
+from .realcolumns import Scenes
 from .reals import Floats, Reals, compare, from_floats
 from .result import OTHER_M, Replay
 from .unit import Bools, Ints, Unit, stamp
@@ -31,11 +31,11 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
     M = scenes.values["M"]
     six = np.broadcast_to(M == 6, scenes.size)
     known = np.broadcast_to((M == 4) | (M == 6), scenes.size)
-    pivot = compare(from_floats(scenes.values["MU"], None, True), listing.MINUS_10) == 0
+    pivot = compare(from_floats(scenes.values["MU"], None, True), statements.MINUS_10) == 0
     pivot = np.broadcast_to(pivot, scenes.size)
     unit.at(350)
     unit.record(~known, OTHER_M)
-    values = {name: np.zeros(scenes.size) for name in listing.ASSIGNED}
+    values = {name: np.zeros(scenes.size) for name in statements.ASSIGNED}
     useful = max(1, scenes.size // WORTH_A_THREAD)
     threads = min(threads if threads is not None else processors(), useful)
     if block is None:
@@ -43,7 +43,7 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
     block = max(1, min(block, -(-scenes.size // threads)))
     jobs = _blocks(known, six, pivot, block)
 
-    def compute(job: tuple[Ints | slice, listing.Kind]) -> None:
+    def compute(job: tuple[Ints | slice, statements.Kind]) -> None:
         with np.errstate(all="ignore"):
             _compute(scenes, *job, unit, values)
 
@@ -59,12 +59,12 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
 
 def _blocks(
     known: Bools, six: Bools, pivot: Bools, block: int
-) -> list[tuple[Ints | slice, listing.Kind]]:
+) -> list[tuple[Ints | slice, statements.Kind]]:
     """Which scenes go together, and their kind. A slice where they are neighbours."""
-    result: list[tuple[Ints | slice, listing.Kind]] = []
+    result: list[tuple[Ints | slice, statements.Kind]] = []
     for M in (6, 4):
         for is_pivot in (False, True):
-            kind = listing.Kind(M, is_pivot)
+            kind = statements.Kind(M, is_pivot)
             kept = known & (six == (M == 6)) & (pivot == is_pivot)
             if kept.all():
                 return [(slice(at, at + block), kind) for at in range(0, kept.size, block)]
@@ -76,7 +76,7 @@ def _blocks(
 def _compute(
     scenes: Scenes,
     rows: Ints | slice,
-    kind: listing.Kind,
+    kind: statements.Kind,
     unit: Unit,
     values: dict[str, Floats],
 ) -> None:
@@ -88,7 +88,7 @@ def _compute(
         name: from_floats(v[rows] if v.size > 1 else v, own, True)
         for name, v in scenes.values.items()
     }
-    results = listing.run(own, scene, kind)
+    results = statements.run(own, scene, kind)
     # line 400 turns MU, and line 590 adds to KF, only in scenes that get there
     early = ~own.reached(stamp(400, 0))
     if early.any():

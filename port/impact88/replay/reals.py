@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..applesoft.errors import CODES
+from ..applesoft.errorcodes import CODES
 from ..applesoft.real import Number, integer
 from .unit import Bools, Ints, Unit
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..applesoft.errors import CODES, ApplesoftError
+from ..applesoft.errorcodes import CODES, ApplesoftError
 from ..fields import ANGLES, FIELDS, FINAL_SPINS
-from . import listing
-from .columns import Scenes
-from .decimaltext import Strings, write
-from .elimination import ZERO_DETERMINANT
+from . import statements
+from .pivoting import ZERO_DETERMINANT
+from .realcolumns import Scenes
 from .reals import Floats, Packed, Reals, from_floats
+from .textcolumns import Strings, write
 from .unit import Bools, Ints, Unit
 
 OTHER_M = 2
@@ -89,7 +89,7 @@ class Replay:
 
     def present(self, name: str) -> Bools:
         """The scenes that have the result."""
-        present = self._unit.reached(listing.ASSIGNED[name]) & (self.code != OTHER_M)
+        present = self._unit.reached(statements.ASSIGNED[name]) & (self.code != OTHER_M)
         return present & self._six if name in ("WAF", "WBF") else present
 
     def floats(self, name: str) -> Floats:
@@ -139,7 +139,7 @@ class Replay:
 
     def _printed(self, name: str) -> Bools:
         """The scenes in which the program came to print a field."""
-        printed = self._unit.reached(listing.PRINTED[name]) & (self.code != OTHER_M)
+        printed = self._unit.reached(statements.PRINTED[name]) & (self.code != OTHER_M)
         return printed & self._six if name in FINAL_SPINS else printed
 
     def _to_print(self, name: str) -> Floats:
@@ -154,12 +154,12 @@ class Replay:
         with np.errstate(all="ignore"):
             x, *more = (from_floats(column.copy(), unit, True) for column in columns)
             if more:
-                x = listing.loss(x, *more)
-            elif name in listing.FLOORED:
-                x = listing.floored(name, x)
+                x = statements.loss(x, *more)
+            elif name in statements.FLOORED:
+                x = statements.floored(name, x)
             elif name in ANGLES:
-                (angle,) = listing.radians(unit, [x])
-                x = (angle / listing.AG).rounded()
+                (angle,) = statements.radians(unit, [x])
+                x = (angle / statements.AG).rounded()
         return x.v
 
 

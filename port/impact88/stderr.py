@@ -8,7 +8,7 @@ from contextlib import suppress
 from .errors import shown
 
 
-def tell(command: str | None, text: str) -> None:
+def note(command: str | None, text: str) -> None:
     """A line on stderr, where there is one that takes it: "impact88 COMMAND: text"."""
     name = f"impact88 {command}" if command else "impact88"
     with suppress(OSError, ValueError):  # closed, or full: there is nobody to tell

@@ -43,7 +43,7 @@ from .options import (
     one_scene,
     sweeps,
 )
-from .ranges import add_range_arguments, explored
+from .rangeoptions import add_range_arguments, explored
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -23,14 +23,14 @@ from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
 
 from ..applesoft.console import PRINTER_SLOT, EndOfInput
-from ..applesoft.errors import ApplesoftError
+from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
 from ..emulator.machine import TooManyStatements
-from ..endings import INTERRUPTED
 from ..errors import UserError
 from ..files import called, packaged_text, read_text, replacing, typed_line
-from ..talk import tell
-from .run import add_machine_arguments
+from ..signals import INTERRUPTED
+from ..stderr import note
+from .run_command import add_machine_arguments
 
 LISTING = "impact.bas"
 SLOT_LINE = '190 P$ = "PR# " + "{}"'
@@ -217,7 +217,7 @@ def _end_row(terminal: Terminal) -> None:
 
 def _tell_refused(machine: Applesoft) -> None:
     for what in machine.machine.refused:
-        tell("basic", f"{what} is not done here: text only, no machine code")
+        note("basic", f"{what} is not done here: text only, no machine code")
 
 
 def _disk_command(machine: Applesoft, line: str) -> bool:
@@ -233,5 +233,5 @@ def _disk_command(machine: Applesoft, line: str) -> bool:
             with replacing(name) as file:
                 file.write(machine.source())
     except UserError as error:
-        tell("basic", str(error))
+        note("basic", str(error))
     return True

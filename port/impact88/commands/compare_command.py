@@ -30,8 +30,8 @@ from ..checking.compare import HARMLESS, Comparison, compare_file
 from ..checking.slipsfilling import EQUATIONS
 from ..errors import UserError, shown
 from ..schemas import stamped
+from ..stderr import note
 from ..tables.table import format_of
-from ..talk import tell
 from .options import (
     FORMATS,
     add_encoding_argument,
@@ -96,7 +96,7 @@ def main(args: argparse.Namespace) -> int:
     else:
         print("\n".join(_lines(comparison)))
     for line in _talk(comparison):
-        tell("compare", line)
+        note("compare", line)
     return int(
         comparison.differing > 0
         or bool(comparison.bad)

@@ -25,7 +25,7 @@ import argparse
 from ..errors import UserError
 from ..scene import known_template
 from .options import add_solution_arguments, known_with_units
-from .reconstruct import source_of
+from .reconstruct_command import source_of
 
 KNOWABLE = (
     *("E", "MU", "MUP", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "M"),

@@ -119,7 +119,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _skipping(arguments: argparse.Namespace) -> int:
-    from ..bench import files, measure, paths, tables
+    from ..bench import filespeed, measure, paths, tables
 
     record: dict[str, Any] = {"machine": measure.machine()}
     texts = [tables.machine(record["machine"])]
@@ -131,7 +131,7 @@ def _skipping(arguments: argparse.Namespace) -> int:
         record["floor"] = asdict(floor)
         texts += [tables.paths(by_kind, by_output), tables.floor(floor)]
     if arguments.files:
-        doors = files.files(FILE_ROWS, _solve_file)
+        doors = filespeed.files(FILE_ROWS, _solve_file)
         record["files"] = {"rows": FILE_ROWS, "doors": [asdict(door) for door in doors]}
         texts.append(tables.doors(FILE_ROWS, doors))
     if arguments.sizes:

@@ -23,8 +23,8 @@ import numpy as np
 
 from ..applesoft import decimaltext as scalar
 from ..fields import ANGLES, FIELDS
-from . import elimination, functions
-from .columns import PLACES
+from . import pivoting, polynomials
+from .realcolumns import PLACES
 from .reals import LARGEST, ZERO, Reals, constant, floor, from_number, select, stack, zero
 from .unit import Unit, stamp
 
@@ -51,7 +51,7 @@ class Kind(NamedTuple):
 ASSIGNED: dict[str, int] = {
     **{"KI": stamp(320), "XA": stamp(340, 1), "YA": stamp(340, 2)},
     **{"XB": stamp(340, 3), "YB": stamp(340, 4), "MUP": stamp(*PLACES["MU"])},
-    **dict.fromkeys(("VAX", "VAY", "VBX", "VBY", "WAF", "WBF"), elimination.DONE),
+    **dict.fromkeys(("VAX", "VAY", "VBX", "VBY", "WAF", "WBF"), pivoting.DONE),
     **{"KF": stamp(580), "LOSS": stamp(690, 2), "XAF": stamp(700, 1), "YAF": stamp(700, 2)},
     **{"XBF": stamp(710, 1), "YBF": stamp(710, 2)},
 }
@@ -159,7 +159,7 @@ def squares(unit: Unit, where: Places, values: Rows) -> list[Reals]:
 
 
 def _square(x: Reals) -> Reals:
-    return functions.power(x, C_2)
+    return polynomials.power(x, C_2)
 
 
 def stored(values: list[Reals]) -> list[Reals]:
@@ -272,7 +272,7 @@ def run(
     A[5, last] = angular  # not before: of M = 4 it takes the place of IA
 
     # 570 GOSUB 1000
-    solution = elimination.solve(unit, A, M, matrix)
+    solution = pivoting.solve(unit, A, M, matrix)
     V = solution + [A[5, last], A[6, last]][M - 4 :]  # M = 4: what lines 700 and 710 find
 
     # 580 KF = (MA * (A(1,M + 1) ^ 2 + A(2,M + 1) ^ 2) + MB * (A(3,M + 1) ^ 2 + A(4,M + 1) ^ 2)) / 2
@@ -327,8 +327,8 @@ def _turns(
     if pivot:
         turned += plus(unit, 440, [TAPA, TBPB], [-GA, -GA])
         cosine_places += [(440, 0), (440, 0)]
-    shifted = each(unit, cosine_places, functions.shifted_for_cosine, turned)
-    sines = each(unit, places + cosine_places, functions.sin, angles + shifted)
+    shifted = each(unit, cosine_places, polynomials.shifted_for_cosine, turned)
+    sines = each(unit, places + cosine_places, polynomials.sin, angles + shifted)
     return sines[:3], sines[3:]
 
 

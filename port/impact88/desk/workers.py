@@ -2,7 +2,7 @@
 
 A thread cannot be ended from outside; a process can. Each kind of work has one, started before it
 is needed, kept between questions and replaced when it had to be ended. Questions and answers are
-lines of JSON over its standard input and output (`bench_process`).
+lines of JSON over its standard input and output (`worker`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,7 @@ from ..errors import UserError
 
 _INSTALLED_IN = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 _START = (
-    "import sys; sys.path.append(sys.argv.pop()); "
-    f"from {__package__}.bench_process import main; main()"
+    f"import sys; sys.path.append(sys.argv.pop()); from {__package__}.worker import main; main()"
 )
 """The process finds the package where this one did, even where it is not installed."""
 
@@ -55,7 +54,7 @@ class Bench:
                 self._ready()
 
     def ask(self, page: str, question: dict[str, Any]) -> Any:
-        """The answer to ``question`` (`bench_process.answer` tells what can be asked).
+        """The answer to ``question`` (`worker.answer` tells what can be asked).
 
         Raises UserError with what is wrong with the question, SupersededError, and BrokenError.
         """

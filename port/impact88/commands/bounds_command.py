@@ -36,7 +36,7 @@ import json
 
 from ..schemas import stamped
 from .options import add_json_argument, add_names_argument, add_output_argument
-from .ranges import add_range_arguments, explored
+from .rangeoptions import add_range_arguments, explored
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -10,9 +10,9 @@ from ..errors import UserError
 from ..files import called
 from ..progress import progress
 from ..scene import file_values, in_base_units, sample, toml_file
-from ..talk import tell
+from ..stderr import note
 from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
-from .options import add_names_argument, add_scene_argument, pairs, tell_estimates
+from .options import add_names_argument, add_scene_argument, note_estimates, pairs
 
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
@@ -73,7 +73,7 @@ def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
     if args.scene:
         source = called(args.scene)
         texts, units, estimated = file_values(toml_file(args.scene), source)
-        tell_estimates(estimated, texts)
+        note_estimates(estimated, texts)
     else:
         texts, source = dict(sample(args.sample)), f"sample {args.sample}"
         units = None
@@ -104,7 +104,7 @@ def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = F
             "nothing varies; give ranges in the file or with --range, such as MU='.7 .. .9'"
         )
     if inputs.derived:
-        tell(None, f"from the forward solution: {' '.join(inputs.derived)}")
+        note(None, f"from the forward solution: {' '.join(inputs.derived)}")
     with progress(args.samples, "draws") as meter:
         found = bounds(
             inputs.values,

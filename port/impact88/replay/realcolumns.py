@@ -9,8 +9,8 @@ import numpy as np
 
 from ..errors import UserError
 from ..names import DEFAULT_M, SCENE, VELOCITIES
-from .decimaltext import read
 from .reals import Floats, Packed, from_packed
+from .textcolumns import read
 from .unit import NEVER, Ints, Unit, key
 
 

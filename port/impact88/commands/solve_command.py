@@ -49,11 +49,11 @@ from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..progress import progress
 from ..scene import VALUE_LIMIT, Scene, toml_file
 from ..status import Status
+from ..stderr import note
 from ..tables.overlap import ahead, behind, may_wait
 from ..tables.rows import BadCell, Reader, Rows, check_scene_columns, filled, numbers
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
-from ..talk import tell
 from .options import (
     FORMATS,
     add_encoding_argument,
@@ -61,9 +61,9 @@ from .options import (
     add_set_argument,
     add_sweep_argument,
     names_given,
+    note_estimates,
     settings,
     sweeps,
-    tell_estimates,
 )
 
 Results = dict[str, NDArray[Any]]
@@ -116,11 +116,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _sweep(path: str, texts: Mapping[str, str]) -> AbstractContextManager[Reader]:
     """The table that a scene file makes, swept or as it is: in base units, which are told."""
     scene = Scene.from_toml(path)
-    tell_estimates(scene.estimated, scene)
+    note_estimates(scene.estimated, scene)
     if scene.units:
         from ..units import base_of, system_of
 
-        tell("solve", f"the table is in {base_of(system_of(scene.units))}")
+        note("solve", f"the table is in {base_of(system_of(scene.units))}")
     return read_sweep(scene, read_ranges(texts, scene.units))
 
 
@@ -321,13 +321,13 @@ class _Complaints:
 
     def _tell(self, cell: BadCell) -> None:
         if self.count <= SHOWN:
-            tell("solve", str(cell))
+            note("solve", str(cell))
 
     def summarise(self) -> None:
         if not self.count:
             return
         rows = f"{self.count:,} row{'s' if self.count > 1 else ''} could not be solved"
         if self._path is not None:
-            tell("solve", f"{rows}: see {self._path}")
+            note("solve", f"{rows}: see {self._path}")
         elif self.count > SHOWN:
-            tell("solve", f"{rows}; --errors FILE tells all")
+            note("solve", f"{rows}; --errors FILE tells all")

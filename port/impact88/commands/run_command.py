@@ -33,8 +33,8 @@ from .options import (
     add_output_argument,
     add_scene_argument,
     add_set_argument,
+    note_estimates,
     settings,
-    tell_estimates,
     with_contact_moved,
 )
 
@@ -92,7 +92,7 @@ def chosen_scene(args: argparse.Namespace, changes: dict[str, str]) -> Scene | N
         if scene.units:
             changes = settings(args.set, units=scene.units)
         scene = scene.replaced(changes) if changes else scene
-        tell_estimates(scene.estimated, scene)
+        note_estimates(scene.estimated, scene)
         return with_contact_moved(scene, args.move_contact)
     given = [name for name in VELOCITIES if name in changes]
     if not given:

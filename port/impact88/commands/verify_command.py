@@ -30,7 +30,7 @@ from ..casework.verification import lines
 from ..casework.verify import Examined, Verdict, examine
 from ..errors import UserError
 from ..schemas import stamped
-from ..talk import tell
+from ..stderr import note
 from .options import add_json_argument, add_output_argument
 
 _ON_REPORT = ("date", "case", "examiner")
@@ -78,7 +78,7 @@ def main(args: argparse.Namespace) -> int:
 
 def _tell(one: Examined, args: argparse.Namespace) -> None:
     if one.error:
-        tell("verify", one.error)
+        note("verify", one.error)
     if args.json:
         for described in one.as_json():
             print(json.dumps(stamped("verify", described), ensure_ascii=False))
