@@ -33,7 +33,7 @@ from impact88.figures.drawing import (
     text_width,
 )
 from impact88.figures.labels import Label, place
-from impact88.figures.plan import plan
+from impact88.figures.scenegeometry import plan
 from impact88.figures.sceneview import scene_drawing, scene_svg
 from impact88.figures.svg import svg
 from impact88.scene import Scene, sample

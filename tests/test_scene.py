@@ -9,7 +9,7 @@ from captures import ROOT
 from impact88.cli import main
 from impact88.closedform.solve import solve
 from impact88.errors import UserError
-from impact88.figures.plan import plan
+from impact88.figures.scenegeometry import plan
 from impact88.names import SCENE
 from impact88.scene import SIGNS, Scene, published_data, sample, template
 

@@ -8,7 +8,7 @@ from typing import Any
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
-from .plan import Plan, plan
+from .scenegeometry import Plan, plan
 from .sceneview import COLOURS, draw_bodies
 
 _GAP = 4.0

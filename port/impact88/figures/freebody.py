@@ -13,7 +13,7 @@ from typing import Any
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
-from .plan import Plan, Vehicle, plan
+from .scenegeometry import Plan, Vehicle, plan
 from .sceneview import COLOURS, IMPULSE, TINTS, draw_axes
 
 _ANGLE = "#444444"

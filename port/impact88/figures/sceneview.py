@@ -1,6 +1,6 @@
 """The scene from above, drawn: vehicles, contact plane, velocities, spins, impulse, key and table.
 
-Where everything is comes from `figures.plan`; here it is put on paper.
+Where everything is comes from `figures.scenegeometry`; here it is put on paper.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from ..units import RULES, System, system_of
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
 from .labels import Label, place
-from .plan import Plan, Vehicle, dot, minus, plan, plus, scaled
+from .scenegeometry import Plan, Vehicle, dot, minus, plan, plus, scaled
 from .svg import Svg, svg
 
 COLOURS = {"A": d.BLUE, "B": d.VERMILION}
