@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import machines
 import printouts
-from impact88.casework.explain import Explanation
+from impact88.explaining.explanations import Explanation
 from impact88.fields import ANGLES, INPUTS
 
 Row = dict[str, Any]

@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 
 import printouts
-from impact88.casework import trial
-from impact88.casework.explain import Explanation
-from impact88.casework.misreading import misreadings, opposite, slip
-from impact88.casework.otherprints import rounded_text
-from impact88.casework.printout import FIELDS, read_printouts
-from impact88.casework.verify import Verdict, verify
 from impact88.doubles import double
+from impact88.explaining.explanations import Explanation
+from impact88.explaining.otherprints import rounded_text
 from impact88.program.run import run
+from impact88.reading.printout import FIELDS, read_printouts
+from impact88.recovery import replays
+from impact88.recovery.slips import misreadings, opposite, slip
+from impact88.reporting.examination import Verdict, verify
 from impact88.scene import Scene, sample
 from test_printout import SAMPLE
 
@@ -101,7 +101,7 @@ TURNED = _scene(
     ids=["sign-of-mu-and-mass", "two-signs", "sliding-turned", "energy-of-both", "angle-and-arm"],
 )
 def test_two_slips_of_two_kinds(scene: Scene, new: dict[str, str]) -> None:
-    true = trial.run_once(scene).fields
+    true = replays.run_once(scene).fields
     found = first(_printed(scene, new))
     assert {one["field"]: one["would_be"] for one in found.changes} == {
         name: true[name] for name in new
@@ -118,7 +118,7 @@ IN_THE_LAST_PLACE = _scene(
 
 def test_one_in_the_last_place_is_another_arithmetic_or_a_digit_lost() -> None:
     """That it is another machine is said first, and that it may be a misreading beside it."""
-    apple = trial.run_once(IN_THE_LAST_PLACE).fields
+    apple = replays.run_once(IN_THE_LAST_PLACE).fields
     double = run(IN_THE_LAST_PLACE, "float64").printout
     fields = {place.name: double[place.start : place.stop] for place in printouts.places(double)}
     differ = {name: text for name, text in fields.items() if text != apple[name]}
@@ -142,7 +142,7 @@ def test_rounded_instead_of_floored() -> None:
     scene = sample(1)
     rounded = {
         name: rounded_text(value, FIELDS[name].places or 0)
-        for name, value in trial.run_whole(scene)[1].items()
+        for name, value in replays.run_whole(scene)[1].items()
     }
     assert rounded["XB"] == "14.52"
     found = first(_printed(scene, rounded))
@@ -151,7 +151,7 @@ def test_rounded_instead_of_floored() -> None:
 
 def test_point_mass_with_arms_left() -> None:
     scene = sample(1).replaced({"M": "4"})
-    proper = trial.run_once(scene.replaced({"DA": "0", "DB": "0"})).fields
+    proper = replays.run_once(scene.replaced({"DA": "0", "DB": "0"})).fields
     fields = {name: text for name, text in proper.items() if name not in ("DA", "DB")}
     found = first(_printed(scene, fields))
     assert (found.kind, found.remaining) == ("M = 4 with DA, DB left", 0)
@@ -159,7 +159,7 @@ def test_point_mass_with_arms_left() -> None:
 
 def test_another_m() -> None:
     """A point-mass printout whose results are those of the full solution."""
-    full = trial.run_once(sample(1)).fields
+    full = replays.run_once(sample(1)).fields
     (shown,) = read_printouts(_printed(sample(1).replaced({"M": "4"}), full))
     result = verify(shown)
     assert result.verdict is Verdict.INCOMPLETE

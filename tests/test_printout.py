@@ -6,9 +6,9 @@ import pytest
 
 import captures
 import printouts
-from impact88.casework.printout import LARGEST_FILE, read_file, read_printouts
 from impact88.errors import UserError
 from impact88.fields import ANGLES, FIELDS
+from impact88.reading.printout import LARGEST_FILE, read_file, read_printouts
 
 SAMPLE = """\
 MA= 143.5 MB= 95.8 IA= 3728 IB= 1961

@@ -7,11 +7,11 @@ from html.parser import HTMLParser
 
 import pytest
 
-from impact88.casework.printout import read_printouts
-from impact88.casework.provenance import captures_hash, listing_hash, sha256
-from impact88.casework.report import report, write_report
-from impact88.casework.verify import Examined, examine, verify
 from impact88.errors import UserError
+from impact88.reading.printout import read_printouts
+from impact88.reporting.casefile import report, write_report
+from impact88.reporting.examination import Examined, examine, verify
+from impact88.reporting.provenance import captures_hash, listing_hash, sha256
 from installed import impact88
 from test_printout import SAMPLE
 

@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 
 from captures import ROOT
-from impact88.casework.judging import Status, machine_read, settled
-from impact88.casework.margins import cut_before
-from impact88.casework.numerals import printable
-from impact88.casework.printout import Printout, read_bytes, read_printouts
-from impact88.casework.verify import Verdict, Verification, verify
 from impact88.errors import UserError
 from impact88.fields import INPUTS, outcome_fields
+from impact88.judging.judgement import Status, machine_read, settled
 from impact88.program.run import run
+from impact88.reading.margins import cut_before
+from impact88.reading.numerals import printable
+from impact88.reading.printout import Printout, read_bytes, read_printouts
+from impact88.reporting.examination import Verdict, Verification, verify
 from impact88.scene import sample
 from printouts import SWEEP
 from test_printout import SAMPLE

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import captures
-from impact88.casework.provenance import capture_hashes, listing_hash, sha256
 from impact88.checking import selfcheck
 from impact88.commands.selfcheck_command import _line
+from impact88.reporting.provenance import capture_hashes, listing_hash, sha256
 
 GOLDEN = captures.ROOT / "golden"
 FEW = 12

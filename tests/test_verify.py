@@ -10,13 +10,13 @@ import pytest
 
 import captures
 import printouts
-from impact88.casework.printout import read_printouts
-from impact88.casework.search import in_doubles
-from impact88.casework.typedtext import stored_and_printed, texts_that_print
-from impact88.casework.verify import Verdict, Verification, verify
 from impact88.fields import ANGLES, INPUTS, outcome_fields
 from impact88.names import SCENE
 from impact88.program.run import run
+from impact88.reading.printout import read_printouts
+from impact88.recovery.search import in_doubles
+from impact88.recovery.typedtext import stored_and_printed, texts_that_print
+from impact88.reporting.examination import Verdict, Verification, verify
 from impact88.scene import sample
 from installed import impact88
 from test_printout import SAMPLE

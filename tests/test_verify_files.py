@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from impact88.casework.printout import read_printouts
-from impact88.casework.verify import Verdict, verify
 from impact88.doubles import double
+from impact88.reading.printout import read_printouts
+from impact88.reporting.examination import Verdict, verify
 from impact88.scene import sample
 from installed import impact88
 from printouts import SWEEP

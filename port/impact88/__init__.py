@@ -43,8 +43,6 @@ if TYPE_CHECKING:
     from typing import Any
 
     from . import names, status
-    from .casework.printout import read_printouts
-    from .casework.verify import Verification, verify, verify_file
     from .chapter.barrier import barrier
     from .chapter.colinear import colinear, colinear_inverse
     from .chapter.deltav import delta_v
@@ -55,9 +53,11 @@ if TYPE_CHECKING:
     from .errors import UserError
     from .figures.sceneview import scene_svg
     from .program.run import Run, run
+    from .reading.printout import read_printouts
     from .reconstruction.adjustment import Reconstruction
     from .reconstruction.unknowns import Solution, solve_for
     from .replay import Replay, replay
+    from .reporting.examination import Verification, verify, verify_file
     from .scene import Scene, sample
     from .tables.frames import solve_frame
     from .uncertainty.bounds import bounds
@@ -75,7 +75,7 @@ _LAZY = {
     "Solution": "reconstruction.unknowns",
     "Uncertain": "uncertainty.uncertain",
     "UserError": "errors",
-    "Verification": "casework.verify",
+    "Verification": "reporting.examination",
     "barrier": "chapter.barrier",
     "bounds": "uncertainty.bounds",
     "colinear": "chapter.colinear",
@@ -84,7 +84,7 @@ _LAZY = {
     "delta_v": "chapter.deltav",
     "names": "",
     "oracle": "checking.oracle:look_up",
-    "read_printouts": "casework.printout",
+    "read_printouts": "reading.printout",
     "reconstruct": "uncertainty.reconstructedtable",
     "replay": "replay",
     "run": "program.run",
@@ -94,8 +94,8 @@ _LAZY = {
     "solve_frame": "tables.frames",
     "solve_for": "reconstruction.unknowns",
     "status": "",
-    "verify": "casework.verify",
-    "verify_file": "casework.verify",
+    "verify": "reporting.examination",
+    "verify_file": "reporting.examination",
 }
 """Public name -> the module that holds it (after a colon, the name it has there), or nothing for a
 module of this package. A test holds this table against the imports above."""

@@ -14,10 +14,10 @@ from collections.abc import Callable, Iterator
 from importlib import resources
 from typing import Any, NamedTuple, Protocol
 
-from ..casework import provenance
 from ..fields import FIELDS, outcome_fields
 from ..names import SCENE
 from ..program.run import run
+from ..reporting import provenance
 from ..scene import sample
 from . import captured
 

@@ -26,9 +26,9 @@ import argparse
 import json
 import sys
 
-from ..casework.verification import lines
-from ..casework.verify import Examined, Verdict, examine
 from ..errors import UserError
+from ..reporting.examination import Examined, Verdict, examine
+from ..reporting.verification import lines
 from ..schemas import stamped
 from ..stderr import note
 from .options import add_json_argument, add_output_argument
@@ -70,7 +70,7 @@ def main(args: argparse.Namespace) -> int:
         adverse = any(result.verdict is not Verdict.IDENTICAL for result in one.results)
         status = max(status, 2 if one.error else int(adverse))
     if args.report and any(one.results for one in examined):
-        from ..casework.report import write_report
+        from ..reporting.casefile import write_report
 
         write_report(args.report, examined, args.date, args.case, args.examiner)
     return status

@@ -99,8 +99,8 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     a scene, ``oracle`` is what `impact88 oracle` answers for it, ``page`` its printout as a screen
     shows it, ``results`` the rows of a table and ``warnings`` sentences.
     """
-    from ..casework import beside
     from ..checking.oracle import look_up
+    from ..judging import beside
     from ..program.run import page
 
     form = read(values, units)
@@ -150,9 +150,9 @@ def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[d
 
 def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     """The scene from above as SVG, as `impact88 figure scene` draws it. Raises UserError."""
-    from ..casework import beside
     from ..figures.sceneview import scene_drawing
     from ..figures.svg import svg
+    from ..judging import beside
 
     form = read(values, units)
     if not form.whole:

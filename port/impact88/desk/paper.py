@@ -9,14 +9,15 @@ from base64 import b64decode, b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from ..casework import pasted, verification, wording
-from ..casework.judging import Verdict
-from ..casework.printout import LARGEST_FILE
-from ..casework.report import report as report_page
-from ..casework.verification import Examined, Verification
-from ..casework.verify import examine_bytes
 from ..errors import UserError
 from ..files import packaged_bytes
+from ..judging.judgement import Verdict
+from ..reading import plaintext as pasted
+from ..reading.printout import LARGEST_FILE
+from ..reporting import verification, wording
+from ..reporting.casefile import report as report_page
+from ..reporting.examination import examine_bytes
+from ..reporting.verification import Examined, Verification
 
 LONGEST_NAME = 200
 UNNAMED = "pasted.txt"

@@ -6,7 +6,7 @@ from collections import Counter
 from importlib import metadata
 from typing import Any
 
-from ..casework import provenance
+from ..reporting import provenance
 from .hearing import Heard
 from .image import Image
 

@@ -20,20 +20,20 @@ import numpy as np
 from ..closedform.solve import solve
 from ..doubles import double
 from ..fields import ANGLES, INPUTS
-from . import misreading
-from .numerals import as_printed, is_number, printable, value_of
-from .recovery import Recovered
+from ..reading.numerals import as_printed, is_number, printable, value_of
+from . import slips
+from .choices import Choice, Choices, flipped, scene_name
+from .recovered import Recovered
 from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search, columns, printed_mu
 from .typedtext import stored_and_printed, texts_that_print
-from .ways import Choice, Choices, flipped, scene_name
 
 COSTS = {
-    misreading.DIGIT: 2.7,
-    misreading.SIGN: 2.6,
-    misreading.POINT: 2.8,
-    misreading.SWAP: 2.9,
-    misreading.COUNT: 3.0,
-    misreading.TWO_DIGITS: 4.4,
+    slips.DIGIT: 2.7,
+    slips.SIGN: 2.6,
+    slips.POINT: 2.8,
+    slips.SWAP: 2.9,
+    slips.COUNT: 3.0,
+    slips.TWO_DIGITS: 4.4,
 }
 """What it costs to believe a slip; a result that differs costs `search.MISMATCH`."""
 _UNLIKE = 0.05
@@ -179,9 +179,9 @@ class Rereading:
         text = as_printed(f"{total:f}")
         if text is None or not printable(text) or text == self._base[twin]:
             return None
-        kind = misreading.slip(self._base[twin], text)
-        if kind is None and misreading.differ_in_two(self._base[twin], text):
-            kind = misreading.TWO_DIGITS
+        kind = slips.slip(self._base[twin], text)
+        if kind is None and slips.differ_in_two(self._base[twin], text):
+            kind = slips.TWO_DIGITS
         return Change(kind, twin, self._base[twin], text) if kind else None
 
     def _instead(self, one: Reread, change: Change, other: Change) -> Reread:
@@ -206,8 +206,8 @@ class Rereading:
                 if not self._possible(name, other):
                     continue
                 rows.append([0] * place + [len(options)] + [0] * (len(self._names) - place))
-                options.append(self._typed(name, other, COSTS[misreading.TWO_DIGITS]))
-                made.append(Change(misreading.TWO_DIGITS, name, self._base[name], other))
+                options.append(self._typed(name, other, COSTS[slips.TWO_DIGITS]))
+                made.append(Change(slips.TWO_DIGITS, name, self._base[name], other))
             ways.append(options)
         choices = [*ways, self._m()]
         if not rows:
@@ -288,11 +288,11 @@ class Rereading:
         text = self._base.get(name)
         if text is None:
             return
-        for kind, other in misreading.misreadings(text):
+        for kind, other in slips.misreadings(text):
             if self._possible(name, other):
                 cost = COSTS[kind]
-                if kind == misreading.DIGIT:
-                    cost += _UNLIKE * misreading.likeness(text, other)
+                if kind == slips.DIGIT:
+                    cost += _UNLIKE * slips.likeness(text, other)
                 yield Change(kind, name, text, other), self._typed(name, other, cost)
 
     def _possible(self, name: str, text: str) -> bool:
@@ -317,7 +317,7 @@ class Rereading:
                     proper[place][index] = choice._replace(cost=choice.cost + MISMATCH)
                     continue
                 (own, text), *_ = choice.typed.items()
-                typed = misreading.opposite(typed) if own == "MU" and text != printed else typed
+                typed = slips.opposite(typed) if own == "MU" and text != printed else typed
                 proper[place][index] = choice._replace(typed={own: typed})
         return proper
 
@@ -411,7 +411,7 @@ def _one_change(choices: Choices) -> Picks:
 def _two_changes(choices: Choices, most: int) -> Picks:
     """No change, one, or two in different columns; of too many pairs the likeliest."""
     parts = [_one_change(choices)]
-    lost = COSTS[misreading.COUNT]
+    lost = COSTS[slips.COUNT]
     sizes = [sum(one.cost < lost for one in options[1:]) for options in choices]
     total = sum(one * two for one, two in pairs_of(sizes, 2))
     share = min(1.0, (most / total) ** 0.5) if total else 1.0
@@ -428,7 +428,7 @@ def _two_changes(choices: Choices, most: int) -> Picks:
 
 def _three_digits(choices: Choices) -> Picks:
     """A digit taken for its look-alike in each of three columns; of too many the likeliest."""
-    likely = COSTS[misreading.DIGIT]
+    likely = COSTS[slips.DIGIT]
     alike = likely + _ALIKE * _UNLIKE
     most = int((_PAIRS / comb(len(choices), 3)) ** (1 / 3))
     places = []
@@ -446,7 +446,7 @@ def _three_digits(choices: Choices) -> Picks:
 
 
 def _cheapest(options: list[Choice], share: float) -> Picks:
-    lost = COSTS[misreading.COUNT]
+    lost = COSTS[slips.COUNT]
     few = [index for index in range(1, len(options)) if options[index].cost < lost]
     order = sorted(few, key=lambda index: options[index].cost)
     return np.array(order[: max(1, int(share * len(order)))] if order else [], np.intp)

@@ -14,12 +14,13 @@ from html import escape
 
 from .. import files
 from ..errors import UserError
+from ..explaining.explanations import NO_SINGLE_SLIP
 from ..fields import FIELDS
+from ..judging import beside
+from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
-from . import beside, provenance, verification, wording
-from .explain import NO_SINGLE_SLIP
-from .judging import Doubtful, FieldCheck, Status, Verdict
-from .verify import Examined, Verification
+from . import provenance, verification, wording
+from .examination import Examined, Verification
 
 _MARKS = {
     Status.READ: ("", "✓", "exact"),

@@ -13,9 +13,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from ..reading.numerals import Habit
+from ..reading.printout import Printout
+from ..recovery.choices import noughts_unreadable
+from ..recovery.inversion import paper_cost, scenes_found
+from ..recovery.recovered import Recovered, recover
+from ..recovery.rereading import Reread, Rereading
+from ..recovery.search import KINETIC, MISMATCH, Scored
 from .borneout import borne_out
-from .inversion import paper_cost, scenes_found
-from .judging import (
+from .judgement import (
     FieldCheck,
     Status,
     alike,
@@ -25,12 +31,6 @@ from .judging import (
     settled,
     swapped_digits,
 )
-from .numerals import Habit
-from .printout import Printout
-from .recovery import Recovered, recover
-from .rereading import Reread, Rereading
-from .search import KINETIC, MISMATCH, Scored
-from .ways import noughts_unreadable
 
 _TRIED = 8
 """Scenes of each kind that are judged, those that explain most."""

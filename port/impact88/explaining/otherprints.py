@@ -11,7 +11,11 @@ from itertools import combinations
 
 from ..doubles import doubles_of
 from ..fields import FIELDS, INPUTS
-from . import trial
+from ..reading.numerals import as_printed, value_of
+from ..reading.printout import Printout
+from ..recovery import replays
+from ..recovery.recovered import Recovered
+from ..recovery.rereading import Change
 from .hypothesis import (
     NATURAL,
     OTHER_DECIMALS,
@@ -23,11 +27,7 @@ from .hypothesis import (
     UNIT,
     Hypothesis,
 )
-from .numerals import as_printed, value_of
 from .otherinputs import SPEED_UNITS, SPIN_UNITS
-from .printout import Printout
-from .recovery import Recovered
-from .rereading import Change
 
 Cut = Callable[[float, int], str]
 _FINAL_SPEEDS = ("VAX", "VAY", "XAF", "YAF", "VBX", "VBY", "XBF", "YBF")
@@ -65,7 +65,7 @@ def exchanged(recovered: Recovered) -> Iterator[Hypothesis]:
             if swapped[name] != fields[name]
         )
         note = ", ".join(f"{one} and {two}" for one, two in pairs)
-        outcome = trial.Outcome(swapped, recovered.outcome.ending)
+        outcome = replays.Outcome(swapped, recovered.outcome.ending)
         if changes:
             yield Hypothesis(RESULTS_SWAPPED, note, NATURAL, changes, recovered.scene, outcome)
 
@@ -77,7 +77,7 @@ class Prints:
         self,
         shown: Printout,
         scene: dict[str, str],
-        outcome: trial.Outcome,
+        outcome: replays.Outcome,
         values: Mapping[str, float],
         note: str = "",
     ) -> None:
@@ -94,7 +94,7 @@ class Prints:
         yield from self.other_units()
 
     def _made(self, kind: str, note: str, weight: float, fields: Mapping[str, str]) -> Hypothesis:
-        outcome = trial.Outcome({**self._outcome.fields, **fields}, self._outcome.ending)
+        outcome = replays.Outcome({**self._outcome.fields, **fields}, self._outcome.ending)
         said = "; ".join(part for part in (note, self._note) if part)
         return Hypothesis(kind, said, weight, (), self._scene, outcome)
 
@@ -182,7 +182,7 @@ def energy(scene: Mapping[str, str]) -> float:
     """Line 320 in double precision."""
     import numpy as np
 
-    from .search import kinetic_energy
+    from ..recovery.search import kinetic_energy
 
     return float(
         kinetic_energy({name: np.array(value) for name, value in doubles_of(scene).items()})

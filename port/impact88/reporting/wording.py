@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from ..explaining.explanations import Explanation
 from ..fields import ANGLES, INPUTS
-from .explain import Explanation
-from .judging import FieldCheck, Status, Verdict, misread_at_all, swapped_digits
-from .numerals import Doubt
-from .printout import Piece, Printout
-from .recovery import Recovered
-from .typedtext import stored_and_printed
-from .ways import scene_name
+from ..judging.judgement import FieldCheck, Status, Verdict, misread_at_all, swapped_digits
+from ..reading.numerals import Doubt
+from ..reading.printout import Piece, Printout
+from ..recovery.choices import scene_name
+from ..recovery.recovered import Recovered
+from ..recovery.typedtext import stored_and_printed
 
 TITLES = {
     Verdict.IDENTICAL: "IDENTICAL",

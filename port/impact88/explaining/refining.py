@@ -15,11 +15,11 @@ from ..closedform.solve import solve
 from ..doubles import double
 from ..fields import FIELDS, INPUTS
 from ..names import PIVOT
+from ..reading.numerals import as_printed
+from ..recovery.choices import Choice, Choices, scene_name, with_opposite_mu
+from ..recovery.recovered import Recovered
+from ..recovery.search import Expected, Floats, Picks
 from .hypothesis import Hypothesis
-from .numerals import as_printed
-from .recovery import Recovered
-from .search import Expected, Floats, Picks
-from .ways import Choice, Choices, scene_name, with_opposite_mu
 
 _SLACK = 1e-6
 """Relative error allowed to the Apple's arithmetic."""

@@ -11,7 +11,13 @@ from typing import NamedTuple
 
 from ..doubles import double
 from ..fields import INPUTS
-from . import trial
+from ..reading.numerals import value_of
+from ..reading.printout import Printout
+from ..recovery import replays
+from ..recovery.choices import with_opposite_mu
+from ..recovery.recovered import Recovered
+from ..recovery.rereading import Change
+from ..recovery.search import AGREES, Expected, expected_results
 from .hypothesis import (
     MU_SIGN,
     NOT_APPLESOFT,
@@ -21,16 +27,10 @@ from .hypothesis import (
     UNITS,
     Hypothesis,
 )
-from .numerals import value_of
 from .otherinputs import SPEEDS, SPINS, other_inputs
 from .othermachines import Machines
 from .otherprints import Prints, energy, exchanged
-from .printout import Printout
-from .recovery import Recovered
 from .refining import nearest
-from .rereading import Change
-from .search import AGREES, Expected, expected_results
-from .ways import with_opposite_mu
 
 _ROUGHLY = 1e-3
 _REPLAYED = 80
@@ -66,7 +66,7 @@ def tried(shown: Printout, recovered: Recovered, every: Sequence[Hypothesis]) ->
     wrong: list[set[str]] = [set() for _ in replayed]
     if replayed:
         names = [one.name for one in expected]
-        endings, columns = trial.run_columns([one.scene for one in replayed], [*names, "MUP"])
+        endings, columns = replays.run_columns([one.scene for one in replayed], [*names, "MUP"])
         for one in expected:
             texts, where = np.unique(columns[one.name], return_inverse=True)
             differs = np.array([one.cost(text) >= AGREES for text in texts.tolist()])[where]
@@ -116,7 +116,7 @@ def _printed_otherwise(shown: Printout, recovered: Recovered) -> Iterator[Hypoth
     known = all(reading.clean for reading in shown.fields.values())
     note = NOT_APPLESOFT if known else ""
     for scene in _either_sign(recovered.scene):
-        outcome, values = trial.run_whole(scene)
+        outcome, values = replays.run_whole(scene)
         yield from Prints(shown, scene, outcome, values, note).all()
 
 
@@ -130,7 +130,7 @@ def _throughout(shown: Printout, inputs: Sequence[Hypothesis]) -> Iterator[Hypot
         names = {change.field for change in one.changes}
         if not names <= spared or not _has_printed_energy(shown, one.scene):
             continue
-        outcome, values = trial.run_whole(one.scene)
+        outcome, values = replays.run_whole(one.scene)
         for made in Prints(shown, one.scene, outcome, values).other_units():
             if made.note == what:
                 note = f"{what}, inputs and results"

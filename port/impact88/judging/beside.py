@@ -13,8 +13,8 @@ from .. import status
 from ..doubles import doubles_of
 from ..fields import INPUTS
 from ..names import RESULTS
-from .judging import FieldCheck
-from .numerals import value_of
+from ..reading.numerals import value_of
+from .judgement import FieldCheck
 
 _DIGITS = 12
 """Digits an exact value is shown with: as many as double precision is sure of."""

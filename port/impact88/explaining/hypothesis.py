@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from . import trial
-from .rereading import Change
+from ..recovery import replays
+from ..recovery.rereading import Change
 
 SWAPPED = "two numbers in each other's place"
 SIDES_SWAPPED = "A and B exchanged"
@@ -52,7 +52,7 @@ class Hypothesis(NamedTuple):
     weight: float
     changes: tuple[Change, ...]
     scene: dict[str, str]
-    outcome: trial.Outcome | None = None
+    outcome: replays.Outcome | None = None
     spared: frozenset[str] = frozenset()
     assumed: dict[str, str] | None = None
     within: dict[str, float] | None = None

@@ -10,9 +10,9 @@ from collections.abc import Iterator, Mapping
 
 from .. import files
 from ..errors import UserError
-from . import beside, provenance, wording
-from .explain import explain
-from .judging import (
+from ..explaining.explanations import explain
+from ..judging import beside
+from ..judging.judgement import (
     FieldCheck,
     Status,
     Verdict,
@@ -21,10 +21,11 @@ from .judging import (
     reply_checks,
     verdict_of,
 )
-from .lookingpast import LookingPast
-from .printout import LARGEST_FILE, Printout, read_bytes
-from .recovery import recover, without_angles
-from .unseen import unseen
+from ..judging.lookingpast import LookingPast
+from ..judging.unseen import unseen
+from ..reading.printout import LARGEST_FILE, Printout, read_bytes
+from ..recovery.recovered import recover, without_angles
+from . import provenance, wording
 from .verification import Examined, Verification
 
 __all__ = [

@@ -21,13 +21,13 @@ from numpy.typing import NDArray
 
 from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
-from .anglerow import cut_as
-from .misreading import opposite
-from .numerals import Habit, compare
-from .printout import Printout, Reading
+from ..reading.anglerow import cut_as
+from ..reading.numerals import Habit, compare
+from ..reading.printout import Printout, Reading
+from .choices import printed_ways, reply_ways, scene_name, without
 from .search import AGREES, MISMATCH, Scored, Search, in_doubles, mismatch
+from .slips import opposite
 from .typedtext import stored_and_printed
-from .ways import printed_ways, reply_ways, scene_name, without
 
 Floats = NDArray[np.float64]
 

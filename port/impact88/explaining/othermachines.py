@@ -13,7 +13,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 
 from ..fields import ANGLES, FIELDS, INPUTS
-from . import otherarithmetic, trial
+from ..reading.numerals import as_printed, value_of
+from ..reading.printout import Printout
+from ..recovery import replays
+from ..recovery.choices import with_opposite_mu
+from ..recovery.recovered import Recovered
+from . import otherarithmetic
 from .hypothesis import (
     ARITHMETIC,
     DECIMAL,
@@ -28,11 +33,7 @@ from .hypothesis import (
     SINGLE_TRUNCATED,
     Hypothesis,
 )
-from .numerals import as_printed, value_of
 from .otherprints import Cut, energy, floored_text, is_rounding, rounded_text, truncated_text
-from .printout import Printout
-from .recovery import Recovered
-from .ways import with_opposite_mu
 
 _SHAKEN = 6
 """Runs in single precision, each with other last bits."""
@@ -71,7 +72,7 @@ class Machines:
                 yield from self._singles(scene)
 
     def _made(
-        self, kind: str, note: str, scene: dict[str, str], outcome: trial.Outcome, add: float
+        self, kind: str, note: str, scene: dict[str, str], outcome: replays.Outcome, add: float
     ) -> Hypothesis:
         weight = ARITHMETIC + add
         note += self._apart
@@ -103,20 +104,20 @@ class Machines:
     # --- double precision ---
 
     def _doubles(self, scene: dict[str, str]) -> Iterator[Hypothesis]:
-        outcome, values = trial.run_whole(scene, "float64")
+        outcome, values = replays.run_whole(scene, "float64")
         outcome = self._longer_energy(scene, outcome)
         so = "float64 prints so"
         yield self._made(DOUBLE, so, scene, outcome, 0.0)
         for kind, way in ((DOUBLE_ROUNDED, rounded_text), (DOUBLE_TRUNCATED, truncated_text)):
             yield self._made(kind, so, scene, _cut(outcome, values, way), 0.1)
         for kind, pi, add in ((DOUBLE_PI, "exact", 0.05), (OTHER_PI, "3.1416", 0.1)):
-            other = trial.run_on(scene, otherarithmetic.with_pi(pi))
+            other = replays.run_on(scene, otherarithmetic.with_pi(pi))
             other = self._longer_energy(scene, other)
             yield self._made(kind, "double precision prints so", scene, other, add)
 
     def _longer_energy(
-        self, scene: Mapping[str, str], outcome: trial.Outcome, units: int = 1
-    ) -> trial.Outcome:
+        self, scene: Mapping[str, str], outcome: replays.Outcome, units: int = 1
+    ) -> replays.Outcome:
         """The outcome with KE as the page has it, if that is another way to write it: to more
         digits than nine (``units``: how far off the last of them may be), in full where Applesoft
         has an exponent, or the ninth digit rounded otherwise where it is halfway."""
@@ -129,14 +130,14 @@ class Machines:
             same = value_of(text) == value_of(outcome.fields["KI"]) or _nine_digits(
                 text, energy(scene)
             )
-        return trial.Outcome({**outcome.fields, "KI": text}, outcome.ending) if same else outcome
+        return replays.Outcome({**outcome.fields, "KI": text}, outcome.ending) if same else outcome
 
     # --- decimal machines ---
 
     def _decimals(self, scene: dict[str, str]) -> Iterator[Hypothesis]:
         for context in otherarithmetic.DECIMAL_CONTEXTS:
             with otherarithmetic.localcontext(context):
-                outcome = trial.run_on(scene, otherarithmetic.decimal())
+                outcome = replays.run_on(scene, otherarithmetic.decimal())
             outcome = self._longer_energy(scene, outcome, _DECIMAL_UNITS)
             note = f"as machines with {context.prec} decimal digits compute"
             yield self._made(DECIMAL, note, scene, outcome, 0.1)
@@ -144,9 +145,9 @@ class Machines:
     # --- single precision ---
 
     def _singles(self, scene: dict[str, str]) -> Iterator[Hypothesis]:
-        plain = trial.run_on(scene, otherarithmetic.single())
-        runs = [trial.run_on(scene, otherarithmetic.shaken(seed)) for seed in range(_SHAKEN)]
-        exact, values = trial.run_whole(scene, "float64")
+        plain = replays.run_on(scene, otherarithmetic.single())
+        runs = [replays.run_on(scene, otherarithmetic.shaken(seed)) for seed in range(_SHAKEN)]
+        exact, values = replays.run_whole(scene, "float64")
         if plain.ending or exact.ending or any(run.ending for run in runs):
             return
         fields = dict(plain.fields)
@@ -159,7 +160,7 @@ class Machines:
         evident = _digits_of(exact.fields.get("KI")) > otherarithmetic.SINGLE_DIGITS
         kind = self._cut_so(values)
         add = 0.05 if evident else _NO_EVIDENCE
-        yield self._made(kind, note, scene, trial.Outcome(fields, plain.ending), add)
+        yield self._made(kind, note, scene, replays.Outcome(fields, plain.ending), add)
 
     def _cut_so(self, values: Mapping[str, float]) -> str:
         """Whether the page's results are floored, rounded or cut, by how many say so."""
@@ -224,10 +225,10 @@ def _left_open(name: str, text: str, every: Sequence[str | None]) -> bool:
     return low - spread - unit <= shown <= high + spread + unit
 
 
-def _cut(outcome: trial.Outcome, values: Mapping[str, float], way: Cut) -> trial.Outcome:
+def _cut(outcome: replays.Outcome, values: Mapping[str, float], way: Cut) -> replays.Outcome:
     """The outcome with the floored fields cut otherwise, to the same places."""
     other = {name: way(value, FIELDS[name].places or 0) for name, value in values.items()}
-    return trial.Outcome({**outcome.fields, **other}, outcome.ending)
+    return replays.Outcome({**outcome.fields, **other}, outcome.ending)
 
 
 __all__ = ["Machines"]

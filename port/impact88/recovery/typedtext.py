@@ -15,7 +15,7 @@ from functools import lru_cache
 from ..applesoft import decimaltext
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import Number, divide, multiply, rounded, to_stored
-from .numerals import value_of
+from ..reading.numerals import value_of
 
 _TYPED_ZEROS = 3
 """How many zeros after the last decimal are thought to have been typed at most."""

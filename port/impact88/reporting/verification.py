@@ -8,12 +8,12 @@ from typing import Any
 
 from .. import notebook
 from ..errors import shown
+from ..explaining.explanations import NO_SINGLE_SLIP, Explanation
 from ..files import called
+from ..judging.judgement import FieldCheck, Status, Verdict
+from ..reading.printout import Piece
 from ..schemas import stamped
 from . import wording
-from .explain import NO_SINGLE_SLIP, Explanation
-from .judging import FieldCheck, Status, Verdict
-from .printout import Piece
 
 
 @dataclass

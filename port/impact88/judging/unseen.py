@@ -14,10 +14,10 @@ import numpy as np
 
 from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
-from . import trial
-from .misreading import opposite
-from .numerals import printable
-from .ways import mu_turned, scene_name
+from ..reading.numerals import printable
+from ..recovery import replays
+from ..recovery.choices import mu_turned, scene_name
+from ..recovery.slips import opposite
 
 _SUMS = (("PA", "TA"), ("PB", "TB"))
 _STEP = 7
@@ -45,7 +45,7 @@ def unseen(scene: Mapping[str, str | None], missing: list[str]) -> list[str]:
                 {**base, one: _plus(base[one], _STEP), two: _plus(base[two], -_STEP)},
             )
         )
-    first, *outcomes = trial.run_all([base, *(other for _, other in tried)])
+    first, *outcomes = replays.run_all([base, *(other for _, other in tried)])
     same: dict[str, bool] = {}
     for (name, _), outcome in zip(tried, outcomes, strict=True):
         exact = "+" not in name
@@ -73,7 +73,7 @@ def unseen(scene: Mapping[str, str | None], missing: list[str]) -> list[str]:
     return sentences
 
 
-def _faint(base: Mapping[str, str], first: trial.Outcome, alone: set[str]) -> list[str]:
+def _faint(base: Mapping[str, str], first: replays.Outcome, alone: set[str]) -> list[str]:
     """The inputs, as printed, in which one digit can be another that changes nothing else on the
     page; each such digit in brackets."""
     tried: list[tuple[str, int]] = []
@@ -88,7 +88,7 @@ def _faint(base: Mapping[str, str], first: trial.Outcome, alone: set[str]) -> li
             scenes.append({**base, own: opposite(text) if turned else text})
     if not tried:
         return []
-    endings, columns = trial.run_columns(scenes, _DEPENDENT)
+    endings, columns = replays.run_columns(scenes, _DEPENDENT)
     differ = {name: texts != texts[0] for name, texts in columns.items()}
     shows = (np.array(endings) != endings[0]) + sum(differ.values())
     faint: dict[str, set[int]] = {}
@@ -133,7 +133,7 @@ def _short(value: float) -> str:
     return f"{value:.6g}".replace("e", "E")
 
 
-def _agree(one: trial.Outcome, other: trial.Outcome, names: set[str], exact: bool) -> bool:
+def _agree(one: replays.Outcome, other: replays.Outcome, names: set[str], exact: bool) -> bool:
     """Whether two outcomes print the same results, to the digit or nearly so."""
     if one.ending != other.ending:
         return False

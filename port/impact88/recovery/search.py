@@ -23,10 +23,10 @@ from ..closedform.solve import solve
 from ..doubles import double
 from ..fields import FIELDS, FINAL_SPINS, INPUTS
 from ..names import VELOCITIES
-from . import trial
-from .numerals import Habit, candidates
-from .printout import Printout, Reading
-from .ways import Choice, Choices, other_bits, without
+from ..reading.numerals import Habit, candidates
+from ..reading.printout import Printout, Reading
+from . import replays
+from .choices import Choice, Choices, other_bits, without
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
@@ -64,7 +64,7 @@ class Scored(NamedTuple):
     cost: float
     scene: dict[str, str]
     assumed: dict[str, str]
-    outcome: trial.Outcome
+    outcome: replays.Outcome
     wrong: frozenset[str]
 
 
@@ -211,12 +211,12 @@ class Search:
                 assumed.update(options[index].printed)
                 cost += options[index].cost
             joined.append((scene, assumed, cost))
-        outcomes = trial.run_all([scene for scene, _, _ in joined])
+        outcomes = replays.run_all([scene for scene, _, _ in joined])
         return [self._scored(*one, outcome) for one, outcome in zip(joined, outcomes, strict=True)]
 
     def replayed_scenes(self, scenes: Sequence[dict[str, str]]) -> list[Scored]:
         """Scenes, replayed, whatever was read of their inputs."""
-        outcomes = trial.run_all(scenes)
+        outcomes = replays.run_all(scenes)
         pairs = zip(scenes, outcomes, strict=True)
         return [self._scored(scene, {}, 0.0, outcome) for scene, outcome in pairs]
 
@@ -226,10 +226,10 @@ class Search:
 
     def replayed_scene(self, scene: dict[str, str], assumed: dict[str, str]) -> Scored:
         """One scene, replayed."""
-        return self._scored(scene, assumed, 0.0, trial.run_once(scene))
+        return self._scored(scene, assumed, 0.0, replays.run_once(scene))
 
     def _scored(
-        self, scene: dict[str, str], assumed: dict[str, str], cost: float, outcome: trial.Outcome
+        self, scene: dict[str, str], assumed: dict[str, str], cost: float, outcome: replays.Outcome
     ) -> Scored:
         names = [one.name for one in self.expected]
         costs = dict(zip(names, self._costs(outcome), strict=True))
@@ -245,7 +245,7 @@ class Search:
         total = cost + sum(costs.values()) + _ABSENT * len(absent)
         return Scored(total, scene, assumed, outcome, wrong)
 
-    def _costs(self, outcome: trial.Outcome) -> Iterator[float]:
+    def _costs(self, outcome: replays.Outcome) -> Iterator[float]:
         for one in self.expected:
             text = outcome.fields.get(one.name)
             yield MISMATCH if text is None else one.cost(text)

@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 
 from ..fields import ANGLES, INPUTS
 from ..names import SCENE
-from . import trial
-from .glyphs import ILLEGIBLE
-from .numerals import Habit
-from .printout import Printout
+from ..reading.glyphs import ILLEGIBLE
+from ..reading.numerals import Habit
+from ..reading.printout import Printout
+from . import replays
+from .choices import STAND_IN, Choices, choices_of, scene_name
 from .search import Scored, Search
-from .ways import STAND_IN, Choices, choices_of, scene_name
 
 _STAND_INS = (STAND_IN, "230", "-41000")
 """Values put in place of a missing input: a field that prints the same with each of them does not
@@ -37,7 +37,7 @@ class Recovered:
 
     scene: dict[str, str]
     assumed: dict[str, str]
-    outcome: trial.Outcome
+    outcome: replays.Outcome
     missing: list[str]
     wrong: frozenset[str]
     cost: float
@@ -107,7 +107,7 @@ def _other_m_explains(recovered: Recovered, best: Scored) -> bool:
     if not any(name in recovered.search.shown.fields for name in ("VAX", "VAY", "VBX", "VBY")):
         return True
     scene = {**best.scene, "M": "6" if best.scene["M"] == "4" else "4"}
-    fields = trial.run_once(scene).fields
+    fields = replays.run_once(scene).fields
     return all(
         fields.get(name) == text
         for name, text in best.outcome.fields.items()
@@ -116,13 +116,13 @@ def _other_m_explains(recovered: Recovered, best: Scored) -> bool:
 
 
 def _independent_of(
-    missing: list[str], scene: Mapping[str, str], outcome: trial.Outcome
-) -> trial.Outcome:
+    missing: list[str], scene: Mapping[str, str], outcome: replays.Outcome
+) -> replays.Outcome:
     """The outcome's fields that are the same whatever the missing inputs are."""
     others = [{**scene, **dict.fromkeys(missing, value)} for value in _STAND_INS[1:]]
     fields = dict(outcome.fields)
-    for other in trial.run_all(others):
+    for other in replays.run_all(others):
         fields = {name: text for name, text in fields.items() if other.fields.get(name) == text}
     for name in missing:
         fields.pop("MUP" if name == "MU" else name, None)
-    return trial.Outcome(fields, None)
+    return replays.Outcome(fields, None)

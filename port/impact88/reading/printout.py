@@ -19,7 +19,8 @@ from .. import files
 from ..applesoft.errorcodes import CODES
 from ..errors import UserError
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
-from . import glyphs, numerals, pasted
+from . import glyphs, numerals
+from . import plaintext as pasted
 from .alignment import Aligned, align
 from .anglerow import cut_in_five
 from .glyphs import Gap, Glyph, Page

@@ -17,14 +17,15 @@ from functools import cached_property
 from typing import Any
 
 from ..fields import FIELDS, INPUTS
-from . import misreading, otherruns, refining
+from ..judging.judgement import FieldCheck, Status
+from ..reading.numerals import value_of
+from ..reading.printout import Printout
+from ..recovery import slips
+from ..recovery.recovered import Recovered
+from ..recovery.rereading import Change, Reread, Rereading
+from ..recovery.search import Scored
+from . import otherruns, refining
 from .hypothesis import NATURAL, NOT_APPLESOFT, Hypothesis
-from .judging import FieldCheck, Status
-from .numerals import value_of
-from .printout import Printout
-from .recovery import Recovered
-from .rereading import Change, Reread, Rereading
-from .search import Scored
 
 MOST = 6
 """Explanations given at most."""
@@ -43,12 +44,12 @@ _TWINS = 8
 NO_SINGLE_SLIP = "no single slip explains this"
 
 _COST = {
-    misreading.DIGIT: 1.0,
-    misreading.SIGN: 0.95,
-    misreading.POINT: 1.05,
-    misreading.SWAP: 1.1,
-    misreading.COUNT: 1.25,
-    misreading.TWO_DIGITS: 1.9,
+    slips.DIGIT: 1.0,
+    slips.SIGN: 0.95,
+    slips.POINT: 1.05,
+    slips.SWAP: 1.1,
+    slips.COUNT: 1.25,
+    slips.TWO_DIGITS: 1.9,
 }
 """How much a slip asks to be believed."""
 _LAST_PLACE = 0.8
@@ -248,7 +249,7 @@ class _Work:
     def _wrong_replies(
         self, scene: dict[str, str], replies: Sequence[FieldCheck]
     ) -> frozenset[str]:
-        from .judging import same_value
+        from ..judging.judgement import same_value
 
         return frozenset(
             f"reply {check.name}"
@@ -269,9 +270,9 @@ class _Work:
                 check, should = self.checks[name], fields.get(name)
             if check.printed is None or should is None:
                 continue
-            kind = misreading.slip(check.printed, should)
-            if kind is None and misreading.differ_in_two(check.printed, should):
-                kind = misreading.TWO_DIGITS
+            kind = slips.slip(check.printed, should)
+            if kind is None and slips.differ_in_two(check.printed, should):
+                kind = slips.TWO_DIGITS
             if kind:
                 yield Change(kind, name, check.printed, should)
 
@@ -310,7 +311,7 @@ class _Work:
         reading = source.get(name)
         where = (reading.line, reading.column) if reading else (None, None)
         look = ""
-        if reading is not None and change.kind == misreading.DIGIT:
+        if reading is not None and change.kind == slips.DIGIT:
             pairs = enumerate(zip(change.printed, change.would_be, strict=False))
             index = next((i for i, (read, true) in pairs if read != true), 0)
             if index < len(reading.region):
@@ -331,8 +332,8 @@ class _Work:
 
 def _believed(change: Change) -> float:
     cost = _COST[change.kind]
-    if change.kind == misreading.DIGIT:
-        cost += 0.04 * misreading.likeness(change.printed, change.would_be)
+    if change.kind == slips.DIGIT:
+        cost += 0.04 * slips.likeness(change.printed, change.would_be)
     if change.field not in INPUTS:
         cost += _LAST_PLACE * _in_last_places(change.field, change.printed, change.would_be)
     return cost
@@ -398,8 +399,8 @@ def _accuses(one: Explanation) -> bool:
 
 
 def _few_slips(one: Explanation) -> bool:
-    slips = [change for change in one.changes if change["kind"] in misreading.KINDS_OF_SLIPS]
-    return len(slips) <= _MOST_SLIPS
+    count = sum(change["kind"] in slips.KINDS_OF_SLIPS for change in one.changes)
+    return count <= _MOST_SLIPS
 
 
 def _completes(one: Explanation, other: Explanation) -> bool:

@@ -14,12 +14,12 @@ from enum import StrEnum
 from typing import Any
 
 from ..fields import ANGLES, FIELDS, FINAL_SPINS
-from .anglerow import cut_as
-from .numerals import SIMILAR, Doubt, Match, Region, Spot, compare
-from .printout import Printout, Reading
-from .recovery import Recovered
-from .typedtext import stored_and_printed
-from .ways import reply_ways, without_mark
+from ..reading.anglerow import cut_as
+from ..reading.numerals import SIMILAR, Doubt, Match, Region, Spot, compare
+from ..reading.printout import Printout, Reading
+from ..recovery.choices import reply_ways, without_mark
+from ..recovery.recovered import Recovered
+from ..recovery.typedtext import stored_and_printed
 
 
 class Verdict(StrEnum):

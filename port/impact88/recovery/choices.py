@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 from ..doubles import double
 from ..fields import ANGLES, INPUTS
+from ..reading.numerals import Habit, candidates, unreadable, value_of, without_habit
+from ..reading.printout import Printout, Reading
 from ..scene import VALUE_LIMIT
-from .misreading import opposite
-from .numerals import Habit, candidates, unreadable, value_of, without_habit
-from .printout import Printout, Reading
+from .slips import opposite
 from .typedtext import stored_and_printed, texts_that_print
 
 STAND_IN = "1.7"

@@ -13,6 +13,10 @@ from itertools import combinations
 from ..applesoft import decimaltext
 from ..doubles import double
 from ..fields import ANGLES, INPUTS
+from ..reading.numerals import as_printed
+from ..recovery.choices import scene_name, with_opposite_mu
+from ..recovery.recovered import Recovered
+from ..recovery.rereading import Change
 from .hypothesis import (
     AS_RADIANS,
     AXES_SWAPPED,
@@ -25,10 +29,6 @@ from .hypothesis import (
     UNITS,
     Hypothesis,
 )
-from .numerals import as_printed
-from .recovery import Recovered
-from .rereading import Change
-from .ways import scene_name, with_opposite_mu
 
 _SIDES = (*((f"{x}A", f"{x}B") for x in "MIDPTW"), ("UX", "VX"), ("UY", "VY"))
 _AXES = (("UX", "UY"), ("VX", "VY"))

@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ..fields import ANGLES, INPUTS
-from . import trial
-from .glyphs import LOOK_ALIKES, NUMERIC
-from .judging import Doubtful, FieldCheck, Status
-from .numerals import Doubt, candidates
-from .printout import Printout
-from .recovery import Recovered
-from .ways import scene_name
+from ..reading.glyphs import LOOK_ALIKES, NUMERIC
+from ..reading.numerals import Doubt, candidates
+from ..reading.printout import Printout
+from ..recovery import replays
+from ..recovery.choices import scene_name
+from ..recovery.recovered import Recovered
+from .judgement import Doubtful, FieldCheck, Status
 
 MOST = 2
 """Inputs not read at most: with more unknown, other scenes may print the same."""
@@ -38,7 +38,7 @@ def borne_out(shown: Printout, recovered: Recovered, checks: Sequence[FieldCheck
     for check in lost:
         name = scene_name(check.name)
         others = [{**recovered.scene, name: text} for text in _next_to(recovered.scene[name])]
-        for outcome in trial.run_all(others):
+        for outcome in replays.run_all(others):
             if all(outcome.fields.get(name) == text for name, text in results.items()):
                 return False
     for check in lost:

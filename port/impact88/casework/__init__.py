@@ -1,1 +1,0 @@
-"""Casework: printouts read, verified digit by digit, explained and reported."""

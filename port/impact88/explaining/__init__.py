@@ -1,0 +1,1 @@
+"""Explaining: causes that would make a differing page agree, each tested by replay."""

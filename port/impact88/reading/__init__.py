@@ -1,0 +1,1 @@
+"""Reading: a text as labelled numbers, each with the ways it may be read."""

@@ -1,0 +1,1 @@
+"""Recovery: the scene whose page explains the paper at the least cost."""
