@@ -13,7 +13,7 @@ from impact88.explaining.otherprints import rounded_text
 from impact88.program.run import run
 from impact88.reading.printout import FIELDS, read_printouts
 from impact88.recovery import replays
-from impact88.recovery.slips import misreadings, opposite, slip
+from impact88.recovery.misprints import misreadings, opposite, slip
 from impact88.reporting.examination import Verdict, verify
 from impact88.scene import Scene, sample
 from test_printout import SAMPLE

@@ -20,7 +20,7 @@ from ..fields import FIELDS, INPUTS
 from ..judging.judgement import FieldCheck, Status
 from ..reading.numerals import value_of
 from ..reading.printout import Printout
-from ..recovery import slips
+from ..recovery import misprints
 from ..recovery.recovered import Recovered
 from ..recovery.rereading import Change, Reread, Rereading
 from ..recovery.search import Scored
@@ -44,12 +44,12 @@ _TWINS = 8
 NO_SINGLE_SLIP = "no single slip explains this"
 
 _COST = {
-    slips.DIGIT: 1.0,
-    slips.SIGN: 0.95,
-    slips.POINT: 1.05,
-    slips.SWAP: 1.1,
-    slips.COUNT: 1.25,
-    slips.TWO_DIGITS: 1.9,
+    misprints.DIGIT: 1.0,
+    misprints.SIGN: 0.95,
+    misprints.POINT: 1.05,
+    misprints.SWAP: 1.1,
+    misprints.COUNT: 1.25,
+    misprints.TWO_DIGITS: 1.9,
 }
 """How much a slip asks to be believed."""
 _LAST_PLACE = 0.8
@@ -270,9 +270,9 @@ class _Work:
                 check, should = self.checks[name], fields.get(name)
             if check.printed is None or should is None:
                 continue
-            kind = slips.slip(check.printed, should)
-            if kind is None and slips.differ_in_two(check.printed, should):
-                kind = slips.TWO_DIGITS
+            kind = misprints.slip(check.printed, should)
+            if kind is None and misprints.differ_in_two(check.printed, should):
+                kind = misprints.TWO_DIGITS
             if kind:
                 yield Change(kind, name, check.printed, should)
 
@@ -311,7 +311,7 @@ class _Work:
         reading = source.get(name)
         where = (reading.line, reading.column) if reading else (None, None)
         look = ""
-        if reading is not None and change.kind == slips.DIGIT:
+        if reading is not None and change.kind == misprints.DIGIT:
             pairs = enumerate(zip(change.printed, change.would_be, strict=False))
             index = next((i for i, (read, true) in pairs if read != true), 0)
             if index < len(reading.region):
@@ -332,8 +332,8 @@ class _Work:
 
 def _believed(change: Change) -> float:
     cost = _COST[change.kind]
-    if change.kind == slips.DIGIT:
-        cost += 0.04 * slips.likeness(change.printed, change.would_be)
+    if change.kind == misprints.DIGIT:
+        cost += 0.04 * misprints.likeness(change.printed, change.would_be)
     if change.field not in INPUTS:
         cost += _LAST_PLACE * _in_last_places(change.field, change.printed, change.would_be)
     return cost
@@ -399,7 +399,7 @@ def _accuses(one: Explanation) -> bool:
 
 
 def _few_slips(one: Explanation) -> bool:
-    count = sum(change["kind"] in slips.KINDS_OF_SLIPS for change in one.changes)
+    count = sum(change["kind"] in misprints.KINDS_OF_SLIPS for change in one.changes)
     return count <= _MOST_SLIPS
 
 

@@ -17,7 +17,7 @@ from ..fields import ANGLES, FIELDS, INPUTS
 from ..reading.numerals import printable
 from ..recovery import replays
 from ..recovery.choices import mu_turned, scene_name
-from ..recovery.slips import opposite
+from ..recovery.misprints import opposite
 
 _SUMS = (("PA", "TA"), ("PB", "TB"))
 _STEP = 7

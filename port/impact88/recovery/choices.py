@@ -15,7 +15,7 @@ from ..fields import ANGLES, INPUTS
 from ..reading.numerals import Habit, candidates, unreadable, value_of, without_habit
 from ..reading.printout import Printout, Reading
 from ..scene import VALUE_LIMIT
-from .slips import opposite
+from .misprints import opposite
 from .typedtext import stored_and_printed, texts_that_print
 
 STAND_IN = "1.7"

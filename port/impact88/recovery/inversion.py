@@ -25,8 +25,8 @@ from ..reading.anglerow import cut_as
 from ..reading.numerals import Habit, compare
 from ..reading.printout import Printout, Reading
 from .choices import printed_ways, reply_ways, scene_name, without
+from .misprints import opposite
 from .search import AGREES, MISMATCH, Scored, Search, in_doubles, mismatch
-from .slips import opposite
 from .typedtext import stored_and_printed
 
 Floats = NDArray[np.float64]

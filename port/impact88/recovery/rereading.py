@@ -1,6 +1,6 @@
 """Rereading: which slips in the printed inputs, put right, make the page agree with itself.
 
-Every slip in every input (`misreading`) is a hypothesis, alone and in pairs; two digits of one
+Every slip in every input (`misprints`) is a hypothesis, alone and in pairs; two digits of one
 number are another. They are screened in double precision, masses and velocities by the kinetic
 energy first, and the best replayed. Nothing here is a verdict: `explain` names what is found, and
 `judging` says when a reader's slips may be looked past.
@@ -21,19 +21,19 @@ from ..closedform.solve import solve
 from ..doubles import double
 from ..fields import ANGLES, INPUTS
 from ..reading.numerals import as_printed, is_number, printable, value_of
-from . import slips
+from . import misprints
 from .choices import Choice, Choices, flipped, scene_name
 from .recovered import Recovered
 from .search import AGREES, KINETIC, MISMATCH, Picks, Scored, Search, columns, printed_mu
 from .typedtext import stored_and_printed, texts_that_print
 
 COSTS = {
-    slips.DIGIT: 2.7,
-    slips.SIGN: 2.6,
-    slips.POINT: 2.8,
-    slips.SWAP: 2.9,
-    slips.COUNT: 3.0,
-    slips.TWO_DIGITS: 4.4,
+    misprints.DIGIT: 2.7,
+    misprints.SIGN: 2.6,
+    misprints.POINT: 2.8,
+    misprints.SWAP: 2.9,
+    misprints.COUNT: 3.0,
+    misprints.TWO_DIGITS: 4.4,
 }
 """What it costs to believe a slip; a result that differs costs `search.MISMATCH`."""
 _UNLIKE = 0.05
@@ -179,9 +179,9 @@ class Rereading:
         text = as_printed(f"{total:f}")
         if text is None or not printable(text) or text == self._base[twin]:
             return None
-        kind = slips.slip(self._base[twin], text)
-        if kind is None and slips.differ_in_two(self._base[twin], text):
-            kind = slips.TWO_DIGITS
+        kind = misprints.slip(self._base[twin], text)
+        if kind is None and misprints.differ_in_two(self._base[twin], text):
+            kind = misprints.TWO_DIGITS
         return Change(kind, twin, self._base[twin], text) if kind else None
 
     def _instead(self, one: Reread, change: Change, other: Change) -> Reread:
@@ -206,8 +206,8 @@ class Rereading:
                 if not self._possible(name, other):
                     continue
                 rows.append([0] * place + [len(options)] + [0] * (len(self._names) - place))
-                options.append(self._typed(name, other, COSTS[slips.TWO_DIGITS]))
-                made.append(Change(slips.TWO_DIGITS, name, self._base[name], other))
+                options.append(self._typed(name, other, COSTS[misprints.TWO_DIGITS]))
+                made.append(Change(misprints.TWO_DIGITS, name, self._base[name], other))
             ways.append(options)
         choices = [*ways, self._m()]
         if not rows:
@@ -288,11 +288,11 @@ class Rereading:
         text = self._base.get(name)
         if text is None:
             return
-        for kind, other in slips.misreadings(text):
+        for kind, other in misprints.misreadings(text):
             if self._possible(name, other):
                 cost = COSTS[kind]
-                if kind == slips.DIGIT:
-                    cost += _UNLIKE * slips.likeness(text, other)
+                if kind == misprints.DIGIT:
+                    cost += _UNLIKE * misprints.likeness(text, other)
                 yield Change(kind, name, text, other), self._typed(name, other, cost)
 
     def _possible(self, name: str, text: str) -> bool:
@@ -317,7 +317,7 @@ class Rereading:
                     proper[place][index] = choice._replace(cost=choice.cost + MISMATCH)
                     continue
                 (own, text), *_ = choice.typed.items()
-                typed = slips.opposite(typed) if own == "MU" and text != printed else typed
+                typed = misprints.opposite(typed) if own == "MU" and text != printed else typed
                 proper[place][index] = choice._replace(typed={own: typed})
         return proper
 
@@ -411,7 +411,7 @@ def _one_change(choices: Choices) -> Picks:
 def _two_changes(choices: Choices, most: int) -> Picks:
     """No change, one, or two in different columns; of too many pairs the likeliest."""
     parts = [_one_change(choices)]
-    lost = COSTS[slips.COUNT]
+    lost = COSTS[misprints.COUNT]
     sizes = [sum(one.cost < lost for one in options[1:]) for options in choices]
     total = sum(one * two for one, two in pairs_of(sizes, 2))
     share = min(1.0, (most / total) ** 0.5) if total else 1.0
@@ -428,7 +428,7 @@ def _two_changes(choices: Choices, most: int) -> Picks:
 
 def _three_digits(choices: Choices) -> Picks:
     """A digit taken for its look-alike in each of three columns; of too many the likeliest."""
-    likely = COSTS[slips.DIGIT]
+    likely = COSTS[misprints.DIGIT]
     alike = likely + _ALIKE * _UNLIKE
     most = int((_PAIRS / comb(len(choices), 3)) ** (1 / 3))
     places = []
@@ -446,7 +446,7 @@ def _three_digits(choices: Choices) -> Picks:
 
 
 def _cheapest(options: list[Choice], share: float) -> Picks:
-    lost = COSTS[slips.COUNT]
+    lost = COSTS[misprints.COUNT]
     few = [index for index in range(1, len(options)) if options[index].cost < lost]
     order = sorted(few, key=lambda index: options[index].cost)
     return np.array(order[: max(1, int(share * len(order)))] if order else [], np.intp)
