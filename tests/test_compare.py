@@ -31,7 +31,7 @@ from impact88.checking.compare import (
     Comparison,
     compare_file,
 )
-from impact88.checking.diagnosis import SINGLE, UNKNOWN
+from impact88.checking.diagnosis import IN_THESE_ROWS, SINGLE, UNKNOWN
 from impact88.checking.vectors import CASEWORK, scenes
 from impact88.closedform.solve import solve
 from impact88.errors import UserError
@@ -171,8 +171,8 @@ def test_two_mistakes_in_one_table_are_both_named(tmp_path) -> None:
     first, second = answered(one[0]), answered(other[0])
     made = {name: first[name][:half] + second[name][half:] for name in RESULTS}
     done = compared(tmp_path, made)
-    assert set(done.causes) == {one[1], other[1]}
-    assert done.causes[other[1]] == len(ROWS) - half
+    assert set(done.causes) == {one[1], other[1] + IN_THESE_ROWS}
+    assert done.causes[other[1] + IN_THESE_ROWS] == len(ROWS) - half
 
 
 class RestitutionAcross(Program):
@@ -395,6 +395,49 @@ def test_bounds_are_those_of_the_condition(tmp_path) -> None:
     done = compared(tmp_path, exactly(OURS))
     assert done.elimination.rows == 0
     assert errorbound.relative_bounds(OURS["COND"]).max() < 1e-9
+
+
+# --- what is no number -----------------------------------------------------------------------
+
+
+def test_refusals_in_the_words_of_other_languages(tmp_path) -> None:
+    words = ["-nan", "nan(ind)", "-nan(ind)", "#DIV/0!", "#NUM!", "#N/A", "NaN", "Infinity", "-inf"]
+    rows = [{**scene, "IA": "0"} for scene in ROWS[: len(words)]]
+    found = {name: [*words, repr(float(OURS[name][-1]))] for name in FINAL_VELOCITIES}
+    done = compared(tmp_path, found, [*rows, ROWS[-1]])
+    assert done.not_compared == {NO_RESULT: len(words)}
+    assert (done.bad, done.silent, done.agreeing) == ([], [], 1)
+    found["VAX"][0] = "heavy"
+    assert len(compared(tmp_path, found, [*rows, ROWS[-1]]).bad) == 1
+
+
+def test_a_spin_of_ours_that_is_zero_is_measured_finitely(tmp_path) -> None:
+    rest = dict.fromkeys(("UX", "UY", "VX", "VY", "WA", "WB", "DA", "DB"), "0")
+    rows = [{**ROWS[0], **rest}, *ROWS[1:]]
+    found = exactly(OURS)
+    for name in FINAL_VELOCITIES:
+        found[name][0] = "0" if name != "WAF" else "0.25"
+    done = compared(tmp_path, found, rows)
+    assert (done.differing, done.tallies["WAF"].largest) == (1, 1.0)
+    json.dumps(done.as_json(), allow_nan=False)
+
+
+def test_a_wrong_critical_friction_is_a_difference(tmp_path) -> None:
+    for names in (("MUC",), (*FINAL_VELOCITIES, "MUC")):
+        made = exactly(OURS, names)
+        made["MUC"] = [repr(float(x) * 1.01) for x in OURS["MUC"]]
+        assert compared(tmp_path, made).differing == len(ROWS)
+
+
+def test_formulas_never_computed_are_named(tmp_path) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.active.append([*SCENE, "VAX"])
+    book.active.append([*(float(ROWS[0][name]) for name in SCENE), "=O2*2"])
+    book.save(tmp_path / "theirs.xlsx")
+    done = impact88("compare", str(tmp_path / "theirs.xlsx"))
+    assert done.returncode == 2
+    assert "V2 has a formula that was never computed" in done.stderr
 
 
 # --- a program in another language -----------------------------------------------------------

@@ -71,8 +71,11 @@ class Verdict(NamedTuple):
     relative: Floats
 
 
-_NOTHING = ("", "nan", "null", "none", "n/a")
-"""What programs write where they have no result."""
+_NOTHING = re.compile(
+    r"|null|none|n/a|#[A-Z]+[/0-9A-Z]*[!?]?|[+-]?(nan|inf|infinity|1\.#[A-Z]+[0-9]*)(\([a-z0-9]*\))?",
+    re.IGNORECASE,
+)
+"""What programs write where they have no result: spreadsheets' errors, C's -nan(ind), infinity."""
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
 
 
@@ -83,7 +86,7 @@ def read_theirs(rows: Rows, name: str) -> Theirs:
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
         return Theirs(column.astype(float), np.zeros(rows.count))
     texts = ["" if cell is None else str(cell).strip() for cell in column]
-    there = [index for index, text in enumerate(texts) if text.lower() not in _NOTHING]
+    there = [index for index, text in enumerate(texts) if not _NOTHING.fullmatch(text)]
     values, units = np.full(rows.count, np.nan), np.zeros(rows.count)
     try:
         values[there] = doubles([texts[index] for index in there])
@@ -129,7 +132,9 @@ def judge(theirs: Theirs, ours: Floats, name: str, allowed: Slack) -> Verdict:
         tight = allowed.double * size + last_bits
         loose = allowed.elimination * size + last_bits
         written = theirs.units * (0.5 + 1e-9)
-        relative = np.where(size > 0, off / size, np.where(off > 0, np.inf, 0.0))
+        # nothing there to measure by: as a share of what they have
+        measure = np.where(size > 0, size, np.abs(theirs.values))
+        relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
         return Verdict(off <= tight, off <= written + tight, off <= written + loose, relative)
 
 

@@ -41,6 +41,8 @@ TRUNCATED = "cut off at the digits given, not rounded"
 APPLESOFT = "rounding in 32 bits, as Applesoft's"
 SINGLE = "rounding in single precision"
 UNKNOWN = "unexplained"
+IN_THESE_ROWS = ", in these rows only"
+"""Behind a cause that rows that agree refute."""
 
 _WRONG_SAMPLE, _RIGHT_SAMPLE = 60, 30
 _PAIR_SAMPLES = (5, 24)
@@ -56,6 +58,8 @@ _LEAST_SHARE = 0.03
 """A cause of a smaller share of the rows that disagree is not named, where there are many."""
 _MANY = 40
 _LEAST_PAIR_SHARE = 0.6
+_BORNE_OUT = 0.9
+"""The share of the rows that agree that a cause must fit, too: less refutes it."""
 _LARGE = 1e-5
 """Differences below this share of their size are no pair of slips."""
 _CERTAIN, _PAIR_CERTAIN = 4.0, 8.0
@@ -126,7 +130,8 @@ def diagnose(case: Case) -> Diagnosis:
     if not covering or (covering[0].rows & case.wrong).sum() < _MAIN * case.wrong.sum():
         _by_precision(causes, case)
     for fit in covering:
-        causes[(causes == UNKNOWN) & fit.rows] = fit.says
+        stands = (fit.rows & ~case.wrong).sum() >= _BORNE_OUT * (~case.wrong).sum()
+        causes[(causes == UNKNOWN) & fit.rows] = fit.says + ("" if stands else IN_THESE_ROWS)
     violations = residuals.violated(case.scene, case.theirs, case.allowed)
     _by_residuals(causes, case, violations)
     rows = int(case.wrong.sum())
@@ -217,7 +222,7 @@ def _measured(case: Case) -> list[Slip]:
         "final spins": FINAL_SPINS,
         "energies": ENERGIES,
         "impulses": IMPULSES,
-        **{name: (name,) for name in case.theirs},
+        **{name: (name,) for name in case.theirs if name != "MUC"},  # of which no program has any
     }
     for what, names in groups.items():
         there = [name for name in names if name in case.theirs]

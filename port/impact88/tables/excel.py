@@ -50,6 +50,7 @@ class _ExcelReader:
 
     def __init__(self, rows: Iterator[tuple[Any, ...]], where: str) -> None:
         self.total: int | None = None
+        self._trusted = False
         self._where = where
         self._lines = enumerate(rows, 1)
         filled = (row for _, row in self._lines if any(cell is not None for cell in row))
@@ -75,6 +76,9 @@ class _ExcelReader:
                     raise UserError(
                         f"row {number} has a cell in a column that has no name", self._where
                     )
+            if not self._trusted and any(None in row for _, row in block):
+                _check_computed(self._where, width)
+                self._trusted = True
             full = ((*row[:width], *[None] * (width - len(row))) for _, row in block)
             cells = zip(*full, strict=True)
             columns: dict[str, Column] = {}
@@ -86,6 +90,26 @@ class _ExcelReader:
                     others[name] = [plain(c) if isinstance(c, bool) else _text(c) for c in column]
             yield Rows(first, len(block), columns, others, [number for number, _ in block])
             first += len(block)
+
+
+def _check_computed(path: str, width: int) -> None:
+    """Raise UserError where a formula has no value: libraries write formulas, spreadsheet programs
+    compute them when they save."""
+    openpyxl = _library()
+    books = [openpyxl.load_workbook(path, read_only=True, data_only=only) for only in (True, False)]
+    try:
+        sheets = (book.worksheets[0].iter_rows(max_col=width) for book in books)
+        for values, formulas in zip(*sheets, strict=True):
+            for value, formula in zip(values, formulas, strict=True):
+                if value.value is None and formula.data_type == "f":
+                    raise UserError(
+                        f"cell {formula.coordinate} has a formula that was never computed; "
+                        "expected a workbook saved by a spreadsheet program",
+                        path,
+                    )
+    finally:
+        for book in books:
+            book.close()
 
 
 def _text(cell: Any) -> str:
