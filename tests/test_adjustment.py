@@ -623,3 +623,49 @@ def test_a_value_known_more_than_needed_leaves_nothing_uncertain():
     (solution,) = reconstruct(known | {"VAX": read(f"{forward['VAX'] + 1!r} +- 2", "VAX")})
     assert uncertainty(solution, 100).names == ()
     assert solution.values["UX"] == pytest.approx(TABLE_3["UX"], abs=1e-9)
+
+
+def words(text):
+    parts = text.split()
+    return {name: float(value) for name, value in zip(parts[::2], parts[1::2], strict=True)}
+
+
+class TestOneList:
+    """Of all readings and valleys one list, the best first."""
+
+    SIDESWIPE = words(
+        "DA 6.60886 DB 4.908614 GA 88.88794 PA 61.51371 PB 31.553357 TA 1.73368 TB 2.904918 "
+        "MA 145.444488 MB 110.906204 IA 3784.3219 IB 2189.873852 HA -177.703327 HB 1.726694 "
+        "SA 76.51278 WA .148654 WB .017577 MU .571402 EM -.629986 EL 26388.25101 E .037484"
+    )
+
+    def test_a_fit_of_one_sign_gives_way_to_the_impact_of_the_other(self):
+        (solution,) = reconstruct(self.SIDESWIPE)
+        assert not solution.assumed
+        assert solution.values["WA"] == pytest.approx(0.148654)
+        assert solution.values["MUP"] == -0.571402
+
+    @pytest.mark.parametrize("course", [0.0, read("0 +- 3", "HA")])
+    def test_the_only_impact_against_a_course_is_named(self, course):
+        (solution,) = reconstruct({**SECTION_7, "HA": course})
+        assert solution.backwards == ("HA",)
+
+    def test_an_impact_against_a_course_is_dropped_beside_one_along_it(self):
+        after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP", "DVA")).items()}
+        known = {n: TABLE_3[n] for n in (*GEOMETRY, "WA", "WB", "E", "EM")}
+        known |= {"MUP": after["MUP"], "HA": 180.0, "HB": 90.0, "DVA": after["DVA"]}
+        late = {"HAF": math.degrees(math.atan2(after["VAY"], after["VAX"]))}
+        solutions = reconstruct(known | late)
+        assert [s.backwards for s in solutions] == [()] * len(solutions)
+        assert solutions[0].values["UX"] == pytest.approx(TABLE_3["UX"], rel=1e-8)
+
+    def test_four_courses_and_two_small_spins(self):
+        """The spins alone tell how fast all was: little."""
+        true = TABLE_3 | {"WA": 0.01, "WB": -0.02}
+        after = {n: float(v) for n, v in solve(true, (*FINAL, "MUP")).items()}
+        known = {n: true[n] for n in (*GEOMETRY, "WA", "WB", "E", "EM")} | {"MUP": after["MUP"]}
+        known |= {"HA": 180.0, "HB": 90.0}
+        for name, x, y in (("HAF", "VAX", "VAY"), ("HBF", "VBX", "VBY")):
+            known[name] = math.degrees(math.atan2(after[y], after[x]))
+        (solution,) = reconstruct(known)
+        assert solution.values["UX"] == pytest.approx(TABLE_3["UX"], rel=1e-6)

@@ -16,7 +16,7 @@ First-order deviations and correlations come from the same linear equations.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -89,6 +89,8 @@ _OPEN = 1e-7
 """From this share of its gradient in the null space on, a quantity is not determined."""
 _HOLDS = 1e-10
 """What scaled conditions may leave over."""
+_LIKELY = 4.0
+"""Impacts with so many times the least sum of squares are told too."""
 DEGREES = float(np.degrees(1.0))
 
 
@@ -285,7 +287,8 @@ class System:
             residual, slopes = self.linearized(here, self.left)
             steps = _steps(residual, slopes, count)
             size = np.abs(steps).max(axis=0, initial=0.0)
-            steps = steps * np.minimum(1.0, _LONGEST / np.maximum(size, _LONGEST))
+            longest = _LONGEST * np.maximum(1.0, np.abs(here).max(axis=0, initial=0.0))
+            steps = steps * np.minimum(1.0, longest / np.maximum(size, longest))
             before = np.abs(residual[:count]).max(axis=0, initial=0.0)
             for _ in range(12):
                 tried = here + steps
@@ -524,6 +527,7 @@ class Reconstruction:
     known within a tolerance. ``redundancy``: known values more than needed. ``squares``: the sum of
     squared adjustments in standard deviations; about the redundancy when tolerances are right.
     ``assumed``: the tolerances were not given but taken equal for all known velocities.
+    ``against_sign``: friction drives the sliding that MU's sign was chosen to oppose.
     """
 
     system: System
@@ -535,6 +539,25 @@ class Reconstruction:
     squares: float
     left_over: float
     assumed: bool = False
+    against_sign: bool = False
+
+    @property
+    def collides(self) -> bool:
+        """Whether the contact points approach and push each other, as far as that is known."""
+        state = self.system.state(self.x)
+        return bool(state.relative_before[0] < 0 and self.values.get("PN", 1.0) > 0)
+
+    @cached_property
+    def backwards(self) -> tuple[str, ...]:
+        """The known courses along which this impact drives backwards."""
+        state, speed = self.system.state(self.x), self.system.speed
+        return tuple(
+            name
+            for name, size in COURSES.items()
+            if name in self.system.known
+            and size in self.values
+            and state.along(name) < -_HOLDS * speed
+        )
 
     @cached_property
     def _responses(self) -> Floats:
@@ -639,21 +662,34 @@ def reconstruct(known: Mapping[str, Uncertain | float]) -> list[Reconstruction]:
         readings = [{**given, "MUP": mu}]
     else:
         readings = [{**given, "MUP": mu}, {**given, "MUP": _negative(mu)}]
-    solutions: list[Reconstruction] = []
+    found: list[Reconstruction] = []
     failure: UserError | None = None
-    for reading in readings:
-        try:
-            answers = _solutions(reading)
-        except UserError as error:
-            failure = error
-            continue
-        solutions += [s for s in answers if mu is None or _agrees(s, mu.nominal)]
-    if not solutions:
-        raise failure or UnsolvableError(
-            "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
-            "opposes the sliding joins what is known"
-        )
-    return solutions
+    # what contradicts itself in one reading of MU's sign may agree in the other
+    for fits in (False, True):
+        for reading in readings:
+            try:
+                found += _solutions(reading, fits)
+            except UserError as error:
+                failure = error
+        agreeing = [s for s in found if mu is None or _agrees(s, mu.nominal)]
+        if agreeing:
+            return _preferred(agreeing)
+    fitted = [s for s in found if s.redundancy]
+    if fitted:
+        return _preferred([replace(s, against_sign=True) for s in fitted])
+    raise failure or UnsolvableError(
+        "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
+        "opposes the sliding joins what is known"
+    )
+
+
+def _preferred(found: list[Reconstruction]) -> list[Reconstruction]:
+    """Of solutions the likely ones, the best first. A course is a direction: what drives backwards
+    along one is kept only where nothing else is."""
+    ahead = [s for s in found if not s.backwards] or found
+    least = min(s.squares for s in ahead)
+    kept = [s for s in ahead if s.squares <= max(_LIKELY * least, 1e-9)]
+    return sorted(kept, key=lambda s: (round(s.squares, 9), not s.collides))
 
 
 def _checked(known: Mapping[str, Uncertain | float]) -> dict[str, Uncertain]:
@@ -699,14 +735,18 @@ def _negative(item: Uncertain) -> Uncertain:
 def _agrees(solution: Reconstruction, mu: float) -> bool:
     """Whether friction with this solution's sign opposes its own sliding, as line 400 has it."""
     signed = solution.system.nominal["MUP"]
-    if "UX" in solution.undetermined:
+    if set(VELOCITIES) & set(solution.undetermined):
         return True
     return typed_friction(solution.system.state(solution.x), signed) == mu
 
 
-def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
+def _solutions(known: Mapping[str, Uncertain], fits: bool) -> list[Reconstruction]:
+    """The impacts nearest to what is known, friction signed; ``fits``: of exact values that
+    contradict one another only, else of all others."""
     begin, at_hand, found = _starts(known)
     system = found.system
+    if found.assumed != fits:
+        return []
     ends, over = system.straight(begin)
     squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
     for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
@@ -739,8 +779,7 @@ def _solutions(known: Mapping[str, Uncertain]) -> list[Reconstruction]:
             "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
             "what is measured"
         )
-    least = min(s.squares for s in found.solutions)
-    return [s for s in found.solutions if s.squares <= max(4 * least, 1e-9)]
+    return found.solutions
 
 
 def _starts(known: Mapping[str, Uncertain]) -> tuple[Floats, bool, _Found]:

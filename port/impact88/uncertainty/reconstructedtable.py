@@ -110,6 +110,17 @@ def warnings(
     lines = []
     if solution.undetermined:
         lines.append(f"not determined by what is known: {' '.join(solution.undetermined)}")
+    for name in solution.backwards:
+        lines.append(
+            f"{name[1]} drives backwards along its known course: {name} = "
+            f"{number(solution.system.nominal[name], 4)} was given, the only impact found has "
+            f"{number(solution.values[name], 4)}"
+        )
+    if solution.against_sign:
+        lines.append(
+            "friction drives the sliding: neither sign of MU opposes the sliding it leads to "
+            "(line 400)"
+        )
     if solution.assumed:
         lines.append(
             "the known values contradict one another and none has a tolerance: all known "
