@@ -558,7 +558,7 @@ class TestCommand:
             for part in ("--set", text)
         ]
         status, out, err = self.run(
-            capsys, "reconstruct", section_7, *settings, "--samples", "1000", "--scene", scene
+            capsys, "reconstruct", section_7, *settings, "--samples", "1000", "--write-scene", scene
         )
         assert status == 0
         assert f"scene written to {scene}" in err

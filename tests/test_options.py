@@ -15,12 +15,22 @@ from impact88.errors import UserError
 WITH_SET = "run --sample 1|solve cases.csv|compare cases.csv|reconstruct|barrier|colinear|delta-v"
 
 
-def declared(command: str) -> dict[str, argparse.Action]:
-    """The options of a command, by spelling."""
+def arguments(command: str) -> list[argparse.Action]:
+    """What a command takes."""
     parser = argparse.ArgumentParser()
     module = importlib.import_module(f"impact88.commands.{command.replace('-', '_')}_command")
     module.add_arguments(parser)
-    return {name: action for action in parser._actions for name in action.option_strings}
+    return parser._actions
+
+
+def declared(command: str) -> dict[str, argparse.Action]:
+    """The options of a command, by spelling."""
+    return {
+        name: action
+        for action in arguments(command)
+        for name in action.option_strings
+        if action.help != argparse.SUPPRESS
+    }
 
 
 ALL = {command: declared(command) for command in COMMANDS}

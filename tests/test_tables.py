@@ -112,7 +112,7 @@ class TestCsv:
     def test_not_text(self, tmp_path):
         path = tmp_path / "a.csv"
         path.write_bytes(b"E,MU\n\xff\xfe\xfa,1\n")
-        with pytest.raises(UserError, match="no UTF-8 text"):
+        with pytest.raises(UserError, match="not UTF-8 text"):
             read(path)
         with pytest.raises(UserError, match="cannot be read"):
             read(tmp_path / "none.csv")

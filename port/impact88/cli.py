@@ -56,6 +56,10 @@ UNUSABLE = 2
 BUG = 3
 
 
+class _NothingToKeep(Exception):
+    """A command ended with status 2: the file it was writing is not put in place."""
+
+
 class _Parser(argparse.ArgumentParser):
     """argparse's errors in this project's form: one line, status 2."""
 
@@ -122,9 +126,12 @@ def _dispatch(arguments: Sequence[str]) -> int:
     except SystemExit:  # --help has been printed
         return 0
     options = import_module(".commands.options", __package__)
-    options.check_files(args)
-    with options.output_of(args):
-        return int(module.main(args))
+    options.check_files(parser, args)
+    with suppress(_NothingToKeep), options.output_of(args):
+        status = int(module.main(args))
+        if status == UNUSABLE:
+            raise _NothingToKeep
+    return status
 
 
 def _open_closed_streams() -> None:
@@ -180,11 +187,19 @@ def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
         except UserError as error:
             note(called, str(error))
             status = UNUSABLE
-        except MemoryError:
-            note(called, "not enough memory; expected a smaller input, or more memory")
-            status = UNUSABLE
         except RecursionError:
             note(called, "the input is nested too deeply; expected a plainer one")
+            status = UNUSABLE
+        except Exception as error:
+            if not _lacks_memory(error):
+                raise
+            note(called, "not enough memory; expected a smaller input, or more memory")
+            status = UNUSABLE
+        except ModuleNotFoundError as error:
+            package = (error.name or "").partition(".")[0]
+            if package in ("", "impact88"):
+                raise
+            note(called, f"{package} is not installed; expected: pip install {package}")
             status = UNUSABLE
         sys.stdout.flush()
     except KeyboardInterrupt:
@@ -207,6 +222,14 @@ def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
         _tell_bug(called, error, debug)
         return BUG
     return status
+
+
+def _lacks_memory(error: Exception) -> bool:
+    """Whether a library, or the stack of a thread, did not fit into memory."""
+    return isinstance(error, MemoryError) or any(
+        words in str(error)
+        for words in ("start new thread", "launch worker thread", "failed to map segment")
+    )
 
 
 def _tell_bug(called: str | None, error: Exception, debug: bool) -> None:

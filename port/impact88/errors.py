@@ -18,11 +18,18 @@ def shown(text: str, longest: int = LONGEST_MESSAGE) -> str:
     if len(text) > longest:
         kept = longest - 5
         text = f"{text[: kept - kept // 3]} ... {text[-(kept // 3) :]}"
-    if text.isprintable():
-        return text
-    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    text = printable(text)
     # escapes are longer than what they show
     return text if len(text) <= longest else shown(text, longest)
+
+
+def printable(text: str, kept: str = "") -> str:
+    """``text`` with escapes for the characters that do not print, but for those ``kept``."""
+    if text.isprintable():
+        return text
+    return "".join(
+        c if c.isprintable() or c in kept else c.encode("unicode_escape").decode() for c in text
+    )
 
 
 def quoted(value: object) -> str:

@@ -286,18 +286,31 @@ def _take_usual_mode(beside: str, path: str) -> None:
 
 def check_apart(inputs: Iterable[str], outputs: Mapping[str, str | None]) -> None:
     """Raise UserError when a file to write is one that is read, or another one to write, links of
-    either kind included.
+    either kind included; or when a folder to write into holds a file that is read.
 
     ``inputs``: paths; ``outputs``: what a message calls the place (an option) -> its path, None
     where there is none. ``-`` is a standard stream.
     """
+    inputs = list(inputs)
     places = {_place(path): "a file that is read" for path in inputs}
     for name, path in outputs.items():
-        if path is None or path == "-" or (place := _place(path)) is None:
+        if path is None or path == "-":
+            continue
+        if os.path.isdir(path) and any(map(_within(path), inputs)):
+            raise UserError(
+                f"{name} names the folder of a file that is read; expected another", path
+            )
+        if (place := _place(path)) is None:
             continue
         if place in places:
             raise UserError(f"{name} names {places[place]}; expected another name", path)
         places[place] = f"the file of {name} too"
+
+
+def _within(folder: str) -> Callable[[str], bool]:
+    """Whether a path leads to somewhere in a folder."""
+    root = os.path.join(os.path.realpath(folder), "")
+    return lambda path: path != "-" and os.path.realpath(path).startswith(root)
 
 
 def _place(path: str) -> tuple[Any, ...] | None:

@@ -30,6 +30,7 @@ from ..errors import UserError
 from ..files import called, packaged_text, read_text, replacing, typed_line
 from ..signals import INTERRUPTED
 from ..stderr import note
+from .options import InputFile
 from .run_command import add_machine_arguments
 
 LISTING = "impact.bas"
@@ -42,7 +43,9 @@ _SHOWN_CONTROLS = "\n\a\b"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 basic`."""
-    parser.add_argument("program", nargs="?", metavar="FILE.bas", help="a program to run")
+    parser.add_argument(
+        "program", nargs="?", type=InputFile, metavar="FILE.bas", help="a program to run"
+    )
     parser.add_argument("--prompt", action="store_true", help="stay at the prompt after FILE.bas")
     parser.add_argument(
         "--max-statements", type=_count, metavar="N", help="stop a program after so many statements"

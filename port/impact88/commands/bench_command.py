@@ -30,6 +30,7 @@ from ..bench.populations import BENCHMARK, POPULATIONS
 from ..errors import UserError
 from ..plaintable import plain
 from .options import (
+    OutputFile,
     add_json_argument,
     add_names_argument,
     add_output_argument,
@@ -72,7 +73,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--files", action="store_true", help="tables from file to file, instead")
     add_json_argument(parser, "JSON instead of tables")
     add_output_argument(parser)
-    parser.add_argument("--figure", metavar="FILE", help="draw error against time: .svg .png .pdf")
+    parser.add_argument(
+        "--figure", type=OutputFile, metavar="FILE", help="draw error against time: .svg .png .pdf"
+    )
 
 
 def main(arguments: argparse.Namespace) -> int:

@@ -34,6 +34,8 @@ from ..stderr import note
 from ..tables.table import format_of
 from .options import (
     FORMATS,
+    InputFile,
+    OutputFile,
     add_encoding_argument,
     add_json_argument,
     add_output_argument,
@@ -47,7 +49,9 @@ SHOWN = 20
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 compare`."""
-    parser.add_argument("theirs", metavar="THEIRS", help="the table (- is standard input, CSV)")
+    parser.add_argument(
+        "theirs", type=InputFile, metavar="THEIRS", help="the table (- is standard input, CSV)"
+    )
     parser.add_argument(
         "--from",
         dest="form",
@@ -69,7 +73,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="rows, cells and columns that were not compared are failures",
     )
-    parser.add_argument("--junit", metavar="FILE", help="write a JUnit report, a test a row")
+    parser.add_argument(
+        "--junit", type=OutputFile, metavar="FILE", help="write a JUnit report, a test a row"
+    )
     add_encoding_argument(parser)
     add_json_argument(parser)
     add_output_argument(parser)

@@ -34,6 +34,7 @@ from ..errors import UserError
 from ..names import RESULTS
 from ..scene import Scene, numbers_of
 from .options import (
+    OutputFile,
     add_move_argument,
     add_names_argument,
     add_set_argument,
@@ -60,7 +61,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 figure`."""
     parser.add_argument("kind", choices=KINDS, metavar="KIND", help="see kinds below")
     parser.add_argument(
-        "-o", "--output", required=True, metavar="FILE", help="where to write: .svg, .png or .pdf"
+        "-o",
+        "--output",
+        type=OutputFile,
+        required=True,
+        metavar="FILE",
+        help="where to write: .svg, .png or .pdf",
     )
     add_range_arguments(parser)
     add_set_argument(parser, "change a value of the scene")

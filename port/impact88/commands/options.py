@@ -7,6 +7,7 @@ mean the same everywhere, and what is refused is refused in the same words.
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import isfinite
@@ -27,26 +28,62 @@ FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
 """What ``--from`` and ``--to`` take."""
 
 
-_READ = ("scene", "file", "cases", "theirs", "printouts", "scenes", "program", "rom")
-"""Where the commands keep the files they read,"""
-_WRITTEN = {
-    "output": "-o",
-    "errors": "--errors",
-    "printer": "--printer",
-    "report": "--report",
-    "junit": "--junit",
-}
-"""and those they write: attribute -> option."""
+class InputFile(str):
+    """The type of an argument that names a file to read; ``-`` is standard input."""
+
+    __slots__ = ()
 
 
-def check_files(args: argparse.Namespace) -> None:
-    """Raise UserError when a file that a command is to write is one it reads, or writes twice."""
-    outputs = {option: getattr(args, name, None) for name, option in _WRITTEN.items()}
+class OutputFile(str):
+    """The type of an argument that names a file to write; ``-`` is standard output."""
+
+    __slots__ = ()
+
+
+class OutputFolder(str):
+    """The type of an argument that names a folder to write into."""
+
+    __slots__ = ()
+
+
+def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> None:
+    """Expand the patterns among the files to read, and raise UserError when a file to write is also
+    read or written twice.
+
+    Which arguments name files is what their types say.
+    """
     inputs = ["-"]
-    for name in _READ:
-        paths = getattr(args, name, None)
-        inputs += paths if isinstance(paths, list) else [] if paths is None else [paths]
+    outputs: dict[str, str | None] = {}
+    for action in parser._actions:
+        value = getattr(args, action.dest, None)
+        if action.type is InputFile and isinstance(value, list):
+            value[:] = [path for pattern in value for path in _matching(pattern)]
+            inputs += value
+        elif action.type is InputFile and value is not None:
+            inputs.append(value)
+        elif action.type in (OutputFile, OutputFolder):
+            outputs[action.option_strings[0]] = value
     check_apart(inputs, outputs)
+
+
+def _matching(pattern: str) -> list[str]:
+    """The files that a pattern such as ``*.txt`` matches, for shells that leave it as it is; the
+    text itself where it is the name of a file or matches nothing."""
+    if not any(mark in pattern for mark in "*?[") or os.path.exists(pattern):
+        return [pattern]
+    from glob import glob
+
+    return sorted(map(InputFile, glob(pattern))) or [pattern]
+
+
+def refuse_renamed(parser: argparse.ArgumentParser, old: str, new: str) -> None:
+    """Refuse an option that has another name now, and say which."""
+
+    class Renamed(argparse.Action):
+        def __call__(self, *ignored: object) -> None:
+            raise UserError(f"{old} is not an option here; expected {new}")
+
+    parser.add_argument(old, action=Renamed, help=argparse.SUPPRESS)
 
 
 def add_set_argument(parser: argparse.ArgumentParser, meaning: str) -> None:
@@ -204,7 +241,9 @@ def sweeps(texts: Sequence[str]) -> dict[str, str]:
 
 def add_known_arguments(parser: argparse.ArgumentParser) -> None:
     """What is known of a problem: a file, and ``--set``."""
-    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="what is known (- is stdin)")
+    parser.add_argument(
+        "file", nargs="?", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"
+    )
     add_set_argument(parser, "give or change a value; an empty one makes it unknown")
 
 
@@ -239,7 +278,9 @@ def add_sample_argument(
 
 def add_scene_argument(parser: argparse.ArgumentParser) -> None:
     """A scene: a file, or ``--sample``."""
-    parser.add_argument("scene", nargs="?", metavar="FILE.toml", help="a scene file (- is stdin)")
+    parser.add_argument(
+        "scene", nargs="?", type=InputFile, metavar="FILE.toml", help="a scene file (- is stdin)"
+    )
     add_sample_argument(parser)
 
 
@@ -327,7 +368,9 @@ def add_json_argument(parser: argparse.ArgumentParser, what: str = "one JSON obj
 
 def add_output_argument(parser: argparse.ArgumentParser) -> None:
     """The option ``-o FILE`` of a command whose result is what it prints."""
-    parser.add_argument("-o", "--output", metavar="FILE", help="write here (default: stdout)")
+    parser.add_argument(
+        "-o", "--output", type=OutputFile, metavar="FILE", help="write here (default: stdout)"
+    )
     parser.set_defaults(printed_to_output=True)
 
 

@@ -24,22 +24,21 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator
-from contextlib import nullcontext
-from typing import IO, Any
+from typing import Any
 
 from ..checking.oracle import Request, answer
 from ..checking.vectors import CLASSES
 from ..errors import UserError
-from ..files import called, open_bytes, replacing
-from .options import whole_number
+from ..files import called, open_bytes
+from .options import InputFile, add_output_argument, whole_number
 
 MOST_VECTORS = 10_000_000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 oracle`."""
-    parser.add_argument("scenes", nargs="?", default="-", metavar="SCENES.jsonl")
-    parser.add_argument("-o", "--output", default="-", metavar="FILE", help="default: stdout")
+    parser.add_argument("scenes", nargs="?", type=InputFile, default="-", metavar="SCENES.jsonl")
+    add_output_argument(parser)
     parser.add_argument("--no-reference", action="store_true", help="leave out the 30 digits")
     parser.add_argument(
         "--vectors", type=whole_number(1, MOST_VECTORS), metavar="N", help="write N test vectors"
@@ -58,20 +57,19 @@ def main(args: argparse.Namespace) -> int:
     if args.only and args.vectors is None:
         raise UserError("--class is of test vectors; expected --vectors N with it")
     counts = {"answered": 0, "refused": 0}
-    with nullcontext(sys.stdout) if args.output == "-" else replacing(args.output) as out:
-        if args.published:
-            from ..checking.vectors import published
+    if args.published:
+        from ..checking.vectors import published
 
-            out.write(published())
-            return 0
-        if args.vectors is not None:
-            from ..checking.vectors import vectors
+        print(published(), end="")
+        return 0
+    if args.vectors is not None:
+        from ..checking.vectors import vectors
 
-            _write(vectors(args.vectors, args.seed, not args.no_reference, args.only), out, counts)
-        else:
-            for batch in _batches(args.scenes):
-                _write(answer(batch, not args.no_reference), out, counts)
-                out.flush()
+        _print(vectors(args.vectors, args.seed, not args.no_reference, args.only), counts)
+    else:
+        for batch in _batches(args.scenes):
+            _print(answer(batch, not args.no_reference), counts)
+            sys.stdout.flush()
     if not counts["answered"]:
         raise UserError(
             f"no line could be used ({counts['refused']} refused)"
@@ -81,10 +79,10 @@ def main(args: argparse.Namespace) -> int:
     return int(counts["refused"] > 0)
 
 
-def _write(answers: Iterator[dict[str, Any]], out: IO[str], counts: dict[str, int]) -> None:
-    for one in answers:
-        counts["refused" if "error" in one else "answered"] += 1
-        out.write(json.dumps(one, ensure_ascii=False) + "\n")
+def _print(answers: Iterator[dict[str, Any]], counts: dict[str, int]) -> None:
+    for found in answers:
+        counts["refused" if "error" in found else "answered"] += 1
+        print(json.dumps(found, ensure_ascii=False))
 
 
 def _batches(path: str) -> Iterator[list[Request]]:

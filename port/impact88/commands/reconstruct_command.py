@@ -30,7 +30,7 @@ examples:
   impact88 reconstruct after.toml --set VAX="+- 2"      known within 2
   impact88 reconstruct after.toml --set E= --set MU=    two values no longer known
   impact88 reconstruct after.toml --for UX,VY           only these; others may stay unknown
-  impact88 reconstruct after.toml --scene found.toml    the impact found, for run, figure, bounds
+  impact88 reconstruct after.toml --write-scene found.toml       for run, figure, bounds
   impact88 reconstruct after.toml --contact-time .15 --json
 
 exit status: 0 solved; 2 bad input, or unknowns that are not determined
@@ -50,9 +50,11 @@ from ..scene import known_template
 from ..scene import template as scene_template
 from ..schemas import stamped
 from .options import (
+    OutputFile,
     add_solution_arguments,
     known_within_limits,
     names_given,
+    refuse_renamed,
     whole_number,
 )
 
@@ -83,7 +85,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seed", type=whole_number(0, 2**63), default=0, help="which draws (default: 0)"
     )
-    parser.add_argument("--scene", metavar="FILE", help="write the impact found as a scene file")
+    parser.add_argument(
+        "--write-scene",
+        type=OutputFile,
+        metavar="FILE",
+        help="write the impact found as a scene file",
+    )
+    refuse_renamed(parser, "--scene", "--write-scene FILE")
     add_solution_arguments(parser)
 
 
@@ -99,7 +107,7 @@ def main(args: argparse.Namespace) -> int:
 
     known, named = known_within_limits(args.file, args.set, KNOWABLE, args.units)
     units = system_of(named)
-    if not args.scene and not needs_adjustment(known, _wanted(args)):
+    if not args.write_scene and not needs_adjustment(known, _wanted(args)):
         from ..reconstruction.solutiontable import show
 
         numbers = {name: item.nominal for name, item in known.items()}
@@ -138,7 +146,7 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: S
     for name in wanted or ():
         if any(name not in solution.values for solution in solutions):
             raise UserError(f"{name} is not determined by what is known", source_of(args.file))
-    if args.scene:
+    if args.write_scene:
         _write_scene(solutions, args)
     tables = []
     for solution in solutions:
@@ -157,6 +165,6 @@ def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace) -> N
         raise UserError(f"{len(solutions)} impacts agree with what is known; expected one")
     texts = {name: repr(value).upper() for name, value in solutions[0].scene().items()}
     texts["M"] = "4" if texts["M"] == "4.0" else "6"
-    with replacing(args.scene) as file:
+    with replacing(args.write_scene) as file:
         file.write(scene_template(texts, f"Reconstructed from {called(args.file or '--set')}"))
-    print(f"scene written to {args.scene}", file=sys.stderr)
+    print(f"scene written to {args.write_scene}", file=sys.stderr)

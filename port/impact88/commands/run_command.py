@@ -28,6 +28,7 @@ from ..program.arithmetics import ARITHMETICS
 from ..program.run import finished, page, start
 from ..scene import Scene, published_data, sample
 from .options import (
+    OutputFile,
     add_json_argument,
     add_move_argument,
     add_output_argument,
@@ -79,7 +80,10 @@ def add_machine_arguments(parser: argparse.ArgumentParser) -> None:
         help="the output slot in line 190: 0 the screen, 1 the printer",
     )
     parser.add_argument(
-        "--printer", metavar="FILE", help="where the printer's output goes (default: stdout)"
+        "--printer",
+        type=OutputFile,
+        metavar="FILE",
+        help="where the printer's output goes (default: stdout)",
     )
 
 

@@ -56,6 +56,8 @@ from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from .options import (
     FORMATS,
+    InputFile,
+    OutputFile,
     add_encoding_argument,
     add_names_argument,
     add_set_argument,
@@ -82,10 +84,13 @@ __doc__ = (__doc__ or "").format(results=_list_of_results())
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 solve`."""
-    parser.add_argument("cases", metavar="CASES", help="the table of scenes (- is stdin)")
+    parser.add_argument(
+        "cases", type=InputFile, metavar="CASES", help="the table of scenes (- is stdin)"
+    )
     parser.add_argument(
         "-o",
         "--output",
+        type=OutputFile,
         metavar="RESULTS",
         default="-",
         help="the table to write (default: stdout)",
@@ -105,10 +110,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="leave the scene's own columns out of the results; others are passed through",
     )
     parser.add_argument(
-        "--scene", metavar="FILE.toml", help="a scene file for the columns the table lacks"
+        "--scene",
+        type=InputFile,
+        metavar="FILE.toml",
+        help="a scene file for the columns the table lacks",
     )
     add_encoding_argument(parser)
-    parser.add_argument("--errors", metavar="FILE", help="write the bad rows here (CSV)")
+    parser.add_argument(
+        "--errors", type=OutputFile, metavar="FILE", help="write the bad rows here (CSV)"
+    )
     parser.add_argument("--from", dest="form", choices=FORMATS, help="the format of CASES")
     parser.add_argument("--to", choices=FORMATS, help="the format of RESULTS")
 

@@ -34,12 +34,14 @@ from typing import Any
 
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_STATE, VELOCITIES, missing
-from .options import add_json_argument, add_output_argument, known_values
+from .options import InputFile, add_json_argument, add_output_argument, known_values
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 staged`."""
-    parser.add_argument("file", nargs="?", metavar="FILE.toml", help="a collision of one's own")
+    parser.add_argument(
+        "file", nargs="?", type=InputFile, metavar="FILE.toml", help="another collision"
+    )
     parser.add_argument(
         "--spin-weight", type=float, metavar="W", help="weight of a squared spin (own collision)"
     )

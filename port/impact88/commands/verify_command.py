@@ -31,21 +31,28 @@ from ..reporting.examination import Examined, Verdict, examine
 from ..reporting.verification import lines
 from ..schemas import stamped
 from ..stderr import note
-from .options import add_json_argument, add_output_argument
+from .options import InputFile, OutputFile, add_json_argument, add_output_argument
 
 _ON_REPORT = ("date", "case", "examiner")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 verify`."""
-    parser.add_argument("printouts", nargs="+", metavar="PRINTOUT", help="a text file (- is stdin)")
+    parser.add_argument(
+        "printouts", nargs="+", type=InputFile, metavar="PRINTOUT", help="a text file (- is stdin)"
+    )
     add_json_argument(parser, "one JSON object a printout")
     add_output_argument(parser)
     parser.add_argument("--brief", action="store_true", help="only verdicts and what differs")
     parser.add_argument(
-        "--scene", metavar="FILE.toml", help="inputs apart, where the page has only results"
+        "--scene",
+        type=InputFile,
+        metavar="FILE.toml",
+        help="inputs apart, where the page has only results",
     )
-    parser.add_argument("--report", metavar="FILE.html", help="write a page for the case file")
+    parser.add_argument(
+        "--report", type=OutputFile, metavar="FILE.html", help="write a page for the case file"
+    )
     parser.add_argument("--date", help="date to stand on the report, as given")
     parser.add_argument("--case", help="case to stand on the report, as given")
     parser.add_argument("--examiner", help="examiner to stand on the report, as given")

@@ -26,7 +26,13 @@ from ..errors import UserError
 from ..progress import progress
 from ..scene import SAMPLES, Scene
 from ..schemas import stamped
-from .options import add_json_argument, add_output_argument, add_sample_argument
+from .options import (
+    InputFile,
+    OutputFolder,
+    add_json_argument,
+    add_output_argument,
+    add_sample_argument,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,8 +51,12 @@ SHOWN_LINES = 24
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 witness`."""
-    parser.add_argument("scenes", nargs="*", metavar="SCENE.toml", help="scenes to run")
-    parser.add_argument("--rom", required=True, metavar="FILE", help="the ROM image")
+    parser.add_argument(
+        "scenes", nargs="*", type=InputFile, metavar="SCENE.toml", help="scenes to run"
+    )
+    parser.add_argument(
+        "--rom", type=InputFile, required=True, metavar="FILE", help="the ROM image"
+    )
     add_sample_argument(parser, "one published run; all three when nothing is asked for")
     parser.add_argument(
         "--captures", metavar="N", help="N random packaged captures of each kind's mix, or all"
@@ -54,7 +64,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--random", type=int, default=0, metavar="N", help="N fresh scenes")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of what is random")
     parser.add_argument("--any-rom", action="store_true", help="take a ROM that is not known, too")
-    parser.add_argument("--save", metavar="DIR", help="write what the ROM did as captures")
+    parser.add_argument(
+        "--save", type=OutputFolder, metavar="DIR", help="write what the ROM did as captures"
+    )
     add_json_argument(parser, "the record as one JSON object")
     add_output_argument(parser)
 

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError, quoted
-from ..files import replacing
+from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .arrow import ArrowColumn, ArrowTexts, library
-from .rows import Column, Reader, Rows, Writer, refuse_late, scene_names, typed
+from .rows import Column, Reader, Rows, Writer, one_per_row, refuse_late, scene_names, typed
 
 BLOCK = 1 << 15
 """Rows of a block."""
@@ -138,7 +138,7 @@ class _ArrowWriter:
         import pyarrow as pa
 
         refuse_late(rows, self._dropped, "a table of typed columns")
-        arrays = {name: _array(name, rows, pa) for name in self._kept}
+        arrays = {_encodable(name): _array(name, rows, pa) for name in self._kept}
         arrays |= {name: pa.array(results[name]) for name in self._results}
         table = pa.table(arrays)
         if self._writer is None:
@@ -158,12 +158,19 @@ class _ArrowWriter:
 
 
 def _array(name: str, rows: Rows, pa: Any) -> Any:
-    column = rows.kept(name) if name in rows.columns or name in rows.others else [""] * rows.count
+    column = one_per_row(rows, name)
     if isinstance(column, ArrowColumn) and not (isinstance(column, ArrowTexts) and name in SCENE):
         return column.array
     cells = typed(name, column)
+    if name not in SCENE and not isinstance(cells, np.ndarray):
+        cells = list(map(_encodable, cells))
     # whole numbers too: where one is missing, a later block of them is of doubles
     return pa.array(cells, pa.float64() if name in SCENE else None)
+
+
+def _encodable(text: str) -> str:
+    """A text with escapes for lone surrogates, which JSON has and Arrow's UTF-8 has not."""
+    return text if text.isascii() else text.encode("utf-8", ESCAPED).decode("utf-8")
 
 
 class _ParquetWriter(_ArrowWriter):

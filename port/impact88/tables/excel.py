@@ -4,6 +4,7 @@ digits of one, so that the last bit may differ."""
 
 from __future__ import annotations
 
+import io
 import math
 import os
 import zipfile
@@ -192,13 +193,14 @@ def write_excel(
     book = openpyxl.Workbook(write_only=True)
     writer = _ExcelWriter(book.create_sheet("impact88"), kept, results, dropped)
     with replacing(path, "wb") as file:
+        packed = io.BytesIO()  # a zip file that cannot be finished complains on stderr
         try:
-            yield writer
-        finally:  # a sheet left open complains on stderr when it is collected
-            _close(book)
-        book.save(file)
-
-
-def _close(book: Any) -> None:
-    for sheet in book.worksheets:
-        sheet.close()
+            try:
+                yield writer
+            finally:  # and so does a sheet left open
+                for sheet in book.worksheets:
+                    sheet.close()
+            book.save(packed)
+        except OSError as error:  # openpyxl's own temporary files have no name of the user's
+            raise UserError(f"cannot be written: {error.strerror or error}", path) from None
+        file.write(packed.getbuffer())

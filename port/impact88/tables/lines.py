@@ -8,9 +8,9 @@ import sys
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import IO, Any, NamedTuple
+from typing import IO, Any, NamedTuple, cast
 
-from ..errors import UserError, quoted
+from ..errors import UserError, printable, quoted
 from ..files import ESCAPED, LONGEST_LINE, Source, called, encoding_of, replacing
 
 PEEK = 1 << 17
@@ -41,8 +41,8 @@ class Lines:
     def __next__(self) -> str:
         try:
             line = self._readline(LONGEST_LINE)
-        except UnicodeDecodeError:
-            what = f"holds bytes that are no {self._encoding.removesuffix('-sig').upper()} text"
+        except UnicodeError:
+            what = f"holds bytes that are not {self._encoding.removesuffix('-sig').upper()} text"
             raise UserError(
                 f"{what}, in line {self.number + 1} or after it; expected UTF-8, or the encoding "
                 "named, such as --encoding cp1252 for older Excel",
@@ -110,12 +110,19 @@ def open_text(path: str, encoding: str | None = None) -> Iterator[TextFile]:
         yield TextFile(binary, "utf-8-sig" if name == "utf-8" else name, source)
 
 
+class _Terminal(io.TextIOBase):
+    """Standard output where it is a terminal: no cell's control characters reach it."""
+
+    def write(self, text: str) -> int:
+        return sys.stdout.write(printable(text, "\n\t"))
+
+
 @contextmanager
 def writing(path: str) -> Iterator[IO[str]]:
     """A text file to write, packed when its name ends in ``.gz`` (the same text gives the same
     bytes); ``-`` is standard output. It appears under its name when all is written."""
     if path == "-":
-        yield sys.stdout
+        yield cast(IO[str], _Terminal()) if sys.stdout.isatty() else sys.stdout
     elif path.lower().endswith(".gz"):
         import gzip
 
