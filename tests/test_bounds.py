@@ -440,16 +440,16 @@ class TestForward:
 
     def test_warnings_are_shares(self, found):
         known = {name: item.nominal for name, item in values(1).items()}
-        assert 0 < found.warnings["SLIDING_REVERSED"] < 1
-        assert forward_model({**known, "MU": 1.2, "GA": -20}, ["STATUS"])["STATUS"] & 4
+        assert 0 < found.warnings["FRICTION_ABOVE_CRITICAL"] < 1
+        assert forward_model({**known, "MU": 1.2, "GA": -20}, ["STATUS"])["STATUS"] & 4096
 
     def test_exclude(self):
         scene = values(1, MU="0.6 .. 1.2")
         everything = bounds(scene, ["MUP", "DVA"], samples=5000)
         critical = float(forward_model({**sample_numbers(1), "MU": 0}, ["MUC"])["MUC"])
-        allowed = bounds(scene, ["MUP", "DVA"], samples=5000, exclude=["SLIDING_REVERSED"])
+        allowed = bounds(scene, ["MUP", "DVA"], samples=5000, exclude=["FRICTION_ABOVE_CRITICAL"])
         assert everything.bounds["MUP"].upper == 1.2
-        assert everything.bounds["MUP"].upper_warnings == ("SLIDING_REVERSED",)
+        assert everything.bounds["MUP"].upper_warnings == ("FRICTION_ABOVE_CRITICAL",)
         assert allowed.bounds["MUP"].upper == pytest.approx(critical, abs=1e-6)
         assert allowed.bounds["MUP"].upper_warnings == ()
         assert allowed.unusable == pytest.approx((1.2 - critical) / 0.6, abs=0.02)
@@ -544,7 +544,7 @@ class TestReconstruction:
         texts = {**sample(3), "MU": typed}
         inputs = read_inputs(texts, {"VAX": "+- 0.1"}, "reconstruction").values
         found = bounds(inputs, ["SA"], problem="reconstruction", samples=200)
-        assert found.warnings.get("FRICTION_DRIVES") == share
+        assert found.warnings.get("FRICTION_WRONG_DIRECTION") == share
 
     @pytest.mark.parametrize(
         ("changes", "says"),

@@ -1,17 +1,20 @@
 """STATUS: what is unphysical or uncertain about an impact, one bit a reason.
 
 The bits stand beside a result and never change it. `WORDS` says each in a sentence a report can
-print, `sentences` all that are set. Mechanics: an approach has gn < 0, a push Pn > 0; friction acts
-against the sliding (Pt·gt < 0) and can end it but not reverse it (gt·Gt >= 0), with gn, gt the
-relative velocities of the contact points before the impact, A minus B, Gn, Gt those after it.
+print, `sentences` all that are set. Mechanics: an approach has gn < 0, a push Pn > 0, with gn the
+normal relative velocity of the contact points before the impact, A minus B; friction can reduce
+the sliding at separation to 0 and no further, so P_t lies between 0 and MUC·Pn.
 
 A bit's number never changes its meaning. 16 stood for E, EM and MU together once; since EM and MU
-have numbers of their own it stands for E alone.
+have numbers of their own it stands for E alone. `RETIRED` bits are not set any more.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import IntFlag
+from math import copysign, cos, hypot, inf, isfinite, isinf, nan, radians, sin
+from typing import Any
 
 
 class Status(IntFlag):
@@ -19,31 +22,30 @@ class Status(IntFlag):
 
     SEPARATING = 1
     PULLING = 2
-    SLIDING_REVERSED = 4
     ENERGY_GAINED = 8
     E_OUT_OF_RANGE = 16
     SINGULAR = 32
     NOT_FINITE = 64
-    FRICTION_DRIVES = 128
     A_ON_WRONG_SIDE = 256
     B_ON_WRONG_SIDE = 512
     EM_OUT_OF_RANGE = 1024
     MU_OUT_OF_RANGE = 2048
+    FRICTION_ABOVE_CRITICAL = 4096
+    FRICTION_WRONG_DIRECTION = 8192
 
+
+RETIRED = {4: "SLIDING_REVERSED", 128: "FRICTION_DRIVES"}
+"""Bits of version 0.2 that compared the sliding before and after the impact. Sliding that the
+normal impulse reverses is possible; FRICTION_ABOVE_CRITICAL and FRICTION_WRONG_DIRECTION replace
+them."""
 
 WORDS: dict[Status, str] = {
     Status.SEPARATING: "the contact points separate already before the impact (gn >= 0)",
     Status.PULLING: "the normal impulse pulls the vehicles together (Pn < 0)",
-    Status.SLIDING_REVERSED: (
-        "the sliding at the contact point is reversed by the impact, which friction cannot do"
-    ),
     Status.ENERGY_GAINED: "kinetic energy is gained in the impact",
     Status.E_OUT_OF_RANGE: "E is outside 0 ... 1",
     Status.SINGULAR: "the equations are singular or nearly so",
     Status.NOT_FINITE: "a value is missing, not finite or not allowed, or a result is no number",
-    Status.FRICTION_DRIVES: (
-        "friction drives the sliding: the tangential impulse acts with the slip, not against it"
-    ),
     Status.A_ON_WRONG_SIDE: (
         "A's center lies on B's side of the contact plane (A belongs on the +n side): turn round A "
         "(TA by 180) or correct PA"
@@ -58,8 +60,16 @@ WORDS: dict[Status, str] = {
     Status.MU_OUT_OF_RANGE: (
         "MU, with the sign it is used with, is -10 or below, which the listing takes for a pivot"
     ),
+    Status.FRICTION_ABOVE_CRITICAL: (
+        "friction is above the critical value: it would reverse the sliding at separation, and it "
+        "can only end it"
+    ),
+    Status.FRICTION_WRONG_DIRECTION: (
+        "friction acts in the wrong direction: away from what ends the sliding"
+    ),
 }
 
+_FRICTION = Status.FRICTION_ABOVE_CRITICAL | Status.FRICTION_WRONG_DIRECTION
 _SIDES = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
 _BOTH_SIDES = (
     "each center lies on the other vehicle's side of the contact plane (A belongs on the +n side): "
@@ -72,9 +82,47 @@ def names(status: int) -> list[str]:
     return [bit.name or "" for bit in Status if status & bit]
 
 
-def sentences(status: int) -> list[str]:
+def sentences(status: int, values: Mapping[str, Any] | None = None) -> list[str]:
     """What the bits set in ``status`` say, lowest bit first; both vehicles on the wrong sides is
-    one fault, the contact plane's."""
-    if status & _SIDES != _SIDES:
-        return [WORDS[bit] for bit in Status if status & bit]
-    return [*(WORDS[bit] for bit in Status if status & bit & ~_SIDES), _BOTH_SIDES]
+    one fault, the contact plane's. Of friction that is not admissible follows what would be, where
+    the impact's ``values`` show it (see `admissible_friction`)."""
+    both = status & _SIDES == _SIDES
+    lines = [WORDS[bit] for bit in Status if status & bit and not (both and bit in _SIDES)]
+    return lines + [_BOTH_SIDES] * both + admissible_friction(status, values or {})
+
+
+def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
+    """Which sign of MU is admissible and how large it may be, if ``status`` says that it is not.
+
+    ``values``: MUC and MUP of the impact; MU, GA, XA YA XB YB as far as they are known.
+    """
+    critical, used, typed = (float(values.get(name, nan)) for name in ("MUC", "MUP", "MU"))
+    if not status & _FRICTION or not isfinite(critical) or not used:
+        return []
+    if critical * used > 0 and status & Status.FRICTION_WRONG_DIRECTION:
+        critical = -copysign(inf, used)  # the pivot pulls: nothing ends the sliding
+    text = f"admissible here: P_t/P_n {_up_to(critical)}"
+    if abs(typed) > 0:  # MU is known
+        text += f", that is MU {_up_to(critical * typed / used)} as typed"
+    if typed == used and _slides_not(values):
+        text += "; without sliding before the impact line 400 keeps the sign of MU"
+    return [text]
+
+
+def _up_to(limit: float) -> str:
+    """The numbers from 0 to a limit, in words."""
+    if isinf(limit):
+        return "above 0" if limit > 0 else "below 0"
+    if abs(limit) < 5e-10:
+        return "= 0 only"
+    low, high = sorted((0.0, limit))
+    return f"from {low:.4g} to {high:.4g}"
+
+
+def _slides_not(values: Mapping[str, Any]) -> bool:
+    """Whether the contact points do not slide along each other before the impact."""
+    if not all(name in values for name in ("GA", "XA", "YA", "XB", "YB")):
+        return False
+    x, y = (float(values[f"{axis}A"]) - float(values[f"{axis}B"]) for axis in "XY")
+    gamma = radians(float(values["GA"]))
+    return abs(y * cos(gamma) - x * sin(gamma)) <= 1e-12 * hypot(x, y)

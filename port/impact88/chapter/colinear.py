@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..closedform.statusbits import set_bits
 from ..errors import UserError
 from ..names import missing
 
@@ -65,17 +66,18 @@ def _equations_9_to_12(
 def report(
     ma: Array, mb: Array, e: Array, mu: Array, initial: list[Array], final: list[Array]
 ) -> dict[str, Array]:
-    """The velocities by name, and PN PT (Equations 1 and 2), DVA DVB, KI KF, LOSS in percent, and
-    MUC, the P_t/P_n that would just stop the sliding (more reverses it, which friction cannot)."""
+    """The velocities by name, and PN PT (Equations 1 and 2), DVA DVB, KI KF, LOSS in percent, MUC,
+    the P_t/P_n that just ends the sliding, and STATUS."""
     van, vat, vbn, vbt = initial
     Van, Vat, Vbn, Vbt = final
     ki = 0.5 * (ma * (van**2 + vat**2) + mb * (vbn**2 + vbt**2))
     kf = 0.5 * (ma * (Van**2 + Vat**2) + mb * (Vbn**2 + Vbt**2))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        pn, critical = ma * (Van - van), (vat - vbt) / ((1 + e) * (van - vbn))
         values = (
             *initial,
             *final,
-            ma * (Van - van),
+            pn,
             ma * (Vat - vat),
             np.hypot(Van - van, Vat - vat),
             np.hypot(Vbn - vbn, Vbt - vbt),
@@ -83,11 +85,21 @@ def report(
             kf,
             100 * (ki - kf) / ki,
             mu,
-            (vat - vbt) / ((1 + e) * (van - vbn)),
+            critical,
         )
-    names = (*INITIAL, *FINAL, "PN", "PT", "DVA", "DVB", "KI", "KF", "LOSS", "MUP", "MUC")
-    shape = np.broadcast_shapes(*(np.shape(value) for value in values))
-    return {n: np.broadcast_to(v, shape) for n, v in zip(names, values, strict=True)}
+        names = (*INITIAL, *FINAL, "PN", "PT", "DVA", "DVB", "KI", "KF", "LOSS", "MUP", "MUC")
+        shape = np.broadcast_shapes(*(np.shape(value) for value in values))
+        bits = np.empty(shape, np.uint16)
+        none, total = np.zeros(()), final[0] + final[1] + final[2] + final[3]
+        lost, pivot = ki - kf, (pn, critical * pn)
+        # no arms and no moment; mu is signed here, and -10 is no pivot
+        before, arms = van - vbn, (none, none, none, none)
+        set_bits(
+            *(before, pn, *arms, 2 * lost, ki, e, none, mu, *pivot, none, total),
+            out=bits,
+        )
+    named = dict(zip(names, values, strict=True)) | {"STATUS": bits}
+    return {name: np.broadcast_to(value, shape) for name, value in named.items()}
 
 
 def _floats(known: Mapping[str, Any], velocities: Sequence[str]) -> list[Array]:

@@ -84,12 +84,12 @@ def _tangent(mu: Floats, unit: float = 1.0) -> Floats:
 
 def _friction_limited(scene: Columns) -> Columns:
     """A pivot where the coefficient typed would reverse the sliding."""
-    from ..closedform.solve import solve
-    from ..status import Status
+    from ..closedform.solve import quantities
 
     with np.errstate(all="ignore"):
-        status = solve(scene, "STATUS")["STATUS"]
-    return {"MU": np.where(status & Status.SLIDING_REVERSED, -10.0, scene["MU"])}
+        slip = quantities(scene, ("gt", "Gt"))
+        reversed_ = slip["gt"] * slip["Gt"] < 0
+    return {"MU": np.where(reversed_, -10.0, scene["MU"])}
 
 
 def _energy_ratio(scene: Columns) -> Columns:

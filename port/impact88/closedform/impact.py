@@ -605,10 +605,7 @@ class Impact:
         return self.table.combine(
             "status",
             self.gn,
-            self.gt,
-            self.Gt,
             self.PN,
-            self.PT,
             self._a[1],
             self._b[1],
             self.DA,
@@ -618,6 +615,7 @@ class Impact:
             self.E,
             self.EM,
             self._by_kind(lambda: self.mu, lambda: zero),
+            *self._pivot,
             self.COND,
             velocities,
             dtype="bits",

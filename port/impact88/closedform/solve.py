@@ -85,8 +85,8 @@ def solve(
     pivot's), is taken as the friction coefficient it is, with MU_OUT_OF_RANGE in STATUS.
 
     SINGULAR in STATUS means COND >= 2**26 (half of a double's digits may be lost), ENERGY_GAINED
-    more than 1e-12 of KI, SLIDING_REVERSED that the tangential relative velocity at the contact
-    point changes its sign; `impact88.status` says all in words.
+    more than 1e-12 of KI, the FRICTION bits that P_t/P_n does not lie between 0 and MUC
+    (`closedform.statusbits.friction_faults`); `impact88.status` says all in words.
 
     Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast,
     and arrays in ``out`` that cannot take the results.

@@ -72,8 +72,9 @@ def show(values: dict[str, float], solved_for: tuple[str, ...], as_json: bool) -
     """Print the table or the JSON object."""
     from ..names import quantity
     from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
+    from ..status import sentences
 
-    warnings = _warnings(values)
+    warnings = sentences(int(values.pop("STATUS")), values)
     if as_json:
         units = {name: quantity(name).unit for name in values}
         whole = {
@@ -99,20 +100,3 @@ def show(values: dict[str, float], solved_for: tuple[str, ...], as_json: bool) -
     print("\n".join(table(lines, left=(0, 2, 3))))
     for warning in warnings:
         print("\n".join(paragraph(f"! {warning}")))
-
-
-def _warnings(values: dict[str, float]) -> list[str]:
-    warnings = []
-    if values["UN"] - values["VN"] >= 0:
-        warnings.append("the vehicles do not approach along n: UN - VN is not negative")
-    if not 0 <= values["E"] <= 1:
-        warnings.append("E is outside 0 ... 1")
-    if values["LOSS"] < -1e-10:
-        warnings.append("kinetic energy is gained in the impact")
-    if values["MUP"] and not values["MUC"]:
-        warnings.append("friction makes the vehicles slide: before the impact they do not")
-    elif abs(values["MUP"]) > abs(values["MUC"]):
-        warnings.append("friction reverses the sliding: |MUP| is above the critical value MUC")
-    elif values["MUP"] * values["MUC"] < 0:
-        warnings.append("friction drives the sliding: MUP and MUC differ in sign")
-    return warnings

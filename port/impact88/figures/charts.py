@@ -212,7 +212,8 @@ def friction_sweep(scene: Any) -> Figure:
     results = solve({**values, "MU": friction}, ["LOSS", "DVA", "DVB", "STATUS"])
     for name in ("LOSS", "DVA", "DVB"):
         check_drawable(results[name], name)
-    beyond = (results["STATUS"] & np.uint16(Status.SLIDING_REVERSED)) != 0
+    faults = Status.FRICTION_ABOVE_CRITICAL | Status.FRICTION_WRONG_DIRECTION
+    beyond = (results["STATUS"] & np.uint16(faults)) != 0
     own_results = {
         name: float(value) for name, value in solve(values, ["LOSS", "DVA", "DVB"]).items()
     }
@@ -247,7 +248,7 @@ def friction_sweep(scene: Any) -> Figure:
         if limit:
             entries.append(("line", BLACK, (0, (1, 1.5)), f"critical: {short(critical)}"))
         if beyond.any():
-            entries.append(("bar", _GAINED, "", "sliding reversed"))
+            entries.append(("bar", _GAINED, "", "not admissible"))
         figure.legend(
             handles=_keys(*entries), loc="outside lower center", ncols=3, columnspacing=1.2
         )

@@ -138,9 +138,8 @@ def plan(scene: Any, result: Mapping[str, Any] | None = None) -> Plan:
         moved, sense = ("B", -1.0) if vehicles[0].wall else ("A", 1.0)
         change = minus(final[moved].velocity, before[moved].velocity)
         impulse = scaled(change, sense * values["M" + moved])
-    return Plan(
-        (vehicles[0], vehicles[1]), normal, tangent, impulse, apart, _remarks(result), values
-    )
+    remarks = _remarks(result, values)
+    return Plan((vehicles[0], vehicles[1]), normal, tangent, impulse, apart, remarks, values)
 
 
 def _finals(result: Mapping[str, Any] | None) -> dict[str, Motion]:
@@ -156,8 +155,9 @@ def _finals(result: Mapping[str, Any] | None) -> dict[str, Motion]:
     return finals if finite else {}
 
 
-def _remarks(result: Mapping[str, Any] | None) -> tuple[str, ...]:
-    return tuple(sentences(int((result or {}).get("STATUS") or 0)))
+def _remarks(result: Mapping[str, Any] | None, values: Mapping[str, Any]) -> tuple[str, ...]:
+    whole = {**values, **(result or {})}
+    return tuple(sentences(int(whole.get("STATUS") or 0), whole))
 
 
 def direction(degrees: float) -> Point:

@@ -40,9 +40,10 @@ def add_exact_values(scene: Mapping[str, str], checks: Sequence[FieldCheck]) -> 
 def warnings(scene: Mapping[str, str]) -> list[str]:
     """What is unphysical about a scene (the bits of STATUS), and which of the program's known traps
     it steps into, one sentence each."""
-    bits = status.Status(int(solved(scene, ["STATUS"])["STATUS"]))
+    values = solved(scene, ["STATUS", "MUC", "MUP", "XA", "YA", "XB", "YB"]) | doubles_of(scene)
+    bits = int(values["STATUS"])
     sentences = [f"{bit.name}: {status.WORDS[bit]}" for bit in status.Status if bits & bit]
-    return sentences + list(_traps(scene))
+    return sentences + status.admissible_friction(bits, values) + list(_traps(scene))
 
 
 def solved(scene: Mapping[str, str], outputs: Sequence[str]) -> dict[str, float]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..closedform.energy import kinetic_energy
-from ..closedform.solve import solve
+from ..closedform.solve import quantities, solve
 from ..closedform.statusbits import set_bits
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from .geometry import Geometry, with_point_masses
@@ -67,8 +67,7 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     condition: Any = 1.0
     if all(name in given for name in SCENE if name != "M"):
         scene = {name: given[name] for name in SCENE if name in given}
-        solved = solve(scene, _FORWARD)
-        result["MUC"], condition = solved["MUC"], solved["COND"]
+        result["MUC"], condition = solve(scene, _FORWARD).values()
     result["STATUS"] = status(geometry, given | result, condition)
     shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
     return {name: np.broadcast_to(value, shape) for name, value in result.items()}
@@ -126,6 +125,15 @@ def energies(geometry: Geometry, given: Mapping[str, Array]) -> dict[str, Array]
     return result
 
 
+def _pivot_impulse(given: Mapping[str, Array]) -> tuple[Array, Array]:
+    """PN and PT of the same impact if the sliding ended at separation, where that can be told."""
+    scene = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
+    if not all(name in scene for name in SCENE if name != "M"):
+        return np.array(np.nan), np.array(np.nan)
+    solved = quantities(scene, ("PN", "PT"))
+    return solved["PN"], solved["PT"]
+
+
 def status(geometry: Geometry, given: Mapping[str, Array], condition: Any = 1.0) -> Array:
     """STATUS of an impact known from both sides; what cannot be decided for lack of a value is not
     remarked. ``given``: velocities, coefficients, PN PT, KI KF as far as they are known;
@@ -136,18 +144,10 @@ def status(geometry: Geometry, given: Mapping[str, Array], condition: Any = 1.0)
         return given.get(name, missing)
 
     known = [name for name in (*VELOCITIES, *FINAL_STATE) if name in given]
-    before = [value(name) for name in VELOCITIES]
-    after = [value(name) for name in FINAL_STATE]
     with np.errstate(invalid="ignore"):
-        gn, gt, _ = geometry.relative(before)
-        _, after_gt, _ = geometry.relative(after)
-        pivot = value("MUP") == PIVOT
         operands = (
-            gn,
-            gt,
-            np.where(pivot, 0.0, after_gt),
+            geometry.relative([value(name) for name in VELOCITIES])[0],
             value("PN"),
-            value("PT"),
             geometry.at,
             geometry.bt,
             np.where(geometry.point, 0.0, given["DA"]),
@@ -157,7 +157,8 @@ def status(geometry: Geometry, given: Mapping[str, Array], condition: Any = 1.0)
             given.get("KI", np.ones(())),
             value("E"),
             np.where(geometry.point, 0.0, value("EM")),
-            np.where(pivot, 0.0, value("MUP")),
+            np.where(value("MUP") == PIVOT, 0.0, value("MUP")),
+            *_pivot_impulse(given),
             np.asarray(condition),
             sum((given[name] for name in known), np.zeros(())),
         )

@@ -76,7 +76,7 @@ def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
     if bad:
         names = ", ".join(f"{name} {number(value, 3)} times" for name, value in bad.items())
         lines.append(f"badly conditioned: errors of the known velocities are amplified ({names})")
-    return lines + sentences(int(values.get("STATUS", 0)))
+    return lines + sentences(int(values.get("STATUS", 0)), values)
 
 
 def as_text(

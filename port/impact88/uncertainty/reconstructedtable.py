@@ -138,7 +138,7 @@ def warnings(
         lines.append("no impact was found that lies within the limits of all known values at once")
     if spread.draws and spread.draws.failed:
         lines.append(f"{100 * spread.draws.failed:.3g} % of the draws have no solution")
-    return lines + sentences(int(values.get("STATUS", 0)))
+    return lines + sentences(int(values.get("STATUS", 0)), values)
 
 
 def _ill_posed(solution: Reconstruction, spread: Uncertainty) -> list[str]:
