@@ -1,14 +1,57 @@
-"""setuptools, with the list of what belongs to a source distribution standing in .ci/manifest.
+"""setuptools, so that one commit gives the same bytes whenever and wherever it is built.
 
-setuptools looks for that list in MANIFEST.in alone, and the top level holds no such file.
+setuptools looks for the list of what belongs to a source distribution in MANIFEST.in alone; here it
+is .ci/manifest, because the top level holds no such file.
 """
+
+import gzip
+import os
+import subprocess
+import tarfile
+from pathlib import Path
 
 from setuptools import build_meta
 from setuptools.build_meta import *  # noqa: F403
 from setuptools.command.egg_info import manifest_maker
 
+os.umask(0o022)
+
+
+def epoch():
+    """The time of the commit; of an unpacked source distribution, whose files all have it, that."""
+    if told := os.environ.get("SOURCE_DATE_EPOCH"):
+        return int(told)
+    if Path(".git").exists():
+        asked = ["git", "log", "-1", "--format=%ct"]
+        done = subprocess.run(asked, capture_output=True, text=True, check=False)
+        if done.returncode == 0:
+            return int(done.stdout)
+    return int(Path("pyproject.toml").stat().st_mtime)
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    """A wheel whose entries have the time of the commit and usual modes."""
+    os.environ["SOURCE_DATE_EPOCH"] = str(epoch())
+    return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
+
 
 def build_sdist(sdist_directory, config_settings=None):
     """Everything that is in the repository, tests included, so that they run from it."""
     manifest_maker.template = ".ci/manifest"
-    return build_meta.build_sdist(sdist_directory, config_settings)
+    name = build_meta.build_sdist(sdist_directory, config_settings)
+    path = Path(sdist_directory, name)
+    then = epoch()
+    with tarfile.open(path) as built:
+        entries = [(entry, built.extractfile(entry)) for entry in built.getmembers()]
+        with (
+            gzip.GzipFile(path.with_suffix(".part"), "wb", mtime=then) as packed,
+            tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as rebuilt,
+        ):
+            for entry, data in sorted(entries, key=lambda pair: pair[0].name):
+                entry.mtime, entry.mode = then, 0o755 if entry.mode & 0o100 else 0o644
+                entry.uid = entry.gid = 0
+                entry.uname = entry.gname = ""
+                entry.pax_headers = {}
+                rebuilt.addfile(entry, data)
+    path.with_suffix(".part").replace(path)
+    return name

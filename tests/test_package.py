@@ -25,8 +25,8 @@ def project() -> dict[str, Any]:
     return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
-FOR_TESTS = {"corners", "vectors.jsonl.gz", "reference-cases.json", "scans.jsonl.gz"}
-"""What of golden/ no installation needs: selfcheck reads the rest."""
+FOR_TESTS = {"corners", "ocr-page.txt", "reference-cases.json", "scans.jsonl.gz"}
+"""What of golden/ no installation needs: selfcheck and oracle read the rest."""
 
 
 def ignored(name: str) -> bool:
@@ -84,7 +84,7 @@ def test_every_data_file_matches_a_pattern_of_package_data(
         )
     ]
     if package == "impact88.golden":
-        for_tests = [path for path in data if path.parts[0] in FOR_TESTS]
+        for_tests = [path for path in data if FOR_TESTS & set(path.parts)]
         assert set(for_tests) <= set(missed)
         missed = [path for path in missed if path not in for_tests]
     assert not missed

@@ -1,0 +1,94 @@
+"""What is published works where it is installed: every packaged file, outside the checkout."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from captures import ROOT
+
+pytest.importorskip("setuptools", "70.1", reason="older ones build no wheel by themselves")
+
+DOCUMENTS = {".md", ".typed"}
+"""Kinds of files that are there to be read, by people or by type checkers, too."""
+
+BUILD = "import sys; sys.path.insert(0, '.ci'); import backend; backend.build_wheel(sys.argv[1])"
+USE = """
+import contextlib, io, json, os, sys
+opened = set()
+sys.addaudithook(lambda event, told: opened.add(str(told[0])) if event == "open" else None)
+from impact88 import cli
+from impact88.desk import app
+from impact88.schemas import NUMBERS, text
+statuses = {}
+def run(*arguments):
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        statuses[" ".join(arguments)] = cli.main(arguments)
+    return out.getvalue()
+vectors = run("oracle", "--published").splitlines()
+run("selfcheck", "-o", "record.txt")
+run("schema", "conventions")
+for name in NUMBERS:
+    run("schema", name)
+run("basic")
+for name in "listing run1 run2 table3".split():
+    run("verify", "--brief", os.path.join(sys.argv[1], "legacy", f"{name}-as-printed.txt"))
+run("staged")
+desk = app.Desk()
+client = app.application(desk, 8088, "word").test_client()
+pages = ["/word/", *(f"/word/static/{name}" for name in sys.argv[2:])]
+pages = [client.get(page, base_url="http://127.0.0.1:8088").status_code for page in pages]
+desk.close()
+print(json.dumps([cli.__file__, sorted(opened), statuses, len(vectors), pages]))
+"""
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that holds what a wheel of this checkout installs."""
+    folder = tmp_path_factory.mktemp("wheel")
+    cruft = shutil.ignore_patterns("__pycache__", "*.egg-info", "build")
+    for name in ("port", "legacy", "golden", ".ci"):
+        shutil.copytree(ROOT / name, folder / "source" / name, ignore=cruft)
+    for name in ("pyproject.toml", "README.md"):
+        shutil.copy(ROOT / name, folder / "source" / name)
+    subprocess.run(
+        [sys.executable, "-c", BUILD, str(folder)],
+        cwd=folder / "source",
+        env={**os.environ, "SOURCE_DATE_EPOCH": "600000000"},
+        capture_output=True,
+        check=True,
+    )
+    with zipfile.ZipFile(next(folder.glob("*.whl"))) as wheel:
+        wheel.extractall(folder / "site")
+    return folder / "site"
+
+
+def test_every_packaged_file_is_used(installed: Path, tmp_path: Path) -> None:
+    package = installed / "impact88"
+    static = sorted(path.name for path in (package / "desk" / "static").iterdir())
+    done = subprocess.run(
+        [sys.executable, "-c", USE, str(package), *static],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(installed)},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    where, opened, statuses, vectors, pages = json.loads(done.stdout)
+    assert Path(where).is_relative_to(installed)
+    assert {status for name, status in statuses.items() if "listing-as" not in name} == {0}
+    assert vectors == 1000
+    data = {path for path in package.rglob("*") if path.is_file() and path.suffix != ".py"}
+    data = {path for path in data if "__pycache__" not in path.parts}
+    unused = data - {Path(path) for path in opened}
+    assert not {path for path in unused if path.suffix not in DOCUMENTS}
+    assert set(pages) == {200}
