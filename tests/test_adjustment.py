@@ -604,8 +604,8 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("setting", "message"),
         [
-            ("VAX=about 3", "VAX = 'about 3' is no number"),
-            ("UX=-20 +- 1%x", "'-20 +- 1%x' is no value or range"),
+            ("VAX=about 3", "VAX = 'about 3' is not an amount"),
+            ("UX=-20 +- 1%x", "UX = '-20 +- 1%x' is not an amount"),
             ("FOO=1", "'FOO' is no value here"),
         ],
     )

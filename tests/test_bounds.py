@@ -78,8 +78,8 @@ class TestNotation:
     @pytest.mark.parametrize(
         ("text", "says"),
         [
-            ("", "no value or range"),
-            ("0.7 to 0.9", "no value or range"),
+            ("", "is not an amount"),
+            ("0.7 to 0.9", "is not an amount"),
             ("0.9 .. 0.7", "out of order"),
             ("triangular 1 4 3", "out of order"),
             ("-1e308 .. 1e308", "wider than the range of doubles"),
@@ -89,7 +89,7 @@ class TestNotation:
             ("8 +- -2", "negative half width"),
             ("+- 2", "no middle"),
             ("1e999 .. 2", "too large"),
-            ("normal 1", "no value or range"),
+            ("normal 1", "is not an amount"),
         ],
     )
     def test_refuses(self, text, says):

@@ -123,7 +123,7 @@ def test_seed_decides(capsys):
         (["nowhere.toml"], "nowhere.toml: cannot be read"),
         (["--sample", "1"], "nothing varies"),
         (["--sample", "1", "--range", "UX"], "expected NAME=RANGE"),
-        (["--sample", "1", "--range", "UX=1 .. x"], "UX: '1 .. x' is no value or range"),
+        (["--sample", "1", "--range", "UX=1 .. x"], "UX = '1 .. x' is not an amount"),
         (["--sample", "1", "--range", "UX=2 .. 1"], "out of order"),
         (["--sample", "1", "--range", "UX=+-1", "--range", "ux=+-2"], "given twice"),
         (["--sample", "1", "--range", "VAX=1 .. 2"], "'VAX' is no input of the forward problem"),

@@ -188,7 +188,7 @@ def test_a_published_run_is_answered_with_the_programs_own_printout(number: int,
     ("name", "text", "problem"),
     [
         ("MU", ".911", None),
-        ("MU", "much", "MU: 'much' is no value or range"),
+        ("MU", "much", "MU: 'much' is not an amount"),
         ("MU", ".9 .. .7", "out of order"),
         ("MU", "<script>", "<script>"),
         ("M", "4", None),
@@ -352,7 +352,7 @@ def test_what_a_collision_gave_is_reconstructed_to_the_collision() -> None:
     [
         ("VAX", "-13.2", None),
         ("VAX", "-13.2 +- .1", None),
-        ("VAX", "-13.2 +- x", "no value or range"),
+        ("VAX", "-13.2 +- x", "is not an amount"),
         ("SA", "29", None),
         ("QQ", "1", "no value here"),
     ],

@@ -78,7 +78,7 @@ def test_typing_is_answered_and_a_bad_number_is_told_at_its_field(collision: Pag
     before = collision.text("collision-screen")
     field.send_keys("x")
     problem = collision.at("collision-MU-problem")
-    until(lambda: "no value or range" in problem.text, "the message")
+    until(lambda: "is not an amount" in problem.text, "the message")
     assert field.get_attribute("aria-invalid") == "true"
     assert "collision-MU-problem" in field.get_attribute("aria-describedby")
     assert field.get_attribute("value") == "0.911x"

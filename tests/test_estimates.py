@@ -70,15 +70,20 @@ class TestFromTheSize:
         found = estimated(units="metric", MB="1500", IB="estimate", LB="450 cm", BB="1.8")
         assert float(found["IB"]) == pytest.approx(1500 * (4.5**2 + 1.8**2) / 12, rel=5e-4)
 
+    def test_beside_a_known_inertia_it_is_an_outline(self):
+        found = estimated(MA="100", LA="15", BA="6")
+        assert found["IA"] == sample(1)["IA"]
+        assert found.entries.outlines == {"LA": 15.0, "BA": 6.0}
+        assert not found.estimated
+
     @pytest.mark.parametrize(
         ("changes", "message"),
         [
-            ({"LA": "15", "BA": "6"}, "IA and LA are both given"),
             ({"LA": "15", "IA": None}, "BA is missing beside LA"),
             ({"BB": "6", "IB": None}, "LB is missing beside BB"),
             ({"IA": "estimate", "LA": "15", "BA": "0"}, "a number above 0 for BA"),
             ({"IA": "estimate", "LA": "15", "BA": "6", "MA": "much"}, "a number above 0 for MA"),
-            ({"IA": "estimates"}, "IA = 'estimates' is no number"),
+            ({"IA": "estimates"}, "IA = 'estimates' is n"),
         ],
     )
     def test_what_is_refused(self, changes, message):

@@ -71,9 +71,7 @@ class TestSet:
 
     @pytest.mark.parametrize("text", ["1_0", "nan", "much", "M=1 2x"])
     def test_no_number(self, command: str, text: str, capsys: pytest.CaptureFixture[str]) -> None:
-        assert "is no number; expected one such as 1.5" in self.refused(
-            command, capsys, f"MA={text}"
-        )
+        assert " is no" in self.refused(command, capsys, f"MA={text}")
 
 
 class TestNames:

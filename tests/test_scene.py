@@ -85,7 +85,7 @@ def test_digits_are_kept_as_typed(line, text):
         ("UX = 1_000.5", ["UX = 1_000.5"]),
         ("UX = 1_000", ["UX = 1_000"]),
         ("UX = 0x10", ["UX = 0x10"]),
-        ('UX = "12X"', ["UX", "12X", "initial x velocity of A"]),
+        ('UX = "12X"', ["UX", "12X", "not a unit of length/time"]),
         ('UX = ""', ["UX"]),
         ("", ["missing UX", "initial x velocity of A"]),
         ("UX = 1\nUX = 2", ["UX is given twice", "line"]),

@@ -276,7 +276,7 @@ class TestSweep:
         [
             ("MU=0:1", "no LOW:HIGH:COUNT"),
             ("MU=0:1:0", "out of range"),
-            ("MU=0:x:3", "no LOW:HIGH:COUNT"),
+            ("MU=0:x:3", "is not an amount"),
             ("FOO=0:1:3", "'FOO' is no value of a scene"),
             ("MU=0:1:100000000", "out of range"),
         ],

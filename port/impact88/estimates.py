@@ -13,17 +13,20 @@ taken) stands for one of two estimates, and the result is always marked as one:
   Table 1, which were assigned by class of size, it is 13 % low to 37 % high. It is for cars: sport
   utilities and light trucks lie lower, and outside `CARS` it is refused.
 
+Beside a known inertia LA BA are the outline that is drawn.
+
 The mass needs no estimate: "3091 lb" is a weight, and becomes the mass it has (`impact88.units`).
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from math import inf
 
-from .doubles import double, is_number
+from .amounts import nominal
+from .doubles import double
 from .errors import UserError
+from .units import INERTIA, MASS, SYMBOLS, SYSTEMS
 
 WORD = "estimate"
 """What stands in a file for an inertia that is not known."""
@@ -32,60 +35,50 @@ CARS = (1500, 6000)
 SIZES = {"A": ("LA", "BA"), "B": ("LB", "BB")}
 """Length and width of each vehicle."""
 _SLOPE, _OFFSET = 1.03, 1206
-_BEGINS_WITH_A_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-
-
-def wanted(texts: Mapping[str, str]) -> bool:
-    """Whether the texts of a file ask for an estimate."""
-    sizes = {name for names in SIZES.values() for name in names}
-    return not sizes.isdisjoint(texts) or any(_asked(texts.get(name, "")) for name in ("IA", "IB"))
 
 
 def with_estimates(
     texts: Mapping[str, str], source: str, units: str | None
-) -> tuple[dict[str, str], dict[str, str]]:
-    """The texts with estimates of IA and IB where they are asked for, without LA BA LB BB; and for
-    each estimated name how it was found.
+) -> tuple[dict[str, str], dict[str, str], dict[str, float]]:
+    """The texts with estimates of IA and IB where they are asked for, without LA BA LB BB; for each
+    estimated name how it was found; and the vehicles' sizes that were given.
 
     ``texts``: by name, in base units; ``units``: the name of their system, None if it is not known.
-    An estimate has four digits. Raises UserError where the mass, a size or the system is missing,
-    where the inertia is given beside its vehicle's size, and for a weight that is no car's.
+    An estimate has four digits. Beside a known inertia a size is the vehicle's outline and no more.
+    Raises UserError where the mass, one of two sizes or the system is missing, and for a weight
+    that is no car's.
     """
-    values, how = dict(texts), {}
+    values, how, outlines = dict(texts), {}, {}
     for vehicle, sizes in SIZES.items():
         name, given = f"I{vehicle}", [size for size in sizes if size in values]
         text = values.get(name, "")
-        asked = _asked(text)
-        if not given and not asked:
-            continue
-        if given and text and not asked:
-            raise UserError(f'{name} and {given[0]} are both given; expected "{WORD}"', source)
         if given and len(given) < len(sizes):
             absent = next(size for size in sizes if size not in values)
             raise UserError(f"{absent} is missing beside {given[0]}", source)
+        for size in given:
+            outlines[size] = _number(values.pop(size), size, f"the outline of {vehicle}", source)
+        if (text or not given) and text.partition(" ")[0] != WORD:
+            continue
         mass = _number(values.get(f"M{vehicle}", ""), f"M{vehicle}", name, source)
         if given:
-            length, width = (_number(values.pop(size), size, name, source) for size in sizes)
+            length, width = (outlines[size] for size in sizes)
             inertia = mass * (length**2 + width**2) / 12
             how[name] = f"M{vehicle} ({sizes[0]}² + {sizes[1]}²)/12, a uniform rectangle"
         else:
             inertia = _of_weight(mass, name, source, units)
             how[name] = "1.03 W - 1206 for passenger cars, from the weight alone"
         values[name] = _four_digits(inertia) + text.removeprefix(WORD)
-    return values, how
-
-
-def _asked(text: str) -> bool:
-    return text.partition(" ")[0] == WORD
+    return values, how, outlines
 
 
 def _number(text: str, name: str, wanted: str, source: str) -> float:
-    """What ``text`` begins with: the middle of a value within limits, or the value."""
-    match = _BEGINS_WITH_A_NUMBER.match(text.strip())
-    if not match or not is_number(match[0]) or not 0 < (value := double(match[0])) < inf:
-        raise UserError(
-            f"{wanted} is to be estimated; expected a number above 0 for {name}", source
-        )
+    """The value, or the middle of one known within limits."""
+    try:
+        value = double(nominal(text))
+    except ValueError:
+        value = 0.0
+    if not 0 < value < inf:
+        raise UserError(f"{wanted} needs a number above 0 for {name}", source)
     return value
 
 
@@ -96,17 +89,15 @@ def _of_weight(mass: float, name: str, source: str, units: str | None) -> float:
             "chapter) in the file, or the vehicle's length and width",
             source,
         )
-    from .units import INERTIA, MASS, SYSTEMS, UNITS
-
     system = SYSTEMS[units]
-    weight = round(mass * float(system.scale(MASS) / UNITS["lb"][1]), 6)
+    weight = round(mass * float(system.scale(MASS) / SYMBOLS["lb"][1]), 6)
     if not CARS[0] <= weight <= CARS[1]:
         raise UserError(
             f"{name} is to be estimated from the weight, {weight:.0f} lb; expected a passenger "
             f"car's, {CARS[0]:,} to {CARS[1]:,} lb",
             source,
         )
-    return (_SLOPE * weight - _OFFSET) * float(UNITS["lb-ft-s2"][1] / system.scale(INERTIA))
+    return (_SLOPE * weight - _OFFSET) * float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))
 
 
 def _four_digits(value: float) -> str:
@@ -114,6 +105,6 @@ def _four_digits(value: float) -> str:
     return text if "e" not in text else repr(float(text)).removesuffix(".0").upper()
 
 
-def told(how: Mapping[str, str], values: Mapping[str, str]) -> list[str]:
+def remarks(how: Mapping[str, str], values: Mapping[str, str]) -> dict[str, str]:
     """A line for each estimate, for people who see the result."""
-    return [f"{name} = {values[name]} is estimated: {rule}" for name, rule in how.items()]
+    return {name: f"{name} = {values[name]} is estimated: {rule}" for name, rule in how.items()}

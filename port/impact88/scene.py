@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from . import estimates, notebook
+from . import notebook
 from .doubles import double, is_number
 from .errors import BEYOND_DOUBLES, UserError
 from .files import called, packaged_text, read_text
@@ -33,15 +33,53 @@ LISTING = "impact.bas"
 _ENTRY = r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)"""
 
 
+class Entries:
+    """What a file, or a mapping of texts, says of a collision.
+
+    ``values``: by name, in base units, as numbers or within limits, the contact point as DA PA DB
+    PB, inertias estimated where that is asked for; ``units``: the name of their system, None where
+    nothing says; ``estimated``: how each estimate was found; ``outlines``: LA BA LB BB, in base
+    units; ``sources``: where a value comes from, in the file's words; ``remarks``: by name, how
+    entries were understood, for people who see the result; ``given``: the entries as written.
+    """
+
+    __slots__ = (
+        *("case", "estimated", "given", "outlines", "remarks", "sources", "title", "units"),
+        "values",
+    )
+
+    def __init__(self, values: dict[str, str], given: Mapping[str, str]) -> None:
+        self.values = values
+        self.given = given
+        self.units: str | None = None
+        self.title: str | None = None
+        self.case: str | None = None
+        self.estimated: dict[str, str] = {}
+        self.outlines: dict[str, float] = {}
+        self.sources: dict[str, str] = {}
+        self.remarks: dict[str, str] = {}
+
+    def changed(self, changes: Mapping[str, str]) -> Entries:
+        """These entries with some values changed."""
+        result = Entries({**self.values, **changes}, {**self.given, **changes})
+        result.units, result.title, result.case = self.units, self.title, self.case
+        result.outlines = self.outlines
+        for name in ("estimated", "sources", "remarks"):
+            kept = {n: text for n, text in getattr(self, name).items() if n not in changes}
+            setattr(result, name, kept)
+        return result
+
+
 class Scene(Mapping[str, str]):
     """The 21 values of a scene by the listing's names, in the table's order, each as typed.
 
     ``source`` says where it came from (a file's name), for messages; ``units`` names the system of
     units its file was written in (`impact88.units`), whose base units the values are in;
-    ``estimated`` tells of each value that is an estimate (`impact88.estimates`) how it was found.
+    ``estimated`` says of each value that is an estimate (`impact88.estimates`) how it was found;
+    ``entries``: the file's, where it came from one.
     """
 
-    __slots__ = ("_values", "estimated", "source", "title", "units")
+    __slots__ = ("_values", "entries", "estimated", "source", "title", "units")
 
     def __init__(
         self,
@@ -49,7 +87,7 @@ class Scene(Mapping[str, str]):
         title: str | None = None,
         source: str = "scene",
         units: str | None = None,
-        estimated: Mapping[str, str] | None = None,
+        entries: Entries | None = None,
     ) -> None:
         """Raises UserError for a missing or unknown name and for text that is no number."""
         given = dict(values)
@@ -62,25 +100,30 @@ class Scene(Mapping[str, str]):
         self.title = title
         self.source = source
         self.units = units
-        self.estimated = dict(estimated or {})
+        self.entries = entries or Entries(dict(self._values), self._values)
+        self.estimated = self.entries.estimated
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, str], source: str = "scene") -> Scene:
-        """A scene from texts by name; M defaults to 6."""
-        return cls(values, source=source)
+        """A scene from texts by name, with units where they have any; M defaults to 6."""
+        return cls._of(values, source, None)
 
     @classmethod
     def from_toml(cls, path: str, units: str | None = None) -> Scene:
-        """The scene in a TOML file, bare numbers in ``units`` where it names none itself. Raises
-        UserError naming file, line or key."""
-        return cls.from_toml_text(read_text(path, TOML_LIMIT), called(path), units)
+        """The scene in a TOML file, bare numbers in ``units`` where it names none itself; of a
+        value known within limits, the middle. Raises UserError naming file, line or key."""
+        return cls._of(toml_file(path), called(path), units)
 
     @classmethod
     def from_toml_text(cls, text: str, source: str, units: str | None = None) -> Scene:
         """The scene in a TOML document; ``source`` names it in errors."""
-        values, units, estimated = file_values(toml_texts(text, source), source, units)
-        title = values.pop("title", None)
-        return cls(_with_contact_point(values, source), title, source, units, estimated)
+        return cls._of(toml_texts(text, source), source, units)
+
+    @classmethod
+    def _of(cls, texts: Mapping[str, str], source: str, units: str | None) -> Scene:
+        found = entries_of(texts, source, units, single=True)
+        found.values.pop("correlations", None)
+        return cls(found.values, found.title, source, found.units, found)
 
     def __getitem__(self, name: str) -> str:
         return self._values[name]
@@ -100,9 +143,8 @@ class Scene(Mapping[str, str]):
 
     def replaced(self, changes: Mapping[str, str]) -> Scene:
         """This scene with some values changed. Raises UserError as the constructor does."""
-        estimated = {name: how for name, how in self.estimated.items() if name not in changes}
-        values = {**self._values, **changes}
-        return Scene(values, self.title, self.source, self.units, estimated)
+        values, entries = {**self._values, **changes}, self.entries.changed(changes)
+        return Scene(values, self.title, self.source, self.units, entries)
 
     def keyboard(self) -> list[str]:
         """The replies to the INPUTs of lines 210 and 230."""
@@ -182,6 +224,12 @@ def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
         for name in names:
             if name not in values:
                 raise UserError(f"{name} is missing beside {' '.join(names)}", source)
+            if _is_range(values[name]):
+                raise UserError(
+                    f"{name} is known within limits; expected a number, and CX CY for how far the "
+                    "contact point may lie off",
+                    source,
+                )
         both = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in values]
         if both:
             raise UserError(f"{both[0]} and {names[0]} are both given; expected one pair", source)
@@ -195,34 +243,84 @@ def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
 
 
 _BARE = frozenset("0123456789+-.eE ")
+_NO_AMOUNTS = ("title", "case", "correlations")
+SOURCE = "_source"
+"""The end of an entry that says where a value comes from: UX_source = "event data recorder"."""
+RANGES = ("..", "+-", "±", "+/-", "uniform", "triangular", "normal")
+"""What tells a value known within limits from a number."""
+_SIZES = frozenset(("LA", "BA", "LB", "BB"))
 
 
-def file_values(
-    texts: Mapping[str, str], source: str, units: str | None = None
-) -> tuple[dict[str, str], str | None, dict[str, str]]:
-    """The entries of a file in base units, the system's name (see `in_base_units`), and how each
-    value was found that is an estimate (`impact88.estimates`). Raises UserError."""
-    values, system = in_base_units(texts, source, units)
-    how: dict[str, str] = {}
-    if estimates.wanted(values):
-        values, how = estimates.with_estimates(values, source, system)
-    return values, system, how
+def entries_of(
+    texts: Mapping[str, str], source: str, units: str | None = None, single: bool = False
+) -> Entries:
+    """The entries of a file, see `Entries`; ``units``: the system of bare numbers where it names
+    none; ``single``: the middle of each value known within limits. Raises UserError."""
+    given = {name: text for name, text in texts.items() if not name.endswith(SOURCE)}
+    for name, text in given.items():
+        if not isinstance(text, str):
+            raise UserError(f"{name} is {text!r}; expected the number's text", source)
+    values, system = in_base_units(given, source, units)
+    found = Entries(values, given)
+    found.units = system
+    found.sources = {n.removesuffix(SOURCE): t for n, t in texts.items() if n not in given}
+    for name in found.sources:
+        if name not in given:
+            raise UserError(f"{name}{SOURCE} is given, and {name} is not", source)
+    found.title, found.case = values.pop("title", None), values.pop("case", None)
+    if system:
+        from .amounts import remarks
+
+        found.remarks = remarks(given, system)
+    for name in values if single else ():
+        if name != "correlations" and _is_range(values[name]):
+            values[name] = _middle(name, values[name], source)
+            found.remarks[name] = f"{name} = {given[name]}: its middle is used"
+    if not _SIZES.isdisjoint(values) or any(
+        values.get(name, "").startswith("estimate") for name in ("IA", "IB")
+    ):
+        from . import estimates
+
+        values, found.estimated, found.outlines = estimates.with_estimates(values, source, system)
+        found.remarks |= estimates.remarks(found.estimated, values)
+        for name in found.estimated if single else ():
+            values[name] = _middle(name, values[name], source)
+    found.values = _with_contact_point(values, source)
+    return found
+
+
+def entries_in(path: str, units: str | None = None, single: bool = False) -> Entries:
+    """The entries of a TOML file (``-`` is standard input), see `entries_of`."""
+    return entries_of(toml_file(path), called(path), units, single)
+
+
+def _is_range(text: str) -> bool:
+    return any(mark in text for mark in RANGES) and not text.startswith("estimate")
+
+
+def _middle(name: str, text: str, source: str) -> str:
+    if is_number(text):
+        return text
+    from .amounts import ACCEPTED, nominal
+
+    try:
+        return nominal(text)
+    except ValueError:
+        raise UserError(f"{name} = {text!r} is not an amount; {ACCEPTED}", source) from None
 
 
 def in_base_units(
     texts: Mapping[str, str], source: str, units: str | None = None
 ) -> tuple[dict[str, str], str | None]:
-    """The texts with every value in base units (`impact88.units`), and the system's name; as they
+    """The texts with every value in base units (`impact88.amounts`), and the system's name; as they
     are where neither a value nor the entry ``units`` nor ``units`` says of any. Raises UserError.
     """
-    if units is None and all(_BARE.issuperset(texts[n]) for n in texts if n != "title"):
+    if units is None and all(_BARE.issuperset(texts[n]) for n in texts if n not in _NO_AMOUNTS):
         return dict(texts), None
-    from .units import has_units, system_named, to_base
+    from .amounts import in_base
+    from .units import system_named
 
-    if units is None and not has_units(texts):
-        return dict(texts), None
-    system = system_named(units, "--units") if units else None
-    values, found = to_base(texts, source, system)
+    values, found = in_base(texts, source, system_named(units, "--units") if units else None)
     return values, found.name if found else None
 
 
@@ -266,6 +364,12 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
     for key, value in document.items():
         line, raw_text = raw.get(key, (0, ""))
         where = f"{source}, line {line}" if line else source
+        if isinstance(value, dict) and set(value) <= {"value", "source"} and "value" in value:
+            if "source" in value:
+                texts[key + SOURCE] = str(value["source"])
+            inside = re.search(r"\bvalue\s*=\s*([^,}]*)", raw_text)
+            raw_text = inside[1].strip() if inside else raw.get(f"{key}.value", (0, ""))[1]
+            value = value["value"]
         if isinstance(value, str):
             texts[key] = value
         elif isinstance(value, bool) or not isinstance(value, int | float):
@@ -283,6 +387,7 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
 def _raw_values(text: str, source: str) -> dict[str, tuple[int, str]]:
     """Line and raw text of each entry's value, a comment cut off."""
     raw: dict[str, tuple[int, str]] = {}
+    table = ""
     for number, line in enumerate(text.split("\n"), 1):
         if len(line) > LONGEST_ENTRY:
             raise UserError(
@@ -294,8 +399,10 @@ def _raw_values(text: str, source: str) -> dict[str, tuple[int, str]]:
                 "text over several lines is not used here; expected one value a line",
                 f"{source}, line {number}",
             )
-        if match := re.match(_ENTRY, line):
-            key = next(group for group in match.groups()[:3] if group is not None)
+        if header := re.match(r"[ \t]*\[([A-Za-z0-9_-]+)\]", line):
+            table = header[1] + "."
+        elif match := re.match(_ENTRY, line):
+            key = table + next(group for group in match.groups()[:3] if group is not None)
             if key in raw:
                 raise UserError(
                     f"{key} is given twice (first in line {raw[key][0]})",

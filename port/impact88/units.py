@@ -1,22 +1,21 @@
-"""Units: from what a person writes to a consistent set, and back for what is shown.
+"""Units: their sizes, the systems they belong to, and what values are shown in.
 
-The mechanics takes any consistent units, so a value with a unit ("-25 mph", "3091 lb", "3.5 ft") is
-converted once, by exact fractions, to its system's base: ft, slug and s, or m, kg and s. Angles are
-in degrees and spins in radians per second in both. A bare number in a file that says ``units =
-"us"`` (or "metric", "si", "chapter") is in that system's usual units: a weight in lb, a speed in
-mph. Text whose number needs no factor keeps its digits as written.
+The mechanics takes any consistent units, so an amount with a unit ("-25 mph", "3,091 lb",
+"6 ft 6 in", see `impact88.amounts`) is converted once, by exact fractions, to its system's base:
+ft, slug and s, or m, kg and s. Angles are in degrees and spins in radians per second in both.
 
-The dozen units of the field are a table here: a units library would bring a dependency, an import
-of a quarter of a second and a grammar of thousands of names, of which "lb" alone, weight or mass,
-would still have to be told apart by hand.
+A unit is an expression of symbols ("slug ft2", "kg·m²", "lb-ft-s2", "miles per hour"), whose
+dimension is worked out and compared with what a quantity measures. So "lb" needs no list of cases:
+in "lb ft2" only the mass gives an inertia, in "lb-ft-s2" only the force. A units library would
+bring a dependency, an import of a quarter of a second, and one meaning of "lb".
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from math import isinf
+from functools import lru_cache
 from typing import NamedTuple
 
 from .errors import UserError, quoted
@@ -24,52 +23,133 @@ from .names import quantity
 
 _FOOT = Fraction("0.3048")
 _POUND = Fraction("0.45359237")
-_SLUG = _POUND * Fraction("9.80665") / _FOOT
-_MILE = 5280 * _FOOT
-_FOOT_POUND = _SLUG * _FOOT**2
+_GRAVITY = Fraction("9.80665")
+_SLUG = _POUND * _GRAVITY / _FOOT
+_DEGREE = Fraction("0.017453292519943295769236907684886127134")
 
 LENGTH, VELOCITY, MASS, SPIN = "length", "length/time", "mass", "rad/time"
 INERTIA, ENERGY = "mass·length²", "mass·length²/time²"
 FORCE, IMPULSE, TURNING = "mass·length/time²", "mass·length/time", "mass·length²/time"
 TIME, ANGLE, NUMBER, PERCENT = "time", "degree", "1", "percent"
-_PI_ON_180 = Fraction("0.017453292519943295769236907684886127134")
 
+Dimension = tuple[int, int, int, int]
+"""Exponents of length, mass, time and angle."""
+_LENGTH, _MASS, _TIME, _ANGLE = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)
+_SPEED, _RATE, _FORCE, _ENERGY = (1, 0, -1, 0), (0, 0, -1, 1), (1, 1, -2, 0), (2, 1, -2, 0)
 _US, _SI = "us", "metric"
-UNITS: dict[str, tuple[str, Fraction, str]] = {
-    "ft": (LENGTH, _FOOT, _US),
-    "in": (LENGTH, _FOOT / 12, _US),
-    "m": (LENGTH, Fraction(1), _SI),
-    "cm": (LENGTH, Fraction(1, 100), _SI),
-    "mm": (LENGTH, Fraction(1, 1000), _SI),
-    "mph": (VELOCITY, _MILE / 3600, _US),
-    "ft/s": (VELOCITY, _FOOT, _US),
-    "km/h": (VELOCITY, Fraction(1000, 3600), _SI),
-    "m/s": (VELOCITY, Fraction(1), _SI),
-    "lb": (MASS, _POUND, _US),
-    "slug": (MASS, _SLUG, _US),
-    "kg": (MASS, Fraction(1), _SI),
-    "t": (MASS, Fraction(1000), _SI),
-    "lb-ft-s2": (INERTIA, _FOOT_POUND, _US),
-    "slug-ft2": (INERTIA, _FOOT_POUND, _US),
-    "kg-m2": (INERTIA, Fraction(1), _SI),
-    "ft-lb": (ENERGY, _FOOT_POUND, _US),
-    "J": (ENERGY, Fraction(1), _SI),
-    "kJ": (ENERGY, Fraction(1000), _SI),
-    "rad/s": (SPIN, Fraction(1), ""),
-    "deg/s": (SPIN, _PI_ON_180, ""),
-    "deg": (ANGLE, Fraction(1), ""),
-    "rad": (ANGLE, 1 / _PI_ON_180, ""),
-    "%": (PERCENT, Fraction(1), ""),
+
+SYMBOLS: dict[str, tuple[Dimension, Fraction, str]] = {
+    name: (dimension, size, system)
+    for names, dimension, size, system in (
+        ("length", _LENGTH, Fraction(1), ""),
+        ("mass", _MASS, Fraction(1), ""),
+        ("time s sec secs second seconds", _TIME, Fraction(1), ""),
+        ("ms", _TIME, Fraction(1, 1000), ""),
+        ("h hr hour hours", _TIME, Fraction(3600), ""),
+        ("ft foot feet '", _LENGTH, _FOOT, _US),
+        ("in inch inches \" ''", _LENGTH, _FOOT / 12, _US),
+        ("yd yard yards", _LENGTH, 3 * _FOOT, _US),
+        ("mi mile miles", _LENGTH, 5280 * _FOOT, _US),
+        ("m meter meters metre metres", _LENGTH, Fraction(1), _SI),
+        ("cm", _LENGTH, Fraction(1, 100), _SI),
+        ("mm", _LENGTH, Fraction(1, 1000), _SI),
+        ("km", _LENGTH, Fraction(1000), _SI),
+        ("mph", _SPEED, 5280 * _FOOT / 3600, _US),
+        ("fps", _SPEED, _FOOT, _US),
+        ("kph kmh", _SPEED, Fraction(1000, 3600), _SI),
+        ("kn kt knot knots", _SPEED, Fraction(1852, 3600), _US),
+        ("lb lbs pound pounds lbm", _MASS, _POUND, _US),
+        ("lbf", _FORCE, _POUND * _GRAVITY, _US),
+        ("slug slugs", _MASS, _SLUG, _US),
+        ("oz", _MASS, _POUND / 16, _US),
+        ("kg kgs", _MASS, Fraction(1), _SI),
+        ("t tonne tonnes", _MASS, Fraction(1000), _SI),
+        ("n", _FORCE, Fraction(1), _SI),
+        ("j", _ENERGY, Fraction(1), _SI),
+        ("kj", _ENERGY, Fraction(1000), _SI),
+        ("rad radian radians", _ANGLE, Fraction(1), ""),
+        ("deg degree degrees °", _ANGLE, _DEGREE, ""),
+        ("rev", _ANGLE, 360 * _DEGREE, ""),
+        ("rpm", _RATE, 6 * _DEGREE, ""),
+        ("% percent", (0, 0, 0, 0), Fraction(1, 100), ""),
+    )
+    for name in names.split()
 }
-"""Unit -> what it measures, its size in m, kg and s (angles in degrees), and whose it is. "lb" is
-the weight that a mass has: 1/32.174 slug, .4536 kg."""
+"""Symbol -> its dimension, its size in m, kg, s and radians, and whose it is."""
+_ARC = {"'": _DEGREE / 60, "min": _DEGREE / 60, '"': _DEGREE / 3600, "''": _DEGREE / 3600}
+"""What else divides an angle."""
+_WEIGHTS = ("lb", "lbs", "pound", "pounds")
+"""Symbols of a mass, or of the force that is its weight."""
+
+_EXPONENT = r"(?:[²³]|(?:\^|\*\*)-?[1-9]|[23](?![\w.,'\"°]))"
+_FACTOR = rf"(?:[a-zA-Z]+(?:\.(?![.\d]))?{_EXPONENT}?|[°%\"]|''?)"
+UNIT = rf"{_FACTOR}(?:(?: ?[-*·/] ?| ){_FACTOR})*"
+"""What a unit looks like: symbols with exponents, multiplied and divided."""
+_STEP = re.compile(rf"( ?[-*·/] ?| |)({_FACTOR})")
+
+
+@lru_cache(maxsize=4096)
+def size_of(unit: str, rule: str) -> tuple[Fraction, str] | None:
+    """The size of a unit in m, kg, s and radians, and whose it is; None for one that does not
+    measure what ``rule`` says ("length/time")."""
+    if rule in (NUMBER, PERCENT):
+        return (Fraction(1 if rule == PERCENT else Fraction(1, 100)), "") if unit == "%" else None
+    wanted = _dimension(rule)
+    words = re.sub(r" per ", "/", unit)
+    for force in (False, True):
+        found = _product(words, rule == ANGLE, force)
+        if found and found[0] == wanted:
+            return found[1:]
+    return None
+
+
+@lru_cache
+def _dimension(rule: str) -> Dimension:
+    found = _product(rule, False, False)
+    return found[0] if found else (0, 0, 0, 0)
+
+
+def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, str] | None:
+    """Dimension, size and system of an expression; ``force``: its pounds are forces; ``arc``: of an
+    angle, which has minutes."""
+    dimension, size, systems, at = [0, 0, 0, 0], Fraction(1), set(), 0
+    while at < len(text):
+        step = _STEP.match(text, at)
+        if not step:
+            return None
+        at = step.end()
+        symbol, power = _split(step[2])
+        known = SYMBOLS.get(symbol)
+        if arc and symbol in _ARC:
+            known = (_ANGLE, _ARC[symbol], "")
+        elif force and symbol in _WEIGHTS:
+            known = SYMBOLS["lbf"]
+        if known is None:
+            return None
+        power = -power if "/" in step[1] else power
+        dimension = [d + power * k for d, k in zip(dimension, known[0], strict=True)]
+        size *= known[1] ** power
+        systems.add(known[2])
+    systems -= {""}
+    if len(systems) > 1:
+        return None
+    length, mass, time, angle = dimension
+    return (length, mass, time, angle), size, systems.pop() if systems else ""
+
+
+def _split(factor: str) -> tuple[str, int]:
+    """A factor's symbol in small letters, and its power."""
+    match = re.fullmatch(r"(.+?)\.?(?:([²³])|(?:\^|\*\*)?(-?\d))?", factor)
+    assert match is not None
+    power = {"²": "2", "³": "3"}.get(match[2] or "", match[3] or "1")
+    return match[1].lower(), int(power)
 
 
 class System(NamedTuple):
     """A consistent set and how its quantities are written.
 
     ``base``: sizes of its length and mass in m and kg (its time is the second); ``usual``: the unit
-    of a bare number, by what it measures; ``labels``: of what has no unit of its own in `UNITS`.
+    of a bare number, by what it measures; ``labels``: of what is not entered, but shown.
     """
 
     name: str
@@ -78,30 +158,44 @@ class System(NamedTuple):
     labels: dict[str, str]
 
     def scale(self, rule: str) -> Fraction:
-        """The size in m, kg and s of one base unit of what ``rule`` measures."""
-        length, mass = self.base
-        sizes = {LENGTH: length, VELOCITY: length, MASS: mass, INERTIA: mass * length**2}
-        sizes |= {ENERGY: mass * length**2, TURNING: mass * length**2}
-        sizes |= {FORCE: mass * length, IMPULSE: mass * length}
-        return sizes.get(rule, Fraction(1))
+        """The size in m, kg, s and radians of one base unit of what ``rule`` measures."""
+        if rule == ANGLE:
+            return _DEGREE
+        length, mass, _, _ = _dimension(rule)
+        return Fraction(self.base[0] ** length * self.base[1] ** mass)
 
     def label(self, rule: str) -> str:
         """The unit that values of a rule ("length/time") are shown in."""
         return self.usual.get(rule) or self.labels.get(rule, rule)
 
-    def factor(self, name: str) -> float:
-        """What a quantity's value in base units is multiplied with to be shown."""
-        return self.shown(quantity(name).unit, 1.0)
-
     def shown(self, rule: str, value: float) -> float:
         """A value in base units as it is shown."""
+        return value * self._factor(rule)
+
+    def _factor(self, rule: str) -> float:
         unit = self.usual.get(rule)
-        return value * float(self.scale(rule) / UNITS[unit][1]) if unit else value
+        size = size_of(unit, rule) if unit else None
+        return float(self.scale(rule) / size[0]) if size else 1.0
+
+    def factor(self, name: str) -> float:
+        """What a quantity's value in base units is multiplied with to be shown."""
+        return self._factor(quantity(name).unit)
+
+    def unit(self, name: str) -> str:
+        """The unit a quantity is shown in; nothing for a mere number or where none is known."""
+        label = self.label(quantity(name).unit)
+        known = self is not RULES and label not in (NUMBER, PERCENT, "bits")
+        return label if known else ""
+
+    def heading(self, name: str) -> str:
+        """A column's heading: ``DVA [mph]``."""
+        unit = self.unit(name)
+        return f"{name} [{unit}]" if unit else name
 
 
 _FEET, _METRES = (_FOOT, _SLUG), (Fraction(1), Fraction(1))
-_FEET_LABELS = {FORCE: "lb", IMPULSE: "lb-s", TURNING: "ft-lb-s", TIME: "s"}
-_METRE_LABELS = {FORCE: "N", IMPULSE: "N-s", TURNING: "N-m-s", TIME: "s"}
+_FEET_LABELS = {FORCE: "lb", IMPULSE: "lb-s", TURNING: "ft-lb-s", TIME: "s", PERCENT: "percent"}
+_METRE_LABELS = {FORCE: "N", IMPULSE: "N-s", TURNING: "N-m-s", TIME: "s", PERCENT: "percent"}
 _COMMON = {SPIN: "rad/s", ANGLE: "deg"}
 _US_UNITS = {LENGTH: "ft", INERTIA: "lb-ft-s2", ENERGY: "ft-lb", **_COMMON}
 _SI_UNITS = {LENGTH: "m", MASS: "kg", INERTIA: "kg-m2", ENERGY: "J", **_COMMON}
@@ -126,26 +220,6 @@ def base_of(system: System) -> str:
     return "m, kg, s" if system.base == _METRES else "ft, slug, s"
 
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_UNIT = "|".join(re.escape(unit) for unit in sorted(UNITS, key=len, reverse=True))
-_AMOUNT = re.compile(rf"({_NUMBER})(?:\s*({_UNIT})(?![\w/-]))?")
-_PLAIN = frozenset("0123456789+-.eE \t±")
-_WORDS = ("title", "correlations", "M")
-"""Entries that have no unit, whatever they say."""
-ENTRY = "units"
-"""The entry of a file that names its system."""
-
-
-def has_units(texts: Mapping[str, str]) -> bool:
-    """Whether some text has a unit, or an entry names a system."""
-    return ENTRY in texts or any(
-        match[2] and match[2] != "%"
-        for name, text in texts.items()
-        if name not in _WORDS and not _PLAIN.issuperset(text)
-        for match in _AMOUNT.finditer(text)
-    )
-
-
 def system_of(name: str | None) -> System:
     """The system of that name, `RULES` for none."""
     return SYSTEMS[name] if name else RULES
@@ -155,97 +229,36 @@ def system_named(name: str, source: str) -> System:
     """The system of that name. Raises UserError."""
     if name.lower() not in SYSTEMS:
         expected = " ".join(SYSTEMS)
-        raise UserError(f"{quoted(name)} is no system of units; expected {expected}", source)
+        raise UserError(f"{quoted(name)} is not a system of units; expected {expected}", source)
     return SYSTEMS[name.lower()]
 
 
-def to_base(
-    texts: Mapping[str, str], source: str, system: System | None = None
-) -> tuple[dict[str, str], System | None]:
-    """The texts in base units, and the system they belong to (None where nothing tells).
+def system_using(units: Iterable[tuple[str, str]], source: str) -> System:
+    """The system that values with some units, each with what it measures, are shown in: of those
+    they belong to, the one that uses most of them. `RULES` where they belong to all. Raises
+    UserError for units of two systems."""
+    used = set(units)
+    sides = {size[1] for unit, rule in used if (size := size_of(unit, rule))} - {""}
+    if len(sides) > 1:
+        raise UserError(
+            'units of two systems; expected units = "us" or "metric" in the file', source
+        )
+    if not sides:
+        return RULES
+    base = SYSTEMS[sides.pop()].base
 
-    ``texts``: by name, numbers or values within limits, with units or bare, and perhaps the entry
-    ``units``; ``system``: of bare numbers, where no entry says. Raises UserError for a unit that
-    does not measure the quantity, for bare numbers among others with units, and for units of two
-    systems where none is named.
-    """
-    entries = dict(texts)
-    named = entries.pop(ENTRY, None)
-    if named is not None:
-        system = system_named(named, source)
-    if system is None:
-        used = {
-            UNITS[match[2]][2]
-            for name, text in entries.items()
-            if name not in _WORDS and not _PLAIN.issuperset(text)
-            for match in _AMOUNT.finditer(text)
-            if match[2]
-        } - {""}
-        if len(used) > 1:
-            raise UserError(
-                'units of two systems; expected units = "us" or "metric" in the file', source
-            )
-        if not used:
-            return {n: _bare(n, t, source) for n, t in entries.items()}, None
-        system = SYSTEMS[used.pop()]
-        return {n: _based(n, t, source, system, strict=True) for n, t in entries.items()}, system
-    return {n: _based(n, t, source, system, strict=False) for n, t in entries.items()}, system
+    def matching(system: System) -> int:
+        return sum(
+            size_of(unit, rule) == size_of(system.usual[rule], rule)
+            for unit, rule in used
+            if rule in (VELOCITY, MASS) and rule in system.usual
+        )
+
+    return max((s for s in SYSTEMS.values() if s.base == base), key=matching)
 
 
-def _bare(name: str, text: str, source: str) -> str:
-    """A text of a file without a system: only angles and spins can have a unit."""
-    if name in _WORDS or _PLAIN.issuperset(text):
-        return text
-    return _based(name, text, source, RULES, strict=False)
-
-
-def _based(name: str, text: str, source: str, system: System, strict: bool) -> str:
-    """One text in base units; ``strict``: bare numbers that measure something are refused."""
-    if name in _WORDS or not text:
-        return text
-    try:
-        rule = quantity(name).unit
-    except KeyError:
-        return text  # told by whoever knows which names belong
-    matches = list(_AMOUNT.finditer(text))
-    own = {match[2] for match in matches if match[2] and not _is_share(text, match)}
-    # a unit behind the last number is meant for all of them: "-25 +- 2 mph"
-    common = own.pop() if len(own) == 1 else None
-
-    def based(match: re.Match[str]) -> str:
-        if _is_share(text, match):
-            return match[0]
-        unit = match[2] or common or system.usual.get(rule)
-        if match[2] is None and common is None and strict and rule not in _UNITLESS:
-            if float(match[1]) != 0:
-                raise UserError(f"{name} = {text} has no unit, and others have", source)
-            return match[1]
-        if unit is None:
-            return match[1]
-        measures, size, _ = UNITS[unit]
-        if measures != rule and not (unit == "%" and rule == PERCENT):
-            raise UserError(
-                f"{name} = {text}: {unit} is no unit of its {rule.replace('·', ' ')}", source
-            )
-        factor = size / system.scale(rule)
-        if factor == 1:
-            return match[1]
-        number = float(match[1])
-        try:
-            if isinf(number):
-                raise OverflowError
-            if not number:  # exponents of nine digits are not worked out
-                return "0"
-            return repr(float(Fraction(match[1]) * factor)).removesuffix(".0").upper()
-        except OverflowError:
-            raise UserError(f"{name} = {text} is too large for a double", source) from None
-
-    return _AMOUNT.sub(based, text)
-
-
-_UNITLESS = (NUMBER, ANGLE, SPIN, PERCENT)
-
-
-def _is_share(text: str, match: re.Match[str]) -> bool:
-    """Whether a number is the percentage of a tolerance, "143.5 +- 5%"."""
-    return match[2] == "%" and text[: match.start()].rstrip().endswith(("+-", "±"))
+def written(values: Mapping[str, float], system: System) -> dict[str, float]:
+    """Values in base units as they are shown."""
+    if system is RULES:
+        return dict(values)
+    return {name: value * system.factor(name) for name, value in values.items()}

@@ -79,12 +79,13 @@ _NOTHING = re.compile(
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
 
 
-def read_theirs(rows: Rows, name: str) -> Theirs:
-    """A column of results; an empty cell is NaN and counts as not given. What is no number is
-    added to ``rows.bad``. Raises UserError for an array that has not a number for each row."""
+def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> Theirs:
+    """A column of results, times ``factor`` in base units; an empty cell is NaN and counts as not
+    given. What is no number is added to ``rows.bad``. Raises UserError for an array that has not a
+    number for each row."""
     column = one_per_row(rows, name)
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
-        return Theirs(column.astype(float), np.zeros(rows.count))
+        return Theirs(column.astype(float) * factor, np.zeros(rows.count))
     texts = ["" if cell is None else str(cell).strip() for cell in column]
     there = [index for index, text in enumerate(texts) if not _NOTHING.fullmatch(text)]
     values, units = np.full(rows.count, np.nan), np.zeros(rows.count)
@@ -103,7 +104,7 @@ def read_theirs(rows: Rows, name: str) -> Theirs:
             decimals, exponent = written.groups(default="")
             power = float(exponent or 0) - len(decimals)
             units[index] = 10.0 ** min(300.0, max(power, -400.0))
-    return Theirs(values, units)
+    return Theirs(values * factor, units * factor)
 
 
 def slack(scene: Columns, ours: Columns, rtol: float | None = None) -> Slack:

@@ -25,6 +25,7 @@ from ..plaintable import plain
 from ..progress import progress
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers, one_per_row
 from ..tables.table import open_reader
+from ..tables.tableunits import TableUnits
 from .agreement import Slack, Theirs, Verdict, given, judge, read_theirs, slack
 from .diagnosis import UNKNOWN, Case, diagnose
 from .vectors import FAILURE
@@ -183,8 +184,10 @@ def compare_file(
     values: Mapping[str, str] | None = None,
     rtol: float | None = None,
     encoding: str | None = None,
+    units: str | None = None,
 ) -> Comparison:
-    """Compare a table of scenes and results, block by block.
+    """Compare a table of scenes and results, block by block; ``units``: of columns whose heading
+    names none.
 
     ``values``: for all rows of columns the table lacks; ``rtol``: the difference, as a share of the
     scene's largest velocity, spin or energy, that agrees, in place of what rounding allows. Raises
@@ -211,8 +214,10 @@ def compare_file(
         comparison.tallies = {name: Tally() for name in wanted}
         with progress(reader.total, "compare", "B") as meter:
             before = 0
+            table: TableUnits | None = None
             for rows in reader:
-                kept = _compare_block(rows, values, wanted, comparison, rtol)
+                table = table or TableUnits(reader.names, units, rows, wanted, where)
+                kept = _compare_block(rows, values, wanted, comparison, rtol, table)
                 if kept is not None:
                     waiting.append(kept)
                 meter.update(reader.position() - before)
@@ -240,15 +245,18 @@ def _compare_block(
     wanted: Sequence[str],
     comparison: Comparison,
     rtol: float | None,
+    units: TableUnits,
 ) -> _Waiting | None:
     """Judge a block and count; the rows to be explained are returned."""
     whole = {"M": DEFAULT_M, **values}
     scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
-    scene |= numbers(rows)
+    scene |= numbers(rows, units)
+    if any(units.converts(name) for name in scene):
+        rows.columns |= {name: scene[name] for name in rows.columns}
     scene = {name: scene[name] for name in SCENE}
     ours = {name: column.astype(float) for name, column in solve(scene).items()}
     allowed = slack(scene, ours, rtol)
-    theirs = {name: read_theirs(rows, name) for name in wanted}
+    theirs = {name: read_theirs(rows, name, units.factor(name)) for name in wanted}
     verdicts = {name: judge(theirs[name], ours[name], name, allowed) for name in wanted}
     bad = {one.row for one in rows.bad}
     readable = np.array([rows.first + index not in bad for index in range(rows.count)], bool)

@@ -24,7 +24,7 @@ import argparse
 
 from ..errors import UserError
 from ..scene import known_template
-from .options import add_solution_arguments, known_with_units
+from .options import add_solution_arguments, known_values
 from .reconstruct_command import source_of
 
 KNOWABLE = (
@@ -50,7 +50,7 @@ def main(args: argparse.Namespace) -> int:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..units import system_of
 
-    known, named = known_with_units(args.file, args.set, KNOWABLE, args.units)
+    known, named = known_values(args.file, args.set, KNOWABLE, args.units)
     everything = {**known, **BARRIER, **BARRIER_AFTER}
     show(everything, None, source_of(args.file), args.contact_time, args.json, system_of(named))
     return 0

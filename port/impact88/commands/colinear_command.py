@@ -21,6 +21,7 @@ import math
 
 from ..errors import UserError
 from ..scene import known_template
+from ..units import System, system_of, written
 from .options import add_solution_arguments, known_values
 
 COMMON = ("MA", "MB", "E", "MUP")
@@ -40,7 +41,7 @@ def main(args: argparse.Namespace) -> int:
     if args.template:
         print(known_template((*COMMON, *BEFORE, *AFTER)))
         return 0
-    known = known_values(args.file, args.set, (*COMMON, *BEFORE, *AFTER))
+    known, named = known_values(args.file, args.set, (*COMMON, *BEFORE, *AFTER), args.units)
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
     missing = [name for name in COMMON if name not in known]
     if before and after:
@@ -64,19 +65,22 @@ def main(args: argparse.Namespace) -> int:
         values["P"] = math.hypot(values["PN"], values["PT"])
         values["TF"] = args.contact_time
         values |= {n: float(v) for n, v in forces(values["P"], args.contact_time).items()}
-    show(values, BEFORE if after else AFTER, args.json)
+    show(values, BEFORE if after else AFTER, args.json, system_of(named))
     return 0
 
 
-def show(values: dict[str, float], solved_for: tuple[str, ...], as_json: bool) -> None:
+def show(
+    values: dict[str, float], solved_for: tuple[str, ...], as_json: bool, system: System
+) -> None:
     """Print the table or the JSON object."""
     from ..names import quantity
     from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
     from ..status import sentences
 
     warnings = sentences(int(values.pop("STATUS")), values)
+    values = written(values, system)
     if as_json:
-        units = {name: quantity(name).unit for name in values}
+        units = {name: system.label(quantity(name).unit) for name in values}
         whole = {
             "solved_for": list(solved_for),
             "values": values,
@@ -89,11 +93,13 @@ def show(values: dict[str, float], solved_for: tuple[str, ...], as_json: bool) -
     rows = []
     for label, names in (("n", ("UN", "VAN", "VN", "VBN")), ("t", ("UT", "VAT", "VT", "VBT"))):
         cells = [f"{fixed(values[n], decimals)}{'*' if n in solved_for else ' '}" for n in names]
-        rows.append([label, *cells, "length/time"])
+        rows.append([label, *cells, system.label("length/time")])
     heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
     print("\n".join([*table(rows, heading, left=(0, 5)), "* solved for", ""]))
     shown = [n for n in values if n not in (*BEFORE, *AFTER) and math.isfinite(values[n])]
-    lines = [[n, number(values[n]), quantity(n).unit, quantity(n).meaning] for n in shown]
+    lines = [
+        [n, number(values[n]), system.label(quantity(n).unit), quantity(n).meaning] for n in shown
+    ]
     lines = [
         [*line[:3], "signed P_t/P_n, as given"] if line[0] == "MUP" else line for line in lines
     ]

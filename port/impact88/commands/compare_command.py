@@ -40,6 +40,7 @@ from .options import (
     add_json_argument,
     add_output_argument,
     add_set_argument,
+    add_units_argument,
     settings,
 )
 
@@ -76,6 +77,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--junit", type=OutputFile, metavar="FILE", help="write a JUnit report, a test a row"
     )
+    add_units_argument(parser)
     add_encoding_argument(parser)
     add_json_argument(parser)
     add_output_argument(parser)
@@ -83,11 +85,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Compare a table."""
-    given = settings(args.set)
+    given = settings(args.set, units=args.units)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
     comparison = compare_file(
-        args.theirs, format_of(args.theirs, args.form), given, args.rtol, args.encoding
+        args.theirs, format_of(args.theirs, args.form), given, args.rtol, args.encoding, args.units
     )
     if args.junit:
         from ..checking.junit import write_junit

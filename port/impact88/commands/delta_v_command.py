@@ -29,6 +29,7 @@ from typing import Any
 
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_VELOCITIES, SCENE
+from ..units import System, system_of, written
 from .options import add_json_argument, add_known_arguments, add_output_argument, known_values
 
 KNOWABLE = (*SCENE, "SA", "SB", "LOSS", "DT", "EL", "DVA", "DVB", *FINAL_VELOCITIES[:4])
@@ -60,18 +61,19 @@ def main(args: argparse.Namespace) -> int:
     from ..chapter.deltav import AS_PRINTED, AS_USED, delta_v, described
     from ..plaintable import plain
 
-    known = known_values(args.file, args.set, KNOWABLE)
+    known, named = known_values(args.file, args.set, KNOWABLE, args.units)
+    units = system_of(named)
     for name in ("MA", "MB"):
         if not known.get(name, 0) > 0:
             raise UserError(f"{name} is missing or not positive; expected a mass", args.file)
     factor = AS_PRINTED if args.as_printed else AS_USED
     if set(FINAL_VELOCITIES[:4]) <= set(known) and not {"UX", "VY"} <= set(known):
-        return _speeds(known, args, factor)
+        return _speeds(known, args, factor, units)
     speed_a = _speed(known, "SA", "UX", "UY", args.file)
     speed_b = _speed(known, "SB", "VX", "VY", args.file)
     given = {"MA": known["MA"], "MB": known["MB"], "SA": speed_a, "SB": speed_b}
     if "DVA" in known or "DVB" in known:
-        return _loss_told(known, given, args, factor)
+        return _loss_found(known, given, args, factor, units)
     losses, source = _losses({**known, **given}, args)
     estimates = []
     for loss in losses:
@@ -83,18 +85,18 @@ def main(args: argparse.Namespace) -> int:
         whole = {
             "equation": described(factor),
             "factor": factor,
-            "given": given,
+            "given": written(given, units),
             "loss_from": source,
-            "estimates": estimates,
-            "units": {"DVA": "length/time", "DVB": "length/time", "LOSS": "percent"},
+            "estimates": [written(row, units) for row in estimates],
+            "units": _labels((*given, "DVA", "DVB", "LOSS"), units),
         }
         print(json.dumps(plain(whole), allow_nan=False))
         return 0
-    _show(given, estimates, source, described(factor))
+    _show(given, estimates, source, described(factor), units)
     return 0
 
 
-def _speeds(known: dict[str, float], args: argparse.Namespace, factor: float) -> int:
+def _speeds(known: dict[str, float], args: argparse.Namespace, factor: float, units: System) -> int:
     """Speeds before from final velocities and the loss, as in Section VII."""
     from ..chapter.deltav import described, speeds_before
     from ..names import quantity
@@ -111,13 +113,19 @@ def _speeds(known: dict[str, float], args: argparse.Namespace, factor: float) ->
                 if not repeat:
                     raise UserError(str(error), args.file) from None
                 row = dict.fromkeys(("UX", "VY", "DVA", "DVB"), nan)
-            found.append({"LOSS": loss, **row, "speeds": speeds})
+            found.append({"LOSS": loss, **written(row, units), "speeds": speeds})
     if args.json:
-        whole = {"equation": described(factor), "loss_from": source, "estimates": found}
+        labels = _labels(("LOSS", "UX", "VY", "DVA", "DVB"), units)
+        whole = {
+            "equation": described(factor),
+            "loss_from": source,
+            "estimates": found,
+            "units": labels,
+        }
         print(json.dumps(plain(whole), allow_nan=False))
         return 0
     names = ("LOSS", "UX", "VY", "DVA", "DVB")
-    heading = [f"{name} [{quantity(name).unit}]" for name in names[1:]]
+    heading = [f"{name} [{units.label(quantity(name).unit)}]" for name in names[1:]]
     rows = [[number(row[n]) or "none" for n in names] + [row["speeds"]] for row in found]
     lines = table(rows, ["LOSS [%]", *heading, "speeds in Equation 19"], left=(5,))
     print("\n".join(lines))
@@ -126,10 +134,14 @@ def _speeds(known: dict[str, float], args: argparse.Namespace, factor: float) ->
     return 0
 
 
-def _loss_told(
-    known: dict[str, float], given: dict[str, float], args: argparse.Namespace, factor: float
+def _loss_found(
+    known: dict[str, float],
+    given: dict[str, float],
+    args: argparse.Namespace,
+    factor: float,
+    units: System,
 ) -> int:
-    """The loss that velocity changes tell."""
+    """The loss that velocity changes give."""
     from ..chapter.deltav import described, loss_of
     from ..plaintable import number, plain, table
 
@@ -142,11 +154,20 @@ def _loss_told(
     }
     _check_finite(found.values(), args.file)
     if args.json:
-        whole = {"equation": described(factor), "given": given, "LOSS_from": found}
+        whole = {
+            "equation": described(factor),
+            "given": written(given, units),
+            "LOSS_from": found,
+            "units": _labels(given, units),
+        }
         print(json.dumps(plain(whole), allow_nan=False))
         return 0
-    rows = [[name, number(known[name]), number(loss)] for name, loss in found.items()]
-    print("\n".join(table(rows, ["from", "velocity change", "loss [percent]"], left=(0,))))
+    rows = [
+        [name, number(known[name] * units.factor(name)), number(loss)]
+        for name, loss in found.items()
+    ]
+    heading = ["from", f"velocity change [{units.label('length/time')}]", "loss [percent]"]
+    print("\n".join(table(rows, heading, left=(0,))))
     print()
     _caution(described(factor))
     return 0
@@ -215,16 +236,31 @@ def _losses(known: dict[str, float], args: argparse.Namespace) -> tuple[list[flo
     return [known["LOSS"]], "given"
 
 
+def _labels(names: Iterable[str], units: System) -> dict[str, str]:
+    from ..names import quantity
+
+    return {name: units.label(quantity(name).unit) for name in names}
+
+
 def _show(
-    given: dict[str, float], estimates: list[dict[str, Any]], source: str, equation: str
+    given: dict[str, float],
+    estimates: list[dict[str, float]],
+    source: str,
+    equation: str,
+    units: System,
 ) -> None:
     from ..names import quantity
     from ..plaintable import number, table
 
-    rows = [[n, number(v), quantity(n).unit, quantity(n).meaning] for n, v in given.items()]
+    rows = [
+        [n, number(v * units.factor(n)), units.label(quantity(n).unit), quantity(n).meaning]
+        for n, v in given.items()
+    ]
     print("\n".join(table(rows, left=(0, 2, 3))))
-    lines = [[number(e["LOSS"]), number(e["DVA"]), number(e["DVB"])] for e in estimates]
-    heading = ["loss [percent]", "DVA [length/time]", "DVB [length/time]"]
+    names = ("LOSS", "DVA", "DVB")
+    lines = [[number(e[n] * units.factor(n)) for n in names] for e in estimates]
+    label = units.label("length/time")
+    heading = ["loss [percent]", f"DVA [{label}]", f"DVB [{label}]"]
     print("\n".join(["", *table(lines, heading, left=())]))
     print(f"\nloss: {source}")
     _caution(equation)

@@ -39,7 +39,7 @@ from .options import (
     add_names_argument,
     add_set_argument,
     add_sweep_argument,
-    known_with_units,
+    known_values,
     names_given,
     one_scene,
     sweeps,
@@ -142,7 +142,7 @@ def _barrier(args: argparse.Namespace) -> Drawing:
 
     if args.sample:
         raise UserError("a sample has two vehicles; expected FILE.toml or --set of one")
-    known, units = known_with_units(args.scene, args.set, (*VEHICLE, "M"))
+    known, units = known_values(args.scene, args.set, (*VEHICLE, "M"))
     absent = [name for name in VEHICLE if name not in known]
     if absent:
         raise UserError(missing(absent), args.scene)

@@ -14,10 +14,9 @@ from math import isfinite
 
 from ..doubles import double
 from ..errors import UserError, quoted
-from ..estimates import told
 from ..files import called, check_apart
 from ..names import SCENE, check_names
-from ..scene import SAMPLES, Scene, check_value, file_values, in_base_units, sample, toml_file
+from ..scene import RANGES, SAMPLES, Entries, Scene, check_value, entries_in, in_base_units, sample
 from ..stderr import note
 
 TYPE_CHECKING = False
@@ -131,87 +130,80 @@ def settings(
 
 
 def known_values(
-    path: str | None, texts: Sequence[str], allowed: Collection[str]
-) -> dict[str, float]:
-    """What is known of a problem: the values of a flat TOML file, changed by what ``--set`` gives.
-
-    What is not known is left out of the file, or left empty as in a `template`; an empty setting
-    makes a value unknown. Raises UserError, naming file and name, for names not ``allowed`` and
-    texts that are no numbers.
-    """
-    return known_with_units(path, texts, allowed)[0]
-
-
-def known_with_units(
     path: str | None, texts: Sequence[str], allowed: Collection[str], units: str | None = None
 ) -> tuple[dict[str, float], str | None]:
-    """The same in base units, and the name of the system they were written in; ``units``: of bare
-    numbers where the file names none."""
-    values: dict[str, float] = {}
-    if path is not None:
-        source = called(path)
-        entries, units = _entries(path, allowed, units)
-        values = {n: _double(n, text, source) for n, text in entries.items() if text}
-    given, own = in_base_units(_changes(texts, allowed), "--set", units)
-    for name, text in given.items():
-        if text:
-            values[name] = _double(name, text, "--set")
-        else:
-            values.pop(name, None)
-    return values, units or own
+    """What is known of a problem: the values of a flat TOML file, changed by what ``--set`` gives,
+    in base units, and the name of the system they were written in; ``units``: of bare numbers where
+    the file names none.
 
-
-def _entries(
-    path: str, allowed: Collection[str], units: str | None
-) -> tuple[dict[str, str], str | None]:
-    """The values of a file in base units, and their system."""
-    source = called(path)
-    entries, units, estimated = file_values(toml_file(path), source, units)
-    note_estimates(estimated, entries)
-    entries.pop("title", None)
-    check_names(entries, allowed, "value here", source)
-    return entries, units
-
-
-def note_estimates(estimated: Mapping[str, str], values: Mapping[str, str]) -> None:
-    """Say on stderr which values are estimates, and how each was found."""
-    for line in told(estimated, values):
-        note(None, line)
-
-
-def _changes(texts: Sequence[str], allowed: Collection[str]) -> dict[str, str]:
-    changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
-    check_names(changes, allowed, "value here", "--set")
-    return changes
+    What is not known is left out of the file, or left empty as in a `template`; an empty setting
+    makes a value unknown; of a value within limits the middle is taken. Raises UserError, naming
+    file and name, for names not ``allowed`` and texts that are no amounts.
+    """
+    values, named = known_within_limits(path, texts, allowed, units, single=True)
+    return {name: item.nominal for name, item in values.items()}, named
 
 
 def known_within_limits(
-    path: str | None, texts: Sequence[str], allowed: Collection[str], units: str | None = None
+    path: str | None,
+    texts: Sequence[str],
+    allowed: Collection[str],
+    units: str | None = None,
+    single: bool = False,
 ) -> tuple[dict[str, Uncertain], str | None]:
-    """As `known_with_units`, but each value a number or known within limits
-    (`uncertainty.uncertain`); a setting's ``+- D`` is around the file's value."""
+    """The same, but each value a number or known within limits (`uncertainty.uncertain`) unless
+    ``single``; a setting's ``+- D`` is around the file's value."""
     values: dict[str, Uncertain] = {}
+    named = units
     if path is not None:
-        entries, units = _entries(path, allowed, units)
-        values = {n: _within_limits(n, text, called(path)) for n, text in entries.items() if text}
-    given, own = in_base_units(_changes(texts, allowed), "--set", units)
+        entries = entries_in(path, units, single)
+        note_remarks(entries)
+        check_names(entries.values, allowed, "value here", called(path))
+        values = {
+            n: _within_limits(n, text, called(path)) for n, text in entries.values.items() if text
+        }
+        named = entries.units
+    changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
+    check_names(changes, allowed, "value here", "--set")
+    given, named = changes_in_base(changes, "--set", named, path)
     for name, text in given.items():
         center = values[name].nominal if name in values else None
         if text:
             values[name] = _within_limits(name, text, "--set", center)
         else:
             values.pop(name, None)
-    return values, units or own
+    return values, named
 
 
-_RANGES = ("..", "+-", "±", "uniform", "triangular", "normal")
-"""What tells a value known within limits from a number."""
+def changes_in_base(
+    changes: Mapping[str, str], option: str, units: str | None, path: str | None
+) -> tuple[dict[str, str], str | None]:
+    """What an option changes, in base units, and the system of all: that of the file, or of the
+    changes where the file has none, whose bare numbers are then base units, which is said."""
+    given, own = in_base_units(changes, option, units)
+    if own and not units and path:
+        from ..units import base_of, system_of
+
+        note(None, f"{called(path)} names no units: taken to be in {base_of(system_of(own))}")
+    return given, units or own
+
+
+def note_remarks(entries: Entries, based: str = "") -> None:
+    """Say on stderr how a file's entries were understood: estimates, middles, units; and in one
+    line with it what is ``based`` on the base units."""
+    lines = list(entries.remarks.values())
+    if based and entries.units:
+        from ..units import base_of, system_of
+
+        lines = ["; ".join([f"{based} is in {base_of(system_of(entries.units))}", *lines])]
+    for line in lines:
+        note(None, line)
 
 
 def _within_limits(name: str, text: str, source: str, center: float | None = None) -> Uncertain:
     from ..uncertainty.uncertain import fixed, read
 
-    if any(mark in text for mark in _RANGES):
+    if any(mark in text for mark in RANGES):
         return read(text, f"{source}: {name}", center)
     return fixed(_double(name, text, source))
 
@@ -245,12 +237,12 @@ def add_known_arguments(parser: argparse.ArgumentParser) -> None:
         "file", nargs="?", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"
     )
     add_set_argument(parser, "give or change a value; an empty one makes it unknown")
+    add_units_argument(parser)
 
 
 def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the commands that solve for what is not known and print the solution."""
     add_known_arguments(parser)
-    add_units_argument(parser)
     parser.add_argument(
         "--contact-time",
         type=float,
@@ -282,6 +274,7 @@ def add_scene_argument(parser: argparse.ArgumentParser) -> None:
         "scene", nargs="?", type=InputFile, metavar="FILE.toml", help="a scene file (- is stdin)"
     )
     add_sample_argument(parser)
+    add_units_argument(parser)
 
 
 def one_scene(args: argparse.Namespace) -> Scene:
@@ -291,10 +284,16 @@ def one_scene(args: argparse.Namespace) -> Scene:
         raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
     units = getattr(args, "units", None)
     scene = Scene.from_toml(args.scene, units) if args.scene else sample(args.sample)
-    changes = settings(args.set, units=scene.units)
+    return changed(scene, args.set, getattr(args, "move_contact", None))
+
+
+def changed(scene: Scene, texts: Sequence[str], move: str | None, based: str = "") -> Scene:
+    """A scene as ``--set`` and ``--move-contact`` change it; how its entries were understood is
+    said on stderr, and what of the answer is ``based`` on other units than the scene's."""
+    changes = settings(texts, units=scene.units)
     scene = scene.replaced(changes) if changes else scene
-    note_estimates(scene.estimated, scene)
-    return with_contact_moved(scene, getattr(args, "move_contact", None))
+    note_remarks(scene.entries, based)
+    return with_contact_moved(scene, move)
 
 
 def add_move_argument(parser: argparse.ArgumentParser) -> None:

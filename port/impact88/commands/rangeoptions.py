@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from ..errors import UserError
 from ..files import called
 from ..progress import progress
-from ..scene import file_values, in_base_units, sample, toml_file
+from ..scene import entries_in, sample
 from ..stderr import note
 from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
-from .options import add_names_argument, add_scene_argument, note_estimates, pairs
+from .options import add_names_argument, add_scene_argument, changes_in_base, note_remarks, pairs
 
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
@@ -70,15 +70,14 @@ def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
     UserError."""
     if bool(args.scene) == bool(args.sample):
         raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
+    entries, units, source = None, args.units, f"sample {args.sample}"
     if args.scene:
-        source = called(args.scene)
-        texts, units, estimated = file_values(toml_file(args.scene), source)
-        note_estimates(estimated, texts)
-    else:
-        texts, source = dict(sample(args.sample)), f"sample {args.sample}"
-        units = None
+        entries = entries_in(args.scene, units)
+        note_remarks(entries)
+        units, source = entries.units, called(args.scene)
+    texts = entries.values if entries else dict(sample(args.sample))
     changes = pairs(args.ranges, "--range", "NAME=RANGE, such as MU='.7 .. .9'")
-    changes, own = in_base_units(changes, "--range", units)
+    changes, units = changes_in_base(changes, "--range", units, args.scene)
     problem = "reconstruction" if args.reconstruct else "forward"
     inputs = read_inputs(texts, changes, problem, source)
     correlations = dict(inputs.correlations)
@@ -87,7 +86,7 @@ def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
         if not equals:
             raise UserError(f"--correlation {text}: expected A,B=R, such as UX,VX=0.5")
         correlations |= read_correlations(f"{names} {number.strip()}", "--correlation")
-    return Inputs(inputs.values, correlations, inputs.derived), units or own
+    return Inputs(inputs.values, correlations, inputs.derived), units
 
 
 def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = False) -> Bounds:

@@ -34,9 +34,8 @@ from .options import (
     add_output_argument,
     add_scene_argument,
     add_set_argument,
-    note_estimates,
+    changed,
     settings,
-    with_contact_moved,
 )
 
 MOST_REPLIES = 10_000
@@ -87,17 +86,14 @@ def add_machine_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def chosen_scene(args: argparse.Namespace, changes: dict[str, str]) -> Scene | None:
+def chosen_scene(args: argparse.Namespace) -> Scene | None:
     """The scene the options name, changed; None for the listing's own data with prompts."""
     if args.scene and args.sample:
         raise UserError(f"a scene file and --sample {args.sample} are both given; expected one")
     if args.scene or args.sample:
-        scene = Scene.from_toml(args.scene) if args.scene else sample(args.sample)
-        if scene.units:
-            changes = settings(args.set, units=scene.units)
-        scene = scene.replaced(changes) if changes else scene
-        note_estimates(scene.estimated, scene)
-        return with_contact_moved(scene, args.move_contact)
+        scene = Scene.from_toml(args.scene, args.units) if args.scene else sample(args.sample)
+        return changed(scene, args.set, args.move_contact, "the program's page")
+    changes = settings(args.set, units=args.units)
     given = [name for name in VELOCITIES if name in changes]
     if not given:
         return None
@@ -117,9 +113,8 @@ def main(args: argparse.Namespace) -> int:
             f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
             "or --no-dos"
         )
-    changes = settings(args.set)
-    scene = chosen_scene(args, changes)
-    data = scene if scene is not None else published_data() | changes
+    scene = chosen_scene(args)
+    data: dict[str, str] | Scene = scene or published_data() | settings(args.set, units=args.units)
     replied = scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")
     replied.check_typed()
     shown: list[str] = []

@@ -34,7 +34,8 @@ from __future__ import annotations
 import argparse
 import csv
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import AbstractContextManager, ExitStack, suppress
+from itertools import chain
 from typing import IO, Any
 
 import numpy as np
@@ -44,16 +45,17 @@ from ..closedform.columns import UNUSED_BY_POINTS, refusals
 from ..closedform.solve import solve
 from ..doubles import is_number
 from ..errors import UserError, quoted
-from ..files import replacing
+from ..files import called, replacing
 from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..progress import progress
-from ..scene import VALUE_LIMIT, Scene, toml_file
+from ..scene import VALUE_LIMIT, Entries, Scene, entries_in
 from ..status import Status
 from ..stderr import note
 from ..tables.overlap import ahead, behind, may_wait
 from ..tables.rows import BadCell, Reader, Rows, check_scene_columns, filled, numbers
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
+from ..tables.tableunits import TableUnits
 from .options import (
     FORMATS,
     InputFile,
@@ -62,8 +64,9 @@ from .options import (
     add_names_argument,
     add_set_argument,
     add_sweep_argument,
+    add_units_argument,
     names_given,
-    note_estimates,
+    note_remarks,
     settings,
     sweeps,
 )
@@ -104,6 +107,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_set_argument(parser, "a value for all rows, in place of a column")
     add_sweep_argument(parser)
+    add_units_argument(parser)
     parser.add_argument(
         "--results-only",
         action="store_true",
@@ -123,15 +127,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", choices=FORMATS, help="the format of RESULTS")
 
 
-def _sweep(path: str, texts: Mapping[str, str]) -> AbstractContextManager[Reader]:
-    """The table that a scene file makes, swept or as it is: in base units, which are told."""
-    scene = Scene.from_toml(path)
-    note_estimates(scene.estimated, scene)
-    if scene.units:
-        from ..units import base_of, system_of
-
-        note("solve", f"the table is in {base_of(system_of(scene.units))}")
-    return read_sweep(scene, read_ranges(texts, scene.units))
+def _sweep(
+    path: str, texts: Mapping[str, str], units: str | None
+) -> AbstractContextManager[Reader]:
+    """The table that a scene file makes, swept or as it is, in the file's units."""
+    scene = Scene.from_toml(path, units)
+    note_remarks(scene.entries)
+    return read_sweep(scene, read_ranges(texts, scene.units), scene.units)
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -142,31 +144,38 @@ def main(arguments: argparse.Namespace) -> int:
     source_format = "csv" if swept else format_of(arguments.cases, arguments.form)
     to = arguments.to or (source_format if arguments.output == "-" else None)
     result_format = format_of(arguments.output, to)
-    given = settings(arguments.set, others=("inf",))
     kinds: dict[str, type[_Float64] | type[_Applesoft]]
     kinds = {"float64": _Float64, "applesoft": _Applesoft}
     arithmetic = kinds[arguments.arithmetic](arguments.outputs)
     complaints = _Complaints(arguments.errors)
-    filling = toml_file(arguments.scene) if arguments.scene else {}
-    filling.pop("title", None)
-    check_names(filling, SCENE, "value of a scene", arguments.scene or "")
     with ExitStack() as stack:
         source = stack.enter_context(
-            _sweep(arguments.cases, sweeps(arguments.sweep))
+            _sweep(arguments.cases, sweeps(arguments.sweep), arguments.units)
             if swept
             else open_reader(arguments.cases, source_format, arguments.encoding)
         )
-        given = {n: t for n, t in filling.items() if t and n not in source.names} | given
+        blocks = iter(source)
+        first = next(blocks, None)
+        blocks = chain([] if first is None else [first], blocks)
+        filling = _filling(arguments)
+        known = arguments.units or (filling.units if filling else None)
+        units = TableUnits(source.names, known, first, where=called(arguments.cases))
+        given = settings(arguments.set, others=("inf",), units=units.system.name or None)
+        if filling:
+            given = {n: t for n, t in filling.values.items() if n not in source.names} | given
         optional = ["M", *(UNUSED_BY_POINTS if given.get("M") == "4" else ())]
         check_scene_columns(source.names, list(given), optional)
         if arguments.sweep:
-            source.names = list(sweeps(arguments.sweep))  # the rest is the same in every row
+            wanted = sweeps(arguments.sweep)  # the rest is the same in every row
+            source.names = [name for name in source.names if name in wanted]
+        elif units.strict:
+            source.names = units.headings(source.names)
         writer = stack.enter_context(
             open_writer(
                 arguments.output,
                 result_format,
                 source,
-                arithmetic.columns,
+                units.headings(arithmetic.columns),
                 bool(arguments.sweep) or not arguments.results_only,
             )
         )
@@ -175,22 +184,33 @@ def main(arguments: argparse.Namespace) -> int:
         write = writer.write
         if not may_wait(arguments.output):
             write = stack.enter_context(behind(writer.write))
-        blocks = iter(source)
         if not may_wait(arguments.cases):
             blocks = stack.enter_context(ahead(blocks))
         position = 0
         for rows in blocks:
             for name, text in given.items():
+                rows.columns.pop(name, None)  # and with it the heading of another unit
                 rows.columns[name] = [text] * rows.count
                 rows.others.pop(name, None)
-            results = arithmetic(rows, optional)
-            write(rows, results)
+            results = arithmetic(rows, optional, units.given(given))
+            write(rows, units.shown(results))
             complaints.take(rows.bad)
             now = source.position()
             meter.update(now - position)
             position = now
     complaints.summarise()
     return 1 if complaints.count or arithmetic.errors else 0
+
+
+def _filling(arguments: argparse.Namespace) -> Entries | None:
+    """What fills the columns that the table lacks."""
+    if not arguments.scene:
+        return None
+    entries = entries_in(arguments.scene, arguments.units, single=True)
+    note_remarks(entries)
+    entries.values = {name: text for name, text in entries.values.items() if text}
+    check_names(entries.values, SCENE, "value of a scene", called(arguments.scene))
+    return entries
 
 
 def _chosen(outputs: Sequence[str], known: Sequence[str], arithmetic: str) -> list[str]:
@@ -206,8 +226,8 @@ class _Float64:
     def __init__(self, outputs: Sequence[str]) -> None:
         self.columns = _chosen(outputs, tuple(RESULTS), "float64")
 
-    def __call__(self, rows: Rows, optional: Sequence[str]) -> Results:
-        columns = numbers(_complete(rows, optional))
+    def __call__(self, rows: Rows, optional: Sequence[str], units: TableUnits) -> Results:
+        columns = numbers(_complete(rows, optional), units)
         unread = {bad.row - rows.first for bad in rows.bad}
         for refusal in refusals(columns):
             for index in np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist():
@@ -247,11 +267,11 @@ class _Applesoft:
         self.columns = [*self.names, "ERROR", "LINE"]
         self.errors = 0
 
-    def __call__(self, rows: Rows, optional: Sequence[str]) -> Results:
+    def __call__(self, rows: Rows, optional: Sequence[str], units: TableUnits) -> Results:
         from ..replay import replay
 
         complete = _complete(rows, optional)
-        columns = {name: _texts(column) for name, column in complete.columns.items()}
+        columns = {n: _texts(n, column, units) for n, column in complete.columns.items()}
         unread = {bad.row - rows.first for bad in rows.bad}
         try:
             # nearly always all cells can be read, and looking at each takes as long as solving
@@ -274,10 +294,18 @@ class _Applesoft:
         return results
 
 
-def _texts(column: Any) -> list[Any]:
+def _texts(name: str, column: Any, units: TableUnits) -> list[Any]:
+    """A column as texts that INPUT may read, those with a unit in base units."""
     if isinstance(column, np.ndarray):
-        return [repr(x).removesuffix(".0").upper() for x in column.tolist()]
-    return [text.strip().upper() if isinstance(text, str) else text for text in column]
+        column = [repr(x).removesuffix(".0").upper() for x in column.tolist()]
+    texts = [text.strip().upper() if isinstance(text, str) else text for text in column]
+    if not units.converts(name):
+        return texts
+    for index, text in enumerate(column):
+        if isinstance(text, str) and any(map(str.isdigit, text)):
+            with suppress(UserError):
+                texts[index] = units.cell(name, text)
+    return texts
 
 
 def _complain(rows: Rows, columns: dict[str, list[Any]], unread: set[int]) -> set[int]:

@@ -94,7 +94,7 @@ def _own(args: argparse.Namespace) -> int:
         raise UserError("a collision of one's own is fitted; --fit and the like are the chapter's")
     if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
         raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number from 0 on")
-    known = known_values(args.file, [], (*NAMES, *VELOCITIES, *FINAL_STATE))
+    known, _ = known_values(args.file, [], (*NAMES, *VELOCITIES, *FINAL_STATE))
     absent = [n for n in (*NAMES, *VELOCITIES, *FINAL_STATE) if n not in known]
     if absent:
         raise UserError(missing(absent), args.file)

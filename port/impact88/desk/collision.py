@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 from ..doubles import double, is_number
 from ..errors import UserError
-from ..estimates import wanted
 from ..files import decode
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names
 from ..plaintable import number
@@ -153,13 +152,17 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     from ..figures.sceneview import scene_drawing
     from ..figures.svg import svg
     from ..judging import beside
+    from ..units import system_of
 
     form = read(values, units)
     if not form.whole:
         raise UserError("there is no whole scene to draw")
     scene = Scene(form.texts, source="the form")
     result = beside.solved(scene, [*FINAL_VELOCITIES, "STATUS"])
-    return svg(scene_drawing(scene, result, title=title or "Scene from above"))
+    drawing = scene_drawing(
+        scene, result, title=title or "Scene from above", units=system_of(form.units)
+    )
+    return svg(drawing)
 
 
 def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
@@ -169,6 +172,7 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     """
     from ..uncertainty.bounds import bounds
     from ..uncertainty.boundstable import as_json
+    from ..uncertainty.boundsunits import in_units
     from ..uncertainty.ranges import read_inputs
 
     form = read(values, units)
@@ -176,7 +180,7 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
         raise UserError("there are no ranges to explore")
     inputs = read_inputs(form.entries, {}, source="the form")
     answered = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
-    return stamped("bounds", as_json(answered))
+    return stamped("bounds", as_json(in_units(answered, form.units)))
 
 
 def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
@@ -192,7 +196,7 @@ def read_scene_file(data: bytes, name: str) -> dict[str, Any]:
     and line."""
     texts = small_toml(data, name)
     title, units = texts.pop("title", ""), texts.pop("units", "").lower()
-    if _OWN_AXES.intersection(texts) or wanted(texts):
+    if _OWN_AXES.intersection(texts) or "estimate" in " ".join(texts.values()):
         scene = Scene.from_toml_text(decode(data, name), name)
         units = _WHOSE_BASE.get(scene.units or "", scene.units or "")
         return {"values": dict(scene), "title": title, "units": units}

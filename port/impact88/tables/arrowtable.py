@@ -17,7 +17,17 @@ from ..errors import UserError, quoted
 from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .arrow import ArrowColumn, ArrowTexts, library
-from .rows import Column, Reader, Rows, Writer, one_per_row, refuse_late, scene_names, typed
+from .rows import (
+    Column,
+    Reader,
+    Rows,
+    Writer,
+    heading,
+    one_per_row,
+    refuse_late,
+    scene_names,
+    typed,
+)
 
 BLOCK = 1 << 15
 """Rows of a block."""
@@ -138,8 +148,8 @@ class _ArrowWriter:
         import pyarrow as pa
 
         refuse_late(rows, self._dropped, "a table of typed columns")
-        arrays = {_encodable(name): _array(name, rows, pa) for name in self._kept}
-        arrays |= {name: pa.array(results[name]) for name in self._results}
+        arrays = {_encodable(heading(name)): _array(name, rows, pa) for name in self._kept}
+        arrays |= {heading(name): pa.array(results[name]) for name in self._results}
         table = pa.table(arrays)
         if self._writer is None:
             self._writer = self.open(table.schema)
@@ -152,7 +162,7 @@ class _ArrowWriter:
         if self._writer is None:  # no row at all
             import pyarrow as pa
 
-            names = (*self._kept, *self._results)
+            names = map(heading, (*self._kept, *self._results))
             self._writer = self.open(pa.schema([(name, pa.float64()) for name in names]))
         self._writer.close()
 

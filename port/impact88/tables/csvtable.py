@@ -33,6 +33,7 @@ from .rows import (
     Reader,
     Rows,
     Writer,
+    heading,
     one_per_row,
     refuse_late,
     scene_names,
@@ -175,10 +176,14 @@ def _plain_header(file: TextFile) -> Any:
 
 def _with_points(column: Column) -> Column:
     """Numbers with decimal commas as numbers with points; a comma cannot mean anything else where
-    it does not separate fields."""
+    it does not separate fields. A cell with a unit stays as it is."""
     if isinstance(column, arrow.ArrowTexts):
-        return column.replaced(",", ".")
-    return [text.replace(",", ".") for text in column]
+        points = column.replaced(",", ".")
+        if points.doubles() is not None:
+            return points
+    return [
+        text if text.strip("0123456789+-.,eE \t") else text.replace(",", ".") for text in column
+    ]
 
 
 @contextmanager
@@ -203,7 +208,7 @@ class _CsvWriter:
         self._file = file
         self._delimiter = delimiter
         self._ends = re.compile(f'[{re.escape(delimiter)}"\\r\\n]')
-        self._write([[name] for name in (*kept, *results)])
+        self._write([[heading(name)] for name in (*kept, *results)])
 
     def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         refuse_late(rows, self._dropped, "a CSV table")

@@ -27,6 +27,7 @@ from .rows import (
     Reader,
     Rows,
     Writer,
+    heading,
     one_per_row,
     refuse_late,
     scene_names,
@@ -158,7 +159,7 @@ class _ExcelWriter:
         self._results = results
         self._dropped = dropped
         self._rows = 1
-        sheet.append([_cell(name) for name in (*kept, *results)])
+        sheet.append([_cell(heading(name)) for name in (*kept, *results)])
 
     def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         refuse_late(rows, self._dropped, "a workbook")

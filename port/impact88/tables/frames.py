@@ -17,11 +17,12 @@ from ..closedform.columns import UNUSED_BY_POINTS
 from ..closedform.solve import solve
 from ..errors import UserError
 from ..names import DEFAULT_M, SCENE
-from .rows import check_scene_columns
+from .rows import Rows, check_scene_columns, heading, scene_names
+from .tableunits import TableUnits
 
 Frame = TypeVar("Frame")
 Array = NDArray[Any]
-Solver = Callable[[Mapping[str, Array]], dict[str, Array]]
+Solver = Callable[[Sequence[str], Callable[[str], Any]], dict[str, Array]]
 
 
 def solve_frame(
@@ -29,6 +30,7 @@ def solve_frame(
     outputs: Sequence[str] | str | None = None,
     *,
     scene: Mapping[str, Any] | None = None,
+    units: str | None = None,
     threads: int | None = None,
 ) -> Frame:
     """Solve the impact of every row, and return the frame with the results as further columns.
@@ -36,11 +38,13 @@ def solve_frame(
     Args:
         frame: a pandas or polars DataFrame, a pyarrow Table, an xarray Dataset, a structured
             array, a list of dicts or a dict of columns, with columns named as the scene's
-            (``impact88.names.SCENE``). Further columns stay as they are; a result takes the place
-            of a column with its name. A pandas index is kept.
+            (``impact88.names.SCENE``), with their units where they have any (``UX [mph]``): the
+            results are then in the same system and say so (``DVA [mph]``). Further columns stay as
+            they are; a result takes the place of a column with its name. A pandas index is kept.
         outputs: the result names wanted, all of them by default.
         scene: values for the columns the frame lacks, such as ``impact88.sample(1)``; M is 6
             where it is given nowhere.
+        units: the system (us, chapter, metric, si) of columns that name no unit.
         threads: as for `impact88.solve`.
 
     Returns:
@@ -53,58 +57,78 @@ def solve_frame(
     needed and not installed.
     """
 
-    def solver(columns: Mapping[str, Array]) -> dict[str, Array]:
-        given = dict(columns)
+    def solver(given: Mapping[str, Any], table: TableUnits) -> dict[str, Array]:
+        columns = {n: _numbers(n, values, table) for n, values in given.items()}
         for name, value in (scene or {}).items():
             if name in SCENE:
-                given.setdefault(name, _numbers([value])[0])
-        all_points = "M" in given and bool(np.all(np.asarray(given["M"]) == 4))
+                columns.setdefault(name, _numbers(name, [value], table.given([name]))[0])
+        all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
         check_scene_columns(
-            list(given), (), ("M", *(UNUSED_BY_POINTS if all_points else ())), "scene="
+            list(columns), (), ("M", *(UNUSED_BY_POINTS if all_points else ())), "scene="
         )
-        return solve(given, outputs, threads=threads)
+        results = table.shown(solve(columns, outputs, threads=threads))
+        return {heading(name): results[name] for name in table.headings(list(results))}
+
+    def solved(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
+        """The results of a frame's columns, by heading."""
+        found = [name for name in scene_names(names) if name in SCENE]
+        columns = {name: column(heading(name)) for name in found}
+        texts = {n: c for n, c in columns.items() if _dtype(c).kind not in "fiu"}
+        first = Rows(1, 0, {n: list(np.ravel(np.asarray(c))) for n, c in texts.items()}, {})
+        return solver(columns, TableUnits(found, units or getattr(scene, "units", None), first))
 
     kind = type(frame)
     result: Any
     if isinstance(frame, np.ndarray):
-        result = _structured(frame, solver)
+        result = _structured(frame, solved)
     elif isinstance(frame, Mapping) and kind.__module__.partition(".")[0] != "xarray":
-        result = {**frame, **solver({n: _numbers(frame[n]) for n in SCENE if n in frame})}
+        result = {**frame, **solved(list(frame), lambda name: frame[name])}
     elif isinstance(frame, list | tuple):
-        result = _dicts(frame, solver)
+        result = _dicts(frame, solved)
     elif hasattr(frame, "data_vars"):
-        result = _dataset(frame, solver)
+        result = _dataset(frame, solved)
     else:
-        result = _narwhals(frame, solver)
+        result = _narwhals(frame, solved)
     return result
 
 
-def _numbers(values: Any) -> Array:
-    """Cells as doubles, NaN for what is missing or no number."""
+def _dtype(values: Any) -> np.dtype[Any]:
+    return values.dtype if isinstance(values, np.ndarray) else np.asarray(values).dtype
+
+
+def _numbers(name: str, values: Any, units: TableUnits) -> Array:
+    """Cells as doubles in base units, NaN for what is missing or no number."""
+    factor = units.factor(name)
     if isinstance(values, np.ma.MaskedArray):
-        return np.ma.filled(values.astype(np.float64), np.nan)
+        filled: Array = np.ma.filled(values.astype(np.float64), np.nan)
+        return filled * factor
     array = np.asarray(values)
     if array.dtype.kind in "fiu":
-        return array
+        return array if factor == 1 else array * factor
     cells = array.reshape(-1).tolist()
-    return np.array([_number(cell) for cell in cells], np.float64).reshape(array.shape)
+    numbers = [_number(name, cell, units, factor) for cell in cells]
+    return np.array(numbers, np.float64).reshape(array.shape)
 
 
-def _number(cell: Any) -> float:
+def _number(name: str, cell: Any, units: TableUnits, factor: float) -> float:
     if isinstance(cell, str):
         try:
-            return doubles.double(cell)
+            return doubles.double(cell) * factor
+        except ValueError:
+            pass
+        try:
+            return doubles.double(units.cell(name, cell))
         except ValueError:
             return float("inf") if cell.strip().lower() == "inf" else float("nan")
     if cell is None or isinstance(cell, bool):
         return float("nan")
     try:
-        return float(cell)
+        return float(cell) * factor
     except (TypeError, ValueError):
         return float("nan")
 
 
-def _structured(frame: Array, solver: Solver) -> Array:
+def _structured(frame: Array, solved: Solver) -> Array:
     names = frame.dtype.names
     if names is None:
         raise UserError(
@@ -112,33 +136,33 @@ def _structured(frame: Array, solver: Solver) -> Array:
             "impact88.solve with an array for each name"
         )
     columns = {n: frame[n] for n in names}
-    whole = columns | solver({n: _numbers(columns[n]) for n in SCENE if n in columns})
+    whole = columns | solved(names, lambda name: columns[name])
     result = np.empty(frame.shape, [(name, column.dtype) for name, column in whole.items()])
     for name, column in whole.items():
         result[name] = column
     return result
 
 
-def _dicts(rows: Sequence[Any], solver: Solver) -> list[dict[str, Any]]:
+def _dicts(rows: Sequence[Any], solved: Solver) -> list[dict[str, Any]]:
     if not all(isinstance(row, Mapping) for row in rows):
         raise UserError("expected a list of dicts, one for each scene")
-    names = [name for name in SCENE if any(name in row for row in rows)]
+    names = list(dict.fromkeys(name for row in rows for name in row))
     default = {"M": float(DEFAULT_M)}
-    columns = {n: _numbers([row.get(n, default.get(n)) for row in rows]) for n in names}
     if not rows:
         return []
-    results = {name: column.tolist() for name, column in solver(columns).items()}
+    found = solved(names, lambda name: [row.get(name, default.get(name)) for row in rows])
+    results = {name: column.tolist() for name, column in found.items()}
     return [
         {**row, **{name: column[at] for name, column in results.items()}}
         for at, row in enumerate(rows)
     ]
 
 
-def _dataset(frame: Any, solver: Solver) -> Any:
+def _dataset(frame: Any, solved: Solver) -> Any:
     """An xarray Dataset: dimensions of the same name belong together."""
     import xarray
 
-    names = [name for name in SCENE if name in frame]
+    names = [heading(name) for name in scene_names(list(frame)) if name in SCENE]
     lazy = [name for name in names if frame[name].chunks is not None]
     if lazy:
         raise UserError(
@@ -146,12 +170,13 @@ def _dataset(frame: Any, solver: Solver) -> Any:
             "xarray.map_blocks(impact88.solve_frame, frame)"
         )
     spread = xarray.broadcast(*(frame[name] for name in names))
-    columns = {n: _numbers(column.values) for n, column in zip(names, spread, strict=True)}
+    columns = {n: column.values for n, column in zip(names, spread, strict=True)}
     dims = spread[0].dims if spread else ()
-    return frame.assign({name: (dims, array) for name, array in solver(columns).items()})
+    results = solved(names, columns.__getitem__)
+    return frame.assign({name: (dims, array) for name, array in results.items()})
 
 
-def _narwhals(frame: Any, solver: Solver) -> Any:
+def _narwhals(frame: Any, solved: Solver) -> Any:
     try:
         import narwhals.stable.v1 as nw
     except ImportError:
@@ -166,8 +191,7 @@ def _narwhals(frame: Any, solver: Solver) -> Any:
             "computed already; expected a DataFrame of pandas or polars, a pyarrow Table, an "
             "xarray Dataset, a structured array or a list of dicts"
         ) from None
-    columns = {name: _series(name, table[name], nw) for name in SCENE if name in table.columns}
-    results = solver(columns)
+    results = solved(table.columns, lambda name: _series(name, table[name]))
     backend = nw.get_native_namespace(table)
     count = len(table)
     return table.with_columns(
@@ -178,10 +202,10 @@ def _narwhals(frame: Any, solver: Solver) -> Any:
     ).to_native()
 
 
-def _series(name: str, series: Any, nw: Any) -> Array:
+def _series(name: str, series: Any) -> Any:
     if series.dtype.is_numeric() and not series.is_null().any():
         return np.asarray(series.to_numpy())
     cells = series.to_list()
     if name == "M":
         cells = [DEFAULT_M if cell is None or cell != cell else cell for cell in cells]
-    return _numbers(np.array(cells, dtype=object))
+    return np.array(cells, dtype=object)

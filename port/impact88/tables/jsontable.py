@@ -31,8 +31,10 @@ from .rows import (
     Reader,
     Rows,
     Writer,
+    heading,
     is_infinite,
     one_per_row,
+    scene_names,
 )
 
 
@@ -44,10 +46,11 @@ class _JsonReader:
         self._lines = lines
         self.names: list[str] = []
         self._known: set[str] = set()
+        self._matched: dict[str, str] = {}  # key -> the column's name
         self._first = self._block(1)
         if self._first is not None:
             self.names = list(self._first.late)
-            self._known = set(self.names)
+            self._known = set(self._matched)
             self._first.late = {}
 
     def position(self) -> int:
@@ -92,13 +95,17 @@ class _JsonReader:
             return None
         columns: dict[str, Column] = {}
         others: dict[str, Column] = {}
-        for name in names:
-            cells = [value.get(name, ABSENT) for value in objects]
+        new = [key for key in names if key not in self._matched]
+        found = scene_names([*self._matched.values(), *new])[len(self._matched) :]
+        self._matched |= zip(new, found, strict=True)
+        for key in names:
+            name = self._matched[key]
+            cells = [value.get(key, ABSENT) for value in objects]
             if name in SCENE:
                 columns[name] = [str(x) if type(x) is jsontext.Numeral else x for x in cells]
             else:
                 others[name] = cells
-        late = {name: line for name, line in names.items() if name not in self._known}
+        late = {self._matched[n]: line for n, line in names.items() if n not in self._known}
         return Rows(first, len(objects), columns, others, lines, bad, late)
 
 
@@ -146,7 +153,8 @@ class _JsonWriter:
             for name in (*self._kept, *(n for n in rows.late if n not in self._dropped))
             if name in rows.columns or name in rows.others
         ]
-        keys = [json.dumps(name, ensure_ascii=False) for name in (*names, *self._results)]
+        headings = map(heading, (*names, *self._results))
+        keys = [json.dumps(text, ensure_ascii=False) for text in headings]
         columns = [_cells(name, one_per_row(rows, name)) for name in names]
         columns += [_cells("", results[name]) for name in self._results]
         self._file.writelines(

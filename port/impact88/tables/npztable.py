@@ -17,7 +17,7 @@ from ..errors import UserError, quoted
 from ..files import replacing
 from ..names import SCENE
 from .npzfile import read_arrays, write_arrays
-from .rows import Column, Reader, Rows, Writer, refuse_late, typed
+from .rows import Column, Reader, Rows, Writer, heading, refuse_late, scene_names, typed
 
 _NUMBERS = "fiu"
 _TEXT = "U"
@@ -29,7 +29,8 @@ class _NpzReader:
     delimiter = ","
 
     def __init__(self, arrays: dict[str, NDArray[Any]], where: str) -> None:
-        self.names = list(arrays)
+        self.names = scene_names(list(arrays))
+        arrays = dict(zip(self.names, arrays.values(), strict=True))
         scene = {name: array for name, array in arrays.items() if name in SCENE}
         for name, array in scene.items():
             if array.dtype.kind not in _NUMBERS + _TEXT:
@@ -69,8 +70,11 @@ def read_npz(path: str) -> Iterator[Reader]:
 
 
 class _NpzWriter:
-    def __init__(self, kept: Sequence[str], dropped: Collection[str]) -> None:
+    def __init__(
+        self, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
+    ) -> None:
         self._kept = kept
+        self._results = results
         self._dropped = dropped
         self._parts: list[dict[str, NDArray[Any]]] = []
 
@@ -80,13 +84,15 @@ class _NpzWriter:
         for name in self._kept:
             column = rows.kept(name)
             part[name] = column if isinstance(column, np.ndarray) else _array(name, column)
-        self._parts.append({**part, **results})
+        self._parts.append({**part, **{name: results[name] for name in self._results}})
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         if len(self._parts) == 1:
-            return self._parts[0]
+            return {heading(name): array for name, array in self._parts[0].items()}
         names = self._parts[0] if self._parts else {}
-        return {name: np.concatenate([part[name] for part in self._parts]) for name in names}
+        return {
+            heading(name): np.concatenate([part[name] for part in self._parts]) for name in names
+        }
 
 
 def _array(name: str, column: Column) -> NDArray[Any]:
@@ -109,7 +115,7 @@ def write_npz(
     """Write an .npz table, see `tables.table.open_writer`."""
     if path == "-" and sys.stdout.isatty():
         raise UserError("an .npz table is not for a terminal; expected -o FILE.npz")
-    writer = _NpzWriter(kept, dropped)
+    writer = _NpzWriter(kept, results, dropped)
     yield writer
     if path == "-":
         write_arrays(sys.stdout.buffer, writer.arrays())

@@ -9,15 +9,18 @@ import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import doubles
 from ..errors import UserError, quoted
-from ..names import SCENE
+from ..names import RESULTS, SCENE
 from . import arrow, jsontext
+
+if TYPE_CHECKING:
+    from .tableunits import TableUnits
 
 Column = Sequence[Any] | NDArray[Any]
 
@@ -102,18 +105,39 @@ class Writer(Protocol):
     def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None: ...
 
 
-_UNIT = re.compile(r"\s*(\[[^]]*\]|\([^)]*\))\s*")
+class Heading(str):
+    """A column's name, with the heading that is ``written`` over it and the ``unit`` that names."""
+
+    written: str
+    unit: str
+
+    def __new__(cls, name: str, written: str, unit: str = "") -> Heading:
+        made = super().__new__(cls, name)
+        made.written, made.unit = written, unit
+        return made
+
+
+def heading(name: str) -> str:
+    """What is written over a column."""
+    return getattr(name, "written", name)
+
+
+_UNIT = re.compile(r"(.*?)\s*(?:\[([^]]*)\]|\(([^)]*)\))\s*")
 
 
 def scene_names(names: Sequence[str]) -> list[str]:
     """The names of a table's columns: those in small letters, or with a unit behind them
-    (``Mu [1]``), are the scene's names where the table has no such column otherwise."""
+    (``Mu [1]``), are the scene's or a result's names where the table has no such column otherwise.
+    """
     known = set(names)
-    matched = []
+    matched: list[str] = []
     for name in names:
-        bare = _UNIT.sub("", name).strip().upper()
-        taken = name in SCENE or bare not in SCENE or bare in known
-        matched.append(name if taken else bare)
+        match = _UNIT.fullmatch(name)
+        bare = (match[1] if match else name).strip().upper()
+        unit = (match[2] or match[3] or "").strip() if match else ""
+        taken = bare in known or not (bare in SCENE or (unit and bare in RESULTS))
+        matched.append(name if taken else Heading(bare, name, unit))
+        known.add(matched[-1])
     return matched
 
 
@@ -173,32 +197,55 @@ def shortest(values: NDArray[Any]) -> list[str]:
     return list(map(repr if values.dtype.kind == "f" else str, values.tolist()))
 
 
-def numbers(rows: Rows) -> dict[str, NDArray[np.float64]]:
-    """The scene columns of ``rows`` as doubles. A cell that is no number is NaN, and a complaint is
-    added to ``rows.bad`` (unless its row has one already)."""
-    return {name: _numbers(rows, name, column) for name, column in rows.columns.items()}
+def numbers(rows: Rows, units: TableUnits | None = None) -> dict[str, NDArray[np.float64]]:
+    """The scene columns of ``rows`` as doubles, in base units where ``units`` says what they are
+    in. A cell that is no number is NaN, and a complaint is added to ``rows.bad`` (unless its row
+    has one already)."""
+    return {name: _numbers(rows, name, column, units) for name, column in rows.columns.items()}
 
 
-def _numbers(rows: Rows, name: str, column: Column) -> NDArray[np.float64]:
+def _numbers(
+    rows: Rows, name: str, column: Column, units: TableUnits | None
+) -> NDArray[np.float64]:
+    factor = units.factor(name) if units else 1.0
+    bare_refused = units is not None and units.refuses_bare(name)
+    values = None if bare_refused else _plain_numbers(column)
+    if values is not None:
+        return values if factor == 1 else values * factor
+    values, cells = np.full(rows.count, np.nan), list(column)
+    already = {bad.row for bad in rows.bad}
+    for index, text in enumerate(cells):
+        if rows.first + index in already:
+            continue
+        reason = _why_no_number(text)
+        if reason is None:
+            values[index] = (_double(text) if isinstance(text, str) else text) * factor
+            if bare_refused and values[index]:
+                reason = f"{text} has no unit, and others have"
+        elif units and isinstance(text, str) and any(map(str.isdigit, text)):
+            try:
+                values[index] = doubles.double(units.cell(name, text))
+                cells[index] = f"{values[index] / factor:.15g}"
+                rows.columns[name] = cells
+                continue
+            except (UserError, ValueError) as error:
+                reason = str(error).removeprefix(": ")
+        if reason is not None:
+            values[index] = np.nan
+            rows.bad.append(rows.cell(index, name, reason))
+    return values
+
+
+def _plain_numbers(column: Column) -> NDArray[np.float64] | None:
+    """The numbers of a column that holds nothing else."""
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiub":
         return column.astype(np.float64, copy=False)
     if isinstance(column, arrow.ArrowTexts) and (values := column.doubles()) is not None:
         return values
     try:
         return np.array(doubles.doubles(list(column)))
-    except (TypeError, ValueError):  # some cell is no number: look at each
-        pass
-    values = np.full(rows.count, np.nan)
-    already = {bad.row for bad in rows.bad}
-    for index, text in enumerate(column):
-        if rows.first + index in already:
-            continue
-        reason = _why_no_number(text)
-        if reason is None:
-            values[index] = _double(text)
-        else:
-            rows.bad.append(rows.cell(index, name, reason))
-    return values
+    except (TypeError, ValueError):  # some cell is no number
+        return None
 
 
 def _why_no_number(text: object) -> str | None:

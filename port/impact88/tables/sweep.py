@@ -12,7 +12,7 @@ from ..doubles import double, is_number
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
 from ..scene import in_base_units
-from .rows import BLOCK_ROWS, Column, Reader, Rows
+from .rows import BLOCK_ROWS, Column, Heading, Reader, Rows
 
 MOST = 10_000_000
 """Scenes of one sweep."""
@@ -40,8 +40,11 @@ def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str,
     ranges = {}
     for name, text in texts.items():
         parts = [part.strip() for part in text.split(":")]
-        ends = [in_base_units({name: part}, "--sweep", units)[0][name] for part in parts[:2]]
-        if len(parts) != 3 or not all(map(is_number, ends)) or not parts[2].isdigit():
+        if len(parts) != 3 or not parts[2].isdigit():
+            raise UserError(f"--sweep {name}: {quoted(text)} is no LOW:HIGH:COUNT, such as 0:1:51")
+        limits = in_base_units({name: " .. ".join(parts[:2])}, "--sweep", units)[0][name]
+        ends = limits.split(" .. ")
+        if len(ends) != 2 or not all(map(is_number, ends)):
             raise UserError(f"--sweep {name}: {quoted(text)} is no LOW:HIGH:COUNT, such as 0:1:51")
         low, high, count = double(ends[0]), double(ends[1]), int(parts[2])
         if not (isfinite(low) and isfinite(high)) or not 1 <= count <= MOST:
@@ -79,7 +82,21 @@ def _texts(values: Sequence[float]) -> list[str]:
 
 
 @contextmanager
-def read_sweep(scene: Mapping[str, str], ranges: Mapping[str, Range]) -> Iterator[Reader]:
+def read_sweep(
+    scene: Mapping[str, str], ranges: Mapping[str, Range], units: str | None = None
+) -> Iterator[Reader]:
     """A reader of the scene's texts with every combination of the ranges' values, the last range
-    running fastest."""
+    running fastest; in the system ``units``, the values that have a unit headed with it."""
+    if units:
+        from ..amounts import shown_text
+        from ..units import SYSTEMS
+
+        system = SYSTEMS[units]
+        headed = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
+        scene = {headed[n]: shown_text(n, text, system) for n, text in scene.items()}
+        factors = {n: system.factor(n) for n in ranges}
+        ranges = {
+            headed[n]: Range(r.low * factors[n], r.high * factors[n], r.steps)
+            for n, r in ranges.items()
+        }
     yield _Sweep(scene, ranges)

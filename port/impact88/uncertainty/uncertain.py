@@ -20,33 +20,19 @@ of the underlying normal variates, so between two normal inputs it is the linear
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from statistics import NormalDist
 from typing import TYPE_CHECKING
 
+from ..amounts import ACCEPTED, parse
 from ..doubles import double, is_number
 from ..errors import UserError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
-_N = rf"({_NUMBER})"
-_FORMS = {
-    "range": re.compile(rf"{_N} ?\.\. ?{_N}"),
-    "around": re.compile(rf"(?:{_N} ?)?(?:\+-|±) ?{_N} ?(%?)"),
-    "uniform": re.compile(rf"uniform {_N} {_N}"),
-    "triangular": re.compile(rf"triangular {_N} {_N} {_N}"),
-    "normal": re.compile(rf"normal {_N} {_N}(?: within {_N} ?\.\. ?{_N})?"),
-}
-EXPECTED = (
-    "expected a number, 'A .. B', 'N +- D', 'N +- P%', 'uniform A B', 'triangular A M B' or "
-    "'normal MEAN SD [within A .. B]'"
-)
 
 TABLE_REACH = 8.3
 """Normal variates beyond this many standard deviations occur once in 1e16."""
@@ -162,45 +148,42 @@ def read(text: str, name: str, center: float | None = None) -> Uncertain:
     inside. Raises UserError naming ``name`` when the text is none of the forms, its limits are in
     the wrong order, or a number overflows.
     """
-    if is_number(text):
-        return fixed(_finite([text], text, name)[0])
-    words = " ".join(text.split())
-    matches = ((form, pattern.fullmatch(words)) for form, pattern in _FORMS.items())
-    form, match = next((pair for pair in matches if pair[1]), ("", None))
-    if match is None:
-        raise UserError(f"{text!r} is no value or range; {EXPECTED}", name)
-    groups = [group for group in match.groups() if group and group != "%"]
-    numbers = _finite(groups, text, name)
-    value = _of_form(form, match, numbers, center, text, name)
+    try:
+        if is_number(text):
+            text = text.replace(" ", "")  # INPUT reads "1 0" as 10
+        kind, amounts, share = parse(text)
+        numbers = [double(a.sign + a.parts[0][0]) for a in amounts if a]
+    except ValueError:
+        raise UserError(f"{text!r} is not an amount; {ACCEPTED}", name) from None
+    if any(a and (a.units or len(a.parts) > 1) for a in amounts):
+        raise UserError(f"{text!r} has a unit, and is not in base units", name)
+    if not all(map(math.isfinite, numbers)):
+        raise UserError(f"{text!r} has a number too large", name)
+    if kind == "fixed":
+        return fixed(numbers[0])
+    value = _of_kind(kind, numbers, center, share, text, name)
     return value if center is None else value.around(center)
 
 
-def _finite(groups: Sequence[str], text: str, name: str) -> list[float]:
-    numbers = [double(group) for group in groups]
-    if not all(map(math.isfinite, numbers)):
-        raise UserError(f"{text!r} has a number too large", name)
-    return numbers
-
-
-def _of_form(
-    form: str,
-    match: re.Match[str],
+def _of_kind(
+    kind: str,
     numbers: Sequence[float],
     center: float | None,
+    share: bool,
     text: str,
     name: str,
 ) -> Uncertain:
-    if form == "around":
-        middle = numbers[0] if match[1] else center
+    if kind == "around":
+        middle = numbers[0] if len(numbers) == 2 else center
         if middle is None:
             raise UserError(f"{text!r} has no middle: the scene gives {name} no single value", name)
-        half = numbers[-1] * (abs(middle) / 100 if match[3] else 1)
+        half = numbers[-1] * (abs(middle) / 100 if share else 1)
         if half < 0:
             raise UserError(f"{text!r} has a negative half width", name)
         return _range(middle - half, middle, middle + half, "uniform", text, name)
-    if form == "triangular":
+    if kind == "triangular":
         return _range(numbers[0], numbers[1], numbers[2], "triangular", text, name)
-    if form == "normal":
+    if kind == "normal":
         return _normal(numbers, text, name)
     low, high = numbers
     return _range(low, low + (high - low) / 2, high, "uniform", text, name)

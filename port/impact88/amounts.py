@@ -1,0 +1,385 @@
+"""Amounts as people write them: the one grammar of numbers, units, ranges and tolerances.
+
+    -25 mph   3,091 lb   5 1/2 ft   6 ft 6 in   6'6"   8°30'   2,000 lb ft2   a number with a unit
+    -31..-29 mph      30 mph .. 35 mph         between two values
+    30 +- 2 mph       143.5 slug +- 5%         a middle and a half width (±, +/-)
+    +- 2 mph          +- 5%                    the same, around the value known otherwise
+    uniform A B    triangular A M B    normal MEAN SD [within A .. B]
+    estimate          estimate +- 20 %         a yaw inertia (`impact88.estimates`)
+
+A unit that one number has and others lack belongs to all of them. Numbers that stand side by side
+without a unit between them, or with a sign, are refused, and so is a comma that may be a decimal
+one. A bare number without any system of units stays the text it is, digit for digit.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import pairwise
+from math import inf
+from typing import NamedTuple
+
+from .doubles import double, is_number
+from .errors import UserError, quoted
+from .names import quantity
+from .units import (
+    ANGLE,
+    LENGTH,
+    MASS,
+    NUMBER,
+    PERCENT,
+    RULES,
+    SPIN,
+    UNIT,
+    System,
+    size_of,
+    system_named,
+    system_using,
+)
+
+ACCEPTED = (
+    "expected a number, a number with its unit (-25 mph, 3,091 lb, 5 1/2 ft, 6 ft 6 in, 8 deg), "
+    "'A .. B', 'N +- D', 'N +- P%', 'uniform A B', 'triangular A M B' or "
+    "'normal MEAN SD [within A .. B]'"
+)
+WORDS = ("title", "case", "correlations", "M")
+"""Entries of a file that are no amounts."""
+ENTRY = "units"
+"""The entry of a file that names its system."""
+SHARED = ("MU", "MUP")
+"""Ratios whose percentage is a share of something else; it is kept for those who know of what."""
+
+_MEANT = str.maketrans(
+    {"−": "-", "′": "'", "’": "'", "″": '"', "”": '"', "⋅": "·", "×": "*", "•": "·", "º": "°"}
+    | {"\u00a0": " ", "\u202f": " ", "\u2009": " ", "½": " 1/2", "¼": " 1/4", "¾": " 3/4"}
+)
+_DECIMAL = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBER = rf"\d{{1,3}}(?:,\d{{3}})+(?:\.\d*)?(?![\d,])|(?:\d+ )?\d+ ?/ ?\d+|{_DECIMAL}"
+_AFTER = r"[a-zA-Z°%²³^]"
+_PART = re.compile(rf"({_NUMBER})(?![\d,/]) ?(?:({UNIT})(?!{_AFTER})|(?!{_AFTER})) ?")
+_SIGN = re.compile(r"([-+]?) ?")
+_FORMS = {
+    "uniform": (re.compile(r"uniform (.+)"), (2,)),
+    "triangular": (re.compile(r"triangular (.+)"), (3,)),
+    "normal": (re.compile(r"normal (.+?)(?: within (.+?) ?\.\. ?(.+))?"), (2, 1, 1)),
+    "around": (re.compile(r"(.*?) ?(?:\+-|±|\+/-) ?(.+)"), (1, 1)),
+    "range": (re.compile(r"(.+?) ?\.\. ?(.+)"), (1, 1)),
+}
+"""Notations of a value known within limits: the pattern, and how many amounts each part holds."""
+_PHRASES: dict[str, tuple[re.Pattern[str], tuple[str, ...]]] = {
+    "estimate": (re.compile(r"estimate(?: (.+))?"), ("",)),
+    "skid": (re.compile(r"skid (.+) at (.+)"), (LENGTH, NUMBER)),
+}
+"""Phrases that hold values of their own: the pattern, and what each value measures ("": what the
+entry does). Whoever reads the entry finds the phrase again, its values in base units."""
+_BARE = frozenset("0123456789+-.eE ")
+
+
+class Amount(NamedTuple):
+    """One amount: its ``sign``, its numbers as written, each with its unit ("" for none)."""
+
+    sign: str
+    parts: tuple[tuple[str, str], ...]
+
+    @property
+    def units(self) -> list[str]:
+        """The units it has."""
+        return [unit for _, unit in self.parts if unit]
+
+
+class Notation(NamedTuple):
+    """A text taken apart: its ``kind`` ("fixed" or one of the notations above), its ``amounts`` in
+    order (the middle of ``around`` may be None), and whether the last is a share in percent."""
+
+    kind: str
+    amounts: tuple[Amount | None, ...]
+    share: bool = False
+
+
+def parse(text: str) -> Notation:
+    """A value or range taken apart. Raises ValueError for what is neither."""
+    words = " ".join(text.translate(_MEANT).split())
+    if "..." in words:
+        raise ValueError(text)
+    for kind, (pattern, counts) in _FORMS.items():
+        if not (match := pattern.fullmatch(words)):
+            continue
+        if kind == "around":
+            share = bool(re.fullmatch(rf"{_DECIMAL} ?%", match[2]))
+            middle = _amount(match[1]) if match[1] else None
+            half = match[2].rstrip("% ") if share else match[2]
+            return Notation(kind, (middle, _amount(half)), share)
+        amounts: list[Amount] = []
+        for part, count in zip(match.groups(), counts, strict=True):
+            if part is not None:
+                amounts += _split(part, count)
+        return Notation(kind, tuple(amounts))
+    if is_number(words) and not re.search(r"\d \d", words):
+        return Notation("fixed", (Amount("", ((words, ""),)),))
+    return Notation("fixed", (_amount(words),))
+
+
+def _amount(text: str) -> Amount:
+    """One amount. Raises ValueError."""
+    sign = _SIGN.match(text)
+    assert sign is not None
+    at = sign.end()
+    parts: list[tuple[str, str]] = []
+    while at < len(text):
+        part = _PART.match(text, at)
+        if not part or (parts and not parts[-1][1]):
+            raise ValueError(text)
+        parts.append((part[1], part[2] or ""))
+        at = part.end()
+    if not parts or (len(parts) > 1 and not _descend([unit for _, unit in parts])):
+        raise ValueError(text)
+    return Amount(sign[1], tuple(parts))
+
+
+def _descend(units: list[str]) -> bool:
+    """Whether units are such as may follow one another: feet and inches, degrees and minutes."""
+    for rule in (LENGTH, ANGLE, MASS):
+        sizes = [size_of(unit, rule) for unit in units]
+        if all(sizes) and all(a[0] > b[0] for a, b in pairwise(filter(None, sizes))):
+            return len({system for _, system in filter(None, sizes)} - {""}) < 2
+    return False
+
+
+def _split(text: str, count: int) -> list[Amount]:
+    """So many amounts that stand side by side. Raises ValueError unless there is one way."""
+    if count == 1:
+        return [_amount(text)]
+    found = []
+    for at in [match.start() for match in re.finditer(" ", text)]:
+        try:
+            found.append([_amount(text[:at]), *_split(text[at + 1 :], count - 1)])
+        except ValueError:
+            continue
+    if len(found) != 1:
+        raise ValueError(text)
+    return found[0]
+
+
+class _Value:
+    """The text of one entry, and what it measures. Raises UserError for what is no amount."""
+
+    def __init__(self, name: str, text: str, rule: str, source: str) -> None:
+        self.name, self.text, self.rule, self.source = name, text, rule, source
+        try:
+            self.notation = parse(text)
+        except ValueError:
+            raise UserError(
+                f"{name} = {quoted(text)} is not an amount; {ACCEPTED}", source
+            ) from None
+        for unit in self.units:
+            if size_of(unit, rule) is None:
+                measures = {NUMBER: "a ratio"}.get(rule, rule.replace("·", " "))
+                raise UserError(f"{name} = {text}: {unit} is not a unit of {measures}", source)
+        if self.notation.share and (rule == PERCENT or "%" in self.units):
+            raise UserError(f"{name} = {text}: percent of a percentage; expected '37 +- 2'", source)
+
+    @property
+    def units(self) -> list[str]:
+        """The units it has."""
+        return [unit for amount in self.notation.amounts if amount for unit in amount.units]
+
+    @property
+    def used(self) -> list[tuple[str, str]]:
+        """Its units, each with what it measures."""
+        return [(unit, self.rule) for unit in self.units]
+
+    def based(self, system: System, strict: bool) -> str:
+        """The text in base units; ``strict``: bare numbers that measure something are refused."""
+        units = set(self.units)
+        common = units.pop() if len(units) == 1 else None
+        numbers = []
+        for at, amount in enumerate(self.notation.amounts):
+            if amount is None or (at == 1 and self.notation.share):
+                numbers.append(amount.parts[0][0] if amount else "")
+                continue
+            bare = not amount.units and common is None
+            if bare and strict and self.rule not in _UNITLESS and _fraction(amount.parts[0][0]):
+                raise UserError(
+                    f"{self.name} = {self.text} has no unit, and others have", self.source
+                )
+            numbers.append(self._number(amount, common or system.usual.get(self.rule, ""), system))
+        return _written(self.notation, numbers)
+
+    def _number(self, amount: Amount, usual: str, system: System) -> str:
+        """One amount as a number of base units: the digits as written where no factor is needed."""
+        sizes = [self._size(unit or usual) for _, unit in amount.parts]
+        scale = system.scale(self.rule) if usual or amount.units else Fraction(1)
+        for number, unit in amount.parts:
+            if "," in number and (size_of(unit or usual, self.rule) or ("", ""))[1] != "us":
+                self._refuse(f"the comma of {number} may be a decimal one")
+        (number, _), size = amount.parts[0], sizes[0]
+        sign = amount.sign
+        if len(sizes) == 1 and size == scale and "/" not in number:
+            return sign + number.replace(",", "")
+        try:
+            total = sum(
+                (_fraction(n) * size for (n, _), size in zip(amount.parts, sizes, strict=True)),
+                Fraction(0),
+            )
+            value = float(total / scale)
+        except (OverflowError, ZeroDivisionError):
+            self._refuse("too large for a double")
+        text = repr(value).removesuffix(".0").upper()
+        return "0" if not value else ("-" if sign == "-" else "") + text
+
+    def _size(self, unit: str) -> Fraction:
+        if not unit:
+            return Fraction(1)
+        found = size_of(unit, self.rule)
+        assert found is not None
+        return found[0]
+
+    def _refuse(self, why: str) -> None:
+        raise UserError(f"{self.name} = {self.text}: {why}; {ACCEPTED}", self.source)
+
+
+_UNITLESS = (NUMBER, ANGLE, SPIN, PERCENT)
+
+
+def _fraction(text: str) -> Fraction:
+    """A number as written, exactly. Raises OverflowError where no double is as large."""
+    number = text.replace(",", "")
+    if "/" in number:
+        whole, _, part = number.replace(" /", "/").replace("/ ", "/").rpartition(" ")
+        return Fraction(whole or 0) + Fraction(part)
+    value = double(number)
+    if abs(value) == inf:
+        raise OverflowError
+    if not value:  # exponents of nine digits are not worked out
+        return Fraction(0)
+    try:
+        return Fraction(number)
+    except ValueError:  # what only INPUT takes, such as 1E
+        return Fraction(value)
+
+
+def nominal(text: str) -> str:
+    """The single value that stands for a value or range in base units: as written where it is, the
+    middle of two limits. Raises ValueError for what is neither, and for a tolerance alone."""
+    kind, amounts, _ = parse(text)
+    first = amounts[1 if kind == "triangular" else 0]
+    if first is None:
+        raise ValueError(text)
+    numbers = [a.sign + a.parts[0][0] for a in (first, amounts[-1]) if a]
+    if kind not in ("range", "uniform"):
+        return numbers[0]
+    return repr(float(sum(map(_fraction, numbers)) / 2)).removesuffix(".0").upper()
+
+
+def _written(notation: Notation, numbers: Sequence[str]) -> str:
+    """A notation with other numbers."""
+    match notation.kind:
+        case "range":
+            return f"{numbers[0]} .. {numbers[1]}"
+        case "around":
+            return f"{numbers[0]} +- {numbers[1]}{'%' if notation.share else ''}".lstrip()
+        case "normal" if len(numbers) == 4:
+            return f"normal {numbers[0]} {numbers[1]} within {numbers[2]} .. {numbers[3]}"
+        case "fixed":
+            return numbers[0]
+    return " ".join((notation.kind, *numbers))
+
+
+class _Phrase:
+    """A phrase and the values it holds."""
+
+    def __init__(self, words: str, parts: list[_Value]) -> None:
+        self.words, self.parts = words, parts
+        self.used = [use for part in parts for use in part.used]
+
+    def based(self, system: System, strict: bool) -> str:
+        """The phrase with its values in base units."""
+        return self.words.format(*(part.based(system, strict) for part in self.parts))
+
+
+def _taken_apart(name: str, text: str, source: str) -> _Value | _Phrase | None:
+    """What an entry holds; None for what is read elsewhere, or refused there."""
+    if name in WORDS or not any(character.isdigit() for character in text):
+        return None
+    try:
+        rule = quantity(name).unit
+    except KeyError:
+        return None
+    if name in SHARED and "%" in text:
+        return None
+    words = " ".join(text.split())
+    pattern, rules = _PHRASES.get(words.partition(" ")[0], (None, ()))
+    if match := pattern and pattern.fullmatch(words):
+        ends = [0, *(place for at in range(len(rules)) for place in match.span(at + 1)), None]
+        between = [words[a:b] for a, b in zip(ends[::2], ends[1::2], strict=True)]
+        parts = zip(match.groups(), rules, strict=True)
+        values = [_Value(name, part, own or rule, source) for part, own in parts]
+        return _Phrase("{}".join(between), values)
+    return _Value(name, text, rule, source)
+
+
+def in_base(
+    texts: Mapping[str, str], source: str, system: System | None = None
+) -> tuple[dict[str, str], System | None]:
+    """The texts in base units, and the system they belong to (None where nothing says).
+
+    ``texts``: by name, as they were written, and perhaps the entry ``units``; ``system``: of bare
+    numbers, where no entry says. Raises UserError for what is no amount, for a unit that does not
+    measure the quantity, for bare numbers among others with units, and for units of two systems
+    where none is named.
+    """
+    entries = dict(texts)
+    named = entries.pop(ENTRY, None)
+    if named is not None:
+        system = system_named(named, source)
+    if system is None and all(_BARE.issuperset(entries[n]) for n in entries if n not in WORDS):
+        return entries, None
+    held = {}
+    for name, text in entries.items():
+        if (value := _taken_apart(name, text, source)) is not None:
+            held[name] = value
+    strict = system is None
+    if system is None:
+        found = system_using([use for value in held.values() for use in value.used], source)
+        system = None if found is RULES else found
+        strict = system is not None
+    for name, value in held.items():
+        if system or not _BARE.issuperset(entries[name]):
+            entries[name] = value.based(system or RULES, strict)
+    return entries, system
+
+
+def shown_text(name: str, text: str, system: System) -> str:
+    """A number in base units as one of the system's usual units: the fewest digits that are read
+    as the same number again; as it stands where no factor is needed."""
+    factor = system.factor(name)
+    if factor == 1 or not is_number(text):
+        return text
+    value, shown = double(text), ""
+    for digits in (15, 16, 17):
+        shown = f"{value * factor:.{digits}g}".upper()
+        if double(in_base({name: shown}, name, system)[0][name]) == value:
+            break
+    return shown
+
+
+def units_in(name: str, text: str) -> list[tuple[str, str]]:
+    """The units in a text, each with what it measures; none where it is no amount."""
+    try:
+        value = _taken_apart(name, text, "")
+    except UserError:
+        return []
+    return value.used if value else []
+
+
+def remarks(texts: Mapping[str, str], system: str) -> dict[str, str]:
+    """What a reader should know of how entries were understood, by name."""
+    bare = [n for n in ("IA", "IB") if (text := texts.get(n, "").strip()) and is_number(text)]
+    if system != "us" or not bare:
+        return {}
+    return {
+        bare[0]: f"{' and '.join(bare)} without a unit: read as slug ft2 (lb-ft-s2); for pounds "
+        "times feet squared write 'lb ft2', 1/32.17 of it"
+    }
