@@ -9,7 +9,7 @@ import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,6 @@ from .. import doubles
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE
 from . import arrow, jsontext
-
-if TYPE_CHECKING:
-    from .tableunits import TableUnits
 
 Column = Sequence[Any] | NDArray[Any]
 
@@ -81,6 +78,16 @@ class Rows:
         """A complaint about the row at ``index``, counted from 0."""
         line = self.lines[index] if self.lines is not None else 0
         return BadCell(self.first + index, line, column, reason)
+
+
+class Units(Protocol):
+    """What a table's columns are in (`tables.tableunits.TableUnits`)."""
+
+    def factor(self, name: str) -> float: ...
+
+    def refuses_bare(self, name: str) -> bool: ...
+
+    def cell(self, name: str, text: str) -> str: ...
 
 
 class Reader(Protocol):
@@ -197,7 +204,7 @@ def shortest(values: NDArray[Any]) -> list[str]:
     return list(map(repr if values.dtype.kind == "f" else str, values.tolist()))
 
 
-def numbers(rows: Rows, units: TableUnits | None = None) -> dict[str, NDArray[np.float64]]:
+def numbers(rows: Rows, units: Units | None = None) -> dict[str, NDArray[np.float64]]:
     """The scene columns of ``rows`` as doubles, in base units where ``units`` says what they are
     in. A cell that is no number is NaN, and a complaint is added to ``rows.bad`` (unless its row
     has one already)."""
@@ -205,7 +212,7 @@ def numbers(rows: Rows, units: TableUnits | None = None) -> dict[str, NDArray[np
 
 
 def _numbers(
-    rows: Rows, name: str, column: Column, units: TableUnits | None
+    rows: Rows, name: str, column: Column, units: Units | None
 ) -> NDArray[np.float64]:
     factor = units.factor(name) if units else 1.0
     bare_refused = units is not None and units.refuses_bare(name)
