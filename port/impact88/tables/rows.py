@@ -211,9 +211,7 @@ def numbers(rows: Rows, units: Units | None = None) -> dict[str, NDArray[np.floa
     return {name: _numbers(rows, name, column, units) for name, column in rows.columns.items()}
 
 
-def _numbers(
-    rows: Rows, name: str, column: Column, units: Units | None
-) -> NDArray[np.float64]:
+def _numbers(rows: Rows, name: str, column: Column, units: Units | None) -> NDArray[np.float64]:
     factor = units.factor(name) if units else 1.0
     bare_refused = units is not None and units.refuses_bare(name)
     values = None if bare_refused else _plain_numbers(column)
