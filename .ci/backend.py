@@ -13,6 +13,7 @@ from pathlib import Path
 from setuptools import build_meta
 from setuptools.build_meta import *  # noqa: F403
 from setuptools.command.egg_info import manifest_maker
+from setuptools.dist import Distribution
 
 os.umask(0o022)
 
@@ -29,10 +30,16 @@ def epoch():
     return int(Path("pyproject.toml").stat().st_mtime)
 
 
+if os.environ.get("IMPACT88_PURE") == "1":  # a wheel for every machine, without the compiled part
+    Distribution.has_ext_modules = lambda self: False
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    """A wheel whose entries have the time of the commit and usual modes."""
+    """A wheel whose entries have the time of the commit and usual modes. The compiled part calls
+    nothing of Python's, so that it serves any version from the lowest on."""
     os.environ["SOURCE_DATE_EPOCH"] = str(epoch())
-    return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
+    settings = {"--build-option": ["--py-limited-api=cp311"], **(config_settings or {})}
+    return build_meta.build_wheel(wheel_directory, settings, metadata_directory)
 
 
 def build_sdist(sdist_directory, config_settings=None):

@@ -6,13 +6,14 @@ looks at the difference before committing it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from pytest_regressions.file_regression import FileRegressionFixture
 
 from captures import ROOT
+from impact88 import native
 
 
 @pytest.fixture(scope="module")
@@ -43,3 +44,14 @@ def golden_printout(file_regression: FileRegressionFixture) -> Callable[[str, st
         )
 
     return check
+
+
+@pytest.fixture(scope="module", params=["compiled", "numpy"])
+def both_machines(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Every test of the module twice: on the compiled machine, and on numpy alone."""
+    built = native.library
+    if request.param == "compiled" and built is None:
+        pytest.skip("built without a C compiler")
+    native.library = built if request.param == "compiled" else None
+    yield
+    native.library = built

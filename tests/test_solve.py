@@ -18,6 +18,8 @@ from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.status import Status
 from worked_cases import RUN_1, reference_cases, scene_of
 
+pytestmark = pytest.mark.usefixtures("both_machines")
+
 FORWARD = [case for case in reference_cases() if case["kind"].startswith("forward")]
 NUMBERS = tuple(name for name in RESULTS if name != "STATUS")
 

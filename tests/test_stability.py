@@ -36,6 +36,8 @@ from impact88.scene import Scene, sample
 from impact88.status import Status
 from worked_cases import RUN_1
 
+pytestmark = pytest.mark.usefixtures("both_machines")
+
 ROUNDOFF = 2.0**-53
 BACKWARD_STABLE = 64
 """The small multiple; measured, with the derivatives in 120 digits: 1.3 at most for cars, 3.5 where

@@ -21,6 +21,8 @@ from impact88.uncertainty.bounds import bounds
 from impact88.uncertainty.uncertain import fixed
 from routh import judged
 
+pytestmark = pytest.mark.usefixtures("both_machines")
+
 RUN_1 = {name: float(text) for name, text in sample(1).items()}
 FINAL = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
 INITIAL = ("UX", "UY", "WA", "VX", "VY", "WB")

@@ -24,6 +24,7 @@ Today's work, in double precision
     colinear, colinear_inverse, barrier, delta_v    the chapter's other problems
     scene_svg           a scene from above
 
+    accelerated         the processor's instructions `solve` uses, None where it leaves all to numpy
     names, status       the tables of names and of STATUS's bits
     UserError           raised for input that cannot be used
 
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from .emulator.emulator import Applesoft
     from .errors import UserError
     from .figures.sceneview import scene_svg
+    from .native import accelerated
     from .program.run import Run, run
     from .reading.printout import read_printouts
     from .reconstruction.adjustment import Reconstruction
@@ -76,6 +78,7 @@ _LAZY = {
     "Uncertain": "uncertainty.uncertain",
     "UserError": "errors",
     "Verification": "reporting.examination",
+    "accelerated": "native",
     "barrier": "chapter.barrier",
     "bounds": "uncertainty.bounds",
     "colinear": "chapter.colinear",
@@ -112,6 +115,7 @@ __all__ = [  # written out: type checkers read no computed list
     "UserError",
     "Verification",
     "__version__",
+    "accelerated",
     "barrier",
     "bounds",
     "colinear",

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.statusbits import set_bits
+from ..closedform.statusbits import bits, findings
 from ..errors import UserError
 from ..names import missing
 
@@ -89,16 +89,12 @@ def report(
         )
         names = (*INITIAL, *FINAL, "PN", "PT", "DVA", "DVB", "KI", "KF", "LOSS", "MUP", "MUC")
         shape = np.broadcast_shapes(*(np.shape(value) for value in values))
-        bits = np.empty(shape, np.uint16)
         none, total = np.zeros(()), final[0] + final[1] + final[2] + final[3]
         lost, pivot = ki - kf, (pn, critical * pn)
         # no arms and no moment; mu is signed here, and -10 is no pivot
         before, arms = van - vbn, (none, none, none, none)
-        set_bits(
-            *(before, pn, *arms, 2 * lost, ki, e, none, mu, *pivot, none, total),
-            out=bits,
-        )
-    named = dict(zip(names, values, strict=True)) | {"STATUS": bits}
+        found = findings(before, pn, *arms, 2 * lost, ki, e, none, mu, *pivot, none, total)
+    named = dict(zip(names, values, strict=True)) | {"STATUS": bits(found)}
     return {name: np.broadcast_to(value, shape) for name, value in named.items()}
 
 

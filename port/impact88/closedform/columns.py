@@ -8,15 +8,17 @@ numbers cannot be used. The answers choose the plan.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import native
 from ..errors import UserError
 from ..fields import ANGLES
 from ..names import DEFAULT_M, PIVOT, SCENE
+from . import fused
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
@@ -32,11 +34,34 @@ LARGE_ANGLE = 720.0
 the sums are then rounded no more coarsely than the angles people give are."""
 
 
+Limits = tuple[float, float]
+"""Least and most."""
+_LARGEST = float(np.finfo(np.float64).max)
+_SMALLEST = float(np.nextafter(0.0, 1.0))
+_ABOVE_PIVOT = float(np.nextafter(PIVOT, 0.0))
+_ANY = -_LARGEST, _LARGEST
+_NAMES = tuple(SCENE)
+
+
 class Source(NamedTuple):
     """A column: ``values`` flat and of full length, or of length 1; or awkward, see `block`."""
 
     values: Array
     shape: tuple[int, ...] | None  # of the broadcast, when ``values`` must be read through it
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether any part of it is float64 numbers side by side."""
+        values = self.values
+        if self.shape is not None or values.dtype != np.float64:
+            return False
+        return values.strides[0] == 8 or len(values) == 1
+
+    def part(self, start: int, stop: int) -> Array:
+        """Scenes ``start`` to ``stop``, or the only value."""
+        if self.shape is None:
+            return self.values[start:stop] if len(self.values) > 1 else self.values
+        return np.broadcast_to(self.values, self.shape).flat[start:stop]
 
 
 def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int, ...]]:
@@ -62,7 +87,7 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
     if missing:
         raise UserError(f"missing: {' '.join(missing)}; a scene needs {' '.join(SCENE)}")
     try:
-        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        shape = np.broadcast_shapes(*{array.shape for array in arrays.values()})
     except ValueError:
         shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
         raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
@@ -70,6 +95,8 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
 
 
 def _numbers(name: str, values: object) -> Array:
+    if type(values) is np.ndarray and values.dtype.kind in "fiub":
+        return values
     if isinstance(values, np.ma.MaskedArray):
         if values.dtype.kind not in "fiub":
             raise UserError(f"holds {values.dtype} values; expected numbers", f"column {name}")
@@ -91,6 +118,8 @@ def _numbers(name: str, values: object) -> Array:
 
 
 def _source(array: Array, shape: tuple[int, ...]) -> Source:
+    if array.ndim == 1 and array.shape == shape and array.size != 1:
+        return Source(array, None)
     if array.size == 1:
         return Source(array.reshape(1).astype(np.float64), None)
     if array.shape == shape and (array.ndim == 1 or array.flags.c_contiguous):
@@ -107,26 +136,19 @@ class Buffers:
 
     def block(self, name: str, source: Source, start: int, stop: int) -> Floats:
         """Scenes ``start`` to ``stop`` of a column, or its only value, as float64."""
-        values = source.values
-        if source.shape is None:
-            if len(values) == 1:
-                return values
-            if values.dtype == np.float64 and values.strides[0] == values.itemsize:
-                return values[start:stop]
-            part = values[start:stop]
-        else:
-            part = np.broadcast_to(values, source.shape).flat[start:stop]
+        if source.is_plain:
+            return source.part(start, stop)
         if name not in self._kept:
             self._kept[name] = np.empty(self.size)
         room = self._kept[name][: stop - start]
-        np.copyto(room, part)
+        np.copyto(room, source.part(start, stop))
         return room
 
 
 class Block(NamedTuple):
     """A block of scenes made ready: ``fixed`` columns have length 1, ``varying`` its length.
 
-    ``kinds`` tells of each scene name what a plan may rely on:
+    ``kinds`` says of each scene name what a plan may rely on:
 
     - ``array``, ``scalar``, ``0`` or ``1`` (for all scenes of the block);
     - MA MB IA IB: also ``array with infinities`` and ``inf``;
@@ -135,98 +157,145 @@ class Block(NamedTuple):
     - ``unused`` where all scenes are point masses and do not look at it.
 
     ``refused``: a boolean array, True where the numbers cannot be used, or None if nowhere.
+    ``limits``: name -> the least and the most a column may hold for further scenes to be of the
+    same kind; None where limits cannot say so.
     """
 
     fixed: dict[str, Floats]
     varying: dict[str, Floats]
     kinds: tuple[str, ...]
     refused: NDArray[np.bool_] | None
+    limits: dict[str, Limits] | None
+
+
+class _Column(NamedTuple):
+    """What `examine` finds of a column: itself (of length 1 if all its numbers are equal), its
+    kind, the limits of that kind, and whether all can be used. Limits of None: the kind cannot be
+    said by limits."""
+
+    values: Floats
+    kind: str
+    limits: Limits | None
+    usable: bool
 
 
 def examine(values: Mapping[str, Floats]) -> Block:
     """Find out what kind of block this is. ``values``: columns of one length, or of length 1.
 
-    Every column is read once or twice, no more; only where something may be unusable are the
-    scenes looked at one by one.
+    Every column is read for its least and largest number; only where something may be unusable are
+    the scenes looked at one by one.
     """
+    extremes = dict(zip(values, _extremes(list(values.values())), strict=True))
+    only_points = extremes["M"] == (4.0, 4.0)
     fixed: dict[str, Floats] = {}
     varying: dict[str, Floats] = {}
     kinds: dict[str, str] = {}
-    usable = True
-    only_points = bool((values["M"] == 4).all())
+    limits: dict[str, Limits] = {}
+    usable = sayable = True
     for name, column in values.items():
         if only_points and name in UNUSED_BY_POINTS:
             kinds[name] = "unused"
             fixed[name] = column[:1]
             continue
-        if len(column) > 1 and _same_throughout(column):
-            column = column[:1]
-        if name in ANGLES:
-            column, kind, fine = _angle(column)
-        else:
-            kind, fine = _kind(name, column)
-        kinds[name] = kind
-        usable = usable and fine
-        (fixed if len(column) == 1 else varying)[name] = column
+        found = _examined(name, column, *extremes[name])
+        kinds[name] = found.kind
+        usable = usable and found.usable
+        if found.limits is None:
+            sayable = False
+        elif len(column) > 1:
+            limits[name] = found.limits
+        (fixed if len(found.values) == 1 else varying)[name] = found.values
     ordered = tuple(kinds[name] for name in SCENE)
     if usable and _at_rest_where_infinite(kinds):
-        return Block(fixed, varying, ordered, None)
+        return Block(fixed, varying, ordered, None, limits if sayable else None)
     together = {name: fixed[name] if name in fixed else varying[name] for name in SCENE}
     refused = _refused(together, max(map(len, values.values())))
-    return Block(fixed, varying, ordered, refused if refused.any() else None)
+    return Block(fixed, varying, ordered, refused if refused.any() else None, None)
 
 
-def _same_throughout(column: Floats) -> bool:
-    first = column[0]
-    return bool(first == column[-1] and first == column[len(column) // 2]) and bool(
-        (column == first).all()
-    )
+def _extremes(columns: Sequence[Floats]) -> list[Limits]:
+    """The least and the largest number of each column; both NaN where one is."""
+    if native.library is None:
+        return [(float(column.min()), float(column.max())) for column in columns]
+    found = [(float(column[0]), float(column[0])) for column in columns]
+    long = [i for i, column in enumerate(columns) if len(column) > 1]
+    if long:
+        extremes = fused.extremes(fused.addresses(columns[i] for i in long), len(columns[long[0]]))
+        for i, (least, most) in zip(long, extremes.tolist(), strict=True):
+            found[i] = least, most
+    return found
 
 
-def _all_finite(column: Floats) -> bool:
-    """False if some value is not finite (or the sum overflows: then they are looked at one by one);
-    far cheaper than ``isfinite``."""
-    return bool(np.isfinite(np.add.reduce(column)))
-
-
-def _angle(column: Floats) -> tuple[Floats, str, bool]:
-    """An angle's column with what is large taken modulo 360, its kind, and whether finite."""
-    finite = True
-    if not (column.max() <= LARGE_ANGLE and column.min() >= -LARGE_ANGLE):  # NaN is neither
+def _examined(name: str, column: Floats, least: float, most: float) -> _Column:
+    """What there is to say of a column, of which the least and largest number are known."""
+    alike = len(column) == 1 or least == most
+    if alike:
+        column = column[:1]
+    finite = least >= -_LARGEST and most <= _LARGEST  # NaN is neither
+    if name in ANGLES and not (least >= -LARGE_ANGLE and most <= LARGE_ANGLE):
         with np.errstate(invalid="ignore"):
             turned = np.fmod(column, 360.0)
         column = np.where(np.abs(column) > LARGE_ANGLE, turned, column)
-        finite = bool(np.isfinite(column).all())
-    if len(column) > 1:
-        return column, "array", finite
-    return column, _constant_kind(column), finite
-
-
-def _constant_kind(column: Floats) -> str:
-    return {0.0: "0", 1.0: "1"}.get(float(column[0]), "scalar")
-
-
-def _kind(name: str, column: Floats) -> tuple[str, bool]:
-    """The kind of a column of a block, and False when some value may be unusable."""
-    alike = len(column) == 1
+        kind = _alike_kind(name, float(column[0])) if alike else "array"
+        return _Column(column, kind, None, finite)
     if name == "M":
-        if alike and column[0] in (4, 6):
-            return str(int(column[0])), True
-        return ("6" if alike else "mixed"), False
+        if alike and least in (4, 6):
+            return _Column(column, _alike_kind(name, least), (least, least), True)
+        return _Column(column, "6" if alike else "mixed", None, False)
     if name in INERTIAS:
-        positive = bool(column.min() > 0)
-        if positive and _all_finite(column):
-            return ("scalar" if alike else "array"), True
+        if least > 0 and most == np.inf:
+            if alike:
+                return _Column(column, "inf", (least, most), True)
+            return _Column(column, "array with infinities", None, False)
+        if not (least > 0 and finite):
+            return _Column(column, "scalar" if alike else "array with infinities", None, False)
+    elif name == "MU" and least <= PIVOT <= most and bool((column == PIVOT).any()):
         if alike:
-            return ("inf" if column[0] == np.inf else "scalar"), positive
-        return "array with infinities", False
-    if name == "MU" and not column.min() > PIVOT:
-        fine = bool(np.isfinite(column).all())
-        pivots = column == PIVOT
-        if pivots.any():
-            return ("pivot" if alike else "mixed"), fine
-        return ("scalar" if alike else "array"), fine
-    return (_constant_kind(column) if alike else "array"), _all_finite(column)
+            return _Column(column, "pivot", (least, most), True)
+        return _Column(column, "mixed", _ANY, finite)
+    if alike:
+        return _Column(column, _alike_kind(name, least), (least, most), finite)
+    low, high = ORDINARY[name]
+    return _Column(column, "array", (low, high) if low <= least else None, finite)
+
+
+def _ordinary(name: str) -> Limits:
+    if name in ANGLES:
+        return -LARGE_ANGLE, LARGE_ANGLE
+    if name in INERTIAS:
+        return _SMALLEST, _LARGEST
+    if name == "M":
+        return 6.0, 6.0
+    return (_ABOVE_PIVOT, _LARGEST) if name == "MU" else _ANY
+
+
+ORDINARY = {name: _ordinary(name) for name in SCENE}
+"""Name -> within which a column is an ordinary array, or an ordinary value: nothing in it has to be
+looked at."""
+_LEAST, _MOST = np.array(list(ORDINARY.values())).T
+_ARRAYS = tuple("6" if name == "M" else "array" for name in SCENE)
+
+
+def ordinary_kinds(least: Floats, most: Floats) -> tuple[str, ...] | None:
+    """The kinds of a block, as `examine` finds them, from the least and largest number of each
+    column in the table's order; None where its numbers have to be looked at."""
+    if not ((least >= _LEAST).all() and (most <= _MOST).all()):  # NaN is neither
+        return None
+    alike = np.flatnonzero(least == most).tolist()
+    if len(alike) == 1:
+        return _ARRAYS
+    kinds = list(_ARRAYS)
+    for i in alike:
+        kinds[i] = _alike_kind(_NAMES[i], float(least[i]))
+    return tuple(kinds)
+
+
+def _alike_kind(name: str, value: float) -> str:
+    """The kind of an ordinary column that has one value."""
+    if name == "M":
+        return str(int(value))
+    # an inertia is never left out
+    return "scalar" if name in INERTIAS else {0.0: "0", 1.0: "1"}.get(value, "scalar")
 
 
 def _at_rest_where_infinite(kinds: Mapping[str, str]) -> bool:

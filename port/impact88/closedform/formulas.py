@@ -79,6 +79,32 @@ class Expression:
     def __neg__(self) -> Expression:
         return self.table.negative(self)
 
+    def __abs__(self) -> Expression:
+        return self.table.absolute(self)
+
+    # conditions; there is no == (expressions are kept apart by what they are)
+
+    def __lt__(self, other: Expression | float) -> Expression:
+        return self.table.condition("less", self, self.table.wrap(other))
+
+    def __gt__(self, other: Expression | float) -> Expression:
+        return self.table.condition("less", self.table.wrap(other), self)
+
+    def __le__(self, other: Expression | float) -> Expression:
+        return self.table.condition("less_or_equal", self, self.table.wrap(other))
+
+    def __ge__(self, other: Expression | float) -> Expression:
+        return self.table.condition("less_or_equal", self.table.wrap(other), self)
+
+    def __and__(self, other: Expression) -> Expression:
+        return self.table.condition("both", self, other)
+
+    def __or__(self, other: Expression) -> Expression:
+        return self.table.condition("either", self, other)
+
+    def __invert__(self) -> Expression:
+        return self.table.condition("not", self)
+
 
 class ExpressionTable:
     """Where the expressions of one plan are kept, each once."""
@@ -205,9 +231,13 @@ class ExpressionTable:
         """``a`` where the condition holds, else ``b``."""
         return a if a is b else self._keep("choose", where, a, b)
 
-    def equals(self, a: Expression, number: float) -> Expression:
-        return self._keep("equal", a, self.constant(number), dtype="bool")
+    def condition(self, operation: str, *operands: Expression) -> Expression:
+        """A comparison, or conditions joined: 1 where it holds, else 0."""
+        return self._keep(operation, *operands, dtype="bool")
 
-    def combine(self, operation: str, *operands: Expression, dtype: str = "float") -> Expression:
-        """Any other operation the plan knows by name."""
-        return self._keep(operation, *operands, dtype=dtype)
+    def equals(self, a: Expression, number: float) -> Expression:
+        return self.condition("equal", a, self.constant(number))
+
+    def bits(self, number: Expression) -> Expression:
+        """A sum of bits as the whole number it is."""
+        return self._keep("bits", number, dtype="bits")

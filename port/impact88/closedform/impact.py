@@ -35,9 +35,9 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 from ..names import PIVOT
-from . import statusbits  # noqa: F401 - makes "status" an operation of plans
 from .energy import kinetic_energy
 from .formulas import Expression, ExpressionTable
+from .statusbits import findings
 
 Pair = tuple[Expression, Expression]
 
@@ -497,7 +497,7 @@ class Impact:
         if not self.infinite:
             return inertia
         return self.table.choose(
-            self.table.combine("isinf", inertia, dtype="bool"), self.table.constant(0.0), inertia
+            self.table.equals(inertia, math.inf), self.table.constant(0.0), inertia
         )
 
     def _energy(self, velocities: Sequence[Expression]) -> Expression:
@@ -602,8 +602,7 @@ class Impact:
     def STATUS(self) -> Expression:
         zero = self.table.constant(0.0)
         velocities = self.VAX + self.VAY + self.VBX + self.VBY + self.WAF + self.WBF
-        return self.table.combine(
-            "status",
+        found = findings(
             self.gn,
             self.PN,
             self._a[1],
@@ -618,5 +617,6 @@ class Impact:
             *self._pivot,
             self.COND,
             velocities,
-            dtype="bits",
         )
+        bits = [condition * float(bit) for bit, condition in found.items()]
+        return self.table.bits(sum(bits[1:], bits[0]))

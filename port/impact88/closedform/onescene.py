@@ -23,11 +23,15 @@ from . import degrees
 from .columns import ANGLES, INERTIAS, LARGE_ANGLE, UNUSED_BY_POINTS
 from .formulas import Expression, ExpressionTable
 from .impact import Impact
-from .plan import OPERATIONS, in_order
+from .plan import in_order
 
 NAMES = tuple(SCENE)
 _PLAIN = {float, int, np.float64}
-_BINARY = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
+_BINARY = {
+    **{"add": "+", "subtract": "-", "multiply": "*", "divide": "/"},
+    **{"less": "<", "less_or_equal": "<=", "both": "and", "either": "or"},
+}
+_UNARY = {"negative": "-", "absolute": "abs", "not": "not ", "bits": "int"}
 _HALVES = {"sine": 0, "cosine": 1}
 _M, _MU = NAMES.index("M"), NAMES.index("MU")
 _in_order = itemgetter(*NAMES)
@@ -85,7 +89,6 @@ def _function(wanted: tuple[str, ...], point: bool, pivot: bool) -> Callable[...
         "LeftToArrays": LeftToArrays,
         "sine_and_cosine": _sine_and_cosine(),
         "hypot": lambda a, b: float(np.hypot(a, b)),
-        "status": _status,
         **constants,
     }
     exec(compile(source, "<the formulas of one scene>", "exec"), names)
@@ -131,22 +134,12 @@ def _formula(operation: str, operands: Sequence[str]) -> str:
         return f"{operands[0]} {_BINARY[operation]} {operands[1]}"
     if operation in _HALVES:
         return f"{operands[0]}[{_HALVES[operation]}]"
-    if operation == "negative":
-        return f"-{operands[0]}"
-    if operation == "absolute":
-        return f"abs({operands[0]})"
+    if operation in _UNARY:
+        return f"{_UNARY[operation]}({operands[0]})"
     if operation == "against":
         value, slip = operands
         return f"-{value} if {slip} > 0.0 else {value}"
     return f"{operation}({', '.join(operands)})"
-
-
-def _status(*operands: float) -> int:
-    """The bits, by the arrays' own rule."""
-    bits = np.empty(1, np.uint16)
-    with np.errstate(all="ignore"):
-        OPERATIONS["status"](*(np.array([x], np.float64) for x in operands), bits)
-    return int(bits[0])
 
 
 def _sine_and_cosine() -> Callable[[float], tuple[float, float]]:

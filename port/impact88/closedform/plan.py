@@ -19,21 +19,21 @@ from .formulas import Expression
 
 Array = NDArray[Any]
 
-_SIGN = np.uint64(1 << 63)
 _DTYPES = {"float": np.float64, "bool": np.bool_, "bits": np.uint16}
 
 
 def _against(value: Array, slip: Array, out: Array) -> None:
-    # 0 - slip has a sign bit exactly where slip > 0: a difference of equal zeros is +0
-    np.subtract(0.0, slip, out=out)
-    bits = out.view(np.uint64)
-    np.bitwise_and(bits, _SIGN, out=bits)
-    np.bitwise_xor(bits, value.view(np.uint64), out=bits)
+    np.copyto(out, value)
+    np.negative(value, out=out, where=slip > 0)
 
 
 def _choose(where: Array, a: Array, b: Array, out: Array) -> None:
     np.copyto(out, b)
     np.copyto(out, a, where=where)
+
+
+def _bits(number: Array, out: Array) -> None:
+    np.copyto(out, number, casting="unsafe")
 
 
 OPERATIONS: dict[str, Callable[..., object]] = {
@@ -45,18 +45,18 @@ OPERATIONS: dict[str, Callable[..., object]] = {
     "absolute": np.absolute,
     "hypot": np.hypot,
     "equal": np.equal,
-    "isinf": np.isinf,
+    "less": np.less,
+    "less_or_equal": np.less_equal,
+    "both": np.logical_and,
+    "either": np.logical_or,
+    "not": np.logical_not,
+    "bits": _bits,
     "against": _against,
     "choose": _choose,
 }
-"""Operation -> the function of its operands and ``out``. `register` adds to it."""
+"""Operation -> the function of its operands and ``out``."""
 
-_PROJECTIONS = ("sine", "cosine")
-
-
-def register(name: str, function: Callable[..., object]) -> None:
-    """Make ``function(*operands, out)`` an operation that plans know by ``name``."""
-    OPERATIONS[name] = function
+PROJECTIONS = ("sine", "cosine")
 
 
 class _Slots:
@@ -139,11 +139,11 @@ class Plan:
 
         self._steps: list[tuple[Callable[..., object] | None, tuple[int, ...]]] = []
         for e in tiled:
-            if e.operation == "column" or e.operation in _PROJECTIONS:
+            if e.operation == "column" or e.operation in PROJECTIONS:
                 continue
             operands = tuple(self._index[id(operand)] for operand in e.operands)
             if e.operation == "sine_and_cosine":
-                halves = [e.table.half(e, half) for half in _PROJECTIONS]
+                halves = [e.table.half(e, half) for half in PROJECTIONS]
                 places = [slots.take(half) for half in halves]
                 self._steps.append((None, (*operands, *places, *slots.spare("float", 4))))
                 for half in halves:
@@ -168,8 +168,8 @@ class Plan:
             return None, np.array([e.value], dtype=np.float64), (), None
         if e.operation == "column":
             return None, str(e.value), (), None
-        if e.operation in _PROJECTIONS:
-            return None, _PROJECTIONS.index(e.operation), operands, None
+        if e.operation in PROJECTIONS:
+            return None, PROJECTIONS.index(e.operation), operands, None
         if e.operation == "sine_and_cosine":
             return None, None, operands, None
         return OPERATIONS[e.operation], None, operands, _DTYPES[e.dtype]
@@ -245,7 +245,7 @@ class Plan:
 
 def _weight(e: Expression) -> int:
     """How many passes over the tile an operation makes."""
-    if e.operation == "column" or e.operation in _PROJECTIONS:
+    if e.operation == "column" or e.operation in PROJECTIONS:
         return 0
     return {"sine_and_cosine": 26, "against": 3, "choose": 2}.get(e.operation, 1)
 

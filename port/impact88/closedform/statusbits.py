@@ -1,7 +1,12 @@
-"""STATUS over arrays: one rule a bit of `impact88.status.Status`, for every solver."""
+"""STATUS: one rule a bit of `impact88.status.Status`, for every solver.
+
+The rules are comparisons joined by & | ~, so that one text serves numpy's arrays and the
+`Expression`s of a plan. A comparison with NaN is false: what cannot be decided stays clear.
+"""
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -9,9 +14,6 @@ from numpy.typing import NDArray
 
 from ..names import PIVOT
 from ..status import Status
-from .plan import register
-
-Array = NDArray[Any]
 
 SINGULAR_FROM = 2.0**26
 """COND from which SINGULAR is set: 1/sqrt(unit roundoff). Half of a double's digits may be lost
@@ -27,9 +29,7 @@ LISTING_MISREADS = PIVOT
 """Line 510 takes any MU not above this for a pivot."""
 
 
-def friction_faults(
-    gn: Array, pn: Array, mu: Array, pivot_pn: Array, pivot_pt: Array
-) -> tuple[Array, Array]:
+def friction_faults(gn: Any, pn: Any, mu: Any, pivot_pn: Any, pivot_pt: Any) -> tuple[Any, Any]:
     """(above critical, wrong direction): where friction cannot make an impact.
 
     ``gn``: normal relative velocity before, ``pn``: normal impulse on A, ``mu``: P_t/P_n with its
@@ -44,35 +44,34 @@ def friction_faults(
     admissible. Where MUC is 0 no friction is, for without it the points do not slide apart.
     """
     room = FRICTION_TOLERANCE
-    approach, limited = (gn < 0) & (pn > 0), pivot_pn > 0
-    most = np.abs(pivot_pt)
-    forward = np.where(pivot_pt < 0, -mu, mu)
-    backward = approach & (forward < -room)
+    approach, limited, down = (gn < 0) & (pn > 0), pivot_pn > 0, pivot_pt < 0
+    most = abs(pivot_pt)
+    # mu in the direction of pivot_pt, less the tolerance, and times pivot_pn
+    forward_down, forward_up = (-mu - room) * pivot_pn, (mu - room) * pivot_pn
+    backward = approach & (down & (mu > room) | ~down & (mu < -room))
     none = limited & (most <= room * pivot_pn)
-    above = approach & limited & ((forward - room) * pivot_pn > most)
+    above = approach & limited & (down & (forward_down > most) | ~down & (forward_up > most))
     return above | backward & none, backward & ~none & (most > 0)
 
 
-def set_bits(
-    gn: Array,
-    pn: Array,
-    arm_a: Array,
-    arm_b: Array,
-    da: Array,
-    db: Array,
-    twice_lost: Array,
-    initial: Array,
-    e: Array,
-    em: Array,
-    friction_mu: Array,
-    pivot_pn: Array,
-    pivot_pt: Array,
-    condition: Array,
-    sum_of_velocities: Array,
-    out: Array,
-) -> None:
-    """Set in ``out`` (integers) every bit by its own rule; one that cannot be decided (NaN) stays
-    clear, but for NOT_FINITE and SINGULAR, which NaN is reason enough for.
+def findings(
+    gn: Any,
+    pn: Any,
+    arm_a: Any,
+    arm_b: Any,
+    da: Any,
+    db: Any,
+    twice_lost: Any,
+    initial: Any,
+    e: Any,
+    em: Any,
+    friction_mu: Any,
+    pivot_pn: Any,
+    pivot_pt: Any,
+    condition: Any,
+    sum_of_velocities: Any,
+) -> dict[Status, Any]:
+    """Bit -> the condition under which it is set. Only NOT_FINITE and SINGULAR are set for a NaN.
 
     ``gn``: normal relative velocity at the contact point, A minus B; ``pn``: normal impulse on A;
     ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances of A's and B's center from
@@ -80,28 +79,30 @@ def set_bits(
     point; ``twice_lost`` and ``initial``: energies; ``friction_mu``: MU with its sign, 0 for a
     pivot; ``pivot_pn``, ``pivot_pt``: see `friction_faults`; ``condition``: COND. They broadcast.
     """
-
-    def set_where(bit: Status, condition: Array) -> None:
-        np.bitwise_or(out, condition * out.dtype.type(bit), out=out)
-
-    out.fill(0)
-    set_where(Status.SEPARATING, gn >= 0)
-    set_where(Status.PULLING, pn < 0)
-    set_where(Status.ENERGY_GAINED, -twice_lost > (2 * ENERGY_TOLERANCE) * initial)
-    set_where(Status.E_OUT_OF_RANGE, (e < 0) | (e > 1))
-    # NaN: 0/0 in the condition itself, as singular as can be
-    set_where(Status.SINGULAR, ~(condition < SINGULAR_FROM))
-    # what the sum of velocities does not show, the energies and the quotients do
-    for value in (sum_of_velocities, initial - 0.5 * twice_lost, twice_lost / initial):
-        set_where(Status.NOT_FINITE, ~np.isfinite(value))
-    set_where(Status.NOT_FINITE, np.isnan(condition))
-    set_where(Status.A_ON_WRONG_SIDE, arm_a > SIDE_TOLERANCE * np.abs(da))
-    set_where(Status.B_ON_WRONG_SIDE, arm_b > SIDE_TOLERANCE * np.abs(db))
-    set_where(Status.EM_OUT_OF_RANGE, (em < -1) | (em > 0) & (em != 1))
-    set_where(Status.MU_OUT_OF_RANGE, friction_mu <= LISTING_MISREADS)
     above, wrong = friction_faults(gn, pn, friction_mu, pivot_pn, pivot_pt)
-    set_where(Status.FRICTION_ABOVE_CRITICAL, above)
-    set_where(Status.FRICTION_WRONG_DIRECTION, wrong)
+    # what the sum of velocities does not show, the energies and the quotients do
+    finite = abs(sum_of_velocities) < inf
+    finite = finite & (abs(initial - 0.5 * twice_lost) < inf) & (abs(twice_lost / initial) < inf)
+    return {
+        Status.SEPARATING: gn >= 0,
+        Status.PULLING: pn < 0,
+        Status.ENERGY_GAINED: -twice_lost > (2 * ENERGY_TOLERANCE) * initial,
+        Status.E_OUT_OF_RANGE: (e < 0) | (e > 1),
+        # NaN: 0/0 in the condition itself, as singular as can be
+        Status.SINGULAR: ~(condition < SINGULAR_FROM),
+        Status.NOT_FINITE: ~(finite & (condition <= inf)),
+        Status.A_ON_WRONG_SIDE: arm_a > SIDE_TOLERANCE * abs(da),
+        Status.B_ON_WRONG_SIDE: arm_b > SIDE_TOLERANCE * abs(db),
+        Status.EM_OUT_OF_RANGE: (em < -1) | (em > 0) & ((em < 1) | (em > 1)),
+        Status.MU_OUT_OF_RANGE: friction_mu <= LISTING_MISREADS,
+        Status.FRICTION_ABOVE_CRITICAL: above,
+        Status.FRICTION_WRONG_DIRECTION: wrong,
+    }
 
 
-register("status", set_bits)
+def bits(found: dict[Status, Any]) -> NDArray[np.uint16]:
+    """STATUS of conditions over arrays, which broadcast."""
+    result = np.zeros(np.broadcast_shapes(*(np.shape(condition) for condition in found.values())))
+    for bit, condition in found.items():
+        result = result + condition * float(bit)
+    return np.asarray(result, np.uint16)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..closedform.energy import kinetic_energy
 from ..closedform.solve import quantities, solve
-from ..closedform.statusbits import set_bits
+from ..closedform.statusbits import bits, findings
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from .geometry import Geometry, with_point_masses
 from .impulse import principal_direction
@@ -162,6 +162,4 @@ def status(geometry: Geometry, given: Mapping[str, Array], condition: Any = 1.0)
             np.asarray(condition),
             sum((given[name] for name in known), np.zeros(())),
         )
-        bits = np.empty(np.broadcast_shapes(*map(np.shape, operands)), np.uint16)
-        set_bits(*operands, out=bits)
-    return bits
+        return bits(findings(*operands))

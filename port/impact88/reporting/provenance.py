@@ -7,6 +7,7 @@ import platform
 from functools import lru_cache
 from importlib import metadata, resources
 
+from .. import native
 from ..version import __version__
 
 LISTING = "impact.bas"
@@ -50,5 +51,6 @@ def versions() -> dict[str, str]:
         "impact88": __version__,
         "python": f"{platform.python_implementation()} {platform.python_version()}",
         "numpy": numpy,
+        "solve": f"compiled, {native.accelerated}" if native.accelerated else "numpy",
         "machine": f"{platform.system()} {platform.release()} {platform.machine()}",
     }

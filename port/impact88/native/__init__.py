@@ -1,0 +1,48 @@
+"""The compiled machine for plans, where it was built: `machine.c`, loaded by ctypes.
+
+It is optional. Where no compiler was there when the package was installed, or where the
+environment variable IMPACT88_ACCELERATED is 0, `library` is None and numpy computes the same bits.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+
+VARIABLE = "IMPACT88_ACCELERATED"
+"""Environment variable: 0 leaves everything to numpy."""
+
+
+def _load() -> ctypes.CDLL | None:
+    if os.environ.get(VARIABLE, "1") == "0":
+        return None
+    for suffix in (*EXTENSION_SUFFIXES, ".so"):
+        path = Path(__file__).with_name(f"_machine{suffix}")
+        if path.exists():
+            try:
+                found = ctypes.CDLL(str(path))
+            except OSError:  # built for another machine
+                continue
+            number, address = ctypes.c_int64, ctypes.c_void_p
+            found.survey.argtypes = [address, number, number, address]
+            found.run.argtypes = [
+                *(address, number, number, address, address, number, number, address, number),
+                *(address, address, number, number, address, address, number),
+            ]
+            found.instructions.restype = ctypes.c_char_p
+            found.strip.restype = found.most_places.restype = found.run.restype = number
+            return found
+    return None
+
+
+library = _load()
+STRIP: int = library.strip() if library else 0
+"""Scenes the machine takes at a time."""
+MOST_PLACES: int = library.most_places() if library else 0
+"""Values a program may have."""
+
+
+accelerated: str | None = library.instructions().decode() if library else None
+"""Which instructions of this processor the compiled machine uses; None where numpy does it all."""

@@ -1,0 +1,137 @@
+"""The compiled machine and numpy give the same bits: every result, population, path and slice.
+
+Where the machine was not built these tests are skipped; the rest of the suite then runs on numpy
+alone, and where it was, `test_solve` and the tests beside it run both ways.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import impact88
+from impact88 import native
+from impact88.bench.measure import enlarged
+from impact88.bench.populations import POPULATIONS, scenes
+from impact88.closedform.solve import FEW, TILE, quantities
+from impact88.names import RESULTS
+
+pytestmark = pytest.mark.skipif(native.library is None, reason="built without a C compiler")
+
+SIX = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
+
+
+def both(monkeypatch, columns, outputs=None, **given):
+    compiled = impact88.solve(columns, outputs, **given)
+    with monkeypatch.context() as patch:
+        patch.setattr(native, "library", None)
+        alone = impact88.solve(columns, outputs, **given)
+    return compiled, alone
+
+
+def assert_same_bits(compiled, alone):
+    assert list(compiled) == list(alone)
+    for name, values in alone.items():
+        mine = np.asarray(compiled[name])
+        assert (mine.dtype, mine.shape) == (values.dtype, values.shape), name
+        assert mine.tobytes() == values.tobytes(), name
+
+
+@pytest.mark.parametrize("name", POPULATIONS)
+@pytest.mark.parametrize("count", [2, 127, FEW, FEW + 1, 2 * TILE + 5])
+def test_every_result_of_every_population(name, count, monkeypatch):
+    columns = enlarged(scenes(name, min(count, FEW), 11), count)
+    assert_same_bits(*both(monkeypatch, columns, threads=1))
+
+
+def odd(count: int, seed: int) -> dict[str, np.ndarray]:
+    """Casework in which scenes are now and then of another kind, or cannot be used."""
+    rng = np.random.default_rng(seed)
+    columns = enlarged(scenes("casework", min(count, 5000), seed), count)
+    columns["M"] = np.full(count, 6.0)
+
+    def some(share: float) -> np.ndarray:
+        return rng.random(count) < share
+
+    columns["MU"][some(0.1)] = -10
+    columns["MU"][some(0.01)] = -11
+    columns["M"][some(0.1)] = 4
+    columns["M"][some(0.001)] = 5
+    columns["GA"][some(0.01)] += 3600
+    columns["TA"][some(0.001)] = np.inf
+    columns["IB"][some(0.01)] = np.inf
+    columns["MA"][some(0.001)] = -1
+    columns["UX"][some(0.001)] = np.nan
+    columns["EM"][some(0.01)] = 0.5
+    for name in ("UX", "UY", "WA", "VX", "VY", "WB"):
+        columns[name][some(0.01)] = 0
+    columns["UX"][some(0.001)] *= 1e200
+    return columns
+
+
+@pytest.mark.parametrize("count", [60, 5000, 100_000])
+def test_scenes_of_all_kinds_among_each_other(count, monkeypatch):
+    assert_same_bits(*both(monkeypatch, odd(count, count)))
+
+
+def test_kinds_that_change_far_behind_what_was_looked_at(monkeypatch):
+    """The machine goes on over all scenes of one kind, and must notice where another begins."""
+    count = 5 * TILE
+    for name, value in {"MU": -10.0, "GA": 1e6, "IA": np.inf, "UX": np.nan, "M": 4.0}.items():
+        columns = enlarged(scenes("casework", 5000, 5), count)
+        columns["M"] = np.full(count, 6.0)
+        columns["EM"] = np.full(count, -0.5)
+        columns[name][-TILE - 3] = value
+        columns["EM"][-7] = -0.25  # a column of one value but for a single scene
+        assert_same_bits(*both(monkeypatch, columns, threads=1))
+
+
+def test_slices_types_and_shapes(monkeypatch):
+    columns = odd(6000, 3)
+    thirds = {name: values[::3] for name, values in columns.items()}
+    assert_same_bits(*both(monkeypatch, thirds))
+    grid = {name: values.reshape(60, 100) for name, values in columns.items()}
+    assert_same_bits(*both(monkeypatch, {**grid, "MU": np.linspace(-1, 1, 100)}))
+    columns["UX"][np.abs(columns["UX"]) > 1e30] = 0
+    single = {name: values.astype(np.float32) for name, values in columns.items()}
+    assert_same_bits(*both(monkeypatch, single))
+    scalar = {name: float(values[0]) for name, values in columns.items()} | {"M": 6}
+    for name in ("MU", "GA", "IA", "E"):
+        assert_same_bits(*both(monkeypatch, {**scalar, name: columns[name][:50]}))
+    empty = {**scalar, "MU": np.empty(0)}
+    assert_same_bits(*both(monkeypatch, empty))
+
+
+def test_selections(monkeypatch):
+    columns = odd(3 * FEW, 9)
+    for name in RESULTS:
+        assert_same_bits(*both(monkeypatch, columns, name))
+    few = {name: values[:100] for name, values in scenes("casework", 100, 4).items()}
+    for names in (SIX, ("STATUS",), ("DVA", "STATUS", "MUC")):
+        assert_same_bits(*both(monkeypatch, few, names))
+
+
+def test_threads_and_room_of_the_callers(monkeypatch):
+    columns = odd(400_000, 2)
+    room = {name: np.empty(400_000) for name in SIX}
+    alone = both(monkeypatch, columns, SIX, threads=2)[1]
+    assert_same_bits(impact88.solve(columns, out=room, threads=2), alone)
+
+
+def test_quantities_that_are_no_results(monkeypatch):
+    columns = odd(500, 8)
+    names = ("gt", "determinant", "critical_denominator")
+    compiled = quantities(columns, names, sign=-1.0)
+    monkeypatch.setattr(native, "library", None)
+    assert_same_bits(compiled, quantities(columns, names, sign=-1.0))
+
+
+def test_the_variable_turns_it_off(monkeypatch):
+    monkeypatch.setenv(native.VARIABLE, "0")
+    code = "import impact88; print(impact88.accelerated)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "None\n"
+    assert impact88.accelerated
