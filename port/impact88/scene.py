@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from . import notebook
 from .doubles import double, is_number
@@ -187,8 +187,8 @@ class Scene(Mapping[str, str]):
                 )
 
     def to_toml(self) -> str:
-        """The scene as a commented TOML file."""
-        return template(self, self.title)
+        """The scene as a commented TOML file, in the units it came in."""
+        return template(shown_texts(self, self.units), self.title, self.units, self.estimated)
 
 
 def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
@@ -443,11 +443,34 @@ The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) op
 """Sides, axes and signs, for people who fill in a scene."""
 
 
+def shown_texts(texts: Mapping[str, str], units: str | None) -> dict[str, str]:
+    """Numbers in base units as bare numbers of the system of that name."""
+    if units is None:
+        return dict(texts)
+    from .amounts import shown_text
+    from .units import SYSTEMS
+
+    return {name: shown_text(name, text, SYSTEMS[units]) for name, text in texts.items()}
+
+
+def _labels(units: str | None) -> Callable[[str], str]:
+    """How the units of a file are called: rules where it names no system."""
+    if not units:
+        return str
+    from .units import SYSTEMS
+
+    return SYSTEMS[units].label
+
+
 def template(
-    values: Mapping[str, str] | None = None, title: str | None = None, units: str | None = None
+    values: Mapping[str, str] | None = None,
+    title: str | None = None,
+    units: str | None = None,
+    estimated: Collection[str] = (),
 ) -> str:
     """A commented scene file; without ``values`` the numbers are left to fill in; ``units``: the
-    system of its bare numbers (`impact88.units`)."""
+    system of its bare numbers (`impact88.units`); ``estimated``: names marked as estimates."""
+    label = _labels(units)
     lines = [
         "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per",
         '# unit of time. The digits are used as written. Write 0.911 or ".911": TOML takes no .911',
@@ -458,7 +481,6 @@ def template(
     ]
     if units:
         lines.append(f"units = {_quoted(units)}")
-    estimated = getattr(values, "estimated", {})
     heading = None
     for row in SCENE.values():
         if row.line != heading:
@@ -468,7 +490,7 @@ def template(
         value = text if _plain_toml(text) else _quoted(text)
         entry = f"{row.name} = {value}"
         mark = ", estimated" if row.name in estimated else ""
-        lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{row.unit}]{mark}")
+        lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{label(row.unit)}]{mark}")
     return "\n".join(lines) + "\n"
 
 
@@ -478,6 +500,7 @@ def known_template(
     """A file to fill in with what is known of ``names``; ``values``: what is known already;
     ``units``: the system of its bare numbers (`impact88.units`)."""
     known = {"M": DEFAULT_M} if values is None else values
+    label = _labels(units)
     lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
     if units:
         lines.append(f"units = {_quoted(units)}")
@@ -485,7 +508,7 @@ def known_template(
         row = quantity(name)
         meaning = "signed P_t/P_n, in place of MU" if name == "MUP" else row.meaning
         entry = f"{name} = {_quoted(known.get(name, ''))}"
-        lines.append(f"{entry:<12} # {row.symbol}: {meaning} [{row.unit}]")
+        lines.append(f"{entry:<12} # {row.symbol}: {meaning} [{label(row.unit)}]")
     return "\n".join(lines)
 
 

@@ -46,7 +46,7 @@ from typing import TYPE_CHECKING
 from ..errors import UserError
 from ..files import called, replacing
 from ..reconstruction.knowable import KNOWABLE
-from ..scene import known_template
+from ..scene import known_template, shown_texts
 from ..scene import template as scene_template
 from ..schemas import stamped
 from .options import (
@@ -147,7 +147,7 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: S
         if any(name not in solution.values for solution in solutions):
             raise UserError(f"{name} is not determined by what is known", source_of(args.file))
     if args.write_scene:
-        _write_scene(solutions, args)
+        _write_scene(solutions, args, units)
     tables = []
     for solution in solutions:
         with progress(args.samples, "reconstruct", "draws") as meter:
@@ -160,11 +160,12 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: S
     print(in_turn([as_text(*one, units) for one in tables]))
 
 
-def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace) -> None:
+def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace, units: System) -> None:
     if len(solutions) > 1:
         raise UserError(f"{len(solutions)} impacts agree with what is known; expected one")
     texts = {name: repr(value).upper() for name, value in solutions[0].scene().items()}
     texts["M"] = "4" if texts["M"] == "4.0" else "6"
     with replacing(args.write_scene) as file:
-        file.write(scene_template(texts, f"Reconstructed from {called(args.file or '--set')}"))
+        title = f"Reconstructed from {called(args.file or '--set')}"
+        file.write(scene_template(shown_texts(texts, units.name or None), title, units.name))
     print(f"scene written to {args.write_scene}", file=sys.stderr)

@@ -30,6 +30,8 @@ _NOMINAL_DIGITS = 9
 """Digits of a range's nominal value, as many as Applesoft prints."""
 _DIGITS = 12
 """Digits of an exact result, as many as double precision is sure of."""
+_ROUNDING = 1e-14
+"""Share of the largest value of its kind below which a result shows as 0: a hundred roundings."""
 _OWN_AXES = frozenset(("CAF", "CAL", "CBF", "CBL"))
 """The contact point in a vehicle's own axes, which the form has as DA PA, DB PB."""
 _WHOSE_BASE = {"us": "chapter", "metric": "si"}
@@ -121,16 +123,22 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     return told
 
 
-def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[dict[str, str]]:
-    """The results as a table's rows, the names and meanings from the one table; ``shown``: in the
-    units of the form where those are not the base."""
+def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[dict[str, Any]]:
+    """The results as a table's rows, the names and meanings from the one table; ``shown``, and
+    ``value`` with all its digits: in the units of the form, ``label``."""
     from ..units import system_of
 
     system = system_of(units)
+    values = {name: one["double"] for name, one in results.items() if one["double"] is not None}
 
-    def shown(rule: str, value: float) -> str:
-        label = system.label(rule)
-        return f"{number(system.shown(rule, value))} {label}" if label != rule else ""
+    def exact(name: str) -> float:
+        """The double; 0 where it is no more than the rounding of others of its kind."""
+        alike = [abs(v) for n, v in values.items() if RESULTS[n].unit == RESULTS[name].unit]
+        return values[name] if abs(values[name]) > _ROUNDING * max(alike) else 0.0
+
+    def shown(name: str) -> str:
+        label = system.unit(name)
+        return f"{number(exact(name) * system.factor(name))} {label}" if label else ""
 
     return [
         {
@@ -139,11 +147,13 @@ def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[d
             "meaning": quantity.meaning,
             "unit": quantity.unit,
             "printed": results[name]["printed"] or "",
-            "exact": number(results[name]["double"], _DIGITS),
-            "shown": shown(quantity.unit, results[name]["double"]),
+            "exact": number(exact(name), _DIGITS),
+            "shown": shown(name),
+            "value": exact(name) * system.factor(name),
+            "label": system.unit(name),
         }
         for name, quantity in RESULTS.items()
-        if name in results and name not in _NOT_SHOWN and results[name]["double"] is not None
+        if name in values and name not in _NOT_SHOWN
     ]
 
 

@@ -120,19 +120,17 @@ def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, 
 def _row(
     name: str, value: float | None, values: Mapping[str, Any], system: System
 ) -> dict[str, Any]:
-    # the object has uncertainties in base units
-    factor = system.factor(name)
     spread = values.get("uncertainty", {}).get(name, {})
     quantiles = spread.get("quantiles", {})
     columns = {
-        _DEVIATION: _times(factor, spread.get("first_order")),
+        _DEVIATION: spread.get("first_order"),
         _AMPLIFIED: values.get("amplification", {}).get(name),
     }
     bounds = {
-        "5 %": _times(factor, quantiles.get("0.05")),
-        "95 %": _times(factor, quantiles.get("0.95")),
-        _LOWER: _times(factor, spread.get("lower")),
-        _UPPER: _times(factor, spread.get("upper")),
+        "5 %": quantiles.get("0.05"),
+        "95 %": quantiles.get("0.95"),
+        _LOWER: spread.get("lower"),
+        _UPPER: spread.get("upper"),
     }
     return {
         **_what(name, system),
@@ -155,21 +153,16 @@ def _what(name: str, system: System) -> dict[str, str]:
     return {"name": name, "symbol": what.symbol, "meaning": what.meaning, "unit": unit}
 
 
-def _times(factor: float, value: float | None) -> float | None:
-    return None if value is None else factor * value
-
-
 def _text(value: float | None, digits: int) -> str:
     return "" if value is None else number(value, digits)
 
 
 def _adjusted(one: Mapping[str, Any], system: System) -> dict[str, Any]:
-    factor = system.factor(one["name"])
     return {
         **_what(one["name"], system),
-        "measured": _text(factor * one["measured"], _DIGITS),
-        "tolerance": _text(factor * one["tolerance"], _DIGITS_OF_A_SPREAD),
-        "adjusted": _text(factor * one["adjusted"], _DIGITS),
+        "measured": _text(one["measured"], _DIGITS),
+        "tolerance": _text(one["tolerance"], _DIGITS_OF_A_SPREAD),
+        "adjusted": _text(one["adjusted"], _DIGITS),
         "moved": f"{one['moved'] + 0.0:.2f}",
     }
 

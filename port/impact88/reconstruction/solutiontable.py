@@ -12,7 +12,7 @@ from ..names import CHAPTER, PIVOT, RESULTS, SCENE, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..schemas import stamped
 from ..status import sentences
-from ..units import RULES, System
+from ..units import RULES, System, written
 from .doublerange import within_doubles
 from .impulse import clock, forces
 from .outcome import moment_ratio, outcome
@@ -56,20 +56,15 @@ def completed(values: dict[str, float], contact_time: float | None) -> dict[str,
     return {name: values[name] for name in _ORDER if name in values and name not in untold}
 
 
-def written(values: Mapping[str, float], units: System) -> dict[str, float]:
-    """Values in base units as they are shown."""
-    if units is RULES:
-        return dict(values)
-    return {name: units.shown(quantity(name).unit, value) for name, value in values.items()}
-
-
-def warnings(solution: Solution, values: Mapping[str, float]) -> list[str]:
+def warnings(solution: Solution, values: Mapping[str, float], units: System = RULES) -> list[str]:
     """What a reader must know about a solution of a single scene, in sentences."""
     lines = []
+    mismatch = float(solution.mismatch)
     if solution.contradictory:
         lines.append(
             "the known values contradict one another: the solution fits them by least squares, "
-            f"root-mean-square mismatch {number(solution.mismatch, 3)} [length/time]"
+            f"root-mean-square mismatch {number(units.shown('length/time', mismatch), 3)} "
+            f"[{units.label('length/time')}]"
         )
     worst = {name: float(value) for name, value in solution.amplification.items()}
     bad = {name: value for name, value in worst.items() if not value < BADLY_CONDITIONED}
@@ -97,7 +92,7 @@ def as_text(
         _conditions(solution),
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
-    for warning in warnings(solution, values):
+    for warning in warnings(solution, values, units):
         lines += paragraph(f"! {warning}")
     return "\n".join(lines).rstrip("\n")
 
@@ -205,10 +200,10 @@ def as_json(
             "units": {n: units.label(quantity(n).unit) for n in values if n != "STATUS"},
             "amplification": solution.amplification,
             "badly_conditioned": solution.badly_conditioned,
-            "mismatch": solution.mismatch,
+            "mismatch": solution.mismatch * units.shown("length/time", 1.0),
             "contradictory": solution.contradictory,
             "status": status if "STATUS" in values else None,
-            "warnings": warnings(solution, values),
+            "warnings": warnings(solution, values, units),
         }
     )
     return whole

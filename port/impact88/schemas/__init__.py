@@ -29,7 +29,7 @@ NUMBERS = {
     "selfcheck": 1,
     "witness": 1,
     "bounds": 2,
-    "reconstruct": 1,
+    "reconstruct": 2,
 }
 """Name of a form -> its number. Names are those of the commands, and the oracle's ``vectors``."""
 CONVENTIONS = "conventions"

@@ -22,11 +22,10 @@ from ..reconstruction.solutiontable import (
     completed,
     named_table,
     velocities_table,
-    written,
 )
 from ..reconstruction.state import COURSES, SPEEDS
 from ..status import sentences
-from ..units import RULES, System, base_of
+from ..units import RULES, System, written
 from .boundstable import unbounded
 from .reconstructed import Draws, Range, draws, ranges
 from .uncertain import Uncertain
@@ -104,7 +103,10 @@ def completed_values(solution: Reconstruction, contact_time: float | None) -> di
 
 @within_doubles
 def warnings(
-    solution: Reconstruction, values: Mapping[str, float], spread: Uncertainty
+    solution: Reconstruction,
+    values: Mapping[str, float],
+    spread: Uncertainty,
+    units: System = RULES,
 ) -> list[str]:
     """What a reader must know, in sentences."""
     lines = []
@@ -125,14 +127,16 @@ def warnings(
         lines.append(
             "the known values contradict one another and none has a tolerance: all known "
             "velocities were given the same one (spins that divided by the radius of gyration, "
-            f"{number(solution.system.gyration, 4)}); deviations are those of the misfit"
+            f"{number(units.shown('length', solution.system.gyration), 4)}"
+            f"{' ' + units.label('length') if units is not RULES else ''}); "
+            "deviations are those of the misfit"
         )
     else:
         far = [a for a in solution.adjusted if abs(a.moved) > TOO_FAR]
         if far:
             moved = ", ".join(f"{a.name} by {number(a.moved, 2)}" for a in far)
             lines.append(f"the measured values contradict one another: moved, tolerances: {moved}")
-    lines += _ill_posed(solution, spread)
+    lines += _ill_posed(solution, spread, units)
     missing = [name for name, bound in spread.ranges.items() if math.isnan(bound.lower)]
     if missing:
         lines.append("no impact was found that lies within the limits of all known values at once")
@@ -141,7 +145,7 @@ def warnings(
     return lines + sentences(int(values.get("STATUS", 0)), values)
 
 
-def _ill_posed(solution: Reconstruction, spread: Uncertainty) -> list[str]:
+def _ill_posed(solution: Reconstruction, spread: Uncertainty, units: System) -> list[str]:
     """Velocities that the known values hardly determine, with the number and what drives it."""
     system = solution.system
     lines = []
@@ -151,7 +155,8 @@ def _ill_posed(solution: Reconstruction, spread: Uncertainty) -> list[str]:
         share = spread.deviations[name] / system.scale(name)
         if share > ILL_POSED:
             driver, part = _drivers(solution, spread, row)[0]
-            deviation = number(spread.deviations[name], 3)
+            deviation = number(spread.deviations[name] * units.factor(name), 3)
+            deviation += f" {units.unit(name)}".rstrip()
             lines.append(
                 f"ill-posed: {name} has a standard deviation of {deviation}, {100 * share:.0f} % "
                 f"of the largest speed; {100 * part:.0f} % of its variance comes from {driver}"
@@ -192,7 +197,7 @@ def as_text(
         _driving(solution, spread),
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
-    for warning in warnings(solution, values, spread):
+    for warning in warnings(solution, values, spread, units):
         lines += paragraph(f"! {warning}")
     return "\n".join(lines).rstrip("\n")
 
@@ -293,22 +298,20 @@ def as_json(
     spread: Uncertainty,
     units: System = RULES,
 ) -> dict[str, Any]:
-    """The reconstruction for a program; numbers that do not exist are null. Values are in
-    ``units``; uncertainties and adjustments in base units, which "base" names."""
+    """The reconstruction for a program, in ``units``; numbers that do not exist are null."""
     drawn = spread.draws
     whole: dict[str, Any] = plain(
         {
             "known": list(solution.system.known),
             "values": {n: v for n, v in written(values, units).items() if n != "STATUS"},
             "units": {n: units.label(quantity(n).unit) for n in values if n != "STATUS"},
-            "base": base_of(units),
             "undetermined": list(solution.undetermined),
             "adjusted": [
                 {
                     "name": a.name,
-                    "measured": a.measured,
-                    "tolerance": a.tolerance,
-                    "adjusted": a.adjusted,
+                    "measured": a.measured * units.factor(a.name),
+                    "tolerance": a.tolerance * units.factor(a.name),
+                    "adjusted": a.adjusted * units.factor(a.name),
                     "moved": a.moved,
                 }
                 for a in solution.adjusted
@@ -318,23 +321,28 @@ def as_json(
             "equal_tolerances_assumed": solution.assumed,
             "uncertainty": {
                 name: {
-                    "first_order": spread.deviations[name],
+                    "first_order": spread.deviations[name] * units.factor(name),
                     "drivers": dict(_drivers(solution, spread, row)),
-                    **(_drawn(drawn.values[name], spread.ranges[name]) if drawn else {}),
+                    **(
+                        _drawn(drawn.values[name], spread.ranges[name], units, name)
+                        if drawn
+                        else {}
+                    ),
                 }
                 for row, name in enumerate(spread.names)
             },
             "correlations": {"names": list(spread.names), "matrix": spread.correlations},
             "draws_without_solution": drawn.failed if drawn else None,
             "status": int(values.get("STATUS", 0)),
-            "warnings": warnings(solution, values, spread),
+            "warnings": warnings(solution, values, spread, units),
         }
     )
     return whole
 
 
-def _drawn(values: NDArray[np.float64], bound: Range) -> dict[str, Any]:
-    finite = values[np.isfinite(values)]
+def _drawn(values: NDArray[np.float64], bound: Range, units: System, name: str) -> dict[str, Any]:
+    factor = units.factor(name)
+    finite = values[np.isfinite(values)] * factor
     none = not len(finite)
     return {
         "mean": math.nan if none else float(finite.mean()),
@@ -342,9 +350,9 @@ def _drawn(values: NDArray[np.float64], bound: Range) -> dict[str, Any]:
         "quantiles": {
             f"{q:g}": math.nan if none else float(np.quantile(finite, q)) for q in QUANTILES
         },
-        "lower": bound.lower,
-        "upper": bound.upper,
+        "lower": bound.lower * factor,
+        "upper": bound.upper * factor,
         "unbounded": unbounded(bound),
-        "at_lower": bound.at_lower,
-        "at_upper": bound.at_upper,
+        "at_lower": written(bound.at_lower, units),
+        "at_upper": written(bound.at_upper, units),
     }

@@ -1,0 +1,239 @@
+"""One collision in four systems of units through every command: the same after conversion."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from impact88.amounts import shown_text
+from impact88.cli import main
+from impact88.names import quantity
+from impact88.scene import sample
+from impact88.units import SYSTEMS, size_of
+
+Amounts = dict[str, float]
+"""By what it is called: values in m, kg, s, degrees and rad/s."""
+METRES = {"MA": "1500", "MB": "1100", "IA": "2500", "IB": "1500", "DA": "1.9", "DB": "1.4"}
+SPEEDS = {"UX": "-12", "UY": "1", "WA": "0.2", "VX": "6", "VY": "9", "WB": "-0.1"}
+SCENE = {**sample(1), **METRES, **SPEEDS, "GA": "-20", "MU": ".4"}
+
+
+def si(name: str, value: float, unit: str) -> float:
+    rule = quantity(name).unit
+    if rule in ("1", "percent", "degree", "rad/time", "bits"):
+        return value
+    size = size_of(unit, rule) or size_of(unit.replace("-", " "), rule)
+    assert size is not None, (name, unit)
+    return value * float(size[0])
+
+
+def texts(system: str, values: Mapping[str, str] = SCENE) -> dict[str, str]:
+    """The values as bare numbers of a system."""
+    shown = SYSTEMS[system]
+    result = {}
+    for name, text in values.items():
+        base = float(text) / float(shown.scale(quantity(name).unit))
+        plain = quantity(name).unit in ("1", "degree")
+        result[name] = text if plain else shown_text(name, repr(base), shown)
+    return result
+
+
+def toml(system: str, **more: str) -> str:
+    entries = {**texts(system), **more}
+    return f'units = "{system}"\n' + "".join(f'{n} = "{t}"\n' for n, t in entries.items() if t)
+
+
+def headed(text: str) -> Amounts:
+    """The first row of a CSV table."""
+    head, row = list(csv.reader(io.StringIO(text)))[:2]
+    found = {}
+    for heading, cell in zip(head, row, strict=True):
+        name, _, unit = heading.partition(" [")
+        found[name] = si(name, float(cell), unit.rstrip("]"))
+    return found
+
+
+def named(values: Mapping[str, Any], units: Mapping[str, str]) -> Amounts:
+    return {n: si(n, v, units.get(n, "")) for n, v in values.items() if isinstance(v, int | float)}
+
+
+Door = Callable[[str, Path, Any], Amounts]
+
+
+def _printed(capsys: Any, *words: str) -> str:
+    assert main(list(words)) == 0
+    return str(capsys.readouterr().out)
+
+
+def solve_a_scene(system: str, path: Path, capsys: Any) -> Amounts:
+    return headed(_printed(capsys, "solve", str(path)))
+
+
+def solve_a_table(system: str, path: Path, capsys: Any) -> Amounts:
+    table = path.with_suffix(".csv")
+    table.write_text(_printed(capsys, "solve", str(path), "--outputs", "LOSS"))
+    return headed(_printed(capsys, "solve", str(table)))
+
+
+def solve_a_bare_table(system: str, path: Path, capsys: Any) -> Amounts:
+    table, entries = path.with_suffix(".csv"), texts(system)
+    table.write_text(",".join(entries) + "\n" + ",".join(entries.values()) + "\n")
+    found = headed(_printed(capsys, "solve", str(table), "--units", system, "--results-only"))
+    return found
+
+
+def solve_json_lines(system: str, path: Path, capsys: Any) -> Amounts:
+    out = path.with_suffix(".jsonl")
+    assert main(["solve", str(path), "-o", str(out)]) == 0
+    row = json.loads(out.read_text())
+    pairs = [(*key.rstrip("]").partition(" [")[::2], value) for key, value in row.items()]
+    return {name: si(name, value, unit) for name, unit, value in pairs}
+
+
+def bounds(system: str, path: Path, capsys: Any) -> Amounts:
+    ranges = ["--range", "UX=+- 5%", "--range", "MA=+- 2%", "--samples", "500"]
+    shown = json.loads(_printed(capsys, "bounds", str(path), *ranges, "--json"))
+    found = {}
+    for name, one in shown["outputs"].items():
+        for key in ("nominal", "lower", "upper", "mean", "deviation"):
+            found[f"{name} {key}"] = si(name, one[key], one["unit"])
+        found |= {f"{name} at {n}": v for n, v in named(one["at_lower"], labels(system)).items()}
+    return found
+
+
+def labels(system: str) -> dict[str, str]:
+    return {name: SYSTEMS[system].label(quantity(name).unit) for name in SCENE}
+
+
+def reconstruct(system: str, path: Path, capsys: Any) -> Amounts:
+    shown = json.loads(
+        _printed(
+            capsys, "reconstruct", str(path), "--set", "UX=+- 5%", "--samples", "200", "--json"
+        )
+    )
+    (one,) = shown["solutions"]
+    found = named(one["values"], one["units"])
+    for name, spread in one["uncertainty"].items():
+        for key in ("first_order", "mean", "lower", "upper"):
+            found[f"{name} {key}"] = si(name, spread[key], one["units"][name])
+    return found
+
+
+def write_scene(system: str, path: Path, capsys: Any) -> Amounts:
+    out = path.with_name("found.toml")
+    assert main(["reconstruct", str(path), "--write-scene", str(out)]) == 0
+    assert f'units = "{system}"' in out.read_text("utf-8")
+    capsys.readouterr()
+    return headed(_printed(capsys, "solve", str(out)))
+
+
+def delta_v(system: str, path: Path, capsys: Any) -> Amounts:
+    chosen = {name: texts(system)[name] for name in ("MA", "MB", "UX", "UY", "VX", "VY")}
+    words = [word for n, t in chosen.items() for word in ("--set", f"{n}={t}")]
+    shown = json.loads(
+        _printed(capsys, "delta-v", *words, "--set", "LOSS=40", "--units", system, "--json")
+    )
+    return named(shown["given"], shown["units"]) | named(shown["estimates"][0], shown["units"])
+
+
+def colinear(system: str, path: Path, capsys: Any) -> Amounts:
+    speeds = {"MA": "UX", "UN": "UX", "UT": "UY", "VN": "VX", "VT": "VY"}
+    entries = texts(system)
+    chosen = {name: entries[like] for name, like in speeds.items() if name != "MA"}
+    chosen |= {"MA": entries["MA"], "MB": entries["MB"], "E": ".1", "MUP": ".3"}
+    words = [word for n, t in chosen.items() for word in ("--set", f"{n}={t}")]
+    shown = json.loads(_printed(capsys, "colinear", *words, "--units", system, "--json"))
+    return named(shown["values"], shown["units"])
+
+
+def barrier(system: str, path: Path, capsys: Any) -> Amounts:
+    names = ("MA", "IA", "DA", "PA", "TA", "GA", "E", "MU", "EM", "UX", "UY", "WA")
+    words = [word for n in names for word in ("--set", f"{n}={texts(system)[n]}")]
+    shown = json.loads(_printed(capsys, "barrier", *words, "--units", system, "--json"))
+    return named(shown["solutions"][0]["values"], shown["solutions"][0]["units"])
+
+
+def desk(system: str, path: Path, capsys: Any) -> Amounts:
+    from impact88.desk import collision
+
+    rows = collision.answer(texts(system), system)["results"]
+    assert all(row["shown"].endswith(row["label"]) for row in rows)
+    return {row["name"]: si(row["name"], row["value"], row["label"]) for row in rows}
+
+
+def desk_bounds(system: str, path: Path, capsys: Any) -> Amounts:
+    from impact88.desk import collision
+
+    values = {**texts(system), "MU": ".3 .. .5"}
+    shown = collision.bounds_answer(values, system)["outputs"]
+    return {n: si(n, one["upper"], one["unit"]) for n, one in shown.items()}
+
+
+DOORS: list[Door] = [
+    solve_a_scene,
+    solve_a_table,
+    solve_a_bare_table,
+    solve_json_lines,
+    bounds,
+    reconstruct,
+    write_scene,
+    delta_v,
+    colinear,
+    barrier,
+    desk,
+    desk_bounds,
+]
+
+
+@pytest.mark.parametrize("door", DOORS, ids=lambda door: door.__name__)
+def test_every_system_gives_the_same(door: Door, tmp_path: Path, capsys: Any) -> None:
+    answers = {}
+    for system in SYSTEMS:
+        path = tmp_path / f"{system}.toml"
+        path.write_text(toml(system), encoding="utf-8")
+        answers[system] = door(system, path, capsys)
+    expected = answers.pop("si")
+    assert len(expected) >= 5
+    for found in answers.values():
+        for name, value in expected.items():
+            if name.split()[0] in ("COND", "STATUS"):
+                continue
+            close = 1e-9 if " " in name else 1e-12  # searched bounds end where searching ends
+            assert found[name] == pytest.approx(value, rel=close, abs=1e-11), name
+
+
+VARIANTS = {
+    "contact point": {"DA": "", "PA": "", "CAF": "7 ft", "CAL": "-2.5 ft"},
+    "outline": {"LA": "15 ft 6 in", "BA": "5 ft 10 in"},
+    "estimate": {"LA": "15 ft 6 in", "BA": "6 ft", "IA": "estimate +- 20 %"},
+    "ranges without blanks": {"UX": "-31..-29 mph", "MU": "0.5+-0.1"},
+    "no M": {"M": "", "UX": "-30 mph", "UX_source": "event data recorder", "case": "24-117"},
+}
+COMMANDS = {
+    "run": ["run", "FILE"],
+    "solve": ["solve", "FILE"],
+    "solve --sweep": ["solve", "FILE", "--sweep", "MU=0:1:3"],
+    "bounds": ["bounds", "FILE", "--range", "E=0 .. .1", "--samples", "100", "--outputs", "DVA"],
+    "reconstruct": ["reconstruct", "FILE", "--samples", "100"],
+    "figure scene": ["figure", "scene", "FILE", "-o", "x.svg"],
+    "figure planar": ["figure", "planar", "FILE", "-o", "x.svg"],
+    "oracle": ["run", "FILE", "--json"],
+}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_the_same_file_at_every_door(
+    variant: str, command: str, tmp_path: Path, monkeypatch: Any, capsys: Any
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "FILE").write_text(toml("us", **VARIANTS[variant]), encoding="utf-8")
+    (tmp_path / "FILE.toml").write_text(toml("us", **VARIANTS[variant]), encoding="utf-8")
+    words = ["FILE.toml" if word == "FILE" else word for word in COMMANDS[command]]
+    assert main(words) == 0, capsys.readouterr().err
