@@ -12,7 +12,7 @@ import pytest
 from captures import ROOT
 from impact88.errors import UserError
 from impact88.fields import INPUTS, outcome_fields
-from impact88.judging.judgement import Status, machine_read, settled
+from impact88.judging.judgement import Status, settled
 from impact88.program.run import run
 from impact88.reading.margins import cut_before
 from impact88.reading.numerals import printable
@@ -141,7 +141,6 @@ def test_nothing_beside_a_number_is_lost(old: str, new: str) -> None:
     [
         ("IA=", "lA="),
         ("PA PB TA TB GA", "PA PE TA TE GA"),
-        ("XA= -29.04", "XB= -29.04"),
         ("VX= 14.52", "VWX= 14.52"),
         ("MU=", "NU="),
         (" %", ""),
@@ -177,7 +176,7 @@ def test_every_glyph_ends_in_a_number_a_label_or_left_over() -> None:
 
 def test_fragments_and_second_pages_are_told() -> None:
     results = [verify(one) for one in read_printouts(SAMPLE + "\n PAGE 2\n\nMA= 143.5 MB= 95.8\n")]
-    assert [result.verdict for result in results] == [Verdict.IDENTICAL, Verdict.INCOMPLETE]
+    assert [result.verdict for result in results] == [Verdict.IDENTICAL_AS_READ, Verdict.INCOMPLETE]
 
 
 def test_results_alone_with_the_inputs_apart() -> None:
@@ -225,23 +224,21 @@ def test_a_lost_sign_is_a_readers_only_where_a_reader_was() -> None:
 
 def test_settled_by_its_own_rule() -> None:
     (shown,) = read_printouts(NOISE)
-    assert machine_read(shown)
-    assert not machine_read(read_printouts(SAMPLE)[0])
+    assert shown.machine_read
+    assert not read_printouts(SAMPLE)[0].machine_read
     checks = verify(shown).fields
     assert settled(shown, checks, [])
     checks[3].status = Status.NOT_READ
     assert not settled(shown, checks, [])
 
 
-@pytest.mark.parametrize(("elsewhere", "settles"), [(3, True), (2, False)])
-def test_a_digit_that_the_reader_cannot_read(elsewhere: int, settles: bool) -> None:
-    """A zero read as an 8 once is the reader's where three other zeros came out as something else
-    again, and an alteration where two did; and no reader takes a 0 for a 7."""
+@pytest.mark.parametrize("elsewhere", range(4))
+def test_a_letter_for_a_digit_licenses_no_digit_for_a_digit(elsewhere: int) -> None:
+    """However often zeros came out as something else: an 8 for a 0 that stands alone differs."""
     text = NOISE.replace("XA= -29.04", "XA= -29.84")
-    for old, new in (("WB= 0", "WB= @"), ("YA= 0", "YA= @"), ("UY= 0", "UY= @"))[:elsewhere]:
+    for old, new in (("WB= 0", "WB= O"), ("YA= 0", "YA= @"), ("UY= 0", "UY= O"))[:elsewhere]:
         text = text.replace(old, new, 1)
-    assert (one(text).verdict in SETTLED) is settles
-    assert one(text.replace("XA= -29.84", "XA= -29.74")).verdict is Verdict.DIFFERS
+    assert one(text).verdict is Verdict.DIFFERS
 
 
 WORN = {
@@ -256,31 +253,13 @@ WORN = {
 """Numbers in which a glyph was read for another; a fifth of a page's."""
 
 
-def worn(most: int) -> str:
-    """A page whose reader misread so many numbers."""
+def test_a_lone_digit_differs_on_a_badly_read_page_too() -> None:
     text = NOISE
-    for old, new in [*WORN.items()][:most]:
+    for old, new in WORN.items():
         assert old in text
         text = text.replace(old, new, 1)
-    return text
-
-
-@pytest.mark.parametrize(("misread", "settles"), [(7, True), (6, False)])
-def test_a_digit_taken_for_its_look_alike_on_a_badly_read_page(misread: int, settles: bool) -> None:
-    """One is the reader's where a fifth of the numbers is, and that is told; two are not, and a
-    digit that nothing like it was read for never is."""
-    text = worn(misread)
     assert one(text).verdict in SETTLED
-    assert not any("another digit" in line for line in one(text).findings)
-    alone = one(text.replace("-8.78", "-3.78"))
-    assert (alone.verdict in SETTLED) is settles
-    told = [line for line in alone.findings if "XAF (3 for 8)" in line]
-    assert len(told) == settles
-    assert all(f"misread {misread + 1} of 36" in line for line in told)
-    if settles:
-        unlike, two = ("-8.78", "-4.78"), ("15.91", "16.91")
-        assert one(text.replace(*unlike)).verdict is Verdict.DIFFERS
-        assert one(text.replace("-8.78", "-3.78").replace(*two)).verdict is Verdict.DIFFERS
+    assert one(text.replace("-8.78", "-3.78")).verdict is Verdict.DIFFERS
 
 
 def test_a_habit_of_the_reader_is_put_right_throughout() -> None:
@@ -386,23 +365,6 @@ def test_an_exponent_is_no_label() -> None:
     assert shown.text("E") == "5E-03"
 
 
-ZEROS = {"UX= -29.04": "UX= -29.84", "60      -30": "66      -38", "KE= 100904": "KE= 180904"}
-"""Zeros read as digits like them, in several numbers at once."""
-
-
-def test_a_page_of_zeros_misread_is_searched_with_all_of_them_put_right() -> None:
-    text = NOISE
-    for old, new in ZEROS.items():
-        text = text.replace(old, new)
-    for old, new in (("WB= 0", "WB= @"), ("YA= 0", "YA= @"), ("UY= 0", "UY= @")):
-        text = text.replace(old, new, 1)
-    result = one(text)
-    assert result.verdict in SETTLED
-    assert numbers(result) == sample(1).numbers()
-    assert {"UX", "TB", "GA", "KI"} <= {check.name for check in result.doubtful}
-    assert one(text.replace("MA= 143.5", "MA= 148.5")).verdict not in SETTLED
-
-
 def test_decimals_lost_behind_their_point_are_a_readers_only_where_a_reader_was() -> None:
     """FORTRAN ends whole numbers so, and a person copies what it printed."""
     for text, settles in ((NOISE, True), (SAMPLE, False)):
@@ -439,8 +401,8 @@ def test_a_mark_for_the_illegible_may_stand_for_a_whole_number() -> None:
 
 def test_blanks_inside_numbers_are_a_readers() -> None:
     text = SAMPLE.replace("14.52", "14. 52").replace("25.15", "25. 15")
-    assert not machine_read(read_printouts(text)[0])
-    assert machine_read(read_printouts(text.replace("57.47", "57. 47"))[0])
+    assert not read_printouts(text)[0].machine_read
+    assert read_printouts(text.replace("57.47", "57. 47"))[0].machine_read
 
 
 @pytest.mark.parametrize("row", ["~19.8 -38,7 O) 60 -30 |", "-19.8-38.7 0 60-30"])

@@ -41,6 +41,8 @@ _WORSE = 1.5
 _GOOD = 1.6
 _SLIPS_BESIDES = 60
 _TWINS = 8
+LABELS_EXCHANGED = "labels exchanged"
+LABEL_WRONG = "another label"
 NO_SINGLE_SLIP = "no single slip explains this"
 
 _COST = {
@@ -101,11 +103,12 @@ def explain(
         [check.name for check in checks if check.status == Status.CONTRADICTED]
         + [f"reply {check.name}" for check in replies if check.status == Status.CONTRADICTED]
         + ([ending.name] if ending.status == Status.CONTRADICTED else [])
+        + [f"label {one.name}" for one in shown.mislabelled]
     )
     work = _Work(shown, recovered, base, {check.name: check for check in checks})
     alone = work.by_results_alone(replies)
-    explanations = [alone] if alone else []
-    if not recovered.missing:
+    explanations = [*([alone] if alone else []), *work.labels_exchanged()]
+    if not recovered.missing and any(not name.startswith("label ") for name in base):
         reread = list(work.rereading.best() if rereads is None else rereads)
         explanations += work.rereads(reread, replies)
         hypotheses = otherruns.hypotheses(shown, recovered)
@@ -148,12 +151,43 @@ class _Work:
 
     def by_results_alone(self, replies: Sequence[FieldCheck]) -> Explanation | None:
         """Results and replies that are one slip away from what they should be."""
-        names = {name for name in self.base if name != "ENDING"}
+        names = {name for name in self.base if name != "ENDING" and not name.startswith("label ")}
         changes = list(self._slips(names, self.recovered.outcome.fields, replies))
         if not changes:
             return None
         unexplained = self.base - {change.field for change in changes}
         return self._explanation(changes, unexplained, len(unexplained))
+
+    def labels_exchanged(self) -> Iterator[Explanation]:
+        """Labels that stand in each other's place, or say another number, on numbers that are what
+        the program prints where they stand."""
+        wrong = [
+            one
+            for one in self.shown.mislabelled
+            if one.name in self.checks and self.checks[one.name].status == Status.READ
+        ]
+        if not wrong:
+            return
+        read, printed = (
+            sorted(getattr(one, side) for one in wrong) for side in ("read", "printed")
+        )
+        kind = LABELS_EXCHANGED if read == printed else LABEL_WRONG
+        unexplained = self.base - {f"label {one.name}" for one in wrong}
+        changes = [
+            {
+                "kind": kind, "field": one.name, "printed": one.read, "would_be": one.printed,
+                "line": one.line, "column": one.column,
+                "look": f"line {one.line}, column {one.column}: is this {one.read} {one.printed}?",
+            }
+            for one in wrong
+        ]  # fmt: skip
+        first = wrong[0]
+        yield Explanation(
+            kind, first.name, first.read, first.printed, len(wrong), len(unexplained),
+            "the numbers are what the program prints where they stand", changes,
+            [str(change["look"]) for change in changes],
+            weight=1.0 + len(unexplained), unexplained=unexplained,
+        )  # fmt: skip
 
     def rereads(
         self, reread: Sequence[Reread], replies: Sequence[FieldCheck]
@@ -263,6 +297,8 @@ class _Work:
         self, names: set[str], fields: dict[str, str], replies: Sequence[FieldCheck]
     ) -> Iterator[Change]:
         for name in sorted(names - {"ENDING"}):
+            if name.startswith("label "):
+                continue
             if name.startswith("reply "):
                 check = next(one for one in replies if f"reply {one.name}" == name)
                 should = self.recovered.scene.get(check.name)

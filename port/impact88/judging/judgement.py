@@ -270,6 +270,8 @@ def verdict_of(
     every = [*fields, *replies, ending]
     if any(check.status == Status.CONTRADICTED for check in every):
         return Verdict.DIFFERS
+    if shown.mislabelled:
+        return Verdict.DIFFERS
     unread = any(check.status in (Status.NOT_READ, Status.NOT_COMPARED) for check in fields)
     if unread or ending.same is None or recovered.missing or shown.fragment_of_run:
         return Verdict.INCOMPLETE
@@ -279,29 +281,16 @@ def verdict_of(
 
 
 def beside(shown: Printout) -> bool:
-    """Whether anything is left over beside a number, or a reply could not be read."""
-    return any(piece.beside for piece in shown.left_over) or bool(shown.remarks)
+    """Whether anything is left over that may bear on a number, a reply could not be read, or a
+    label leaves a doubt about which number it names."""
+    return (
+        any(piece.beside for piece in shown.left_over)
+        or any(one.doubt for one in shown.labels)
+        or bool(shown.remarks)
+    )
 
 
-MACHINE_READ = 3
-"""So many letters of labels misread, and a machine read the page: people do not type PE for PB."""
 _READ_WELL = 0.6
-_TYPED = frozenset("0123456789.,-+EOILQ?")
-
-
-def machine_read(shown: Printout) -> bool:
-    """Whether the text bears the marks of an optical reader: letters of labels and asterisks that
-    nobody would type so, foreign glyphs and blanks within numbers, specks beside them."""
-    damaged = sum(not _typed_so(reading) for reading in shown.fields.values())
-    specks = sum(piece.beside and len(piece.text) <= 3 for piece in shown.left_over)
-    return shown.misread_letters + damaged + specks >= MACHINE_READ
-
-
-def _typed_so(reading: Reading) -> bool:
-    """Whether a person may have typed a number so: in one piece, with O for 0 and l for 1 at
-    worst."""
-    whole = all(glyph.joined for glyph in reading.region[1:])
-    return whole and all(glyph.char in _TYPED for glyph in reading.region)
 
 
 def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
@@ -310,15 +299,14 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
     A reader loses and adds signs and points, and a digit of a number here and there, and where it
     takes one digit for another it does so in more places than one. A digit altered on the paper
     stands alone: a digit cleanly read as another is not looked past unless the page shows the
-    same mistake again, or shows that this reader cannot read the digit that is printed there, or
-    cannot read the page well anywhere (`_readers_own`).
+    same mistake again (`_readers_own`).
     """
     every = [*checks, *replies]
     wrong = [check for check in every if check.status == Status.CONTRADICTED]
     if any(check.status in (Status.NOT_READ, Status.NOT_COMPARED) for check in checks):
         return False
     read = sum(check.status in (Status.READ, Status.DOUBTFUL) for check in every)
-    if not machine_read(shown) or read < _READ_WELL * len(every):
+    if not shown.machine_read or read < _READ_WELL * len(every):
         return False
     if not _readers_own(checks, replies):
         return False
@@ -330,38 +318,14 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
 
 LOST_AND_ADDED = 3
 """So many numbers with a glyph lost or added may be put down to a reader."""
-UNREADABLE = 3
-"""So many other misreadings of a digit on one page, and its shape is beyond the reader of it."""
-
-
-BADLY_READ = 7
-"""So many other printed numbers misread, a fifth of a page, and its reader may have taken one digit
-for its look-alike and done so nowhere else."""
 
 
 def _readers_own(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
-    """Whether every digit cleanly read as another is one of its reader's mistakes.
-
-    It is where the page shows the same mistake again. And it is where the printed digit was misread
-    in `UNREADABLE` other places, as whatever else, and the two look alike: a zero with a stroke
-    through it comes out as 8 once, as 6 once, as @ and © elsewhere. One digit besides may be taken
-    for its look-alike where `BADLY_READ` other printed numbers are misread: there a digit that was
-    altered would pass, too, and what was looked past is told (`wording.looked_past`).
-    """
-    every = [*checks, *replies]
-    swapped = Counter(pair for check in every for pair in swapped_digits(check))
-    misread = Counter(
-        doubt.printed for check in every for doubt in check.doubts if _misread_digit(doubt)
-    )
-    alone = [
-        pair
-        for pair, count in swapped.items()
-        if count == 1 and not (alike(pair) and misread[pair[0]] > UNREADABLE)
-    ]
-    if len(alone) != 1:
-        return not alone
-    others = [check for check in checks if alone[0] not in swapped_digits(check)]
-    return alike(alone[0]) and sum(map(misread_at_all, others)) >= BADLY_READ
+    """Whether every digit cleanly read as another is one of its reader's mistakes: whether the page
+    shows the same digit taken for the same other one again. A letter read for a digit licenses no
+    digit read for a digit, and a digit that stands alone is never looked past."""
+    swapped = Counter(pair for check in [*checks, *replies] for pair in swapped_digits(check))
+    return all(count > 1 for count in swapped.values())
 
 
 def alike(pair: tuple[str, str]) -> bool:
@@ -375,11 +339,6 @@ _MISREADINGS = frozenset((Doubt.LOOK_ALIKE, Doubt.ILLEGIBLE, Doubt.CONTRADICTS))
 def misread_at_all(check: FieldCheck) -> bool:
     """Whether glyphs of a number were read as others, lost or added."""
     return any(doubt.how in _MISREADINGS and doubt.read != doubt.printed for doubt in check.doubts)
-
-
-def _misread_digit(doubt: Doubtful) -> bool:
-    """Whether a digit is printed where another glyph was read."""
-    return doubt.printed.isdigit() and bool(doubt.read) and doubt.read != doubt.printed
 
 
 def _digits_lost_or_added(check: FieldCheck) -> int:

@@ -26,7 +26,6 @@ from .judgement import (
     Status,
     alike,
     field_checks,
-    machine_read,
     reply_checks,
     settled,
     swapped_digits,
@@ -64,7 +63,7 @@ class LookingPast:
     def rereads(self) -> list[Reread] | None:
         """Scenes with slips put right, those that explain most first; None for a page that no
         machine read, or that lacks an input."""
-        if not machine_read(self._shown) or self._recovered.missing:
+        if not self._shown.machine_read or self._recovered.missing:
             return None
         return Rereading(self._recovered).best(deep=True)
 
@@ -75,7 +74,7 @@ class LookingPast:
         bear it out: a digit altered in one angle can be made good by a sign of the angle beside it.
         """
         shown = self._shown
-        if not machine_read(shown) or shown.fragment_of_run or shown.ending:
+        if not shown.machine_read or shown.fragment_of_run or shown.ending:
             return None
         search = self._recovered.search
         scenes = list(self._slips_put_right())

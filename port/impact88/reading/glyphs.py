@@ -120,6 +120,11 @@ class Page:
         line = bisect_right(self._lines, offset)
         return line, offset - self._lines[line - 1] + 1
 
+    def glyphs_on(self, index: int) -> int:
+        """How many glyphs the line has on which one stands."""
+        line, _ = self.place(self.glyphs[index].offset)
+        return len(squeeze(self.text[self._lines[line - 1] :].partition("\n")[0]))
+
     def span(self, start: int, stop: int) -> tuple[int, int]:
         """Offsets of the text from glyph ``start`` up to before glyph ``stop``, without the blanks
         after it."""

@@ -11,6 +11,8 @@ Nothing here computes: what the numbers should be is for `recovery` and `judging
 from __future__ import annotations
 
 import re
+import unicodedata
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -18,12 +20,13 @@ from typing import NamedTuple
 from .. import files
 from ..applesoft.errorcodes import CODES
 from ..errors import UserError
-from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT, label
 from . import glyphs, numerals
 from . import plaintext as pasted
 from .alignment import Aligned, align
 from .anglerow import cut_in_five
 from .glyphs import Gap, Glyph, Page
+from .labels import LabelCheck, LabelState, label_checks, words_before
 from .margins import begun_within, cut_after, cut_before
 from .numerals import Cut, Region
 from .template import REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
@@ -35,7 +38,11 @@ FRAGMENT = 6
 """A piece with fewer numbers than this is a fragment."""
 
 
-_SLOT_COMMAND = re.compile(r"PR# ?[0-9]")
+MACHINE_READ = 3
+"""So many letters of labels misread, and a machine read the page: people do not type PE for PB."""
+_TYPED = frozenset("0123456789.,-+EOILQ?")
+
+_SLOT_COMMAND = re.compile(r"PR#[0-9]")
 """What line 610 prints where no DOS takes it for a command."""
 _PROMPT_LETTERS, _MOST_ANGLES = 25, 4
 _NEXT_TO_NUMBERS = ("%", "(", ")", "=")
@@ -43,6 +50,10 @@ _CLOSINGS = {"LOSS": "%", "YAF": ")", "YBF": ")"}
 """Fields that a sign follows."""
 _CLOSING_DIGITS = {"%": "479825", ")": "1379"}
 """The digits those signs are read as."""
+_OF_PROMPT = 4
+"""Glyphs of ``Wa ?`` that are read into the reply at most."""
+_MOST_STARS = 7
+"""Glyphs that a row of five asterisks is read as at most."""
 _RESULTS = ("VAX", "VAY", "VBX", "VBY")
 
 
@@ -81,7 +92,8 @@ class Reading:
 
 class Piece(NamedTuple):
     """Text that belongs to no field and no label: where it is (line and column from 1, offsets),
-    and whether it stands on a line with a number."""
+    whether it may bear on a number (it stands beside one, or holds a number or a label of its own),
+    and whether it is a whole line."""
 
     text: str
     line: int
@@ -89,6 +101,7 @@ class Piece(NamedTuple):
     start: int
     stop: int
     beside: bool
+    whole: bool = False
 
 
 class Remark(NamedTuple):
@@ -131,8 +144,31 @@ class Printout:
     spin_line: bool = False
     left_over: list[Piece] = field(default_factory=list)
     remarks: list[Remark] = field(default_factory=list)
+    labels: list[LabelCheck] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    taken: frozenset[int] = field(default=frozenset(), repr=False)
     misread_letters: int = 0
     page: Page | None = field(default=None, repr=False)
+
+    @property
+    def mislabelled(self) -> list[LabelCheck]:
+        """The labels that say another number than the one that stands there."""
+        return [one for one in self.labels if one.state is LabelState.CONTRADICTORY]
+
+    @property
+    def marks(self) -> int:
+        """How many marks of an optical reader its numbers bear: foreign glyphs and blanks within
+        them, specks beside them."""
+        damaged = sum(not _typed_so(reading) for reading in self.fields.values())
+        return damaged + sum(
+            piece.beside and not piece.whole and len(piece.text) <= 3 for piece in self.left_over
+        )
+
+    @property
+    def machine_read(self) -> bool:
+        """Whether the text bears the marks of an optical reader: letters of labels and asterisks
+        that nobody would type so, or damaged numbers."""
+        return self.misread_letters + self.marks >= MACHINE_READ
 
     @property
     def has_final_spins(self) -> bool:
@@ -180,6 +216,9 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     """The printouts in a text, in order. Raises UserError (naming ``where``) if there is none."""
     page = Page(pasted.unwrapped(text))
     shown = [printout for part in _parts(page) for printout in part]
+    if shown:
+        _keep_other_lines(page, shown)
+        shown[0].notes += _left_out(text, page.text)
     if not shown:
         raise UserError(
             "no printout of the program in it; expected text with labels such as "
@@ -187,6 +226,89 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
             where,
         )
     return shown
+
+
+# --- what else stands on the page ---
+
+_LABEL_WORDS = frozenset(
+    word
+    for text in (*map(label, FIELDS), "VAX VAY WA VBX VBY WB INITIAL")
+    for word in text.replace("=", " ").split()
+    if len(word) > 1
+)
+
+
+def _keep_other_lines(page: Page, printouts: Sequence[Printout]) -> None:
+    """Every line that is none of the program's, whole: with the printout above it, or with the
+    first. Where it holds a number, or one of the program's labels, it may bear on the page."""
+    taken = {line for one in printouts for line in one.taken}
+    place = 0
+    for number, text in enumerate(page.text.split("\n"), 1):
+        start, place = place, place + len(text) + 1
+        words = text.split()
+        if number in taken:
+            _keep_ends(number, start, text, printouts)
+            continue
+        plain = glyphs.squeeze(text)
+        if not plain or _SLOT_COMMAND.fullmatch(plain):
+            continue
+        bears = any(map(str.isdigit, text)) or any(
+            part in _LABEL_WORDS or (len(part) > 2 and part.upper() in _LABEL_WORDS)
+            for part in re.split(r"[^A-Za-z]+", text)
+        )
+        above = [one for one in printouts if one.line <= number]
+        column = text.index(words[0]) + 1 if words else 1
+        (above or printouts)[-1 if above else 0].left_over.append(
+            Piece(" ".join(words), number, column, start, start + len(text), bears, True)
+        )
+    for one in printouts:
+        one.left_over.sort(key=lambda piece: piece.start)
+        one.notes += _normalised(page.text[one.start : one.stop])
+
+
+def _keep_ends(number: int, start: int, text: str, printouts: Sequence[Printout]) -> None:
+    """What stands on a line of the page before or after all that was taken for the page's."""
+    stop = start + len(text)
+    there = [one for one in printouts if one.start < stop and start < one.stop]
+    if not there:
+        return
+    first, last = there[0], there[-1]
+    for one, begin, end in ((first, start, first.start), (last, last.stop, stop)):
+        piece = text[max(begin - start, 0) : max(end - start, 0)]
+        plain = glyphs.squeeze(piece)
+        if plain and not _SLOT_COMMAND.fullmatch(plain):
+            begin += len(piece) - len(piece.lstrip())
+            column = begin - start + 1
+            one.left_over.append(
+                Piece(" ".join(piece.split()), number, column, begin, begin + len(piece), True)
+            )
+
+
+def _normalised(text: str) -> list[str]:
+    """That characters were taken for others of the same meaning, and how many of each kind."""
+    count = Counter(
+        unicodedata.name(char, f"U+{ord(char):04X}").lower().replace("u+0000", "NUL")
+        for char in text
+        if not char.isspace()
+        and (char > "~" or char < " ")
+        and glyphs.plain_glyphs(char) != char.upper()
+    )
+    kinds = ", ".join(f"{number} {name}" for name, number in sorted(count.items()))
+    return [f"characters read as plain ones or passed over: {kinds}"] if kinds else []
+
+
+def _left_out(text: str, unwrapped: str) -> list[str]:
+    """That lines were left out as markup or as lines of a program."""
+    pairs = zip(text.splitlines(), unwrapped.splitlines(), strict=False)
+    lines = [
+        number for number, (one, other) in enumerate(pairs, 1) if one.strip() and not other.strip()
+    ]
+    if not lines:
+        return []
+    what = "1 line is" if len(lines) == 1 else f"{len(lines)} lines are"
+    return [
+        f"{what} markup or lines of a BASIC program, and not read: the first is line {lines[0]}"
+    ]
 
 
 # --- where a run ended ---------------------------------------------------------------------------
@@ -230,45 +352,44 @@ def _parts(page: Page) -> Iterator[list[Printout]]:
     for match in [*_ENDING.finditer(text), None]:
         stop = match.start() if match else len(text)
         aligned = list(align(page.glyphs[start:stop]))
-        shown = [
-            printout
-            for number, one in enumerate(aligned)
-            if (
-                printout := _Reader(
-                    page, start, one, _following(aligned, number, stop - start)
-                ).read()
-            )
-        ]
+        shown = [printout for one in aligned if (printout := _Reader(page, start, one).read())]
         if match:
             if not shown:
                 continue
             shown[-1].ending = _ending(match)
-            shown[-1].stop = page.span(match.start(), match.end())[1]
-            shown[-1].left_over = [
-                piece for piece in shown[-1].left_over if piece.start < shown[-1].stop
-            ]
+            begin, shown[-1].stop = page.span(match.start(), match.end())
+            lines = {page.place(begin)[0], page.place(shown[-1].stop - 1)[0]}
+            shown[-1].taken |= lines
             start = match.end()
         yield shown
-
-
-def _following(aligned: Sequence[Aligned], number: int, stop: int) -> int:
-    return aligned[number + 1].start if number + 1 < len(aligned) else stop
 
 
 class _Reader:
     """Reads one printout from what its glyphs are taken for."""
 
-    def __init__(self, page: Page, base: int, aligned: Aligned, following: int) -> None:
+    def __init__(self, page: Page, base: int, aligned: Aligned) -> None:
         self._page = page
         self._glyphs = page.glyphs
         self._start = base + aligned.start
         self._states = aligned.states
-        self._following = base + following
         self._slots = {name: (base + i, base + j) for name, (i, j) in aligned.slots.items()}
+        self._part_labels()
         start, stop = page.span(self._start, base + aligned.stop)
         self._printout = Printout(*page.place(start), start, stop, page=page)
         self._lines = set(aligned.lines)
         self._begun_within = begun_within(page, self._start, self._states)
+
+    def _part_labels(self) -> None:
+        """A word that stands apart from the number before it, and is joined to the next by its
+        equals sign, is no part of either."""
+        self._worded: set[int] = set()
+        for first, sign in words_before(self._page, self._slots).values():
+            self._worded.update(range(first, sign))
+            for name, (start, stop) in self._slots.items():
+                if start < first < stop and self._glyphs[first].gap:
+                    self._slots[name] = (start, first)
+                elif first <= start <= sign < stop - 1:
+                    self._slots[name] = (sign + 1, stop)
 
     def read(self) -> Printout | None:
         """The printout; None when there is nothing of one."""
@@ -288,10 +409,12 @@ class _Reader:
         if any(name in self._slots for name in ANGLES):
             self._read_angles()
         self._cut_at_margins()
-        shown.misread_letters = self._misread_letters()
         shown.ended = STARS[1] in self._lines
         shown.spin_line = self._letters(SPINS) >= 2
         self._keep_left_over()
+        read = {name: self._slots[name] for name in shown.fields if name in self._slots}
+        shown.labels = label_checks(self._page, self._start, self._states, read, shown.marks)
+        shown.misread_letters = self._misread_letters()
         return shown
 
     def _letters(self, line: int | None = None) -> int:
@@ -308,9 +431,11 @@ class _Reader:
         letters were not read, as where a margin is cut off."""
         page = template()
         count = sum(self._begun_within)
+        wrong = {one.name for one in self._printout.mislabelled}
+        others = {state for one in page.labels if one.name in wrong for state in one.states}
         before = 0
         for index, state in enumerate(self._states):
-            letter = page.letters.get(state, "")
+            letter = "" if state in others else page.letters.get(state, "")
             glyph = self._glyphs[self._start + index]
             if state != before and (letter.isalpha() or letter == "*"):
                 count += glyph.char != letter and glyph.char.isalnum()
@@ -372,8 +497,8 @@ class _Reader:
 
     def _read_number(self, name: str, start: int, stop: int) -> None:
         before = start - 1 - self._start
-        label = template().letters.get(self._states[before]) if before >= 0 else None
-        unsigned = label != "=" or self._glyphs[start - 1].char != "="
+        sign = template().letters.get(self._states[before]) if before >= 0 else None
+        unsigned = sign != "=" or self._glyphs[start - 1].char != "="
         region = tuple(self._glyphs[start:stop])
         sign_free = unsigned and name not in ANGLES
         reading = _reading(self._page, region, sign_free, self._closing(name)) if region else None
@@ -414,6 +539,11 @@ class _Reader:
         parts = _reply_parts(list(self._glyphs[start:stop]))
         printed = [self._printout.text(field_name) for field_name in names]
         parts = _comma_for_point(self._glyphs[start:stop], parts, printed) or parts
+        before = self._glyphs[start - 1].char != "?" and _before_reply(parts, printed)
+        if before:
+            what = _quoted(numerals.plain(parts[0][:before]))
+            self._remark("", f"reply: {what} before the first number", start)
+            parts = [parts[0][before:], *parts[1:]]
         if len(parts) > len(names) and all(map(numerals.clean, parts[:3])):
             extra = "".join(map(numerals.plain, parts[3:]))
             self._remark("", f"reply: {_quoted(extra)} after the third number", start)
@@ -437,46 +567,62 @@ class _Reader:
             )
 
     def _keep_left_over(self) -> None:
-        """Runs of glyphs between lines or put into labels, and after the printout's last line."""
+        """Runs of glyphs between lines or put into labels, on the lines of the page; and which
+        glyphs those lines have (`_keep_other_lines` keeps the others)."""
         page = template()
         between = set(page.between.tolist()) | {0}
-        numbered = set()
-        for start, stop in self._slots.values():
-            numbered |= {self._page.place(glyph.offset)[0] for glyph in self._glyphs[start:stop]}
-        run: list[int] = []
-        reach = self._start + len(self._states)
-        for index in range(self._start, self._following + 1):
-            loose = False
-            if index < self._following:
-                state = self._states[index - self._start] if index < reach else 0
-                again = (
-                    index > self._start
-                    and index < reach
-                    and (state == self._states[index - 1 - self._start])
-                )
+        lines: dict[int, list[int]] = {}
+        for index in range(self._start, self._start + len(self._states)):
+            lines.setdefault(self._page.place(self._glyphs[index].offset)[0], []).append(index)
+        numbers = {index for span in self._slots.values() for index in range(*span)}
+        numbered = {number for number, line in lines.items() if numbers & set(line)}
+        taken: set[int] = set()
+        for number, line in lines.items():
+            if number not in numbered and not self._is_of_the_page(line):
+                continue
+            taken.add(number)
+            run: list[int] = []
+            for index in line:
+                state = self._states[index - self._start]
+                again = index > self._start and state == self._states[index - 1 - self._start]
                 letter = page.letters.get(state)
                 digit = letter in _NEXT_TO_NUMBERS and self._glyphs[index].char.isdigit()
                 again = again and not (page.line[state] < 2 and self._glyphs[index].char in "_{}")
                 loose = state in between or (letter is not None and (again or digit))
-                if (
-                    index >= reach
-                    and self._page.place(self._glyphs[index].offset)[0] not in numbered
-                ):
-                    loose = False
-            parted = run and index < self._following and self._glyphs[index].gap is Gap.LINE
-            if run and (not loose or parted):
+                if loose and index not in self._worded:
+                    run.append(index)
+                elif run:
+                    self._keep(run, numbered)
+                    run = []
+            if run:
                 self._keep(run, numbered)
-                run = []
-            if loose:
-                run.append(index)
+        self._printout.taken = frozenset(taken)
+
+    def _is_of_the_page(self, line: Sequence[int]) -> bool:
+        """Whether a line on which no number stands is one of the program's: half of it are letters
+        as it prints them, or it is a row of asterisks, however they were read."""
+        letters, lines = template().letters, template().line
+        states = [self._states[index - self._start] for index in line]
+        chars = [self._glyphs[index].char for index in line]
+        exact = sum(letters.get(state) == char for state, char in zip(states, chars, strict=True))
+        stars = all(lines[state] in STARS for state in states)
+        count = self._page.glyphs_on(line[0])
+        return 2 * exact >= count or (stars and count <= _MOST_STARS)
 
     def _keep(self, run: list[int], numbered: set[int]) -> None:
         start, stop = self._page.span(run[0], run[-1] + 1)
         line, column = self._page.place(start)
         text = self._page.shown(run[0], run[-1] + 1)
-        if _SLOT_COMMAND.fullmatch(text):
+        if _SLOT_COMMAND.fullmatch(glyphs.squeeze(text)):
             return
         self._printout.left_over.append(Piece(text, line, column, start, stop, line in numbered))
+
+
+def _typed_so(reading: Reading) -> bool:
+    """Whether a person may have typed a number so: in one piece, with O for 0 and l for 1 at
+    worst."""
+    whole = all(glyph.joined for glyph in reading.region[1:])
+    return whole and all(glyph.char in _TYPED for glyph in reading.region)
 
 
 def _reading(
@@ -567,6 +713,19 @@ def _comma_for_point(
         if all(map(_reads_as, texts, printed)):
             return joined
     return []
+
+
+def _before_reply(parts: Sequence[Region], printed: Sequence[str | None]) -> int:
+    """How many glyphs of a prompt whose mark was not read stand before the first number of a reply,
+    where that is then what is printed below; a reply never outranks a printed number."""
+    first = parts[0]
+    places = range(1, min(_OF_PROMPT, len(first) - 1) + 1)
+    whole = numerals.plain(first)
+    return next((at for at in places if printed[0] and _same(whole[at:], printed[0])), 0)
+
+
+def _same(text: str, printed: str) -> bool:
+    return (value := numerals.value_of(printed)) is not None and value == numerals.value_of(text)
 
 
 def _reads_as(text: str, printed: str | None) -> bool:

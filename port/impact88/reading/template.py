@@ -7,6 +7,7 @@ letter; they say how a glyph is read for another, and nothing about any one page
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -88,13 +89,13 @@ _LETTERS = {
 """Letter of a label -> what it is read as."""
 
 _MISS = {"=": 0.45, "(": 0.25, ")": 0.25, "%": 0.3, "*": 0.25, ":": 0.2, ",": 0.2, "?": 0.3}
-"""What it costs to miss a glyph of a label; other letters `_LETTER_LOST`."""
-_LETTER_LOST = 0.65
+"""What it costs to miss a glyph of a label; other letters `LETTER_LOST`."""
+LETTER_LOST = 0.65
 """Of letters that nobody leaves out."""
 _LOOSE = 0.25
 """The same for words that retyped pages leave out (INITIAL, KE before LOSS, the prompts)."""
-_ALIKE, _WRONG, _DIGIT = 0.35, 1.1, 1.4
-_INSERTED = 1.0
+ALIKE, WRONG, _DIGIT = 0.35, 1.1, 1.4
+INSERTED = 1.0
 _SLOT_ALIKE, _SLOT_LETTER, _SLOT_OTHER, _SLOT_EQUALS = 0.3, 0.55, 0.9, 1.6
 _BETWEEN, _BETWEEN_DIGIT, _BETWEEN_SIGN = 0.5, 0.9, 0.4
 _NO_NUMBER = 0.9
@@ -111,6 +112,15 @@ WITHIN = 4
 GAPS = 5
 KINDS = 128
 """Glyphs are told apart by this many codes; the last is for all others."""
+
+
+class Label(NamedTuple):
+    """What names a number on the page: the field (of a prompt, its reply's slot), the label's
+    letters, and the template's states of these letters."""
+
+    name: str
+    text: str
+    states: tuple[int, ...]
 
 
 def code(char: str) -> int:
@@ -131,7 +141,7 @@ class Template(NamedTuple):
     ``closes``: whether text may end after a state. ``line``: where a state belongs; ``slots``:
     state -> field name; ``letters``: state -> a label's letter; ``slot_before``: state of a sign
     that closes a number -> that number's field;
-    ``always``: states of letters that nobody leaves out.
+    ``always``: states of letters that nobody leaves out; ``labels``: what names each number.
     """
 
     enter: Floats
@@ -148,6 +158,7 @@ class Template(NamedTuple):
     letters: dict[int, str]
     slot_before: dict[int, str]
     always: frozenset[int]
+    labels: tuple[Label, ...]
 
 
 @lru_cache(maxsize=1)
@@ -197,16 +208,16 @@ def template() -> Template:
                     gap_enter[[0, WITHIN], state] = 2.2
         else:
             for number_ in range(KINDS):
-                enter[number_, state] = _as_letter(name, chr(number_))
+                enter[number_, state] = as_letter(name, chr(number_))
             gap_enter[WITHIN, state] = _TORN
             if name == "=":
                 unlabelled[:, state] = _LOOSE_SIGN
-            stay[:, state] = _INSERTED
-            stay[ord("0") : ord("9") + 1, state] = _INSERTED + 0.5
+            stay[:, state] = INSERTED
+            stay[ord("0") : ord("9") + 1, state] = INSERTED + 0.5
             if number < 2:
                 for part in "_{}":
                     stay[ord(part), state] = 0.05
-            miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, _LETTER_LOST)
+            miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, LETTER_LOST)
     miss[1] = 1000.0  # a printout begins at a price, not by missing what is outside
     between = np.array([state for state, kind in enumerate(kinds) if kind[0] == "between"])
     closes = np.array([kind[0] == "slot" or kind[1] in ")%*" for kind in kinds])
@@ -234,7 +245,29 @@ def template() -> Template:
             for state, (kind, name, _) in enumerate(kinds)
             if kind == "letter" and name not in _MISS
         ),
+        tuple(_labels()),
     )
+
+
+def _labels() -> Iterator[Label]:
+    """The labels in the order of the page; the heading of line 640 names an angle a pair."""
+    state = 0
+    for number, line in enumerate(LINES):
+        state += 1
+        for place, item in enumerate(line.items):
+            if isinstance(item, Slot):
+                state += 1
+                continue
+            following = [one.name for one in line.items[place + 1 :] if isinstance(one, Slot)]
+            parts = [(item, following[0])] if following else []
+            if number == ANGLE_ROW - 1:
+                parts = [(name, name) for name in ANGLES]
+            at = state
+            for text, name in parts:
+                states = [at + 1 + place for place, one in enumerate(text) if one.isalpha()]
+                yield Label(name, "".join(filter(str.isalpha, text)), tuple(states))
+                at += len(text)
+            state += len(item)
 
 
 def _in_slot(char: str) -> float:
@@ -257,14 +290,14 @@ def _between(char: str) -> float:
     return _BETWEEN_SIGN if char in "|.,-_~:;'`" else _BETWEEN
 
 
-def _as_letter(letter: str, char: str) -> float:
+def as_letter(letter: str, char: str) -> float:
     """The cost of reading a letter of a label as a glyph."""
     if letter == char:
         return 0.0
     if letter == "=" and char in "-~_":
         return _MISS["="] + 0.2  # rather the number's sign, the label's own glyph missing
     if char in _LETTERS.get(letter, ""):
-        return _ALIKE + (1.25 if letter == "=" and char.isdigit() else 0.0)
+        return ALIKE + (1.25 if letter == "=" and char.isdigit() else 0.0)
     if letter == "*" and not char.isdigit():
-        return _ALIKE + 0.15
-    return _DIGIT if char.isdigit() else _WRONG
+        return ALIKE + 0.15
+    return _DIGIT if char.isdigit() else WRONG

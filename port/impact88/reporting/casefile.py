@@ -19,6 +19,7 @@ from ..fields import FIELDS
 from ..judging import beside
 from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
+from ..reading.labels import LabelState
 from . import provenance, verification, wording
 from .examination import Examined, Verification
 
@@ -37,8 +38,8 @@ _LAY = {
     Verdict.IDENTICAL_AS_READ: "The page agrees with what the 1988 program prints, as far as it "
     "could be read. Some characters were not read for certain: each is marked below, and should be "
     "looked at on the paper itself.",
-    Verdict.DIFFERS: "At least one number on this page is not what the 1988 program prints for the "
-    "collision the page describes. Which, and what may explain it, is told below.",
+    Verdict.DIFFERS: "At least one number or label on this page is not what the 1988 program "
+    "prints for the collision the page describes. Which, and what may explain it, is told below.",
     Verdict.INCOMPLETE: "Numbers are missing from this page or could not be read, so that it "
     "cannot be said whether it is what the 1988 program prints.",
 }
@@ -399,12 +400,17 @@ def _marks(result: Verification) -> Iterator[tuple[int, int, str]]:
         elif check.status in (Status.DOUBTFUL, Status.NOT_READ, Status.NOT_COMPARED):
             for one in check.doubts or [Doubtful(0, 0, check.start, "", "", "")]:
                 yield one.start, one.start + max(1, len(one.read)), "doubtful"
+    for label in result.labels:
+        wrong = label.state is LabelState.CONTRADICTORY
+        if wrong or label.doubt:
+            yield label.start, label.stop, "differs" if wrong else "doubtful"
     for piece in result.left_over:
         if piece.beside:
             yield piece.start, piece.stop, "over"
 
 
 def _places(result: Verification) -> Iterator[str]:
+    yield from wording.labels(result.labels)
     for check in result.doubtful:
         yield from wording.doubts(check)
 

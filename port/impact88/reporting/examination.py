@@ -82,9 +82,11 @@ def verify(
     ``given``: texts of inputs by scene name, known from elsewhere than the printout."""
     recovered = recover(shown, given)
     past = LookingPast(shown, recovered, bool(given))
-    looked_past = past.judged() if recovered.row_in_doubt else None
-    tried = recovered.row_in_doubt
-    if tried and looked_past is None:
+    looked_past = None
+    if recovered.row_in_doubt and not shown.mislabelled:
+        looked_past = past.judged()
+    tried = recovered.row_in_doubt or bool(shown.mislabelled)
+    if recovered.row_in_doubt and looked_past is None:
         recovered = without_angles(recovered)
     checks = field_checks(shown, recovered)
     replies = reply_checks(shown, recovered)
@@ -99,8 +101,9 @@ def verify(
         replies=replies,
         ending=ending,
         missing=recovered.missing,
-        remarks=[str(remark) for remark in shown.remarks],
+        remarks=[*map(str, shown.remarks), *shown.notes],
         left_over=shown.left_over,
+        labels=shown.labels,
         start=shown.start,
         stop=shown.stop,
         text=shown.page.text if shown.page else "",

@@ -11,6 +11,7 @@ from ..errors import shown
 from ..explaining.explanations import NO_SINGLE_SLIP, Explanation
 from ..files import called
 from ..judging.judgement import FieldCheck, Status, Verdict
+from ..reading.labels import LabelCheck, LabelState
 from ..reading.printout import Piece
 from ..schemas import stamped
 from . import wording
@@ -39,6 +40,7 @@ class Verification:
     warnings: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     left_over: list[Piece] = field(default_factory=list)
+    labels: list[LabelCheck] = field(default_factory=list)
     start: int = 0
     stop: int = 0
     sha256: str | None = None
@@ -58,7 +60,13 @@ class Verification:
     def disagreements(self) -> int:
         """How many fields, replies and endings differ: what an explanation has to explain."""
         ending = [self.ending] if self.ending else []
-        return sum(check.same is False for check in [*self.fields, *self.replies, *ending])
+        numbers = sum(check.same is False for check in [*self.fields, *self.replies, *ending])
+        return numbers + len(self.mislabelled)
+
+    @property
+    def mislabelled(self) -> list[LabelCheck]:
+        """The labels that say another number than the one that stands there."""
+        return [one for one in self.labels if one.state is LabelState.CONTRADICTORY]
 
     @property
     def runnable(self) -> bool:
@@ -90,6 +98,7 @@ class Verification:
             "ending": self.ending.as_json() if self.ending else None,
             "missing": self.missing,
             "not_read": self.not_read,
+            "labels": [one.as_json() for one in self.labels],
             "left_over": [piece._asdict() for piece in self.left_over],
             "unseen": self.unseen,
             "explanations": [one.as_json() for one in self.explanations],
@@ -129,6 +138,9 @@ def summary(result: Verification) -> Iterator[str]:
     elif verdict is Verdict.DIFFERS:
         compared = sum(check.same is not None for check in fields)
         yield f"{compared} printed numbers compared, {len(result.differing)} differ"
+        wrong = len(result.mislabelled)
+        if wrong:
+            yield f"{wrong} label{'' if wrong == 1 else 's'} contradict{'s' if wrong == 1 else ''}"
     else:
         yield wording.counts(fields)
     if verdict is Verdict.IDENTICAL_AS_READ:
@@ -174,7 +186,8 @@ def lines(result: Verification, brief: bool = False) -> Iterator[str]:
     where = f"{shown(called(result.file))}, printout {result.number} (line {result.line})"
     yield f"{where}: {wording.title(result.verdict)}"
     yield from (f"  {line}" for line in summary(result))
-    doubts = [line for check in result.doubtful for line in wording.doubts(check)]
+    doubts = wording.labels(result.labels)
+    doubts += [line for check in result.doubtful for line in wording.doubts(check)]
     yield from (f"  {line}" for line in _some(doubts, brief))
     checks = result.differing if brief else result.fields
     if checks:

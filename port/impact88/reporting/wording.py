@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from ..explaining.explanations import Explanation
 from ..fields import ANGLES, INPUTS
 from ..judging.judgement import FieldCheck, Status, Verdict, misread_at_all, swapped_digits
+from ..reading.labels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
 from ..reading.printout import Piece, Printout
 from ..recovery.choices import scene_name
@@ -198,12 +199,41 @@ def cause(one: Explanation) -> str:
     return what + (f" ({one.note})" if one.note else "")
 
 
+_MOST_LINES = 12
+"""Lines that are none of the program's are shown up to this many; a book is not printed again."""
+
+
 def left_over(pieces: Sequence[Piece]) -> list[str]:
-    """What belongs to no number and no label, where it stands beside a number."""
-    return [
+    """What belongs to no number and no label: beside a number, or a whole line."""
+    beside = [
         f"{place(piece.line, piece.column)}: {_quoted(piece.text)} left over beside a number"
         for piece in pieces
-        if piece.beside
+        if piece.beside and not piece.whole
+    ]
+    lines = [piece for piece in pieces if piece.whole]
+    bearing = [piece for piece in lines if piece.beside]
+    shown = (bearing + [one for one in lines if not one.beside])[:_MOST_LINES]
+    whole = [
+        f"line {piece.line} is none of the program's: {piece.text}"
+        for piece in sorted(shown, key=lambda piece: piece.line)
+    ]
+    if len(lines) > len(shown):
+        whole.append(f"and {len(lines) - len(shown)} more lines that are none of the program's")
+    return beside + whole
+
+
+def labels(checks: Sequence[LabelCheck]) -> list[str]:
+    """The labels that are not the program's, those that contradict first."""
+    words = {
+        LabelState.CONTRADICTORY: "labelled {read} where the program prints {printed}",
+        LabelState.DAMAGED: "the label {printed} is read {read}",
+        LabelState.MISSING: "no label before the number where the program prints {printed}",
+    }
+    return [
+        f"line {one.line}: " + text.format(read=one.read, printed=one.printed)
+        for state, text in words.items()
+        for one in checks
+        if one.state is state and (state is LabelState.CONTRADICTORY or one.doubt)
     ]
 
 

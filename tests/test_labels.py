@@ -1,0 +1,186 @@
+"""Labels and left-over lines: what a page says beside its numbers is part of the page."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections import Counter
+
+import pytest
+
+import printouts
+from impact88.reading.labels import LabelState
+from impact88.reading.printout import read_printouts
+from impact88.reporting.examination import Verdict, Verification, verify
+from impact88.reporting.verification import lines
+from test_printout import SAMPLE
+
+LABEL = re.compile("(INITIAL KE|KE LOSS|VAX|VAY|VBX|VBY|[MIDWXY][AB]|[UV][XY]|MU|EM|E)=")
+LABELS = tuple(dict.fromkeys(LABEL.findall(SAMPLE)))
+HEADING = "PA PB TA TB GA"
+ACROSS = {"A": "B", "B": "A", "U": "V"}
+PAGES = printouts.SWEEP or 12
+"""Pages of every kind; the whole 2,000 in a sweep of 400."""
+
+
+def verdicts(text: str) -> set[Verdict]:
+    return {verify(one).verdict for one in read_printouts(text)}
+
+
+def one(text: str) -> Verification:
+    (shown,) = read_printouts(text)
+    return verify(shown)
+
+
+def exchanged(text: str, rng: random.Random) -> str:
+    """Two labels in each other's place."""
+    found = list(LABEL.finditer(text))
+    first, second = sorted(rng.sample(found, 2), key=re.Match.start)
+    if first[1] == second[1]:
+        return exchanged(text, rng)
+    middle = text[first.end(1) : second.start(1)]
+    return text[: first.start(1)] + second[1] + middle + first[1] + text[second.end(1) :]
+
+
+def relabelled(text: str, rng: random.Random, new: str) -> str:
+    found = rng.choice([one for one in LABEL.finditer(text) if one[1] != new])
+    return text[: found.start(1)] + new + text[found.end(1) :]
+
+
+def another(text: str, rng: random.Random) -> str:
+    """Another label of the program's."""
+    return relabelled(text, rng, rng.choice(LABELS))
+
+
+def of_the_other_side(text: str, rng: random.Random) -> str:
+    """The label of the other vehicle."""
+    vehicles = re.compile("([MIDWXY][AB]|V[AB][XY]|U[XY])=")
+    found = rng.choice(list(vehicles.finditer(text)))
+    new = re.sub("[ABU]", lambda letter: ACROSS[letter[0]], found[1])
+    return text[: found.start(1)] + new + text[found.end(1) :]
+
+
+def nonsense(text: str, rng: random.Random) -> str:
+    """A word that is no label."""
+    letters = rng.choices("ABCDEFGHIJKLMNOPQRSTUVWXYZ", k=rng.choice((2, 3, 4)))
+    return relabelled(text, rng, "".join(letters))
+
+
+def angles(text: str, rng: random.Random) -> str:
+    """Two of the heading's."""
+    names = HEADING.split()
+    first, second = rng.sample(range(len(names)), 2)
+    names[first], names[second] = names[second], names[first]
+    return text.replace(HEADING, " ".join(names))
+
+
+WRONG = (exchanged, another, of_the_other_side, nonsense, angles)
+
+
+@pytest.mark.captures
+@pytest.mark.parametrize("how", WRONG, ids=lambda how: how.__name__)
+def test_a_wrong_label_is_never_identical(how) -> None:  # type: ignore[no-untyped-def]
+    rng = random.Random(how.__name__)
+    rows = printouts.normal_ends()
+    count: Counter[bool] = Counter()
+    for _ in range(PAGES):
+        found = verdicts(how(rng.choice(rows)["printout"], rng))
+        assert Verdict.IDENTICAL not in found
+        count[Verdict.DIFFERS in found] += 1
+    assert count[True] >= 0.98 * count.total()
+
+
+def test_results_given_to_the_other_vehicle() -> None:
+    text = SAMPLE.replace("VAX=", "V@X=").replace("VBX=", "VAX=").replace("V@X=", "VBX=")
+    result = one(text)
+    assert result.verdict is Verdict.DIFFERS
+    assert result.explanations[0].kind == "labels exchanged"
+    said = "\n".join(lines(result))
+    assert re.search(r"line [0-9]+: labelled VBX where the program prints VAX", said)
+
+
+@pytest.mark.parametrize("name", ["MA", "UY", "VAX", "KE LOSS", "WB"])
+def test_a_missing_label_is_told(name: str) -> None:
+    result = one(SAMPLE.replace(f"{name}= ", "", 1))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert [check.state for check in result.labels].count(LabelState.MISSING) == 1
+    assert f"the program prints {name.replace(' ', '')}" in "\n".join(lines(result))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "doubt"),
+    [("VAX=", "VAK=", True), ("INITIAL", "1NITIAL", False), ("VAY=", "UAY=", False)],
+)
+def test_a_damaged_label_leaves_a_doubt_where_another_has_its_letters(
+    old: str, new: str, doubt: bool
+) -> None:
+    result = one(SAMPLE.replace(old, new, 1))
+    assert result.verdict is (Verdict.IDENTICAL_AS_READ if doubt else Verdict.IDENTICAL)
+    (damaged,) = (check for check in result.labels if check.state is LabelState.DAMAGED)
+    assert damaged.doubt is doubt
+
+
+def test_a_label_that_the_reader_of_the_page_made_another_is_damaged() -> None:
+    """U for V throughout, as readers of worn type have it; alone it contradicts."""
+    alone = SAMPLE.replace("VX=", "UX=", 1)
+    assert one(alone).verdict is Verdict.DIFFERS
+    worn = alone.replace("VAX=", "UAX=").replace("VAY=", "UAY=").replace("VBX=", "UBX=")
+    assert one(worn).verdict is Verdict.IDENTICAL_AS_READ
+
+
+@pytest.mark.parametrize(
+    ("text", "bars"),
+    [
+        ("CORRECTION: VAX should read -19.263, LOSS 75 %", True),
+        ("DELTA-V A= 99.99", True),
+        ("see VBY", True),
+        ("BREAK IN 640", True),
+        ("ALL VELOCITIES IN MPH", False),
+        ("checked by hand", False),
+    ],
+)
+@pytest.mark.parametrize("where", ["above", "inside", "below"])
+def test_a_line_that_is_none_of_the_programs_is_told_whole(
+    text: str, bars: bool, where: str
+) -> None:
+    if where == "inside" and "9" in text:
+        pytest.skip("its number is taken for more of the row of angles above it: DIFFERS")
+    first, second = SAMPLE.split("UX=", 1)
+    page = {
+        "above": f"{text}\n\n{SAMPLE}",
+        "inside": f"{first}{text}\n\nUX={second}",
+        "below": f"{SAMPLE}\n\n{text}\n",
+    }[where]
+    result = one(page)
+    assert result.verdict is (Verdict.IDENTICAL_AS_READ if bars else Verdict.IDENTICAL)
+    assert [piece.text for piece in result.left_over if piece.whole] == [text]
+    assert text in "\n".join(lines(result))
+
+
+def test_what_follows_a_page_on_its_last_line_is_told() -> None:
+    result = one(f"{SAMPLE.rstrip()} and LOSS 75 %\n")
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("-", "\N{EN DASH}", "en dash"),
+        ("5", "\N{FULLWIDTH DIGIT FIVE}", "fullwidth digit five"),
+        ("MA=", "M\N{ZERO WIDTH SPACE}A=", "1 zero width space"),
+        ("MA=", "MA=\0", "1 NUL"),
+    ],
+)
+def test_characters_read_as_plain_ones_are_counted(old: str, new: str, told: str) -> None:
+    result = one(SAMPLE.replace(old, new))
+    assert result.verdict is Verdict.IDENTICAL
+    assert any(told in remark for remark in result.remarks)
+
+
+def test_a_reply_never_outranks_the_printed_number() -> None:
+    prompt = "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?"
+    text = f"{prompt}-29.04,0,0\n\n{SAMPLE}"
+    assert one(text).verdict is Verdict.IDENTICAL
+    assert one(text.replace("Wa ?", "W8 7")).verdict is Verdict.IDENTICAL_AS_READ
+    assert one(text.replace("?-29.04", "?87-29.04")).verdict is not Verdict.IDENTICAL
+    assert one(text.replace("?-29.04", "?-29.84")).verdict is Verdict.DIFFERS
