@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 
 import printouts
-from impact88.reading.labels import LabelState
+from impact88.reading.fieldlabels import LabelState
 from impact88.reading.printout import read_printouts
 from impact88.reporting.examination import Verdict, Verification, verify
 from impact88.reporting.verification import lines

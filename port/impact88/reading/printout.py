@@ -25,8 +25,8 @@ from . import glyphs, numerals
 from . import plaintext as pasted
 from .alignment import Aligned, align
 from .anglerow import cut_in_five
+from .fieldlabels import LabelCheck, LabelState, label_checks, words_before
 from .glyphs import Gap, Glyph, Page
-from .labels import LabelCheck, LabelState, label_checks, words_before
 from .margins import begun_within, cut_after, cut_before
 from .numerals import Cut, Region
 from .template import REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template

@@ -19,7 +19,7 @@ from ..fields import FIELDS
 from ..judging import beside
 from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
-from ..reading.labels import LabelState
+from ..reading.fieldlabels import LabelState
 from . import provenance, verification, wording
 from .examination import Examined, Verification
 

@@ -11,7 +11,7 @@ from ..errors import shown
 from ..explaining.explanations import NO_SINGLE_SLIP, Explanation
 from ..files import called
 from ..judging.judgement import FieldCheck, Status, Verdict
-from ..reading.labels import LabelCheck, LabelState
+from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.printout import Piece
 from ..schemas import stamped
 from . import wording

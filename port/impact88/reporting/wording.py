@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from ..explaining.explanations import Explanation
 from ..fields import ANGLES, INPUTS
 from ..judging.judgement import FieldCheck, Status, Verdict, misread_at_all, swapped_digits
-from ..reading.labels import LabelCheck, LabelState
+from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
 from ..reading.printout import Piece, Printout
 from ..recovery.choices import scene_name
