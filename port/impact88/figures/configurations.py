@@ -7,7 +7,7 @@ from typing import Any
 
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
-from .fieldlabels import Label, place
+from .labels import Label, place
 from .scenegeometry import Plan, plan
 from .sceneview import COLOURS, draw_bodies
 

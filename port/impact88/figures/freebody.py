@@ -12,7 +12,7 @@ from typing import Any
 
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
-from .fieldlabels import Label, place
+from .labels import Label, place
 from .scenegeometry import Plan, Vehicle, plan
 from .sceneview import COLOURS, IMPULSE, TINTS, draw_axes
 

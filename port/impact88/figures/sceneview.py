@@ -12,7 +12,7 @@ from typing import Any
 from ..units import RULES, System, system_of
 from . import drawing as d
 from .drawing import Box, Drawing, Path, Point, Text
-from .fieldlabels import Label, place
+from .labels import Label, place
 from .scenegeometry import Plan, Vehicle, dot, minus, plan, plus, scaled
 from .svg import Svg, svg
 
