@@ -8,7 +8,7 @@ large velocities, and no arithmetic can know it better than they are known.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,18 +24,22 @@ STEP = 2.0**-36
 GROUPS = (FINAL_VELOCITIES[:4], FINAL_VELOCITIES[4:])
 
 
-def movements(columns: Mapping[str, Any]) -> dict[str, Floats]:
-    """For every scene and each final velocity, what it changes per relative change of all numbers
-    of the scene at their worst: the sum over the numbers of the central differences' sizes.
+def movements(
+    columns: Mapping[str, Any], outputs: Sequence[str] = FINAL_VELOCITIES
+) -> dict[str, Floats]:
+    """For every scene and each output, what it changes per relative change of all numbers of the
+    scene at their worst: the sum over the numbers of the central differences' sizes.
     """
-    moved = {name: np.zeros(()) for name in FINAL_VELOCITIES}
+    moved = {name: np.zeros(()) for name in outputs}
     for name, values in columns.items():
         values = np.asarray(values, np.float64)
-        if name == "M" or (name == "MU" and np.all(values == PIVOT)):
+        if name == "M":
             continue
-        upper = solve({**columns, name: values * (1 + STEP)}, FINAL_VELOCITIES)
-        lower = solve({**columns, name: values * (1 - STEP)}, FINAL_VELOCITIES)
-        for result in FINAL_VELOCITIES:
+        # a pivot's MU stands for no friction: there is nothing to change
+        step = np.where(values == PIVOT, 0.0, STEP) if name == "MU" else STEP
+        upper = solve({**columns, name: values * (1 + step)}, outputs)
+        lower = solve({**columns, name: values * (1 - step)}, outputs)
+        for result in outputs:
             change = np.abs(upper[result] - lower[result]) / (2 * STEP)
             moved[result] = moved[result] + change
     return moved

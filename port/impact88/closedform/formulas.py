@@ -202,10 +202,9 @@ class ExpressionTable:
     def absolute(self, a: Expression) -> Expression:
         return a if a.is_zero else self._keep("absolute", a)
 
-    def hypotenuse(self, a: Expression, b: Expression) -> Expression:
-        if a.is_zero or b.is_zero:
-            return self.absolute(a if b.is_zero else b)
-        return self._keep("hypot", a, b)
+    def root(self, a: Expression) -> Expression:
+        """The square root."""
+        return a if a.is_zero else self._keep("sqrt", a)
 
     def sine_and_cosine(self, degrees: Expression) -> tuple[Expression, Expression]:
         """Sine and cosine of an angle in degrees; sin(-x) is taken as -sin x."""

@@ -24,7 +24,7 @@ Addresses = NDArray[np.int64]
 
 _OPERATIONS = """ADD SUBTRACT MULTIPLY DIVIDE NEGATIVE ABSOLUTE SQRT
     PRODUCT_PLUS PRODUCT_MINUS MINUS_PRODUCT PRODUCTS_PLUS PRODUCTS_MINUS
-    SINE_AND_COSINE AGAINST CHOOSE EQUAL LESS LESS_OR_EQUAL EITHER BOTH NOT HYPOT
+    SINE_AND_COSINE AGAINST CHOOSE EQUAL LESS LESS_OR_EQUAL EITHER BOTH NOT
     RESULT RESULT_OR_INFINITE BITS"""
 _CODES = {name: code for code, name in enumerate(_OPERATIONS.split())}
 _ROWS = {name: row for row, name in enumerate(SCENE)}
@@ -33,7 +33,7 @@ _PLAIN = {
     **{"negative": "NEGATIVE", "absolute": "ABSOLUTE", "sqrt": "SQRT", "against": "AGAINST"},
     **{"sine_and_cosine": "SINE_AND_COSINE", "choose": "CHOOSE", "equal": "EQUAL"},
     **{"less": "LESS", "less_or_equal": "LESS_OR_EQUAL", "both": "BOTH", "either": "EITHER"},
-    **{"not": "NOT", "hypot": "HYPOT"},
+    "not": "NOT",
 }
 """Operation of an expression -> the machine's."""
 

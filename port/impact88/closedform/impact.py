@@ -7,21 +7,22 @@ times the final spins' difference (J = 1/(Ia + Ib), Ired = Ia·Ib/(Ia + Ib))::
 
     Omega_a = mean + J sigma·P + H/Ia        Omega_b = mean + J sigma·P - H/Ib
 
-With gn° and gt° the relative contact velocities that both bodies would have at the mean spin,
-Q_ij = R delta_ij + J sigma_i sigma_j and kappa_i = a_i/Ia - b_i/Ib, the restitution equation (15),
-no slip at separation (listing lines 430-440) and the moment equation (18), *multiplied through by
-1 - 2 em*, read::
+With w = e gn + cn, (cn, ct) the relative velocity of the mass centers, Q_ij = R delta_ij + J
+sigma_i sigma_j and kappa_i = a_i/Ia - b_i/Ib, the restitution equation (15), no slip at separation
+(listing lines 430-440) and the moment equation (18), *multiplied through by z = 1 - 2 em*, read::
 
-    Q_nn Pn + Q_nt Pt + kappa_n H  = -(e gn + gn°)
-    Q_nt Pn + Q_tt Pt + kappa_t H  = -gt°                                    (pivot only)
-    em Ired kappa·P + (1 - 2 em) H = -em Ired (omega_a - omega_b)
+    Q_nn Pn + Q_nt Pt + kappa_n H = -(w + sigma_n mean)
+    Q_nt Pn + Q_tt Pt + kappa_t H = -(ct + sigma_t mean)                       (pivot only)
+    em Ired kappa·P + z H         = -em Ired (omega_a - omega_b)
 
-Friction has Pt = mu Pn for the middle line. Every unknown is found by Cramer's rule with the factor
-1 - 2 em cancelled: no term becomes infinite at em = 1/2, and for -1 <= em <= 0 the pivot's
-determinant is a sum of terms of one sign. None is found from another, nor from both spins apart:
-where an arm is far longer than a radius of gyration, or one body far lighter than the other, such
-differences would lose their digits. H has the factor em, so that at em = 0 the final spins are the
-same bits, and the moment impulse is (1 - em) H/em by Equation 18.
+Friction has Pt = mu Pn for the middle line. Every unknown, the final mean spin too, is found by
+Cramer's rule with the factor z cancelled: no term becomes infinite at em = 1/2, and for
+-1 <= em <= 0 the pivot's determinant is a sum of terms of one sign. None is found from another, nor
+from both spins apart: where an arm is far longer than a radius of gyration, or one body far lighter
+than the other, such differences would lose their digits. What of the spins is left then are the
+products Ired X = Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired sigma
+x kappa. H has the factor em, so that at em = 0 the final spins are the same bits, and the moment
+impulse is (1 - em) H/em by Equation 18.
 
 Axes: n = (cos GA, sin GA), t = (-sin GA, cos GA), A on the +n side; P acts on A, -P on B. Every
 quantity below is an `Expression`; its formula is made when first asked for, so that what no wanted
@@ -192,16 +193,13 @@ class Impact:
         return self._with_spins(1)
 
     @cached_property
-    def _mean_spin(self) -> Expression:
-        return self._share_b * self.WA + (self._ia * self.Ired) * self.WB
-
-    def _with_mean_spin(self, i: int) -> Expression:
-        return self._closing[i] + self.sigma[i] * self._mean_spin
+    def _spin_parts(self) -> Pair:
+        """The parts of A's and B's spin in the mean."""
+        return self._share_b * self.WA, (self._ia * self.Ired) * self.WB
 
     @cached_property
-    def _gt_mean(self) -> Expression:
-        """gt°."""
-        return self._with_mean_spin(1)
+    def _mean_spin(self) -> Expression:
+        return self._spin_parts[0] + self._spin_parts[1]
 
     @cached_property
     def gw(self) -> Expression:
@@ -221,9 +219,15 @@ class Impact:
         return 1.0 - (self.EM + self.EM)
 
     @cached_property
-    def v(self) -> Expression:
-        """e gn + gn°: what the normal impulse has to undo."""
-        return self.E * self.gn + self._with_mean_spin(0)
+    def w(self) -> Expression:
+        """e gn + the approach of the mass centers."""
+        return self.E * self.gn + self._closing[0]
+
+    @cached_property
+    def _undone(self) -> Pair:
+        """What the impulse has to undo at the mean spin: along n, and, for a pivot, along t."""
+        (sn, st), mean = self.sigma, self._mean_spin
+        return self.w + sn * mean, self._closing[1] + st * mean
 
     @cached_property
     def _turn(self) -> Expression:
@@ -241,32 +245,45 @@ class Impact:
     def _kappa(self, i: int) -> Expression:
         return self._a[i] * self._ia - self._b[i] * self._ib
 
+    def _crossed_spins(self, a: Expression, b: Expression) -> Expression:
+        """Ired X = Ired (b omega_a/Ib - a omega_b/Ia) of arms a and b in one direction."""
+        of_a, of_b = self._spin_parts
+        return b * of_a - a * of_b
+
     # -- friction: everything along the direction (1, mu) of the impulse
 
     @cached_property
     def _along_impulse(self) -> Pair:
-        """sigma and kappa in the direction (1, mu)."""
-        a = self._a[0] + self.mu * self._a[1]
-        b = self._b[0] + self.mu * self._b[1]
-        return a + b, a * self._ia - b * self._ib
+        """A's and B's arm in the direction (1, mu)."""
+        return self._a[0] + self.mu * self._a[1], self._b[0] + self.mu * self._b[1]
+
+    @cached_property
+    def _em_kappa(self) -> Expression:
+        return self.EM * self.kappa[0]
 
     @cached_property
     def _J_sigma_mu(self) -> Expression:
-        return self.J * self._along_impulse[0]
+        a, b = self._along_impulse
+        return self.J * (a + b)
 
     @cached_property
-    def _friction(self) -> tuple[Expression, Expression, Expression]:
-        """Q, Ired kappa in the direction (1, mu), and D, of the 2x2 system left when Pt = mu Pn."""
-        Q = self.R + self._J_sigma_mu * (self._a[0] + self._b[0])
-        turn = self.Ired * self._along_impulse[1]
-        return Q, turn, self.z * Q - self.EM * (turn * self._kappa(0))
+    def _crossed_mu(self) -> Expression:
+        return self._crossed_spins(*self._along_impulse)
+
+    @cached_property
+    def _friction(self) -> Pair:
+        """Ired kappa in the direction (1, mu), and D, the determinant left when Pt = mu Pn."""
+        a, b = self._along_impulse
+        Q = self.R + self._J_sigma_mu * self.sigma[0]
+        turn = self.Ired * (a * self._ia - b * self._ib)
+        return turn, self.z * Q - turn * self._em_kappa
 
     @cached_property
     def _friction_Pn(self) -> Expression:
-        spin = self.EM * (self._kappa(0) * self._turn)
-        return (spin - self.z * self.v) / self._friction[2]
+        spin = self._em_kappa * self._turn
+        return (spin - self.z * self._undone[0]) / self._friction[1]
 
-    # -- pivot; with s' = (sigma_t, -sigma_n), adj(Q) x = R x + J s' (s'·x), all divided by R
+    # -- pivot, everything divided by R
 
     @cached_property
     def _arms_cross(self) -> Expression:
@@ -294,16 +311,16 @@ class Impact:
         return self.Ired * self.kappa[0], self.Ired * self.kappa[1]
 
     @cached_property
-    def _s_r(self) -> Expression:
-        """s'·r, with r = -(v, gt°) the right-hand sides."""
-        sn, st = self.sigma
-        return sn * self._gt_mean - st * self.v
+    def _across(self) -> Pair:
+        """JR sigma x (w, ct) and (w, ct) x kappa / R, which the mean spin drops out of."""
+        (sn, st), (kn, kt), w, ct = self.sigma, self.kappa, self.w, self._closing[1]
+        return self._JR * (sn * ct - st * w), self._R_inverse * (kt * w - kn * ct)
 
     @cached_property
-    def _moment_turned(self) -> Expression:
-        """em kappa_perp·r / R, with kappa_perp = (-kappa_t, kappa_n)."""
-        kn, kt = self.kappa
-        return self.EM * ((kt * self.v - kn * self._gt_mean) * self._R_inverse)
+    def _crossed(self) -> Pair:
+        """Ired X along n and t."""
+        (an, at), (bn, bt) = self._a, self._b
+        return self._crossed_spins(an, bn), self._crossed_spins(at, bt)
 
     @cached_property
     def _pivot_determinant(self) -> Expression:
@@ -315,23 +332,14 @@ class Impact:
 
     @cached_property
     def _pivot_numerators(self) -> Pair:
-        """The impulse times the determinant: [z adj(Q) r + em Ired ((omega_a - omega_b) adj(Q)
-        kappa - kappa_perp (kappa_perp·r))] / R."""
+        """The impulse times the determinant."""
         (sn, st), (kn, kt), (tn, tt) = self.sigma, self.kappa, self._Ired_kappa
-        turn = self.EM * self._turn
-        along = self._JR * (self.z * self._s_r + self.EM * self.gw * self._arms_cross)
-        normal = turn * kn - self.z * self.v + st * along + tt * self._moment_turned
-        tangential = turn * kt - self.z * self._gt_mean - sn * along - tn * self._moment_turned
-        return normal, tangential
-
-    @cached_property
-    def _pivot_sigma_P(self) -> Expression:
-        """sigma·P, from which adj(Q) drops out: a slight R turns P nearly across sigma."""
-        (sn, st), (kn, kt) = self.sigma, self.kappa
-        turned = self.EM * self._turn * (sn * kn + st * kt)
-        pushed = sn * (self.z * self.v) + st * (self.z * self._gt_mean)
-        terms = turned - pushed - self._arms_cross * self._moment_turned
-        return terms / self._pivot_determinant
+        (vn, vt), (Xn, Xt), (s_across, k_across) = self._undone, self._crossed, self._across
+        lever = self._R_inverse * (self._spins * self._arms_cross)
+        along, turn = self.z * s_across, self._turn
+        normal = self.EM * (turn * kn + lever * Xt + tt * k_across) - self.z * vn
+        tangential = self.EM * (turn * kt - lever * Xn - tn * k_across) - self.z * vt
+        return normal + st * along, tangential - sn * along
 
     @cached_property
     def _pivot(self) -> Pair:
@@ -344,7 +352,7 @@ class Impact:
     @cached_property
     def determinant(self) -> Expression:
         """What divides every impulse: where it is zero, the equations have no solution."""
-        return self._by_kind(lambda: self._friction[2], lambda: self._pivot_determinant)
+        return self._by_kind(lambda: self._friction[1], lambda: self._pivot_determinant)
 
     @cached_property
     def critical_denominator(self) -> Expression:
@@ -362,14 +370,20 @@ class Impact:
         return self._by_kind(lambda: self.mu * self._friction_Pn, lambda: self._pivot[1])
 
     @cached_property
-    def _common_spin(self) -> Expression:
-        """J sigma·P: what the impulse adds to both spins alike."""
+    def _final_mean(self) -> Expression:
+        """The mean spin after the impact, not the sum of what it was and what the impulse adds:
+        where an arm is far longer than the radii of gyration, these nearly cancel."""
+        kept, w = self.R * self._mean_spin, self.w
 
         def friction() -> Expression:
-            return self._J_sigma_mu * self._friction_Pn
+            left = kept - self._J_sigma_mu * w
+            return (self.z * left + self._em_kappa * self._crossed_mu) / self._friction[1]
 
         def pivot() -> Expression:
-            return self.J * self._pivot_sigma_P
+            (sn, st), (kn, kt), (Xn, Xt) = self.sigma, self.kappa, self._crossed
+            turned = kn * Xn + kt * Xt - self.J * (self._arms_cross * self._across[1])
+            left = kept - self.J * (sn * w + st * self._closing[1])
+            return (self.z * left + self.EM * turned) / self._pivot_determinant
 
         return self._by_kind(friction, pivot)
 
@@ -378,14 +392,15 @@ class Impact:
         """H/em = PM/(1 - em), by Cramer's rule."""
 
         def friction() -> Expression:
-            Q, turn, D = self._friction
-            return (turn * self.v - self._turn * Q) / D
+            turn = self._friction[0]
+            pushed = turn * self.w - self._turn * self.R
+            return (pushed - self.sigma[0] * self._crossed_mu) / self._friction[1]
 
         def pivot() -> Expression:
-            tn, tt = self._Ired_kappa
-            crossed = self._JR * self._arms_cross * self._s_r
-            pushed = tn * self.v + tt * self._gt_mean - crossed
-            return (pushed - self._turn * self._RQ) / self._pivot_determinant
+            (sn, st), (tn, tt), (Xn, Xt) = self.sigma, self._Ired_kappa, self._crossed
+            pushed = tn * self.w + tt * self._closing[1] - self._turn * self.R
+            turned = sn * Xn + st * Xt + self._arms_cross * self._across[0]
+            return (pushed - turned) / self._pivot_determinant
 
         return self._unless_point(self._by_kind(friction, pivot))
 
@@ -399,33 +414,36 @@ class Impact:
         """The moment impulse on A (0 at em = 1)."""
         return (1.0 - self.EM) * self._moment
 
-    @cached_property
-    def _Px(self) -> Expression:
-        c, s = self._n
-        return c * self.PN - s * self.PT
+    def _change(self, inverse_mass: Expression) -> Pair:
+        """The size of a velocity change along x and y, with A's sign."""
+        (c, s), pn, pt = self._n, self.PN, self.PT
+        return inverse_mass * (c * pn - s * pt), inverse_mass * (s * pn + c * pt)
 
     @cached_property
-    def _Py(self) -> Expression:
-        c, s = self._n
-        return s * self.PN + c * self.PT
+    def _change_a(self) -> Pair:
+        return self._change(self._ma)
+
+    @cached_property
+    def _change_b(self) -> Pair:
+        return self._change(self._mb)
 
     # -- after impact
 
     @cached_property
     def VAX(self) -> Expression:
-        return self.UX + self._ma * self._Px
+        return self.UX + self._change_a[0]
 
     @cached_property
     def VAY(self) -> Expression:
-        return self.UY + self._ma * self._Py
+        return self.UY + self._change_a[1]
 
     @cached_property
     def VBX(self) -> Expression:
-        return self.VX - self._mb * self._Px
+        return self.VX - self._change_b[0]
 
     @cached_property
     def VBY(self) -> Expression:
-        return self.VY - self._mb * self._Py
+        return self.VY - self._change_b[1]
 
     @cached_property
     def WAF(self) -> Expression:
@@ -434,10 +452,6 @@ class Impact:
     @cached_property
     def WBF(self) -> Expression:
         return self._pass_through("WB", self._spin_b)
-
-    @cached_property
-    def _final_mean(self) -> Expression:
-        return self._mean_spin + self._common_spin
 
     @cached_property
     def _spin_a(self) -> Expression:
@@ -520,12 +534,8 @@ class Impact:
         """Tangential relative velocity at separation; 0 for a pivot, by its definition."""
 
         def friction() -> Expression:
-            return (
-                self._gt_mean
-                + self.R * self.PT
-                + self.sigma[1] * self._common_spin
-                + self.kappa[1] * self.H
-            )
+            turning = self.sigma[1] * self._final_mean + self.kappa[1] * self.H
+            return self._closing[1] + self.R * self.PT + turning
 
         return self._by_kind(friction, lambda: self.table.constant(0.0))
 
@@ -546,17 +556,17 @@ class Impact:
 
     # -- sizes and coefficients of the result
 
-    @cached_property
-    def _P(self) -> Expression:
-        return self.table.hypotenuse(self.PN, self.PT)
+    def _size(self, x: Expression, y: Expression) -> Expression:
+        """The length of a vector, by operations that every machine rounds alike."""
+        return self.table.root(x * x + y * y)
 
     @cached_property
     def DVA(self) -> Expression:
-        return self._ma * self._P
+        return self._size(*self._change_a)
 
     @cached_property
     def DVB(self) -> Expression:
-        return self._mb * self._P
+        return self._size(*self._change_b)
 
     @cached_property
     def MUP(self) -> Expression:
@@ -587,7 +597,7 @@ class Impact:
             mu = absolute(self.mu)
             straight = self.R * (1.0 + mu) + self.J * (sn * (sn + mu * st))
             moment = absolute(self.EM) * (self.Ired * (kn * (kn + mu * kt)))
-            return (absolute(self.z) * straight + moment) / absolute(self._friction[2])
+            return (absolute(self.z) * straight + moment) / absolute(self._friction[1])
 
         def pivot() -> Expression:
             crossed = self._spins * (an * bt + at * bn)

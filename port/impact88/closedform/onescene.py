@@ -88,7 +88,7 @@ def _function(wanted: tuple[str, ...], point: bool, pivot: bool) -> Callable[...
         "isfinite": math.isfinite,
         "LeftToArrays": LeftToArrays,
         "sine_and_cosine": _sine_and_cosine(),
-        "hypot": lambda a, b: float(np.hypot(a, b)),
+        "sqrt": math.sqrt,
         **constants,
     }
     exec(compile(source, "<the formulas of one scene>", "exec"), names)

@@ -43,7 +43,7 @@ OPERATIONS: dict[str, Callable[..., object]] = {
     "divide": np.divide,
     "negative": np.negative,
     "absolute": np.absolute,
-    "hypot": np.hypot,
+    "sqrt": np.sqrt,
     "equal": np.equal,
     "less": np.less,
     "less_or_equal": np.less_equal,
