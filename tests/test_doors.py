@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from collections.abc import Callable, Iterator, Mapping
 from multiprocessing.shared_memory import SharedMemory
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 import impact88
 from impact88.bench.populations import BENCHMARK, scenes
 from impact88.cli import main
+from impact88.closedform.columns import UNUSED_BY_POINTS
 from impact88.names import RESULTS, SCENE
 from impact88.tables import arrow
 from impact88.tables.table import format_of, open_reader
@@ -276,3 +278,91 @@ def test_standard_input_and_output(tmp_path: Path) -> None:
     there = tmp_path / "b.csv"
     there.write_bytes(done.stdout)
     assert not differing(read(there))
+
+
+# --- point masses and what they do not look at ---------------------------------------------------
+
+MIXED = [
+    {
+        name: None if row["M"] == 4 and name in UNUSED_BY_POINTS else value
+        for name, value in row.items()
+    }
+    for row in rows()[:200]
+]
+"""Scenes with M = 6 and with M = 4, these without the cells that they do not look at."""
+
+
+def shortened(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in row.items() if value is not None}
+
+
+def written(path: Path) -> Path:
+    """A table of the mixed scenes in the format of its name."""
+    texts = [{n: "" if v is None else repr(v) for n, v in row.items()} for row in MIXED]
+    if path.suffix == ".csv":
+        lines = [",".join(row.values()) for row in ({n: n for n in SCENE}, *texts)]
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    elif path.suffix == ".jsonl":
+        objects = [shortened(row) if at % 2 else row for at, row in enumerate(MIXED)]
+        lines = [json.dumps(row).replace("Infinity", '"inf"') for row in objects]
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    elif path.suffix == ".npz":
+        np.savez(path, **{n: np.array([row[n] for row in MIXED], float) for n in SCENE})
+    elif path.suffix == ".parquet":
+        pa = pytest.importorskip("pyarrow")
+        pa.parquet = pytest.importorskip("pyarrow.parquet")
+        pa.parquet.write_table(pa.Table.from_pylist(MIXED), path)
+    else:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        for row in ({n: n for n in SCENE}, *MIXED):
+            book.active.append(
+                [None if v is None else "inf" if v == np.inf else v for v in row.values()]
+            )
+        book.save(path)
+    return path
+
+
+@pytest.mark.parametrize("form", ["csv", "jsonl", "npz", "parquet", "xlsx"])
+def test_tables_leave_out_what_point_masses_do_not_look_at(form: str, tmp_path: Path) -> None:
+    table, out = written(tmp_path / f"mixed.{form}"), tmp_path / "out.npz"
+    assert main(["solve", str(table), "-o", str(out), "--results-only"]) == 0
+    with np.load(out) as found:
+        for name in RESULTS:
+            assert found[name].tobytes() == EXPECTED[name][:200].tobytes(), name
+
+
+def test_frames_leave_out_what_point_masses_do_not_look_at() -> None:
+    pandas = pytest.importorskip("pandas")
+    columns = {name: [row[name] for row in MIXED] for name in SCENE}
+    frames = [columns, list(map(shortened, MIXED)), pandas.DataFrame(MIXED)]
+    solved = [impact88.solve_frame(frame, ["VAX", "STATUS"]) for frame in frames]
+    solved[1] = {name: [row[name] for row in solved[1]] for name in ("VAX", "STATUS")}
+    solved.append(impact88.solve({name: np.array(column) for name, column in columns.items()}))
+    alone = [impact88.solve(shortened(row), ["VAX", "STATUS"]) for row in MIXED]
+    solved.append({name: [row[name] for row in alone] for name in ("VAX", "STATUS")})
+    for one in solved:
+        for name in ("VAX", "STATUS"):
+            assert np.array_equal(
+                np.asarray(one[name], float), EXPECTED[name][:200], equal_nan=True
+            )
+
+
+def test_the_listing_replays_point_masses_without_them(tmp_path: Path) -> None:
+    table, out = written(tmp_path / "mixed.csv"), tmp_path / "out.npz"
+    arguments = ["--arithmetic", "applesoft", "--set", "MB=100", "--set", "IB=2000"]
+    assert main(["solve", str(table), "-o", str(out), *arguments]) == 0
+    with np.load(out) as found:
+        assert np.isfinite(found["VAX"]).all()
+
+
+def test_what_rows_with_six_equations_look_at_is_missed(tmp_path: Path, capfd: Any) -> None:
+    table, out = tmp_path / "short.csv", tmp_path / "out.csv"
+    names = [name for name in SCENE if name != "TB"]
+    lines = [",".join("" if row[n] is None else repr(row[n]) for n in names) for row in MIXED[:12]]
+    table.write_text("\n".join([",".join(names), *lines]) + "\n", encoding="utf-8")
+    assert main(["solve", str(table), "-o", str(out)]) == 1
+    told = capfd.readouterr().err
+    assert "row 2 (line 3), TB: is empty; expected a number" in told
+    assert "row 1 (" not in told
+    assert "row 12 (" not in told

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from impact88 import solve
 from impact88.bench.populations import POPULATIONS, scenes
-from impact88.closedform.columns import Buffers, examine, sources
+from impact88.closedform.columns import UNUSED_BY_POINTS, Buffers, examine, sources
 from impact88.closedform.solve import SHARED_TILE, plan_for
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
@@ -102,6 +102,9 @@ def mixed_scenes(count=4000, seed=5):
         g[name] = np.where(wall, 0.0, g[name])
     g["UX"], g["IA"] = sometimes(0.05, np.nan, "UX"), sometimes(0.03, -1.0, "IA")
     g["TA"], g["M"] = sometimes(0.03, 1e12, "TA"), sometimes(0.02, 5.0, "M")
+    for name in UNUSED_BY_POINTS:
+        anything = rng.choice([np.nan, np.inf, -1.0, 1e300], count)
+        g[name] = np.where((g["M"] == 4) & (rng.random(count) < 0.3), anything, g[name])
     return g
 
 

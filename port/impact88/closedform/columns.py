@@ -28,6 +28,7 @@ BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 """Mass, inertia, velocities and spin of A and of B."""
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """What a point-mass scene (M = 4) does not look at."""
+_UNUSED_ANGLES = tuple(name for name in UNUSED_BY_POINTS if name in ANGLES)
 
 LARGE_ANGLE = 720.0
 """Angles beyond this, in degrees, are taken modulo 360 (which is exact) before they are added up:
@@ -70,7 +71,8 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
 
     Raises UserError for an unknown or missing name, a column that holds no numbers, and shapes
     that do not broadcast together. M may be missing (it is 6 in the published listing); when it is
-    4 throughout, so may be what a point mass does not look at.
+    4 throughout, so may be what a point mass does not look at. Where it is 4 in some scenes, these
+    may have anything there, such as NaN or None.
     """
     unknown = [name for name in columns if name not in SCENE]
     if unknown:
@@ -197,7 +199,11 @@ def examine(values: Mapping[str, Floats]) -> Block:
             kinds[name] = "unused"
             fixed[name] = column[:1]
             continue
-        found = _examined(name, column, *extremes[name])
+        least, most = extremes[name]
+        if name in _UNUSED_ANGLES and not abs(least) + abs(most) < np.inf:
+            column = np.where(values["M"] == 4, 0.0, column)
+            least, most = float(column.min()), float(column.max())
+        found = _examined(name, column, least, most)
         kinds[name] = found.kind
         usable = usable and found.usable
         if found.limits is None:

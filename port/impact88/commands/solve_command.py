@@ -41,7 +41,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.columns import UNUSED_BY_POINTS, refusals
+from ..closedform.columns import INERTIAS, UNUSED_BY_POINTS, refusals
 from ..closedform.solve import solve
 from ..doubles import is_number
 from ..errors import UserError, quoted
@@ -52,7 +52,15 @@ from ..scene import VALUE_LIMIT, Entries, Scene, entries_in
 from ..status import Status
 from ..stderr import note
 from ..tables.overlap import ahead, behind, may_wait
-from ..tables.rows import BadCell, Reader, Rows, check_scene_columns, filled, numbers
+from ..tables.rows import (
+    BadCell,
+    Reader,
+    Rows,
+    check_scene_columns,
+    filled,
+    numbers,
+    point_masses,
+)
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from ..tables.tableunits import TableUnits
@@ -163,7 +171,8 @@ def main(arguments: argparse.Namespace) -> int:
         given = settings(arguments.set, others=("inf",), units=units.system.name or None)
         if filling:
             given = {n: t for n, t in filling.values.items() if n not in source.names} | given
-        optional = ["M", *(UNUSED_BY_POINTS if given.get("M") == "4" else ())]
+        points = given.get("M", "4" if "M" in source.names else "6") == "4"
+        optional = ["M", *(UNUSED_BY_POINTS if points else ())]
         check_scene_columns(source.names, list(given), optional)
         if arguments.sweep:
             wanted = sweeps(arguments.sweep)  # the rest is the same in every row
@@ -192,7 +201,7 @@ def main(arguments: argparse.Namespace) -> int:
                 rows.columns.pop(name, None)  # and with it the heading of another unit
                 rows.columns[name] = [text] * rows.count
                 rows.others.pop(name, None)
-            results = arithmetic(rows, optional, units.given(given))
+            results = arithmetic(_complete(rows), units.given(given))
             write(rows, units.shown(results))
             complaints.take(rows.bad)
             now = source.position()
@@ -226,8 +235,8 @@ class _Float64:
     def __init__(self, outputs: Sequence[str]) -> None:
         self.columns = _chosen(outputs, tuple(RESULTS), "float64")
 
-    def __call__(self, rows: Rows, optional: Sequence[str], units: TableUnits) -> Results:
-        columns = numbers(_complete(rows, optional), units)
+    def __call__(self, rows: Rows, units: TableUnits) -> Results:
+        columns = numbers(rows, units)
         unread = {bad.row - rows.first for bad in rows.bad}
         for refusal in refusals(columns):
             for index in np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist():
@@ -243,17 +252,12 @@ class _Float64:
         return results
 
 
-def _complete(rows: Rows, optional: Sequence[str]) -> Rows:
-    """Rows with a column for every scene name: what may be missing gets its default, and a column
-    that only some JSON objects have is a complaint where it is missing."""
-    for name in SCENE:
-        if name in rows.columns:
-            if name == "M":
-                rows.columns[name] = filled(rows.columns[name], DEFAULT_M)
-        elif name in optional:
-            rows.columns[name] = [DEFAULT_M if name == "M" else "0"] * rows.count
-        else:
-            rows.columns[name] = [None] * rows.count
+def _complete(rows: Rows) -> Rows:
+    """Rows with a column for every scene name, of empty cells where there is none: a complaint
+    where a row looks at them. M is 6 where it is empty."""
+    nothing = [None] * rows.count
+    rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
+    rows.columns["M"] = filled(rows.columns["M"], DEFAULT_M)
     return rows
 
 
@@ -267,11 +271,17 @@ class _Applesoft:
         self.columns = [*self.names, "ERROR", "LINE"]
         self.errors = 0
 
-    def __call__(self, rows: Rows, optional: Sequence[str], units: TableUnits) -> Results:
+    def __call__(self, rows: Rows, units: TableUnits) -> Results:
         from ..replay import replay
 
-        complete = _complete(rows, optional)
-        columns = {n: _texts(n, column, units) for n, column in complete.columns.items()}
+        points = point_masses(rows)
+        columns = {n: _texts(n, column, units) for n, column in rows.columns.items()}
+        for name in UNUSED_BY_POINTS if points.any() else ():
+            # the program reads them all the same
+            default = "1" if name in INERTIAS else "0"
+            for index in np.flatnonzero(points).tolist():
+                if columns[name][index] in (None, "", "NAN"):
+                    columns[name][index] = default
         unread = {bad.row - rows.first for bad in rows.bad}
         try:
             # nearly always all cells can be read, and looking at each takes as long as solving

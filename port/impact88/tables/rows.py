@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import doubles
+from ..closedform.columns import UNUSED_BY_POINTS
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE
 from . import arrow, jsontext
@@ -207,20 +208,43 @@ def shortest(values: NDArray[Any]) -> list[str]:
 def numbers(rows: Rows, units: Units | None = None) -> dict[str, NDArray[np.float64]]:
     """The scene columns of ``rows`` as doubles, in base units where ``units`` says what they are
     in. A cell that is no number is NaN, and a complaint is added to ``rows.bad`` (unless its row
-    has one already)."""
-    return {name: _numbers(rows, name, column, units) for name, column in rows.columns.items()}
+    has one already, or is a point mass that does not look at the cell)."""
+    asked, every = ~point_masses(rows), np.ones(rows.count, np.bool_)
+    return {
+        name: _numbers(rows, name, column, units, asked if name in UNUSED_BY_POINTS else every)
+        for name, column in rows.columns.items()
+    }
 
 
-def _numbers(rows: Rows, name: str, column: Column, units: Units | None) -> NDArray[np.float64]:
+def point_masses(rows: Rows) -> NDArray[np.bool_]:
+    """Which rows have M = 4. Complaints about cells that these do not look at are withdrawn."""
+    every = np.ones(rows.count, np.bool_)
+    if "M" not in rows.columns:
+        return ~every
+    points = np.broadcast_to(_numbers(rows, "M", rows.columns["M"], None, every) == 4, every.shape)
+    rows.bad[:] = [
+        bad
+        for bad in rows.bad
+        if bad.column not in UNUSED_BY_POINTS or not points[bad.row - rows.first]
+    ]
+    return points
+
+
+def _numbers(
+    rows: Rows, name: str, column: Column, units: Units | None, asked: NDArray[np.bool_]
+) -> NDArray[np.float64]:
     factor = units.factor(name) if units else 1.0
     bare_refused = units is not None and units.refuses_bare(name)
     values = None if bare_refused else _plain_numbers(column)
     if values is not None:
         return values if factor == 1 else values * factor
-    values, cells = np.full(rows.count, np.nan), list(column)
+    values = np.full(rows.count, np.nan)
+    if not asked.any():
+        return values
+    cells = list(column)
     already = {bad.row for bad in rows.bad}
     for index, text in enumerate(cells):
-        if rows.first + index in already:
+        if rows.first + index in already or not asked[index]:
             continue
         reason = _why_no_number(text)
         if reason is None:
