@@ -224,12 +224,6 @@ class Impact:
         return self.E * self.gn + self._closing[0]
 
     @cached_property
-    def _undone(self) -> Pair:
-        """What the impulse has to undo at the mean spin: along n, and, for a pivot, along t."""
-        (sn, st), mean = self.sigma, self._mean_spin
-        return self.w + sn * mean, self._closing[1] + st * mean
-
-    @cached_property
     def _turn(self) -> Expression:
         """Ired (omega_a - omega_b)."""
         return self.Ired * self.gw
@@ -281,16 +275,53 @@ class Impact:
     @cached_property
     def _friction_Pn(self) -> Expression:
         spin = self._em_kappa * self._turn
-        return (spin - self.z * self._undone[0]) / self._friction[1]
+        undone = self.w + self.sigma[0] * self._mean_spin
+        return (spin - self.z * undone) / self._friction[1]
 
-    # -- pivot, everything divided by R
+    # -- pivot, everything divided by R, along x and y: GA only enters by the restitution, and what
+    # is rounded in turning to n and t would be lost where the sliding is all but undone
+
+    @cached_property
+    def _xy_arms(self) -> tuple[Pair, Pair]:
+        (d3, d4), (d1, d2) = self._D3_D4, self._D1_D2
+        return (d3, -d4), (d1, -d2)
+
+    @cached_property
+    def _xy_sigma(self) -> Pair:
+        (ax, ay), (bx, by) = self._xy_arms
+        return ax + bx, ay + by
+
+    @cached_property
+    def _xy_kappa(self) -> Pair:
+        (ax, ay), (bx, by) = self._xy_arms
+        return ax * self._ia - bx * self._ib, ay * self._ia - by * self._ib
+
+    @cached_property
+    def _xy_Ired_kappa(self) -> Pair:
+        kx, ky = self._xy_kappa
+        return self.Ired * kx, self.Ired * ky
+
+    @cached_property
+    def _xy_w(self) -> Pair:
+        """(w, ct) along x and y: the approach of the mass centers and e gn n."""
+        (dx, dy), (c, s), (a, b) = self._approach, self._n, self._xy_arms
+        gx = dx + a[0] * self.WA + b[0] * self.WB
+        gy = dy + a[1] * self.WA + b[1] * self.WB
+        rebound = self.E * (c * gx + s * gy)
+        return dx + c * rebound, dy + s * rebound
+
+    @cached_property
+    def _xy_crossed(self) -> Pair:
+        """Ired X along x and y."""
+        (ax, ay), (bx, by) = self._xy_arms
+        return self._crossed_spins(ax, bx), self._crossed_spins(ay, by)
 
     @cached_property
     def _arms_cross(self) -> Expression:
-        """an bt - at bn = Ired sigma x kappa, without the difference of products whose digits are
-        lost in kappa already."""
-        (an, at), (bn, bt) = self._a, self._b
-        return an * bt - at * bn
+        """a x b = Ired sigma x kappa, without the difference of products whose digits are lost in
+        kappa already."""
+        (ax, ay), (bx, by) = self._xy_arms
+        return ax * by - ay * bx
 
     @cached_property
     def _R_inverse(self) -> Expression:
@@ -301,51 +332,48 @@ class Impact:
         return self.J * self._R_inverse
 
     @cached_property
-    def _RQ(self) -> Expression:
-        """det Q / R."""
-        sn, st = self.sigma
-        return self.R + self.J * (sn * sn + st * st)
-
-    @cached_property
-    def _Ired_kappa(self) -> Pair:
-        return self.Ired * self.kappa[0], self.Ired * self.kappa[1]
-
-    @cached_property
     def _across(self) -> Pair:
         """JR sigma x (w, ct) and (w, ct) x kappa / R, which the mean spin drops out of."""
-        (sn, st), (kn, kt), w, ct = self.sigma, self.kappa, self.w, self._closing[1]
-        return self._JR * (sn * ct - st * w), self._R_inverse * (kt * w - kn * ct)
-
-    @cached_property
-    def _crossed(self) -> Pair:
-        """Ired X along n and t."""
-        (an, at), (bn, bt) = self._a, self._b
-        return self._crossed_spins(an, bn), self._crossed_spins(at, bt)
+        (sx, sy), (kx, ky), (wx, wy) = self._xy_sigma, self._xy_kappa, self._xy_w
+        return self._JR * (sx * wy - sy * wx), self._R_inverse * (ky * wx - kx * wy)
 
     @cached_property
     def _pivot_determinant(self) -> Expression:
         """The determinant of the three equations, divided by R: z det Q - em Ired kappa·adj
         Q·kappa, each a sum of squares, without cancellation however slight R is."""
-        (kn, kt), (tn, tt) = self.kappa, self._Ired_kappa
+        (sx, sy), (kx, ky), (tx, ty) = self._xy_sigma, self._xy_kappa, self._xy_Ired_kappa
+        RQ = self.R + self.J * (sx * sx + sy * sy)
         crossed = self._JR * self._arms_cross * (self._spins * self._arms_cross)
-        return self.z * self._RQ - self.EM * (tn * kn + tt * kt + crossed)
+        return self.z * RQ - self.EM * (tx * kx + ty * ky + crossed)
 
     @cached_property
     def _pivot_numerators(self) -> Pair:
-        """The impulse times the determinant."""
-        (sn, st), (kn, kt), (tn, tt) = self.sigma, self.kappa, self._Ired_kappa
-        (vn, vt), (Xn, Xt), (s_across, k_across) = self._undone, self._crossed, self._across
-        lever = self._R_inverse * (self._spins * self._arms_cross)
-        along, turn = self.z * s_across, self._turn
-        normal = self.EM * (turn * kn + lever * Xt + tt * k_across) - self.z * vn
-        tangential = self.EM * (turn * kt - lever * Xn - tn * k_across) - self.z * vt
-        return normal + st * along, tangential - sn * along
+        """The impulse times the determinant, along x and y."""
+        (sx, sy), (kx, ky), (tx, ty) = self._xy_sigma, self._xy_kappa, self._xy_Ired_kappa
+        (wx, wy), (Xx, Xy), mean = self._xy_w, self._xy_crossed, self._mean_spin
+        lever, turn = self._R_inverse * (self._spins * self._arms_cross), self._turn
+        along, k_across = self.z * self._across[0], self._across[1]
+        x = self.EM * (turn * kx + lever * Xy + ty * k_across) - self.z * (wx + sx * mean)
+        y = self.EM * (turn * ky - lever * Xx - tx * k_across) - self.z * (wy + sy * mean)
+        return x + sy * along, y - sx * along
+
+    @cached_property
+    def _pivot_ratio(self) -> Pair:
+        """The impulse times the determinant, along n and t."""
+        (c, s), (x, y) = self._n, self._pivot_numerators
+        return c * x + s * y, c * y - s * x
+
+    @cached_property
+    def _pivot_xy(self) -> Pair:
+        """The impulse for no tangential relative velocity at separation, along x and y."""
+        x, y = self._pivot_numerators
+        return x / self._pivot_determinant, y / self._pivot_determinant
 
     @cached_property
     def _pivot(self) -> Pair:
-        """(Pn, Pt) for no tangential relative velocity at separation."""
-        normal, tangential = self._pivot_numerators
-        return normal / self._pivot_determinant, tangential / self._pivot_determinant
+        """The same along n and t."""
+        (c, s), (x, y) = self._n, self._pivot_xy
+        return c * x + s * y, c * y - s * x
 
     # -- denominators, for whoever has to know where results are infinite
 
@@ -357,7 +385,7 @@ class Impact:
     @cached_property
     def critical_denominator(self) -> Expression:
         """What divides MUC."""
-        return self._pivot_numerators[0]
+        return self._pivot_ratio[0]
 
     # -- impulse
 
@@ -373,16 +401,17 @@ class Impact:
     def _final_mean(self) -> Expression:
         """The mean spin after the impact, not the sum of what it was and what the impulse adds:
         where an arm is far longer than the radii of gyration, these nearly cancel."""
-        kept, w = self.R * self._mean_spin, self.w
+        kept = self.R * self._mean_spin
 
         def friction() -> Expression:
-            left = kept - self._J_sigma_mu * w
+            left = kept - self._J_sigma_mu * self.w
             return (self.z * left + self._em_kappa * self._crossed_mu) / self._friction[1]
 
         def pivot() -> Expression:
-            (sn, st), (kn, kt), (Xn, Xt) = self.sigma, self.kappa, self._crossed
-            turned = kn * Xn + kt * Xt - self.J * (self._arms_cross * self._across[1])
-            left = kept - self.J * (sn * w + st * self._closing[1])
+            (sx, sy), (kx, ky), (wx, wy) = self._xy_sigma, self._xy_kappa, self._xy_w
+            Xx, Xy = self._xy_crossed
+            turned = kx * Xx + ky * Xy - self.J * (self._arms_cross * self._across[1])
+            left = kept - self.J * (sx * wx + sy * wy)
             return (self.z * left + self.EM * turned) / self._pivot_determinant
 
         return self._by_kind(friction, pivot)
@@ -397,9 +426,10 @@ class Impact:
             return (pushed - self.sigma[0] * self._crossed_mu) / self._friction[1]
 
         def pivot() -> Expression:
-            (sn, st), (tn, tt), (Xn, Xt) = self.sigma, self._Ired_kappa, self._crossed
-            pushed = tn * self.w + tt * self._closing[1] - self._turn * self.R
-            turned = sn * Xn + st * Xt + self._arms_cross * self._across[0]
+            (sx, sy), (tx, ty), (wx, wy) = self._xy_sigma, self._xy_Ired_kappa, self._xy_w
+            Xx, Xy = self._xy_crossed
+            pushed = tx * wx + ty * wy - self._turn * self.R
+            turned = sx * Xx + sy * Xy + self._arms_cross * self._across[0]
             return (pushed - turned) / self._pivot_determinant
 
         return self._unless_point(self._by_kind(friction, pivot))
@@ -414,10 +444,24 @@ class Impact:
         """The moment impulse on A (0 at em = 1)."""
         return (1.0 - self.EM) * self._moment
 
+    @cached_property
+    def _xy(self) -> Pair:
+        """The impulse on A along x and y."""
+
+        def of_friction(i: int) -> Expression:
+            (c, s), pn, pt = self._n, self._friction_Pn, self.mu * self._friction_Pn
+            return s * pn + c * pt if i else c * pn - s * pt
+
+        x, y = (
+            self._by_kind(lambda: of_friction(0), lambda: self._pivot_xy[0]),
+            self._by_kind(lambda: of_friction(1), lambda: self._pivot_xy[1]),
+        )
+        return x, y
+
     def _change(self, inverse_mass: Expression) -> Pair:
-        """The size of a velocity change along x and y, with A's sign."""
-        (c, s), pn, pt = self._n, self.PN, self.PT
-        return inverse_mass * (c * pn - s * pt), inverse_mass * (s * pn + c * pt)
+        """A velocity change along x and y, with A's sign."""
+        x, y = self._xy
+        return inverse_mass * x, inverse_mass * y
 
     @cached_property
     def _change_a(self) -> Pair:
@@ -574,7 +618,7 @@ class Impact:
 
     @cached_property
     def MUC(self) -> Expression:
-        normal, tangential = self._pivot_numerators
+        normal, tangential = self._pivot_ratio
         return tangential / normal
 
     # -- how far the result can be trusted
@@ -603,7 +647,9 @@ class Impact:
             crossed = self._spins * (an * bt + at * bn)
             moment = self.Ired * (kn * kn + kt * kt)
             moment = moment + absolute(self._JR * self._arms_cross) * crossed
-            terms = absolute(self.z) * self._RQ + absolute(self.EM) * moment
+            sx, sy = self._xy_sigma
+            straight = self.R + self.J * (sx * sx + sy * sy)
+            terms = absolute(self.z) * straight + absolute(self.EM) * moment
             return terms / absolute(self._pivot_determinant)
 
         return 3.0 * self._by_kind(friction, pivot)
