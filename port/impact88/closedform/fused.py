@@ -24,7 +24,7 @@ Addresses = NDArray[np.int64]
 
 _OPERATIONS = """ADD SUBTRACT MULTIPLY DIVIDE NEGATIVE ABSOLUTE SQRT
     PRODUCT_PLUS PRODUCT_MINUS MINUS_PRODUCT PRODUCTS_PLUS PRODUCTS_MINUS
-    SINE_AND_COSINE AGAINST CHOOSE EQUAL LESS LESS_OR_EQUAL EITHER BOTH NOT
+    SINE_AND_COSINE AGAINST CHOOSE EQUAL LESS LESS_OR_EQUAL EITHER BOTH NOT HYPOT
     RESULT RESULT_OR_INFINITE BITS"""
 _CODES = {name: code for code, name in enumerate(_OPERATIONS.split())}
 _ROWS = {name: row for row, name in enumerate(SCENE)}
@@ -33,7 +33,7 @@ _PLAIN = {
     **{"negative": "NEGATIVE", "absolute": "ABSOLUTE", "sqrt": "SQRT", "against": "AGAINST"},
     **{"sine_and_cosine": "SINE_AND_COSINE", "choose": "CHOOSE", "equal": "EQUAL"},
     **{"less": "LESS", "less_or_equal": "LESS_OR_EQUAL", "both": "BOTH", "either": "EITHER"},
-    "not": "NOT",
+    **{"not": "NOT", "hypot": "HYPOT"},
 }
 """Operation of an expression -> the machine's."""
 
@@ -85,10 +85,11 @@ class Program:
         self._steps: list[list[int]] = []
         work = [e for e in order if e.operation not in ("column", "constant", "bits")]
         once = [e for e in work if not e.varies]
-        self._write(once, (), keep=True)
-        self._once = len(self._steps)
+        varying = [e for e in work if e.varies]
         shown = [e.operands[0] if e.operation == "bits" else e for e in results.values()]
-        self._write([e for e in work if e.varies], shown, keep=False)
+        self._write(once, [*shown, *(x for e in varying for x in e.operands)], keep=True)
+        self._once = len(self._steps)
+        self._write(varying, shown, keep=False)
         for number, (name, e) in enumerate(results.items()):
             kind = "RESULT_OR_INFINITE" if name == "COND" else "RESULT"
             kind = "BITS" if e.operation == "bits" else kind

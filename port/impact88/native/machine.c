@@ -58,7 +58,7 @@ enum operation {
     ADD, SUBTRACT, MULTIPLY, DIVIDE, NEGATIVE, ABSOLUTE, SQRT,
     PRODUCT_PLUS, PRODUCT_MINUS, MINUS_PRODUCT, PRODUCTS_PLUS, PRODUCTS_MINUS,
     SINE_AND_COSINE, AGAINST, CHOOSE,
-    EQUAL, LESS, LESS_OR_EQUAL, EITHER, BOTH, NOT,
+    EQUAL, LESS, LESS_OR_EQUAL, EITHER, BOTH, NOT, HYPOT,
     RESULT, RESULT_OR_INFINITE, BITS
 };
 
@@ -116,6 +116,7 @@ static inline __attribute__((always_inline)) void perform(
         BINARY(EITHER, a[i] + b[i] != 0.0 ? 1.0 : 0.0)
         BINARY(BOTH, a[i] * b[i])
         UNARY(NOT, 1.0 - a[i])
+        BINARY(HYPOT, hypot(a[i], b[i]))
         /* a result: no negative zero, and one NaN for all that is none */
         UNARY(RESULT, a[i] - a[i] == 0.0 ? a[i] + 0.0 : NAN)
         UNARY(RESULT_OR_INFINITE, a[i] == a[i] ? a[i] + 0.0 : NAN)
