@@ -130,8 +130,7 @@ def survive(case: tuple[list[str], list[str], list[bytes]]) -> set[str]:
     machine = Applesoft()
     kinds: set[str] = set()
     for number, tokens in enumerate(raw, 15):
-        machine.machine.program.store(number, tokens)
-    machine.machine.changed()
+        machine.machine.store_line(number, tokens)
     for line in lines:
         machine.machine.statements_left = STATEMENTS
         machine.feed(*keys)
@@ -139,8 +138,7 @@ def survive(case: tuple[list[str], list[str], list[bytes]]) -> set[str]:
             error = machine.type_line(line)
             kinds.add(error.kind if error else "")
         machine.take_output()
-    variables = machine.machine.variables
-    assert sum(len(array.data) for array in variables.arrays if array) <= 49152
+    assert machine.machine.strend <= 49152
     machine.screen_text()
     machine.source()
     return kinds

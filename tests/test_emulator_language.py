@@ -8,9 +8,8 @@ from impact88.applesoft.console import EndOfInput
 from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.checking.captured import displayed, session
 from impact88.emulator.emulator import Applesoft
-from impact88.emulator.lister import untokenised
 from impact88.emulator.machine import TooManyStatements
-from impact88.emulator.tokens import TOKENS, split_number, tokenise
+from impact88.emulator.tokens import TOKENS, split_number, tokenise, untokenised
 
 BEL = "\a"
 
@@ -92,7 +91,7 @@ def test_line_numbers_end_at_63999():
         ('10 FOR I=1 TO 9:A$=A$+A$+"XX":NEXT', f"\n?STRING TOO LONG ERROR{BEL} IN 10"),
         (
             '10 FOR I=1 TO 5:IF "A" THEN PRINT I\n20 NEXT',
-            f"1\n2\n3\n\n?FORMULA TOO COMPLEX ERROR{BEL} IN 10",
+            f"1\n2\n\n?FORMULA TOO COMPLEX ERROR{BEL} IN 10",
         ),
     ],
 )
@@ -283,11 +282,12 @@ def test_the_keyboard_ends_and_statements_run_out():
 
 def test_a_break_from_outside():
     machine = Applesoft()
-    machine.load("10 N=N+1:GOTO 10")
-    machine.machine.interrupted = True
+    machine.load("10 N=N+1\n20 GOTO 10")
+    machine.machine.after_line = lambda line: setattr(machine.machine, "interrupted", line == 10)
     machine.run()
     assert machine.machine.broken
-    assert machine.take_output() == f"\nBREAK{BEL} IN 10"
+    assert machine.take_output() == f"\nBREAK{BEL} IN 20"
+    machine.machine.after_line = None
     machine.machine.statements_left = 10_000
     with pytest.raises(TooManyStatements):
         machine.enter("CONT")
@@ -338,7 +338,7 @@ def test_a_program_may_poke_itself(address):
     lines = '10 POKE {0},5:PRINT "X":GOTO 20\n20 FOR I=1 TO 3:PRINT I:NEXT:POKE {0},0\n30 PRINT "Y"'
     machine, shown = session(lines.format(address), "LIST\nRUN\n20 PRINT\nLIST\nRUN\n")
     assert shown
-    assert len(machine.machine.program) <= 5
+    assert len(list(machine.machine.lines())) <= 5
 
 
 def test_errors_that_nobody_clears_away_take_no_memory():
@@ -347,7 +347,7 @@ def test_errors_that_nobody_clears_away_take_no_memory():
     machine.machine.statements_left = 30_000
     with pytest.raises(TooManyStatements):
         machine.run()
-    assert len(machine.machine.control.frames) < 10
+    assert len(machine.machine.frames) < 10
 
 
 def test_refusals_are_remembered_a_few_times():

@@ -12,19 +12,18 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from math import prod
 from typing import Any
 
 from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals, keyed
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import to_stored
-from .lister import source
 from .machine import Machine
-from .strings import Descriptor
-from .symbols import ARRAYS, REAL, SIMPLE, Name
-from .tokens import LINE_LIMIT, TOKENS, split_number, tokenise
+from .text import INTEGER, STRING
+from .tokens import LINE_LIMIT, source, split_number, tokenise
 
 PROMPT = "]"
-RUN = bytes((TOKENS["RUN"],))
+_MARKS = {"$": STRING, "%": INTEGER}
 
 
 class Applesoft:
@@ -108,17 +107,7 @@ class Applesoft:
             if len(line) > LINE_LIMIT:
                 raise ValueError(f"row {row} has {len(line)} characters; a line takes {LINE_LIMIT}")
             lines.append(numbered)
-        self.machine.program.clear()
-        for number, rest in lines:
-            self.machine.program.store(number, tokenise(rest))
-        self._check_size()
-        self.machine.changed()
-
-    def _check_size(self) -> None:
-        if self.machine.program.end >= self.machine.variables.strings.top:
-            self.machine.program.clear()
-            self.machine.changed()
-            raise ApplesoftError("OUT OF MEMORY")
+        self.machine.load((number, tokenise(rest)) for number, rest in lines)
 
     def type_line(self, text: str) -> ApplesoftError | None:
         """What the machine does with a line typed at the prompt, once RETURN is pressed.
@@ -130,37 +119,35 @@ class Applesoft:
     def enter(self, text: str) -> ApplesoftError | None:
         """The same for a line as it is."""
         machine = self.machine
-        machine.errors.flag >>= 1
+        machine.errflg >>= 1
         machine.error = None
+        if not text.strip(" "):
+            return None
         typed = keyed(text).encode("ascii")
         try:
             numbered = split_number(text)
+            if machine.lock & 0x80:
+                machine.run_locked()
+            elif numbered is None:
+                machine.execute_direct(typed, tokenise(text))
+            else:
+                number, rest = numbered
+                machine.store_line(number, tokenise(rest))
         except ValueError:
             return self._complain(ApplesoftError("SYNTAX"))
-        if machine.locked and text.strip(" "):
-            machine.execute(RUN, typed)
-        elif numbered is not None:
-            number, rest = numbered
-            machine.program.store(number, tokenise(rest))
-            try:
-                self._check_size()
-            except ApplesoftError as error:
-                return self._complain(error)
-            machine.changed()
-        elif text.strip(" "):
-            machine.execute(tokenise(text), typed)
+        except ApplesoftError as error:
+            return self._complain(error)
         return machine.error
 
     def _complain(self, error: ApplesoftError) -> ApplesoftError:
         self.machine.output.put(f"\n?{error.kind} ERROR\a")
-        self.machine.forget()
+        self.machine.clear_stack()
         self.machine.error = error
         return error
 
     def source(self) -> str:
         """The program as text that `load` takes."""
-        program = self.machine.program
-        return source((number, program.tokens[number]) for number in program.numbers)
+        return source(self.machine.lines())
 
     def run(self) -> ApplesoftError | None:
         """RUN. Returns the error that ended the program, None if it simply ended.
@@ -190,35 +177,47 @@ class Applesoft:
     def value(self, name: str) -> Any:
         """A simple variable: five stored bytes in hexadecimal, text for a string, None if it was
         never assigned. ``name`` as in BASIC: ``A``, ``N%``, ``A$``."""
-        kind = name[-1] if name[-1] in "%$" else REAL
-        slot = SIMPLE.slots.get(Name(name.rstrip("%$")[:2], kind))
-        if slot is None or slot >= len(self.machine.variables.made):
-            return None
-        if not self.machine.variables.made[slot]:
-            return None
-        return self._shown(self.machine.variables.values[slot])
+        key = _key(name)
+        address = self.machine.simple.get(key)
+        return None if address is None else self._shown(key, address)
 
     def reals(self) -> dict[str, str]:
         """Every real variable that exists, oldest first: five stored bytes in hexadecimal."""
-        variables = self.machine.variables
         return {
-            SIMPLE.names[slot].text: self._shown(variables.values[slot])
-            for slot in variables.order
-            if SIMPLE.names[slot].kind == REAL
+            _name(key): self._shown(key, address)
+            for key, address in self.machine.simple.items()
+            if not key & INTEGER
         }
 
     def array(self, name: str) -> dict[str, Any] | None:
         """An array: ``dims`` (sizes) and ``data``, first subscript fastest. None without one."""
-        kind = name[-1] if name[-1] in "%$" else REAL
-        slot = ARRAYS.slots.get(Name(name.rstrip("%$")[:2], kind))
-        arrays = self.machine.variables.arrays
-        array = arrays[slot] if slot is not None and slot < len(arrays) else None
+        key = _key(name)
+        array = self.machine.arrays.get(key)
         if array is None:
             return None
-        return {"dims": list(array.sizes), "data": [self._shown(element) for element in array.data]}
+        start = self.machine.arytab + array.offset + array.head
+        places = range(start, start + prod(array.sizes) * array.element, array.element)
+        return {
+            "dims": list(reversed(array.sizes)),
+            "data": [self._shown(key, place) for place in places],
+        }
 
-    def _shown(self, value: Any) -> Any:
+    def _shown(self, key: int, place: int) -> Any:
         """A value as text: a string's characters, a number's stored bytes."""
-        if isinstance(value, Descriptor):
-            return self.machine.variables.strings.text(value)
-        return to_stored(value).hex()
+        machine = self.machine
+        kind = key & INTEGER
+        if kind == STRING:
+            return machine.characters(place).decode("latin-1")
+        x = machine.integer_value(place) if kind else machine.value(place)
+        return to_stored(x).hex()
+
+
+def _key(name: str) -> int:
+    """A name's two bytes in memory."""
+    two = name.rstrip("%$")[:2].ljust(2, "\0").encode("ascii")
+    return int.from_bytes(two, "big") | _MARKS.get(name[-1], 0)
+
+
+def _name(key: int) -> str:
+    """The name of a real, from its bytes."""
+    return (chr(key >> 8) + chr(key & 0x7F)).rstrip("\0")

@@ -1,199 +1,175 @@
-"""READ, INPUT and GET: values from DATA, from a reply and from a key, by the same rules.
+"""READ, INPUT and GET: values from DATA, from a reply and from a key, by the same routine.
 
-Each variable is found, its value read and stored, then what follows the value is judged; so values
-before a bad one stay stored. A string ends at a comma or colon unless it began with a quote; a
-number is whatever reads as one, and after it only a comma, a colon or the end will do.
+TXTPTR changes places between the statement's variables and the values. Each variable is found, its
+value read and stored, then what follows the value is judged; so values before a bad one stay. A
+string ends at a comma or colon unless it began with a quote; a number is whatever reads as one, and
+after it only a comma, a colon or the end will do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
-from ..applesoft import decimaltext
-from ..applesoft.console import CONTROL_C, Console
+from ..applesoft.console import CONTROL_C
 from ..applesoft.errorcodes import ApplesoftError
-from ..applesoft.real import rounded
-from .programtext import START, ProgramText
-from .strings import StringArea
-from .symbols import INTEGER, STRING
+from .faults import Fault, placed
+from .memory import DIRECT, INPUT_BUFFER
+from .printing import Printing
+from .strings import IS_STRING
+from .text import COLON, COMMA, HEADER, QUOTE, SEMICOLON
 from .tokens import DATA
-from .variables import whole
 
-Place = tuple[list[Any], int]
-Items = tuple[tuple[str, Callable[[], Place]], ...]
-"""Kind and place of each variable; a place is looked up when its turn comes."""
-
-_ENDS = ("", ":", "\0")
-_DATA = chr(DATA)
+FROM_REPLY, FROM_KEY, FROM_DATA = 0, 0x40, 0x98
+"""INPFLG."""
 BAD_REPLY = 254
-DIRECT_AFTER_GET = 0xFF40
+BREAK_CODE = 255
+AFTER_GET = 0xFF40
 """What a bad GET puts in place of the line number: the machine believes it is at the prompt."""
+REENTER, EXTRA_IGNORED = b"?REENTER\r", b"?EXTRA IGNORED\r"
 
 
-class InputBreak(KeyboardInterrupt):
-    """Control-C as a reply: CONT will not find the beginning of a statement."""
+class Inputs(Printing):
+    """The three statements."""
 
+    def break_(self) -> None:
+        """What control-C does, of `flow`."""
+        raise NotImplementedError
 
-class BadReply(ApplesoftError):
-    """A reply that is no number, while ONERR is on: no message, only a code."""
+    def refuse_direct(self, sp: int) -> None:
+        """ERRDIR. Raises ILLEGAL DIRECT at the prompt."""
+        if self.curlin >= DIRECT:
+            raise Fault("ILLEGAL DIRECT", sp)
 
-    def __init__(self) -> None:
-        super().__init__("SYNTAX")
-
-    @property
-    def code(self) -> int:
-        """What ``PEEK (222)`` shows."""
-        return BAD_REPLY
-
-
-def _blanks(text: str, position: int) -> int:
-    while text[position : position + 1] == " ":
-        position += 1
-    return position
-
-
-def _string(text: str, position: int) -> tuple[int, int, int]:
-    """Where the string at ``position`` begins and ends, and where what follows it does."""
-    if text[position : position + 1] == '"':
-        start = end = position + 1
-        while text[end : end + 1] not in ('"', "", "\0"):
-            end += 1
-        return start, end, end + 1 if text[end : end + 1] == '"' else end
-    end = position
-    while text[end : end + 1] not in (*_ENDS, ","):
-        end += 1
-    return position, end, end
-
-
-class Inputs:
-    """DATA's pointer and the three statements.
-
-    ``put`` shows a message; ``onerr`` tells whether ONERR is on.
-    """
-
-    def __init__(
-        self,
-        program: ProgramText,
-        console: Console,
-        put: Callable[[str], object],
-        strings: StringArea,
-        onerr: Callable[[], bool],
-    ) -> None:
-        self._program = program
-        self._console = console
-        self._put = put
-        self._strings = strings
-        self._onerr = onerr
-        self._image: bytes | None = None
-        self._text = ""
-        self.pointer = START - 1
-        self.data_line = 0
-
-    def restore(self) -> None:
-        """RESTORE: READ begins with the first DATA again."""
-        self.pointer = START - 1
-
-    def _take(
-        self, kind: str, place: Place, text: str, position: int, *, literal: bool = False
-    ) -> int:
-        """Read a value of a kind and store it; return where it ends, blanks passed."""
-        values, index = place
-        if kind == STRING:
-            start, end, position = _string(text, position)
-            strings = self._strings
-            if literal:
-                string = strings.temporary(end - start, START - 1 + start)
-            else:
-                string = strings.made(text[start:end])
-            values[index] = strings.kept(string)
-        else:
-            number, position = decimaltext.read(text, position)
-            values[index] = whole(number) if kind == INTEGER else rounded(number)
-        return _blanks(text, position)
+    def put_in_buffer(self, text: str) -> None:
+        """INLIN's bytes, on page 2."""
+        data = text.encode("latin-1") + b"\0"
+        self.ram[INPUT_BUFFER : INPUT_BUFFER + len(data)] = data
 
     # --- READ ---------------------------------------------------------------------------------
 
-    def read(self, items: Items) -> None:
+    def read(self) -> None:
         """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is no number."""
-        if self._image is not self._program.image:
-            self._image = self._program.image
-            self._text = "\0" + self._image.decode("latin-1")
-        text = self._text
-        position = self.pointer - (START - 1)
-        for kind, where in items:
-            place = where()
-            position = _blanks(text, position)
-            if text[position] in _ENDS:
-                position = self._next_data(position)
-            position = self._take(kind, place, text, _blanks(text, position + 1), literal=True)
-            if text[position] not in (*_ENDS, ","):
-                raise ApplesoftError("SYNTAX", self.data_line)
-        self.pointer = position + START - 1
+        self._take_items(FROM_DATA, self.datptr, self.sp - 2)
 
-    def _next_data(self, position: int) -> int:
-        """Where the next DATA stands."""
-        text = self._text
+    def restore(self) -> None:
+        """RESTORE: READ begins with the first DATA again."""
+        self.datptr = self.txttab - 1
+
+    def _next_data(self, sp: int) -> None:
+        """Put TXTPTR where the next DATA's text begins. Raises OUT OF DATA."""
+        ram = self.ram
         while True:
-            quoted = False
-            while text[position] != "\0" and (quoted or text[position] != ":"):
-                quoted ^= text[position] == '"'
-                position += 1
-            if text[position] == "\0":
-                if text[position + 2 : position + 3] in ("", "\0"):
-                    raise ApplesoftError("OUT OF DATA")
-                self.data_line = ord(text[position + 3]) + 256 * ord(text[position + 4])
-                position += 4
-            position += 1
-            if text[position] == _DATA:
-                return position
+            self.to_statement_end()
+            if not ram[self.txtptr]:
+                if not ram[self.txtptr + 2]:
+                    raise Fault("OUT OF DATA", sp)
+                self.datlin = self.word(self.txtptr + 3)
+                self.txtptr += HEADER
+            self.txtptr += 1
+            if ram[self.txtptr] == DATA:
+                return
 
-    # --- INPUT --------------------------------------------------------------------------------
+    # --- INPUT and GET ------------------------------------------------------------------------
 
-    def input_(self, pc: int, items: Items) -> bool:
-        """INPUT after its prompt; True if the statement has to be done again."""
-        console = self._console
+    def input_(self) -> None:
+        """INPUT. Raises ILLEGAL DIRECT, and what a bad reply does."""
+        sp = self.sp - 2
+        if self.character() == QUOTE:
+            prompt = self.literal(self.txtptr + 1)
+            self.txtptr = self.strng2
+            self.expect(SEMICOLON, sp - 2)
+            self.output.out(self.used(prompt).decode("latin-1"))
+        else:
+            self.output.put("?")
+        self.refuse_direct(sp - 2)
         try:
-            text = console.read_line()
+            reply = self.console.read_line()
         except KeyboardInterrupt:
-            raise InputBreak from None
-        if text.startswith(CONTROL_C):
-            raise InputBreak
-        position = -1
-        for kind, where in items:
-            place = where()
-            if position >= 0 and text[position : position + 1] in _ENDS:
-                self._put("??")
-                text = console.read_line()
-                position = -1
-            refused = kind != STRING and not text
-            if not refused:
-                position = self._take(kind, place, text, _blanks(text, position + 1))
-                refused = text[position : position + 1] not in (*_ENDS, ",")
+            reply = CONTROL_C
+        self.ram[INPUT_BUFFER - 1] = COMMA
+        self.put_in_buffer(reply)
+        if reply.startswith(CONTROL_C):
+            self.break_()
+        else:
+            self._take_items(FROM_REPLY, INPUT_BUFFER - 1, sp)
+
+    def get(self) -> None:
+        """GET. Raises ILLEGAL DIRECT, and SYNTAX, as if at the prompt, for a key that begins no
+        number."""
+        self.refuse_direct(self.sp - 4)
+        self.ram[INPUT_BUFFER + 1] = 0
+        self._take_items(FROM_KEY, INPUT_BUFFER + 1, self.sp - 4)
+
+    def _take_items(self, source: int, values: int, sp: int) -> None:
+        """PROCESS_INPUT_LIST: TXTPTR stands at the variables, ``values`` before the values."""
+        ram = self.ram
+        while True:
+            self.forpnt = self.variable(sp - 2)
+            variables, self.txtptr = self.txtptr, values
+            if self.at_end():
+                self._more_values(source, sp)
+            self.next_character()
+            try:
+                refused = self._take_item(source, sp)
+            except ApplesoftError as error:
+                raise placed(error, sp - 4) from None
+            if not refused and not self.at_end() and ram[self.txtptr] != COMMA:
+                refused = True
             if refused:
-                if self._onerr():
-                    raise BadReply
-                self._put("?REENTER\n")
+                self._refuse_value(source, sp)
+                return
+            values, self.txtptr = self.txtptr, variables
+            if self.at_end():
+                break
+            self.expect(COMMA, sp - 2)
+        if source == FROM_DATA:
+            self.datptr = values
+        elif ram[values]:
+            self.string_shown(EXTRA_IGNORED)
+
+    def _more_values(self, source: int, sp: int) -> None:
+        """Where the values are used up: the next DATA, a key, or another reply."""
+        if source == FROM_DATA:
+            self._next_data(sp)
+            return
+        if source == FROM_KEY:
+            self.ram[INPUT_BUFFER] = ord(self.console.read_key()) & 0x7F
+        else:
+            self.output.put("??")
+            self.put_in_buffer(self.console.read_line())
+        self.txtptr = INPUT_BUFFER - 1
+
+    def _take_item(self, source: int, sp: int) -> bool:
+        """Read one value and store it; whether it is refused before it is read."""
+        if not self.valtyp:
+            if source == FROM_REPLY and not self.ram[INPUT_BUFFER]:
                 return True
-        if position < len(text):
-            self._put("?EXTRA IGNORED\n")
+            integer_ = self.inttyp
+            value = self.numeral()
+            if integer_:
+                self.assign_integer(self.forpnt, value, sp - 2)
+                self.fac = value
+            else:
+                self.assign(self.forpnt, value)
+            return False
+        start = self.txtptr
+        if source == FROM_KEY:
+            string = self.literal(INPUT_BUFFER, 0)
+        elif self.ram[start] == QUOTE:
+            string = self.literal(start + 1)
+        else:
+            string = self.literal(start, COLON, COMMA)
+        self.txtptr = self.strng2
+        self.assign_string(self.forpnt, string)
+        self.valtyp = IS_STRING
         return False
 
-    # --- GET ----------------------------------------------------------------------------------
-
-    def get(self, items: Items) -> None:
-        """GET. Raises SYNTAX, as if at the prompt, for a key that begins no number."""
-        position = 0
-        key = ""
-        for kind, where in items:
-            values, index = where()
-            key = self._console.read_key().rstrip("\0")
-            if kind == STRING:
-                values[index] = self._strings.kept(self._strings.made(key))
-                position = len(key)
-                continue
-            position = self._take(kind, (values, index), key, _blanks(key, 0))
-            if key[position : position + 1] not in (*_ENDS, ","):
-                raise ApplesoftError("SYNTAX", DIRECT_AFTER_GET)
-        if position < len(key):
-            self._put("?EXTRA IGNORED\n")
+    def _refuse_value(self, source: int, sp: int) -> None:
+        """INPUTERR. Raises SYNTAX for DATA and keys; a reply is asked for again, from where the ROM
+        noted last that a statement begins, unless ONERR is on."""
+        if source == FROM_REPLY:
+            if self.errflg & 0x80:
+                raise Fault("SYNTAX", sp, BAD_REPLY)
+            self.string_shown(REENTER)
+            self.txtptr = self.oldtext
+            return
+        self.curlin = self.datlin if source == FROM_DATA else AFTER_GET
+        raise Fault("SYNTAX", sp)

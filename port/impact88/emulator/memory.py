@@ -1,145 +1,195 @@
-"""PEEK and POKE: the machine's memory as far as it is modelled.
+"""The machine's memory: 64K of bytes, page 0 by name, PEEK and POKE.
 
-Modelled: Applesoft's pointers and flags on page 0, the text screen, the program, the variables and
-arrays. Other RAM keeps what is put there and reads as 0 before. There is no 6502: CALL knows the
-monitor's routines for the screen, ONERR's cleaning-up and a bare RTS.
+Everything a program can look at lies in ``ram`` where the ROM puts it: the program from TXTTAB,
+variables from VARTAB, arrays from ARYTAB, strings down from MEMSIZ, a typed line on page 2, the
+text screen on pages 4 to 7. The pointers of page 0 are attributes here, by the names of the ROM's
+listing in small letters; `WORDS` and `BYTES` say where they lie. Other RAM keeps what is put there
+and reads as 0 before. Of the ROM there is nothing to read.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from ..applesoft.console import Console, Device, Keyboard
 from ..applesoft.real import from_stored, to_stored
-from . import layout
-from .hardware import Hardware
-from .programtext import START
-from .screen import BASE, END
+from .output import Output
+from .screen import BASE, END, Screen
 
-WINDOW = {32: "left", 33: "width", 34: "top", 35: "bottom"}
-COLUMN, ROW, MASK = 36, 37, 50
-ERROR_FLAG, ERROR_CODE = 216, 222
-FLASH_BIT, SPEED, TRACE_FLAG = 243, 241, 242
-LOCK = 214
-COLOR, HIGH_COLOR, SCALE, ROTATION = 0x30, 0xE4, 0xE7, 0xF9
-HIGH_COLORS = bytes.fromhex("00 2A 55 7F 80 AA D5 FF")
-SCREEN = range(BASE, END)
+TEXT_START = 0x801
+"""TXTTAB: where programs begin."""
+TOP_OF_MEMORY = 0xC000
+"""48K: HIMEM without a disk system."""
+INPUT_BUFFER = 0x200
+"""Page 2, where typed lines are read in and their tokens put in their place."""
+BUFFER_END = 0x300
+STACK = 0xF8
+"""The stack pointer when nothing is on the stack."""
+DIRECT = 0xFF00
+"""CURLIN from here on means: typed without a line number."""
+TEMPORARIES, TEMPORARIES_END = 0x55, 0x5E
+"""TEMPST: the descriptors of three temporary strings."""
+EMPTY = 0xE09A
+"""A zero in ROM, where a variable is found that was never made."""
+ROM = 0xC000
+RTS = 0x60
 APPLE_II_PLUS = {0xFBB3: 0xEA}
 """The byte of the monitor by which programs tell the machines apart."""
-RTS = 0x60
-ROM = 0xC000
+PAGE_ZERO = bytes.fromhex("4C3CD4 4C3ADB 000000 00 4C99E1")
+"""The jumps with which switching on begins page 0: to the prompt, to print a text, and USR's."""
+FIRST_SEED = from_stored("804FC75200")
+"""RND's seed after switching on: of the ROM's five bytes, which end in 58, four are copied."""
+SPEED = 241
+SEED = range(201, 206)
+SCREEN = range(BASE, END)
+ADDRESSES = 0x10000
+_BEYOND = 0x200
+"""Zeros behind the last address, so that text that runs on to the end of memory ends there."""
+
+WORDS = {
+    0x67: "txttab",
+    0x69: "vartab",
+    0x6B: "arytab",
+    0x6D: "strend",
+    0x6F: "fretop",
+    0x73: "memsiz",
+    0x75: "curlin",
+    0x77: "oldlin",
+    0x79: "oldtext",
+    0x7B: "datlin",
+    0x7D: "datptr",
+    0x83: "varpnt",
+    0x85: "forpnt",
+    0xAF: "prgend",
+    0xB8: "txtptr",
+    0xDA: "errlin",
+    0xDC: "errpos",
+    0xF4: "txtpsv",
+    0xF6: "cursv",
+}
+BYTES = {
+    0x14: "subflg",
+    0x52: "temppt",
+    0x53: "lastpt",
+    0xD6: "lock",
+    0xD8: "errflg",
+    0xDE: "errnum",
+    0xDF: "errstk",
+    0xF2: "trcflg",
+    0xF8: "remstk",
+}
+OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
 
 
-def _words(machine: Hardware) -> dict[int, int]:
-    """The two-byte pointers on page 0."""
-    variables, inputs = machine.variables, machine.inputs
-    return {
-        103: START,
-        105: variables.start,
-        107: variables.end_of_variables(),
-        109: variables.end_of_arrays(),
-        111: variables.strings.bottom,
-        115: variables.strings.top,
-        117: machine.line,
-        121: machine.statement,
-        131: variables.found_address(),
-        123: inputs.data_line,
-        125: inputs.pointer,
-        175: machine.program.end,
-        218: machine.errors.line,
-    }
+class Memory:
+    """``ram``, the pointers, and the devices. ``refused`` holds what a program asked for that is
+    not done here."""
 
+    def __init__(
+        self,
+        keyboard: Keyboard,
+        screen: Device,
+        printer: Device | None = None,
+        *,
+        dos: bool = False,
+        echo: bool = True,
+        blanks: bool = True,
+    ) -> None:
+        self.ram = bytearray(ADDRESSES + _BEYOND)
+        self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
+        self.ram[SPEED] = 1
+        self.screen = Screen(self.ram, screen, blanks=blanks)
+        self.console = Console(keyboard, self.screen.write, printer, dos=dos, echo=echo)
+        self.console.editor = self.screen
+        self.output = Output(self.console, self.screen)
+        self.seed = FIRST_SEED
+        self.sp = STACK
+        self.txttab = TEXT_START
+        self.vartab = self.arytab = self.strend = self.prgend = TEXT_START + 2
+        self.fretop = self.memsiz = TOP_OF_MEMORY
+        self.curlin = DIRECT
+        self.oldlin = self.oldtext = self.datlin = 0
+        self.datptr = self.txtptr = TEXT_START - 1
+        self.varpnt = self.forpnt = 0
+        self.errflg = self.errlin = self.errpos = self.errnum = self.errstk = 0
+        self.txtpsv = self.cursv = self.remstk = 0
+        self.subflg = self.trcflg = self.lock = 0
+        self.temppt, self.lastpt = TEMPORARIES, 0
 
-def peek(machine: Hardware, address: int) -> int:
-    """The byte at an address."""
-    if address < 256:
-        words = _words(machine)
-        if address in words:
-            return words[address] & 0xFF
-        if address - 1 in words:
-            return words[address - 1] >> 8 & 0xFF
-        return _page_zero(machine, address)
-    if address in SCREEN:
-        return machine.screen.byte_at(address)
-    field = layout.field_at(machine.variables, address)
-    if field is not None:
-        return field.read(address)
-    return APPLE_II_PLUS.get(address, 0) if address >= ROM else machine.ram[address]
+    def text_changed(self) -> None:
+        """The program's bytes are other ones now: nothing remembered of them holds."""
+        raise NotImplementedError
 
+    def variables_changed(self) -> None:
+        """The same of names and sizes among the variables."""
+        raise NotImplementedError
 
-def _page_zero(machine: Hardware, address: int) -> int:
-    screen, errors = machine.screen, machine.errors
-    if address in WINDOW:
-        return int(getattr(screen, WINDOW[address])) & 0xFF
-    if 201 <= address <= 205:
-        return to_stored(machine.seed)[address - 201]
-    known: dict[int, Callable[[], int]] = {
-        COLUMN: lambda: screen.column,
-        ROW: lambda: screen.row,
-        MASK: lambda: screen.mask,
-        ERROR_FLAG: lambda: errors.flag,
-        ERROR_CODE: lambda: errors.code,
-        FLASH_BIT: lambda: machine.output.flash_bit,
-        TRACE_FLAG: lambda: machine.trace_flag,
-    }
-    return known[address]() & 0xFF if address in known else machine.ram[address]
+    # --- PEEK and POKE ------------------------------------------------------------------------
 
+    def peek(self, address: int) -> int:
+        """The byte at an address."""
+        if address < 256:
+            return self._page_zero(address)
+        if address in SCREEN:
+            return self.screen.byte_at(address)
+        return APPLE_II_PLUS.get(address, 0) if address >= ROM else self.ram[address]
 
-def poke(machine: Hardware, address: int, value: int) -> None:
-    """Put a byte at an address, other than in the program's text."""
-    screen = machine.screen
-    if address in SCREEN:
-        screen.put_byte(address, value)
-    elif address in WINDOW:
-        screen.set_window(WINDOW[address], value)
-    elif address == COLUMN:
-        screen.move_to_column(value)
-    elif address == ROW:
-        screen.put_row(value)
-    elif address == MASK:
-        screen.set_mode(value)
-    elif address == ERROR_FLAG:
-        machine.errors.flag = value
-    elif address == ERROR_CODE:
-        machine.errors.code = value
-    elif address == FLASH_BIT:
-        machine.output.flash_bit = value
-    elif 201 <= address <= 205:
-        stored = bytearray(to_stored(machine.seed))
-        stored[address - 201] = value
-        machine.seed = from_stored(bytes(stored))
-    else:
-        field = layout.field_at(machine.variables, address)
-        if field is not None:
-            field.write(address, value)
+    def _page_zero(self, address: int) -> int:
+        if address in BYTES:
+            return int(getattr(self, BYTES[address])) & 0xFF
+        if address in WORDS:
+            return int(getattr(self, WORDS[address])) & 0xFF
+        if address - 1 in WORDS:
+            return int(getattr(self, WORDS[address - 1])) >> 8 & 0xFF
+        if address in OF_SCREEN:
+            return int(getattr(self.screen, OF_SCREEN[address])) & 0xFF
+        if address in SEED:
+            return to_stored(self.seed)[address - SEED.start]
+        return self.output.flash_bit if address == 243 else self.ram[address]
+
+    def poke(self, address: int, value: int) -> None:
+        """Put a byte at an address."""
+        if address < 256:
+            self._poke_page_zero(address, value)
+        elif address in SCREEN:
+            self.screen.put_byte(address, value)
         elif address < ROM:
-            machine.ram[address] = value
+            changed = self.ram[address] != value
+            self.ram[address] = value
+            if changed and address < self.vartab:
+                self.text_changed()
+            elif changed and self.vartab <= address < self.strend:
+                self.variables_changed()
 
+    def _poke_page_zero(self, address: int, value: int) -> None:
+        if address in BYTES:
+            setattr(self, BYTES[address], value)
+        elif address in WORDS:
+            word = getattr(self, WORDS[address]) & 0xFF00 | value
+            self._point(WORDS[address], word)
+        elif address - 1 in WORDS:
+            word = getattr(self, WORDS[address - 1]) & 0xFF | value << 8
+            self._point(WORDS[address - 1], word)
+        elif address in OF_SCREEN:
+            self.screen.poke(OF_SCREEN[address], value)
+        elif address in SEED:
+            stored = bytearray(to_stored(self.seed))
+            stored[address - SEED.start] = value
+            self.seed = from_stored(bytes(stored))
+        elif address == 243:
+            self.output.flash_bit = value
+        else:
+            self.ram[address] = value
 
-def call(machine: Hardware, address: int) -> bool:
-    """CALL: whether the routine is known."""
-    screen = machine.screen
-    routines: dict[int, Callable[[], object]] = {
-        0xFC58: screen.home,
-        0xFC9C: screen.clear_to_end_of_line,
-        0xFC42: screen.clear_to_end,
-        0xFC70: screen.scroll,
-        0xFC66: screen.line_feed,
-        0xFC1A: screen.step_up,
-        0xFC10: screen.step_back,
-        0xFBF4: screen.advance,
-        0xFC62: lambda: screen.write("\n"),
-        0xFD8E: lambda: machine.output.put("\n"),
-        0xFF3A: lambda: machine.output.put("\a"),
-        0xFBDD: lambda: machine.output.put("\a"),
-        0xFB2F: screen.full_window,
-        0xFE80: machine.output.inverse,
-        0xFE84: machine.output.normal,
-        0xF273: machine.output.normal,
-        0xD683: machine.control.clear,
-        0xFCA8: lambda: None,
-    }
-    if address in routines:
-        routines[address]()
-    elif peek(machine, address) != RTS:
-        return False
-    return True
+    def _point(self, pointer: str, address: int) -> None:
+        """A pointer poked: programs may move themselves, or their variables."""
+        setattr(self, pointer, address)
+        self.text_changed()
+        self.variables_changed()
+
+    def word(self, address: int) -> int:
+        """Two bytes, the low one first."""
+        return self.ram[address] | self.ram[address + 1] << 8
+
+    def put_word(self, address: int, value: int) -> None:
+        """Two bytes, the low one first."""
+        self.ram[address] = value & 0xFF
+        self.ram[address + 1] = value >> 8 & 0xFF

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-
 from ..applesoft.console import Console
 from ..applesoft.errorcodes import illegal_quantity
-from ..applesoft.real import Number, integer
-from .lister import INDENT, WRAP_COLUMN, pieces
 from .screen import FLASHING, HEIGHT, INVERSE, NORMAL, WIDTH, Screen
 
 FLASH_BIT = 0x40
@@ -93,22 +89,20 @@ class Output:
         self.flash_bit = FLASH_BIT
         self._screen.set_mode(FLASHING)
 
-    def position(self, _: object) -> Number:
-        """POS, whatever its argument."""
-        return integer(self._screen.column)
-
-    def list_lines(
-        self, lines: Iterable[tuple[int, bytes]], last: int, check: Callable[[], None]
-    ) -> None:
-        """LIST: the lines up to a number; ``check`` is called after each, to break."""
-        for number, tokens in lines:
-            self.put("\n")
-            if number > last:
-                break
-            for piece in pieces(number, tokens):
-                self.put(piece)
-                if self._screen.column >= WRAP_COLUMN:
-                    self.put("\n")
-                    self._screen.move_to_column(INDENT)
-            check()
+    def newline_of_rom(self) -> None:
+        """CRDO: a new line whatever the output."""
         self.put("\n")
+
+    def call(self, address: int) -> bool:
+        """CALL of a routine of the monitor that displays; whether it is one."""
+        if address == 0xFD8E:
+            self.put("\n")
+        elif address in (0xFF3A, 0xFBDD):
+            self.put("\a")
+        elif address == 0xFE80:
+            self.inverse()
+        elif address in (0xFE84, 0xF273):
+            self.normal()
+        else:
+            return address == 0xFCA8  # WAIT
+        return True

@@ -279,6 +279,36 @@ class Screen(Editor):
         self._draw()
         setattr(self, edge, value)
 
+    def poke(self, field: str, value: int) -> None:
+        """POKE of what page 0 holds of the screen."""
+        if field == "column":
+            self.move_to_column(value)
+        elif field == "row":
+            self.put_row(value)
+        elif field == "mask":
+            self.set_mode(value)
+        else:
+            self.set_window(field, value)
+
+    def call(self, address: int) -> bool:
+        """CALL of a routine of the monitor that moves or clears; whether it is one."""
+        routine = {
+            0xFC58: self.home,
+            0xFC9C: self.clear_to_end_of_line,
+            0xFC42: self.clear_to_end,
+            0xFC70: self.scroll,
+            0xFC66: self.line_feed,
+            0xFC1A: self.step_up,
+            0xFC10: self.step_back,
+            0xFBF4: self.advance,
+            0xFC62: lambda: self.write("\n"),
+            0xFB2F: self.full_window,
+        }.get(address)
+        if routine is None:
+            return False
+        routine()
+        return True
+
     # --- typing -------------------------------------------------------------------------------
 
     def under_cursor(self) -> str:

@@ -1,228 +1,208 @@
-"""Strings in memory: three bytes describe one, and its characters lie in RAM.
+"""Strings: descriptors, temporaries, room and its collection.
 
-A `Descriptor` is a length and an address. The characters of a string in the program lie in the
-program's text, all others in the string area, which grows down from HIMEM. When it meets the
-arrays, strings no variable holds any more are collected, and if that is not enough: OUT OF MEMORY.
+A descriptor is three bytes, a length and an address. The characters of a string in the program lie
+in the program's text, all others in the string area, which grows down from MEMSIZ to FRETOP. When
+it meets the arrays, strings that no variable holds any more are collected.
 
-A string that a formula makes is a *temporary*: it holds one of three places until it is used, and
-gives its room back if it lies lowest then. A string that is never used (by IF, or because an error
-came in between) keeps its place until the stack is cleared.
+A string in the accumulator is a number as it lies there: the length of one just made for the
+exponent, its address in the first two bytes of the mantissa, and in the last two the address of
+the descriptor, which is all that counts. The ROM's STRNG1 is the accumulator's extension too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from ..applesoft.errorcodes import ApplesoftError
+from ..applesoft.real import Number
+from .memory import ROM, TEMPORARIES, TEMPORARIES_END
+from .text import QUOTE, Text
 
-from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
-
+DESCRIPTOR = 3
+IS_STRING = 0xFF
 LONGEST = 255
-PLACES = 3
-"""Temporaries at once."""
 
 
-class Descriptor:
-    """A string: ``length`` characters at ``address``. A variable's changes when strings move."""
-
-    __slots__ = ("address", "length")
-
-    def __init__(self, length: int, address: int) -> None:
-        self.length = length
-        self.address = address
+def descriptor(string: Number) -> int:
+    """The address of the descriptor of a string in the accumulator."""
+    mantissa = string[1]
+    return mantissa >> 16 & 0xFF | mantissa & 0xFF00
 
 
-EMPTY = Descriptor(0, 0xE09A)
-"""What a string variable reads as that was never assigned: a zero in ROM."""
+class Strings(Text):
+    """The string area and the temporaries. ``fac``: what the accumulator held last. ``valtyp``:
+    `IS_STRING` when that is a string."""
 
-
-class StringArea:
-    """The strings of a machine, in ``ram`` between the arrays' end and HIMEM, from the ``top``.
-
-    ``floor()`` is the first address it may not grow past; ``held()`` gives the descriptors that
-    variables and arrays hold, in the order in which they lie in memory.
-    """
-
-    def __init__(
-        self,
-        ram: bytearray,
-        top: int,
-        floor: Callable[[], int],
-        held: Callable[[], Iterable[Descriptor]],
-    ) -> None:
-        self.top = top
-        self.bottom = top
-        self.temporaries: list[Descriptor] = []
-        self._ram = ram
-        self._floor = floor
-        self._held = held
-
-    def put_top(self, address: int) -> None:
-        """HIMEM: strings that exist stay where they are, above or below."""
-        self.top = self.bottom = address
-
-    def clear(self) -> None:
-        """CLEAR: no strings."""
-        self.bottom = self.top
-        self.temporaries.clear()
+    fac: Number
+    valtyp = 0
+    strng2 = 0
 
     # --- room ---------------------------------------------------------------------------------
 
-    def collect(self) -> None:
-        """Move the strings that variables hold together below HIMEM, the highest first.
+    def collect_garbage(self) -> None:
+        """GARBAG: move the strings that variables hold together below MEMSIZ, the highest first.
 
         When the highest of those left to move is a temporary, the ROM takes it for the end: it and
         all strings below stay where they are, and what is made later overwrites them.
         """
-        self.bottom = self.top
-        floor, ram = self._floor(), self._ram
-        strings = [(each.address, n, each) for n, each in enumerate(self._strings()) if each.length]
-        for address, _, string in sorted(strings, key=lambda entry: entry[:2], reverse=True):
-            if not floor <= address < self.bottom:
+        ram = self.ram
+        self.fretop = self.memsiz
+        places = [*range(TEMPORARIES, self.temppt, DESCRIPTOR), *self._held()]
+        strings = [(self.word(place + 1), n, place) for n, place in enumerate(places) if ram[place]]
+        for address, _, place in sorted(strings, reverse=True):
+            if not self.strend <= address < self.fretop:
                 continue
-            if string in self.temporaries:
+            if place < TEMPORARIES_END:
                 return
-            self.bottom -= string.length
-            ram[self.bottom : self.bottom + string.length] = ram[address : address + string.length]
-            string.address = self.bottom
+            length = ram[place]
+            self.fretop -= length
+            ram[self.fretop : self.fretop + length] = ram[address : address + length]
+            self.put_word(place + 1, self.fretop)
 
-    def _strings(self) -> Iterable[Descriptor]:
-        yield from self.temporaries
-        yield from self._held()
+    def _held(self) -> list[int]:
+        """Where the descriptors of string variables and elements lie, in memory's order."""
+        ram = self.ram
+        places = [
+            place + 2
+            for place in range(self.vartab, self.arytab, 7)
+            if ram[place] < 0x80 <= ram[place + 1]
+        ]
+        array = self.arytab
+        while array < self.strend and (size := self.word(array + 2)):
+            if ram[array] < 0x80 <= ram[array + 1]:
+                places += range(array + 5 + 2 * ram[array + 4], array + size, DESCRIPTOR)
+            array += size
+        return places
 
-    def take(self, size: int) -> int:
-        """The address of new room. Raises OUT OF MEMORY."""
-        if self.bottom - size < self._floor():
-            self.collect()
-            if self.bottom - size < self._floor():
+    def room(self, length: int) -> int:
+        """GETSPA: the address of new room for characters. Raises OUT OF MEMORY."""
+        if self.fretop - length < self.strend:
+            self.collect_garbage()
+            if self.fretop - length < self.strend:
                 raise ApplesoftError("OUT OF MEMORY")
-        self.bottom -= size
-        return self.bottom
+        self.fretop -= length
+        return self.fretop
 
-    # --- characters and temporaries -----------------------------------------------------------
-
-    def text(self, string: Descriptor) -> str:
-        """Its characters, codes 0 to 255."""
-        return self._ram[string.address : string.address + string.length].decode("latin-1")
-
-    def temporary(self, length: int, address: int) -> Descriptor:
-        """A new temporary. Raises FORMULA TOO COMPLEX."""
-        if len(self.temporaries) == PLACES:
-            raise ApplesoftError("FORMULA TOO COMPLEX")
-        string = Descriptor(length, address)
-        self.temporaries.append(string)
-        return string
-
-    def release(self, string: Descriptor) -> bool:
-        """Give back the place of a temporary if it is the latest; whether it was one."""
-        if self.temporaries and self.temporaries[-1] is string:
-            self.temporaries.pop()
-            return True
-        return False
-
-    def free(self, string: Descriptor) -> Descriptor:
-        """A string has been used: a temporary gives back its place, and its room if it is the
-        lowest."""
-        if self.release(string) and string.address == self.bottom:
-            self.bottom += string.length
-        return string
-
-    def used(self, string: Descriptor) -> str:
-        """The characters of a string that has been used with that."""
-        text = self.text(string)
-        self.free(string)
-        return text
-
-    def shown(self, text: str) -> str:
-        """The characters of a string in the program that is used at once. Raises FORMULA TOO
-        COMPLEX if there is no place for it."""
-        if len(self.temporaries) == PLACES:
-            raise ApplesoftError("FORMULA TOO COMPLEX")
-        return text
-
-    # --- operations that make a string --------------------------------------------------------
-
-    def new(self, text: str) -> Descriptor:
-        """A string for a variable, its characters put into the area. Raises OUT OF MEMORY."""
-        address = self.take(len(text))
-        self._ram[address : address + len(text)] = text.encode("latin-1")
-        return Descriptor(len(text), address)
-
-    def made(self, text: str) -> Descriptor:
-        """A temporary with these characters. Raises OUT OF MEMORY and FORMULA TOO COMPLEX."""
-        string = self.new(text)
-        return self.temporary(string.length, string.address)
-
-    def kept(self, string: Descriptor) -> Descriptor:
-        """What assigning a temporary stores: the string itself."""
-        self.release(string)
-        return string
-
-    def copied(self, string: Descriptor) -> Descriptor:
-        """What assigning a variable stores: a copy, unless the characters are the program's."""
-        if string.address < self.bottom:
-            return Descriptor(string.length, string.address)
-        address = self.take(string.length)
-        self._move(string.address, address, string.length)
-        return Descriptor(string.length, address)
-
-    def _move(self, source: int, target: int, length: int) -> None:
-        """The ROM copies the last character first."""
-        ram = self._ram
+    def move(self, source: int, target: int, length: int) -> None:
+        """MOVSTR: copy characters, the last one first."""
+        ram = self.ram
         if target < source < target + length:
             for offset in range(length - 1, -1, -1):
                 ram[target + offset] = ram[source + offset]
         else:
             ram[target : target + length] = ram[source : source + length]
 
-    def joined(self, left: Descriptor, right: Descriptor) -> Descriptor:
-        """left + right. Raises STRING TOO LONG past 255 characters."""
-        length = left.length + right.length
+    def characters(self, place: int) -> bytes:
+        """The characters of the string that a descriptor describes."""
+        address = self.word(place + 1)
+        return bytes(self.ram[address : address + self.ram[place]])
+
+    # --- temporaries --------------------------------------------------------------------------
+
+    def temporary(self, length: int, address: int, extension: int = 0) -> Number:
+        """PUTNEW: a new temporary, in the accumulator. Raises FORMULA TOO COMPLEX."""
+        place = self.temppt
+        if place == TEMPORARIES_END:
+            raise ApplesoftError("FORMULA TOO COMPLEX")
+        self.ram[place] = length
+        self.put_word(place + 1, address)
+        self.lastpt = place
+        self.temppt = place + DESCRIPTOR
+        self.valtyp = IS_STRING
+        mantissa = (address & 0xFF) << 32 | (address >> 8) << 24 | place << 16 | extension
+        self.fac = length, mantissa, self.fac[2]
+        return self.fac
+
+    def literal(self, address: int, *ends: int) -> Number:
+        """STRLIT, STRLT2: the string that begins at an address and ends at a zero or one of
+        ``ends``, a quote unless given; STRNG2 is behind it, and behind its quote. What stands on
+        page 0 or 2 is copied. Raises OUT OF MEMORY and FORMULA TOO COMPLEX."""
+        ram = self.ram
+        end = ram.index(0, address)
+        for byte in ends or (QUOTE,):
+            found = ram.find(byte, address, end)
+            end = found if found >= 0 else end
+        length = end - address & 0xFF
+        self.strng2 = end + (ram[end] == QUOTE)
+        self.charac = 0
+        page = address >> 8
+        if page in (0, 2):
+            copy = self.room(length)
+            self.move(address, copy, length)
+            address = copy
+        return self.temporary(length, address, page)
+
+    def made(self, text: bytes) -> Number:
+        """STRINI and PUTNEW: a temporary with characters. Raises OUT OF MEMORY and FORMULA TOO
+        COMPLEX."""
+        address = self.room(len(text))
+        self.ram[address : address + len(text)] = text
+        return self.temporary(len(text), address)
+
+    def release(self, place: int) -> bool:
+        """FRETMS: give back a temporary's place if it is the latest; whether it was."""
+        if place != self.lastpt:
+            return False
+        self.temppt = place
+        self.lastpt = place - DESCRIPTOR
+        return True
+
+    def freed(self, place: int) -> tuple[int, int]:
+        """FRETMP: length and address of a string that has been used: a temporary gives back its
+        place, and its room if it is the lowest."""
+        released = self.release(place)
+        length, address = self.ram[place], self.word(place + 1)
+        if released and address == self.fretop:
+            self.fretop += length
+        return length, address
+
+    def used(self, string: Number) -> bytes:
+        """FREFAC: the characters of the string in the accumulator, which has been used then."""
+        length, address = self.freed(descriptor(string))
+        return bytes(self.ram[address : address + length])
+
+    def assign_string(self, target: int, string: Number) -> None:
+        """PUTSTR: a variable takes the string in the accumulator: itself if it is a temporary or
+        its characters are the program's, a copy of another variable's. Raises OUT OF MEMORY."""
+        ram = self.ram
+        place = descriptor(string)
+        if self.word(place + 1) >= self.fretop and place >= self.vartab:
+            length = ram[place]
+            address = self.room(length)
+            self.move(self.word(place + 1), address, length)
+        else:
+            self.release(place)
+            length, address = ram[place], self.word(place + 1)
+        if target < ROM:
+            ram[target] = length
+            self.put_word(target + 1, address)
+
+    # --- operations ---------------------------------------------------------------------------
+
+    def joined(self, left: int, right: int) -> Number:
+        """CAT: left + right, by their descriptors. Raises STRING TOO LONG past 255 characters,
+        OUT OF MEMORY and FORMULA TOO COMPLEX."""
+        ram = self.ram
+        size = ram[left]
+        length = size + ram[right]
         if length > LONGEST:
             raise ApplesoftError("STRING TOO LONG")
-        address = self.take(length)
-        self._move(left.address, address, left.length)
-        self.free(right)
-        self._move(right.address, address + left.length, right.length)
-        self.free(left)
-        return self.temporary(length, address)
+        address = self.room(length)
+        self.move(self.word(left + 1), address, size)
+        more, source = self.freed(right)
+        self.move(source, address + size, more)
+        self.freed(left)
+        return self.temporary(length, address, left >> 8)
 
-    def _part(self, string: Descriptor, first: int, length: int) -> Descriptor:
-        address = self.take(length)
-        source = string.address + first
-        self.free(string)
-        self._move(source, address, length)
-        return self.temporary(length, address)
+    def part(self, place: int, first: int, length: int, extension: int) -> Number:
+        """The last part of LEFT$, RIGHT$ and MID$: characters of a string from an offset on."""
+        address = self.room(length)
+        _, source = self.freed(place)
+        self.move(source + first, address, length)
+        return self.temporary(length, address, extension)
 
-    def left(self, string: Descriptor, n: int) -> Descriptor:
-        """LEFT$. Raises ILLEGAL QUANTITY for n = 0, as all three do."""
-        if not n:
-            raise illegal_quantity()
-        return self._part(string, 0, min(n, string.length))
-
-    def right(self, string: Descriptor, n: int) -> Descriptor:
-        """RIGHT$."""
-        if not n:
-            raise illegal_quantity()
-        n = min(n, string.length)
-        return self._part(string, string.length - n, n)
-
-    def mid(self, string: Descriptor, n: int, length: int = LONGEST) -> Descriptor:
-        """MID$; without a length, all the rest."""
-        if not n:
-            raise illegal_quantity()
-        first = min(n - 1, string.length)
-        return self._part(string, first, min(length, string.length - first))
-
-    # --- operations that use one --------------------------------------------------------------
-
-    def compare(self, left: Descriptor, right: Descriptor) -> int:
-        """1 if the left string is larger, 0 if they are equal, -1 if it is smaller."""
+    def compare_strings(self, left: int, right: Number) -> int:
+        """STRCMP: 1 if the string of the left descriptor is larger, 0 if they are equal, -1 if it
+        is smaller."""
         other = self.used(right)
-        text = self.used(left)
+        length, address = self.freed(left)
+        text = bytes(self.ram[address : address + length])
         return (text > other) - (text < other)
-
-    def code(self, string: Descriptor) -> int:
-        """ASC. Raises ILLEGAL QUANTITY for the empty string."""
-        text = self.used(string)
-        if not text:
-            raise illegal_quantity()
-        return ord(text[0])

@@ -8,6 +8,7 @@ special: AT followed at once by N or O is not AT, so that ATN and A TO are found
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import lru_cache
 
 from ..applesoft.console import keyed
@@ -118,3 +119,27 @@ def split_number(text: str) -> tuple[int, str] | None:
             raise ValueError("a line number goes up to 63999")
         number = 10 * (number or 0) + int(character)
     return None if number is None else (number, "")
+
+
+def source(lines: Iterable[tuple[int, bytes]]) -> str:
+    """A program as text that loads into the same tokens, one line a line: what SAVE writes."""
+    return "".join(f"{number} {untokenised(tokens)}\n" for number, tokens in lines)
+
+
+def untokenised(tokens: bytes) -> str:
+    """Statement text that tokenises into ``tokens``.
+
+    Blanks stand around keywords, except after REM and DATA, whose text is kept as it is. The blank
+    after AT keeps a following N or O from becoming ATN or TO.
+    """
+    out = ""
+    for byte in tokens:
+        if byte < FIRST:
+            out += chr(byte)
+            continue
+        index = byte - FIRST
+        word = KEYWORDS[index] if index < len(KEYWORDS) else ""
+        out += word if not out or out.endswith((" ", "(")) else f" {word}"
+        if byte not in (REM, DATA) and not word.endswith("("):
+            out += " "
+    return out.rstrip(" ") if REM not in tokens and DATA not in tokens else out

@@ -1,298 +1,268 @@
-"""Variables and arrays: values by slot, the order they came into being, and the room they take.
+"""Variables and arrays in memory: PTRGET, and what it finds or makes.
 
-A simple variable takes seven bytes, an array five, two for each dimension and its elements. Both
-are made when something is assigned to them; merely reading a simple variable makes none. Arrays
-follow the variables in memory, strings grow down from HIMEM towards them.
+A simple variable: two bytes of name, five of value. An array: two of name, two of length, the
+number of dimensions, each dimension's size with the last first and the high byte first, then its
+elements, the first subscript fastest. Both are made when something is assigned to them; merely
+reading a simple variable makes none. Where names lie is remembered while none is moved.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from struct import Struct
+from typing import NamedTuple
 
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
-from .strings import EMPTY, Descriptor, StringArea
-from .symbols import ARRAYS, FUNCTION, INTEGER, REAL, SIMPLE, STRING
+from .faults import Fault, placed
+from .memory import EMPTY, ROM
+from .strings import IS_STRING, Strings
+from .text import CLOSE, COMMA, FUNCTION, INTEGER, STRING, is_letter
 
-TOP_OF_MEMORY = 0xC000
-"""48K: HIMEM without a disk system."""
 VARIABLE_SIZE = 7
 ARRAY_HEADER = 5
-ELEMENT_SIZES = {REAL: 5, INTEGER: 2, STRING: 3}
 AUTOMATIC = 11
 """Elements per dimension of an array that no DIM made."""
 LOWEST = from_stored("9080000020")
 """The one number below -32767.99 that the ROM lets through: a little less than -32768."""
+LARGEST_INTEGER = 143
+"""Exponent of the largest number that MKINT takes."""
+AFTER_SUBSCRIPT = (COMMA, CLOSE)
+DEEPEST = 63
+"""A subscript needs the stack pointer to be at least here, else its formula says that it is not."""
+SUBFLG_SIMPLE = 0x80
+"""SUBFLG: no array and no integer may come, because of FOR or DEF FN."""
+_STORED = Struct(">BI")
+stored_at, store = _STORED.unpack_from, _STORED.pack_into
+ADDRESS_LIMIT = 0xFFFF
 
 
-class Array(NamedTuple):
-    """``sizes`` counts the elements per dimension; ``data`` has the first subscript fastest."""
-
-    sizes: tuple[int, ...]
-    data: list[Any]
-    kind: str
+def element_size(name: int) -> int:
+    """Bytes of an element of an array, by its name: a real five, a string three, an integer two."""
+    return 5 - (name >> 15) - 2 * (name >> 7 & 1)
 
 
-class Function(NamedTuple):
-    """What DEF FN made: the argument's slot, and the body as it was compiled there."""
-
-    argument: int
-    body: Any
-    need: int
-
-
-def blank(kind: str) -> Any:
-    """What a variable never assigned reads as."""
-    return EMPTY if kind == STRING else None if kind == FUNCTION else ZERO
-
-
-class Variables:
-    """All variables of a machine.
-
-    ``values`` and ``arrays`` are lists by slot, the same objects for the machine's life; ``made``
-    says which simple variables exist, ``order`` and ``array_order`` since when.
-    """
-
-    def __init__(self, ram: bytearray) -> None:
-        self.values: list[Any] = []
-        self.made = bytearray()
-        self.arrays: list[Array | None] = []
-        self.order: list[int] = []
-        self.array_order: list[int] = []
-        self.start = 0
-        self.found_slot: int | None = None
-        self._end = 0
-        self._arrays_size = 0
-        self.strings = StringArea(ram, TOP_OF_MEMORY, self.end_of_arrays, self._held)
-        self.grow()
-
-    def grow(self) -> None:
-        """Make room for names that came up since."""
-        for name in SIMPLE.names[len(self.values) :]:
-            self.values.append(blank(name.kind))
-            self.made.append(0)
-        self.arrays += [None] * (len(ARRAYS) - len(self.arrays))
-
-    def clear(self) -> None:
-        """CLEAR: none left."""
-        for slot in self.order:
-            self.values[slot] = blank(SIMPLE.names[slot].kind)
-            self.made[slot] = 0
-        for slot in self.array_order:
-            self.arrays[slot] = None
-        self.order.clear()
-        self.array_order.clear()
-        self._end = self.start
-        self._arrays_size = 0
-        self.strings.clear()
-
-    def put_start(self, address: int) -> None:
-        """LOMEM: where the variables begin. Clears them."""
-        self.start = address
-        self.clear()
-
-    def end_of_variables(self) -> int:
-        """ARYTAB."""
-        return self._end
-
-    def end_of_arrays(self) -> int:
-        """STREND."""
-        return self._end + self._arrays_size
-
-    def free(self) -> Number:
-        """FRE: the room left, past 32767 as a negative number."""
-        self.strings.collect()
-        room = self.strings.bottom - self.end_of_arrays()
-        return integer((room + 0x8000 & 0xFFFF) - 0x8000)
-
-    def _held(self) -> Iterator[Descriptor]:
-        """The descriptors that variables and arrays hold, in memory's order."""
-        for slot in self.order:
-            value = self.values[slot]
-            if value.__class__ is Descriptor:
-                yield value
-        for slot in self.array_order:
-            array = self.arrays[slot]
-            if array is not None and array.kind == STRING:
-                yield from array.data
-
-    def descriptor_address(self, string: Descriptor) -> int:
-        """Where the descriptor of a string variable or element lies; 0 for any other."""
-        for slot in self.order:
-            if self.values[slot] is string:
-                return self.address_of(slot)
-        start = self._end
-        for slot in self.array_order:
-            array = self.arrays[slot]
-            assert array is not None
-            start += ARRAY_HEADER + 2 * len(array.sizes)
-            size = ELEMENT_SIZES[array.kind]
-            if array.kind == STRING:
-                for n, element in enumerate(array.data):
-                    if element is string:
-                        return start + size * n
-            start += size * len(array.data)
-        return 0
-
-    def lies_at_page_end(self, slot: int) -> bool:
-        """Whether a simple variable's value begins at the last byte of a page."""
-        # variables take 7 bytes, and 183 * 7 is 1 modulo 256
-        n = (0xFD - self.start) * 183 & 0xFF
-        return n < len(self.order) and slot in self.order[n::0x100]
-
-    def find(self, slot: int) -> int:
-        """A simple variable is looked up; the ROM keeps its address."""
-        self.found_slot = slot
-        return slot
-
-    def found_address(self) -> int:
-        """The address of the value of the variable found last."""
-        if self.found_slot is None or not self.made[self.found_slot]:
-            return EMPTY.address
-        return self.address_of(self.found_slot)
-
-    def address_of(self, slot: int) -> int:
-        """Where a simple variable's value lies."""
-        return self.start + VARIABLE_SIZE * self.order.index(slot) + 2
-
-    def _room(self, size: int) -> None:
-        """Raises OUT OF MEMORY unless so much more fits between arrays and strings."""
-        end = self.end_of_arrays() + size
-        if end >= self.strings.bottom:
-            self.strings.collect()
-            if end >= self.strings.bottom:
-                raise ApplesoftError("OUT OF MEMORY")
-
-    # --- simple variables ---------------------------------------------------------------------
-
-    def make(self, slot: int) -> None:
-        """A simple variable comes into being, zero or empty. Raises OUT OF MEMORY."""
-        self._room(VARIABLE_SIZE)
-        self._end += VARIABLE_SIZE
-        self.made[slot] = 1
-        if self.values[slot] is EMPTY:
-            self.values[slot] = Descriptor(0, 0)
-        self.order.append(slot)
-
-    def place(self, slot: int) -> tuple[list[Any], int]:
-        """Where a simple variable's value is kept; makes it."""
-        if not self.made[slot]:
-            self.make(slot)
-        return self.values, slot
-
-    # --- arrays -------------------------------------------------------------------------------
-
-    def dimension(self, slot: int, last: Sequence[int]) -> None:
-        """DIM. Raises REDIM'D ARRAY and OUT OF MEMORY."""
-        if self.arrays[slot] is not None:
-            raise ApplesoftError("REDIM'D ARRAY")
-        self._make_array(slot, [n + 1 for n in last])
-
-    def _make_array(self, slot: int, sizes: Sequence[int]) -> Array:
-        kind = ARRAYS.names[slot].kind
-        header = ARRAY_HEADER + 2 * len(sizes)
-        self._room(header)
-        elements = 1
-        for size in sizes:
-            elements *= size
-        size = header + elements * ELEMENT_SIZES[kind]
-        self._room(size)
-        self._arrays_size += size
-        self.array_order.append(slot)
-        nothing = Descriptor(0, 0) if kind == STRING else ZERO
-        array = Array(tuple(sizes), [nothing] * elements, kind)
-        self.arrays[slot] = array
-        return array
-
-    def element1(self, slot: int, i: int) -> tuple[list[Any], int]:
-        """Where an element with one subscript is kept; makes the array. Raises BAD SUBSCRIPT."""
-        array = self.arrays[slot]
-        if array is None:
-            array = self._make_array(slot, (AUTOMATIC,))
-        sizes = array[0]
-        if len(sizes) != 1 or i >= sizes[0]:
-            raise ApplesoftError("BAD SUBSCRIPT")
-        return array[1], i
-
-    def element2(self, slot: int, i: int, j: int) -> tuple[list[Any], int]:
-        """The same with two subscripts."""
-        array = self.arrays[slot]
-        if array is None:
-            array = self._make_array(slot, (AUTOMATIC, AUTOMATIC))
-        sizes = array[0]
-        if len(sizes) != 2 or i >= sizes[0] or j >= sizes[1]:
-            raise ApplesoftError("BAD SUBSCRIPT")
-        return array[1], i + sizes[0] * j
-
-    def element(self, slot: int, *subscripts: int) -> tuple[list[Any], int]:
-        """The same with any number of subscripts."""
-        array = self.arrays[slot]
-        if array is None:
-            array = self._make_array(slot, (AUTOMATIC,) * len(subscripts))
-        sizes = array[0]
-        if len(sizes) != len(subscripts):
-            raise ApplesoftError("BAD SUBSCRIPT")
-        index = 0
-        for i, size in zip(reversed(subscripts), reversed(sizes), strict=True):
-            if i >= size:
-                raise ApplesoftError("BAD SUBSCRIPT")
-            index = index * size + i
-        return array[1], index
-
-    def value1(self, slot: int, i: int) -> Any:
-        """The value of an element with one subscript."""
-        data, index = self.element1(slot, i)
-        return data[index]
-
-    def value2(self, slot: int, i: int, j: int) -> Any:
-        """The value of an element with two subscripts."""
-        array = self.arrays[slot]
-        if array is None:
-            array = self._make_array(slot, (AUTOMATIC, AUTOMATIC))
-        sizes = array[0]
-        if len(sizes) != 2 or i >= sizes[0] or j >= sizes[1]:
-            raise ApplesoftError("BAD SUBSCRIPT")
-        return array[1][i + sizes[0] * j]
-
-    def value(self, slot: int, *subscripts: int) -> Any:
-        """The value of any element."""
-        data, index = self.element(slot, *subscripts)
-        return data[index]
-
-
-def whole(x: Number) -> Number:
-    """What an integer variable stores: rounded to 32 bits, then down. Raises ILLEGAL QUANTITY from
-    32768 and -32768 on.
+def small_integer(x: Number) -> int:
+    """AYINT: a number as 16 bits. Raises ILLEGAL QUANTITY from 32768 and -32768 on.
 
     The ROM means to let -32768 through, but its constant has a bit too many: it lets through
     -32768.0005 only, which is stored as 32767.
     """
-    x = rounded(x)
     if x[0] >= 0x90 and compare(LOWEST, x):
         raise illegal_quantity()
-    return integer((to_integer(x) + 0x8000 & 0xFFFF) - 0x8000)
+    return to_integer(x) & 0xFFFF
 
 
-def subscript(x: Number) -> int:
-    """A subscript: rounded down, 0 ... 32767. Raises ILLEGAL QUANTITY for a negative or larger one,
-    however small its fraction."""
+def positive_integer(x: Number, sp: int) -> int:
+    """MKINT: a number from 0 to 32767, rounded down. Raises ILLEGAL QUANTITY for a negative or
+    larger one, however small its fraction."""
     e, m, s = x
-    if s or e > 143:
-        raise illegal_quantity()
+    if s or e > LARGEST_INTEGER:
+        raise Fault("ILLEGAL QUANTITY", sp)
     return m >> 168 - e
 
 
-def byte(x: Number) -> int:
-    """A value from 0 to 255, rounded down. Raises ILLEGAL QUANTITY."""
-    n = subscript(x)
-    if n > 255:
-        raise illegal_quantity()
-    return n
+class Array(NamedTuple):
+    """Where an array lies, from the first one on; its sizes, the last dimension's first; where its
+    elements begin, from its own start on, and their size."""
+
+    offset: int
+    sizes: tuple[int, ...]
+    head: int
+    element: int
 
 
-def address(x: Number) -> int:
-    """A 16-bit address; a negative one counts from the top. Raises ILLEGAL QUANTITY past 65535."""
-    if x[0] > 0x90:
-        raise illegal_quantity()
-    return to_integer(x) & 0xFFFF
+class Variables(Strings):
+    """Simple variables from VARTAB, arrays from ARYTAB to STREND."""
+
+    inttyp = False
+
+    def variables_changed(self) -> None:
+        """See `Memory.variables_changed`."""
+        ram = self.ram
+        self.simple: dict[int, int] = {}
+        for place in range(self.vartab, self.arytab - VARIABLE_SIZE + 1, VARIABLE_SIZE):
+            self.simple.setdefault(ram[place] << 8 | ram[place + 1], place + 2)
+        self.arrays: dict[int, Array] = {}
+        for place, size in self._array_places():
+            sizes = tuple(
+                ram[at] << 8 | ram[at + 1] for at in range(place + 5, place + size - 1, 2)
+            )[: ram[place + 4]]
+            name = ram[place] << 8 | ram[place + 1]
+            self.arrays.setdefault(name, self._array(name, place, sizes))
+
+    def _array_places(self) -> Iterator[tuple[int, int]]:
+        """Where each array lies, and its length."""
+        place = self.arytab
+        while place < self.strend and (size := self.word(place + 2)) >= ARRAY_HEADER:
+            yield place, size
+            place += size
+
+    def _array(self, name: int, place: int, sizes: tuple[int, ...]) -> Array:
+        head = ARRAY_HEADER + 2 * len(sizes)
+        return Array(place - self.arytab, sizes, head, element_size(name))
+
+    def reason(self, address: int) -> None:
+        """REASON: there must be room up to an address. Raises OUT OF MEMORY."""
+        if address >= self.fretop:
+            self.collect_garbage()
+            if address >= self.fretop:
+                raise ApplesoftError("OUT OF MEMORY")
+
+    # --- PTRGET -------------------------------------------------------------------------------
+
+    def variable(self, sp: int, dimensions: int = 0, mark: int = 0) -> int:
+        """PTRGET: the address of the value of the variable that comes next, which is made if there
+        is none. ``dimensions``: for DIM, whose arrays must be new; ``mark``: for FN, whose names
+        have a top bit. Raises SYNTAX, BAD SUBSCRIPT, REDIM'D ARRAY, OUT OF MEMORY."""
+        known = self.names.get(self.txtptr)
+        if not known:
+            if not is_letter(self.character()):
+                raise Fault("SYNTAX", sp)
+            known = self.name_at(self.txtptr)
+        name, self.txtptr, subscripts = known
+        self.valtyp = IS_STRING if name & INTEGER == STRING else 0
+        self.inttyp = name & INTEGER == INTEGER
+        if self.inttyp and self.subflg:
+            raise Fault("SYNTAX", sp)
+        if subscripts and not self.subflg:
+            return self.array_element(name, sp, dimensions)
+        self.subflg = 0
+        name |= mark
+        address = self.simple.get(name)
+        if address is None:
+            try:
+                address = self._make(name)
+            except ApplesoftError as error:
+                raise placed(error, sp - 4) from None
+        self.varpnt = address
+        return address
+
+    def _make(self, name: int) -> int:
+        """MAKE NEW VARIABLE: zero or empty, the arrays moved up. Raises OUT OF MEMORY."""
+        ram = self.ram
+        self.reason(self.strend + VARIABLE_SIZE)
+        place = self.arytab
+        ram[place + VARIABLE_SIZE : self.strend + VARIABLE_SIZE] = ram[place : self.strend]
+        self.arytab += VARIABLE_SIZE
+        self.strend += VARIABLE_SIZE
+        ram[place : place + VARIABLE_SIZE] = bytes((name >> 8, name & 0xFF, 0, 0, 0, 0, 0))
+        self.simple[name] = place + 2
+        return place + 2
+
+    def formula(self, sp: int) -> Number:
+        """FRMEVL, of `formulas`."""
+        raise NotImplementedError
+
+    def array_element(self, name: int, sp: int, dimensions: int = 0) -> int:
+        """ARRAY: the address of an element; its array is made if there is none. Raises SYNTAX,
+        ILLEGAL QUANTITY, BAD SUBSCRIPT, REDIM'D ARRAY, OUT OF MEMORY."""
+        kind = self.valtyp, self.inttyp
+        found: list[int] = []
+        depth = sp - 7
+        ram = self.ram
+        while True:
+            known = self.atoms.get(self.txtptr + 1)
+            if known and ram[known[0]] in AFTER_SUBSCRIPT and depth >= DEEPEST:
+                self.txtptr, simple, constant = known
+                place = self.simple.get(simple)
+                self.fac = constant or (self.value(place) if place else ZERO)
+                e, m, s = self.fac
+            else:
+                self.txtptr += 1
+                e, m, s = self.formula(depth - 4)
+                if self.valtyp:
+                    raise Fault("TYPE MISMATCH", depth - 2)
+            if s or e > LARGEST_INTEGER:
+                raise Fault("ILLEGAL QUANTITY", depth)
+            found.append(m >> 168 - e)
+            byte = ram[self.txtptr]
+            if byte != COMMA and self.character() != COMMA:
+                break
+            depth -= 2
+        if byte == CLOSE:
+            self.txtptr += 1
+        else:
+            self.expect(CLOSE, depth + 1)
+        self.valtyp, self.inttyp = kind
+        n = len(found)
+        bottom = sp - 2 * n
+        array = self.arrays.get(name)
+        if array is None:
+            try:
+                array = self._make_array(name, found, dimensions)
+            except ApplesoftError as error:
+                raise placed(error, bottom - 2) from None
+            if dimensions:
+                return 0
+        elif dimensions:
+            raise Fault("REDIM'D ARRAY", bottom)
+        offset, sizes, head, element = array
+        if len(sizes) != n:
+            raise Fault("BAD SUBSCRIPT", bottom)
+        index = 0
+        for size in sizes:
+            n -= 1
+            subscript = found[n]
+            if subscript >= size:
+                raise Fault("BAD SUBSCRIPT", sp - 2 * n)
+            index = index * size + subscript
+        address = self.arytab + offset + head + element * index
+        self.varpnt = address
+        return address
+
+    def _make_array(self, name: int, last: list[int], dimensions: int) -> Array:
+        """A new array: header and zeros. Raises OUT OF MEMORY."""
+        ram = self.ram
+        place = self.strend
+        start = place + ARRAY_HEADER + 2 * len(last)
+        self.reason(start)
+        sizes = tuple(n + 1 for n in reversed(last)) if dimensions else (AUTOMATIC,) * len(last)
+        header = bytes((name >> 8, name & 0xFF, 0, 0, len(last)))
+        header += b"".join(size.to_bytes(2, "big") for size in sizes)
+        ram[place:start] = header
+        size = element_size(name)
+        for n in sizes:
+            size *= n
+            if size > ADDRESS_LIMIT:
+                raise ApplesoftError("OUT OF MEMORY")
+        end = start + size
+        if end > ADDRESS_LIMIT:
+            raise ApplesoftError("OUT OF MEMORY")
+        self.reason(end)
+        ram[start:end] = bytes(size)
+        self.put_word(place + 2, end - place)
+        self.strend = end
+        array = self.arrays[name] = self._array(name, place, sizes)
+        return array
+
+    # --- values -------------------------------------------------------------------------------
+
+    def value(self, address: int) -> Number:
+        """MOVFM: the real at an address."""
+        e, m = stored_at(self.ram, address)
+        return (e, (m | 0x80000000) << 8, m >> 31) if e else ZERO
+
+    def integer_value(self, address: int) -> Number:
+        """The integer at an address."""
+        n = self.ram[address] << 8 | self.ram[address + 1]
+        return integer(n - (n >> 15 << 16))
+
+    def assign(self, address: int, x: Number) -> None:
+        """SETFOR: a real variable takes a number, rounded, which stays in the accumulator. Raises
+        OVERFLOW."""
+        e, m, s = self.fac = rounded(x) if x[1] & 0xFF else x
+        if address < ROM:
+            store(self.ram, address, e, m >> 8 & 0x7FFFFFFF | s << 31)
+
+    def assign_integer(self, address: int, x: Number, sp: int) -> None:
+        """An integer variable takes a number, rounded. Raises ILLEGAL QUANTITY."""
+        try:
+            n = small_integer(rounded(x))
+        except ApplesoftError as error:
+            raise placed(error, sp) from None
+        if address < ROM:
+            self.ram[address : address + 2] = n.to_bytes(2, "big")
+
+
+__all__ = ["EMPTY", "FUNCTION", "Variables"]

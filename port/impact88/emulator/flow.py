@@ -1,0 +1,366 @@
+"""What comes next: GOTO and its kin, FOR and NEXT, ONERR and RESUME, END and CONT.
+
+FOR and GOSUB put 18 and 7 bytes on the 6502's stack. A frame is found only from the stack pointer
+on, frame upon frame: what an error that ONERR caught left on the stack hides all below it, until
+RESUME or the manual's CALL -3288 sets the stack pointer back.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..applesoft.errorcodes import ApplesoftError
+from ..applesoft.real import ZERO, Number, add, compare, rounded
+from .faults import Fault, NextStatement, Restart
+from .formulas import ONE
+from .inputs import BREAK_CODE, Inputs
+from .memory import DIRECT, STACK, TEMPORARIES
+from .text import COLON, COMMA, GOTO, is_digit
+from .tokens import TOKENS
+from .variables import SUBFLG_SIMPLE
+
+FOR_SIZE, FOR_ROOM = 18, 74
+GOSUB_SIZE, GOSUB_ROOM = 7, 64
+"""Bytes on the stack, and where the stack pointer has to be at least."""
+TO, THEN, STEP, GOSUB = (TOKENS[word] for word in ("TO", "THEN", "STEP", "GOSUB"))
+NO_VARIABLE = -1
+
+
+class Frame(NamedTuple):
+    """A loop or, without a variable, a subroutine: the stack pointer below it, the address of the
+    variable, and where it goes back to; ``sign`` is that of the step."""
+
+    sp: int
+    variable: int
+    line: int
+    text: int
+    limit: Number = ZERO
+    step: Number = ZERO
+    sign: int = 0
+
+
+NO_FRAME = Frame(-1, NO_VARIABLE, 0, 0)
+
+
+class Flow(Inputs):
+    """The statements that say what comes next."""
+
+    def __init__(self, *arguments: object, **options: object) -> None:
+        super().__init__(*arguments, **options)  # type: ignore[arg-type]
+        self.frames: list[Frame] = []
+        self.last_line = 0
+        self.broken = False
+
+    # --- the stack ----------------------------------------------------------------------------
+
+    def set_stack(self, sp: int) -> None:
+        """TXS: what lay below is gone."""
+        self.sp = sp
+        while self.frames and self.frames[-1].sp < sp:
+            self.frames.pop()
+
+    def clear_stack(self) -> None:
+        """STKINI: nothing on the stack, no temporaries, nothing to continue."""
+        self.temppt = TEMPORARIES
+        self.sp = STACK
+        self.frames.clear()
+        self.oldtext &= 0xFF
+        self.subflg = 0
+
+    def clear(self) -> None:
+        """CLEARC: no variables, DATA from the beginning."""
+        self.fretop = self.memsiz
+        self.arytab = self.strend = self.vartab
+        self.simple.clear()
+        self.arrays.clear()
+        self.restore()
+        self.clear_stack()
+
+    def set_pointers(self) -> None:
+        """SETPTRS: TXTPTR before the program, no variables."""
+        self.txtptr = self.txttab - 1
+        self.clear()
+
+    def _find_loop(self) -> tuple[int, int]:
+        """GTFORPNT: the loop with FORPNT's variable, or the innermost one if FORPNT's high byte is
+        0; -1 if there is none. Then where the stack pointer came to in looking."""
+        sp, frames = self.sp, self.frames
+        for n in range(len(frames) - 1, -1, -1):
+            frame = frames[n]
+            if frame.sp != sp or frame.variable == NO_VARIABLE:
+                break
+            if not self.forpnt >> 8:
+                self.forpnt = frame.variable
+            if frame.variable == self.forpnt:
+                return n, sp
+            sp = sp + FOR_SIZE & 0xFF
+        return -1, sp
+
+    # --- FOR and NEXT -------------------------------------------------------------------------
+
+    def let(self, sp: int) -> None:
+        """LET, of `machine`."""
+        raise NotImplementedError
+
+    def for_(self) -> None:
+        """FOR. Raises OUT OF MEMORY, SYNTAX, TYPE MISMATCH."""
+        self.subflg = SUBFLG_SIMPLE
+        self.let(self.sp - 4)
+        n, sp = self._find_loop()
+        if n >= 0:
+            self.set_stack(sp + FOR_SIZE & 0xFF)
+        if self.sp - 2 & 0xFF < FOR_ROOM - 2:
+            raise Fault("OUT OF MEMORY", self.sp - 2)
+        sp = self.sp
+        start = self.txtptr
+        self.to_statement_end()
+        back, self.txtptr = self.txtptr, start
+        self.expect(TO, sp - 6)
+        if self.valtyp:
+            raise Fault("TYPE MISMATCH", sp - 6)
+        limit = rounded(self.number(sp - 6))
+        step = ONE
+        if self.character() == STEP:
+            self.txtptr += 1
+            step = rounded(self.number(sp - 11))
+        self.fac = step
+        sign = (-1 if step[2] else 1) if step[0] else 0
+        self.sp = sp - FOR_SIZE & 0xFF
+        self.frames.append(Frame(self.sp, self.forpnt, self.curlin, back, limit, step, sign))
+        # the ROM goes on with whatever stands here
+
+    def next_(self) -> None:
+        """NEXT. Raises NEXT WITHOUT FOR."""
+        if self.at_end():
+            self.forpnt &= 0xFF
+        else:
+            self.forpnt = self.variable(self.sp - 4)
+        while True:
+            frame = self.frames[-1] if self.frames else NO_FRAME
+            if frame.sp != self.sp or frame.variable != self.forpnt:
+                n, sp = self._find_loop()
+                if n < 0:
+                    raise Fault("NEXT WITHOUT FOR", self.sp - 2)
+                self.set_stack(sp)
+                frame = self.frames[-1]
+            _, variable, line, text, limit, step, sign = frame
+            self.assign(variable, add(self.value(variable), step))
+            if compare(limit, self.fac) != sign:
+                self.curlin = line
+                self.txtptr = text
+                return
+            self.frames.pop()
+            self.sp = self.sp + FOR_SIZE & 0xFF
+            if self.character() != COMMA:
+                return
+            self.txtptr += 1
+            self.forpnt = self.variable(self.sp - 4)
+
+    # --- GOTO and GOSUB -----------------------------------------------------------------------
+
+    def goto(self, sp: int = 0) -> None:
+        """GOTO. Raises SYNTAX and UNDEF'D STATEMENT."""
+        sp = sp or self.sp - 2
+        start = self.txtptr
+        number = self.line_number(sp - 2)
+        self.to_line_end()
+        beyond = self.txtptr + 1 if number >> 8 > self.curlin >> 8 else self.txttab
+        address = self.line_address(number, beyond)
+        if address is None:
+            raise Fault("UNDEF'D STATEMENT", sp)
+        self.txtptr = address - 1
+        if self.txttab <= start < self.prgend:
+            self.targets[start] = self.txtptr
+
+    def goto_known(self) -> None:
+        """GOTO, from a place where it has been done before."""
+        target = self.targets.get(self.txtptr)
+        if target is None:
+            self.goto()
+        else:
+            self.txtptr = target
+            self.charac = 0
+
+    def gosub(self) -> None:
+        """GOSUB. Raises OUT OF MEMORY, SYNTAX and UNDEF'D STATEMENT."""
+        if self.sp - 4 & 0xFF < GOSUB_ROOM - 4:
+            raise Fault("OUT OF MEMORY", self.sp - 4)
+        frame = Frame(self.sp - GOSUB_SIZE & 0xFF, NO_VARIABLE, self.curlin, self.txtptr)
+        target = self.targets.get(self.txtptr)
+        if target is None:
+            self.goto(self.sp - GOSUB_SIZE - 2)
+        else:
+            self.txtptr = target
+            self.charac = 0
+        self.frames.append(frame)
+        self.sp = frame.sp
+
+    def return_(self) -> None:
+        """RETURN. Raises RETURN WITHOUT GOSUB."""
+        if not self.at_end():
+            return
+        frame = self._subroutine()
+        self.curlin = frame.line
+        self.txtptr = frame.text
+        self.to_statement_end()
+
+    def pop(self) -> None:
+        """POP. Raises RETURN WITHOUT GOSUB."""
+        if self.at_end():
+            self._subroutine()
+
+    def _subroutine(self) -> Frame:
+        """The innermost GOSUB, which is over then, and the loops within it.
+
+        The ROM looks for a loop whose variable lies at $xxFF, xx being left over from the last
+        assignment, and fails if there is one.
+        """
+        self.forpnt |= 0xFF
+        n, sp = self._find_loop()
+        if n < 0 or sp != self.sp:
+            self.set_stack(sp)
+        if n >= 0 or not self.frames or self.frames[-1].sp != sp:
+            raise Fault("RETURN WITHOUT GOSUB", sp)
+        frame = self.frames.pop()
+        self.sp = self.sp + GOSUB_SIZE & 0xFF
+        return frame
+
+    def on(self) -> None:
+        """ON. Raises SYNTAX, ILLEGAL QUANTITY, and what GOTO or GOSUB do."""
+        sp = self.sp - 2
+        count = self.byte(sp - 2)
+        command = self.character()
+        if command not in (GOTO, GOSUB):
+            raise Fault("SYNTAX", sp - 1)
+        while True:
+            self.txtptr += 1
+            count -= 1
+            if not count:
+                self.character()
+                if command == GOTO:
+                    self.goto_known()
+                else:
+                    self.gosub()
+                return
+            self.line_number(sp - 3)
+            if self.character() != COMMA:
+                return
+
+    def execute(self) -> None:
+        """EXECUTE_STATEMENT, of `machine`."""
+        raise NotImplementedError
+
+    def if_(self) -> None:
+        """IF. Of a string the ROM sees the number that stands in the accumulator."""
+        sp = self.sp - 2
+        fac = self.formula(sp - 2)
+        if self.ram[self.txtptr] != THEN and self.character() == GOTO:
+            byte = GOTO
+        else:
+            byte = self.expect(THEN, sp - 2)
+        if not fac[0]:
+            self.to_line_end()
+        elif is_digit(byte):
+            self.goto_known()
+        else:
+            self.execute()
+
+    # --- errors -------------------------------------------------------------------------------
+
+    def onerr(self) -> None:
+        """ONERR GOTO. Raises SYNTAX."""
+        self.expect(GOTO, self.sp - 4)
+        self.txtpsv = self.txtptr
+        self.errflg = 0x80 | self.errflg >> 1
+        self.cursv = self.curlin
+        self.to_line_end()
+
+    def handle(self, code: int, stack: int) -> None:
+        """HANDLERR: an error goes to ONERR's line, and leaves the stack as it is. Raises UNDEF'D
+        STATEMENT, where the ROM would come back here for ever."""
+        self.errnum = code
+        self.errstk = self.remstk
+        self.errlin = self.curlin
+        self.errpos = self.oldtext
+        self.txtptr = self.txtpsv
+        self.curlin = self.cursv
+        self.sp = stack & 0xFF
+        if stack < 0:
+            self.frames.clear()
+        try:
+            self.goto_known()
+        except ApplesoftError:
+            self.errflg = 0
+            raise
+
+    def resume(self) -> None:
+        """RESUME. Where there was no error the ROM goes on at address 0."""
+        self.curlin = self.errlin
+        self.txtptr = self.errpos
+        self.forget_error()
+
+    def forget_error(self) -> None:
+        """CALL -3288: the stack as it was before the error."""
+        self.set_stack(self.errstk)
+
+    # --- the end ------------------------------------------------------------------------------
+
+    def run(self) -> None:
+        """RUN. Raises UNDEF'D STATEMENT.
+
+        To say that a program runs now the machine takes 256 from the line number, also from that
+        of a line that runs already.
+        """
+        self.curlin = self.curlin - 0x100 & 0xFFFF
+        if self.at_end():
+            self.set_pointers()
+        else:
+            self.clear()
+            self.goto(self.sp - 4)
+
+    def _note_place(self) -> None:
+        """Where CONT goes on, unless at the prompt."""
+        if self.curlin < DIRECT:
+            self.oldtext = self.txtptr
+            self.oldlin = self.curlin
+
+    def end(self) -> None:
+        """END."""
+        if self.at_end():
+            self._note_place()
+            raise Restart
+
+    def stop(self) -> None:
+        """STOP."""
+        if self.at_end():
+            self._note_place()
+            self.message(b"\rBREAK")
+            raise Restart
+
+    def break_(self) -> None:
+        """Control-C: an error under ONERR, else as STOP."""
+        if self.errflg & 0x80:
+            raise Fault("SYNTAX", self.sp - 4, BREAK_CODE)
+        self.broken = True
+        self._note_place()
+        self.message(b"\rBREAK")
+        raise Restart
+
+    def message(self, text: bytes) -> None:
+        """What stands before the prompt: a text, the bell, the line if there is one."""
+        self.string_shown(text + b"\a")
+        if self.curlin < DIRECT:
+            self.string_shown(b" IN ")
+            self.line_number_shown(self.curlin)
+
+    def cont(self) -> None:
+        """CONT. Raises CAN'T CONTINUE."""
+        if not self.at_end():
+            return
+        if not self.oldtext >> 8:
+            raise Fault("CAN'T CONTINUE", self.sp - 2)
+        self.txtptr = self.oldtext
+        self.curlin = self.oldlin
+
+
+__all__ = ["COLON", "Flow", "NextStatement"]
