@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, add, compare, rounded
+from .expressions import ONE
 from .faults import Fault, NextStatement, Restart
-from .formulas import ONE
 from .inputs import BREAK_CODE, Inputs
 from .memory import DIRECT, STACK, TEMPORARIES
 from .text import COLON, COMMA, GOTO, is_digit

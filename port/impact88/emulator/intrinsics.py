@@ -24,8 +24,8 @@ from ..applesoft.real import (
     rounded,
     to_integer,
 )
+from .expressions import Expressions
 from .faults import Fault, placed
-from .formulas import Formulas
 from .memory import ADDRESSES
 from .strings import LONGEST, descriptor
 from .text import CLOSE, COMMA, OPEN
@@ -78,7 +78,7 @@ def shifted_out(x: Number) -> int:
     return x[1] >> 8 * min(moved, 4) & 0xFF
 
 
-class Intrinsics(Formulas):
+class Intrinsics(Expressions):
     """UNARY."""
 
     def function(self, token: int, sp: int) -> Number:

@@ -2,7 +2,7 @@
 
 One method a routine of the ROM, named in its docstring by the label that the published listings of
 the ROM give it. `Memory` holds the state; each class on top of it adds a part: `text`, `strings`,
-`variables`, `formulas`, `intrinsics`, `printing`, `inputs`, `flow`, `program`, and here the rest.
+`variables`, `expressions`, `intrinsics`, `printing`, `inputs`, `flow`, `program`, and here the rest.
 """
 
 from __future__ import annotations

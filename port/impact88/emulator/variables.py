@@ -151,7 +151,7 @@ class Variables(Strings):
         return place + 2
 
     def formula(self, sp: int) -> Number:
-        """FRMEVL, of `formulas`."""
+        """FRMEVL, of `expressions`."""
         raise NotImplementedError
 
     def array_element(self, name: int, sp: int, dimensions: int = 0) -> int:

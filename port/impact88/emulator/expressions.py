@@ -58,7 +58,7 @@ TRUTHS = {1: 4, 0: 2, -1: 1}
 """CPRMASK's bits by what `compare` says of the right operand."""
 
 
-class Formulas(Variables):
+class Expressions(Variables):
     """FRMEVL. ``cprtyp``: what a formula left of its last relation, which the next string's + takes
     for a relation's signs."""
 
