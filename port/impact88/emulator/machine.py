@@ -1,8 +1,8 @@
 """The machine that runs a program: NEWSTT and the statements.
 
 One method a routine of the ROM, named in its docstring by the label that the published listings of
-the ROM give it. `Memory` holds the state; each class on top of it adds a part: `text`, `strings`,
-`variables`, `expressions`, `intrinsics`, `printing`, `inputs`, `flow`, `program`, and here the rest.
+the ROM give it. `memory` holds the state; each class on top of it adds a part: `text`, `strings`,
+`variables`, `expressions`, `intrinsics`, `printing`, `inputs`, `flow`, `editing`; the rest is here.
 """
 
 from __future__ import annotations
