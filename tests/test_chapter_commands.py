@@ -131,7 +131,7 @@ def test_reconstruct_flags_what_errors_do(after: str, capsys: pytest.CaptureFixt
         (["AFTER", "--set", "MA=-1"], "MA is not positive"),
         (["AFTER", "--set", "M=5"], "M must be 6"),
         (["AFTER", "--for", "VAX"], "VAX is both known and wanted"),
-        (["AFTER", "--for", "XA"], "'XA' is no unknown"),
+        (["AFTER", "--for", "XA"], "'XA' is no result"),
         (["AFTER", "--contact-time", "0"], "contact time 0.0 is not positive"),
         (["AFTER", "--contact-time", "x"], "--contact-time"),
     ],
@@ -233,7 +233,7 @@ def test_what_the_moment_leaves_of_the_spin(
 
 def test_the_help_shows_a_scene_without_fault(capsys: pytest.CaptureFixture[str]) -> None:
     _, out, _ = run(capsys, "barrier", "--help")
-    command = out.partition("examples:")[2].replace("\\\n", " ").splitlines()[1].split()[2:]
+    command = out.partition("examples:")[2].replace("\\\n", " ").splitlines()[1].split()[3:]
     (found,) = as_json(capsys, "barrier", *command)["solutions"]
     assert found["warnings"] == []
 

@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 import impact88
-from impact88.cli import COMMANDS
+from impact88.cli import COMMANDS, main
+from impact88.commands import CHAPTER, CHAPTER_MEANING, GROUPS
 from impact88.scene import Scene, sample
 from installed import COMMAND
 from installed import impact88 as command
@@ -43,16 +44,63 @@ def test_help_lists_every_command_and_the_exit_statuses() -> None:
     done = command("--help")
     assert done.returncode == 0
     assert done.stderr == ""
-    for name, line in COMMANDS.items():
+    assert {word for group in GROUPS.values() for word in group} == {*COMMANDS, "chapter"} - {
+        *CHAPTER
+    }
+    for name in {*COMMANDS, "chapter"} - {*CHAPTER}:
+        line = COMMANDS.get(name, CHAPTER_MEANING)
         assert any(row.split() == [name, *line.split()] for row in done.stdout.splitlines()), name
-    assert "exit status: 0 done, 1 done with an adverse result, 2 unusable input" in done.stdout
+    assert "exit status: 0 done, 1 adverse result, 2 unusable input" in done.stdout
+
+
+@pytest.mark.parametrize("columns", ["52", "80", "200"])
+def test_help_fits_the_terminal(
+    columns: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", columns)
+    for words in ([], ["chapter"], *([name] for name in COMMANDS)):
+        assert main([*words, "--help"]) == 0
+        widest = max(capsys.readouterr().out.splitlines(), key=len)
+        assert len(widest) <= int(columns), widest
+    assert len(widest) > 40
+
+
+def test_the_chapter_s_problems_stand_under_one_word() -> None:
+    for name in CHAPTER:
+        assert command("help", "chapter", name).stdout == command(name, "--help").stdout
+    refused = command("chapter", "barier")
+    assert refused.returncode == 2
+    assert "did you mean barrier?" in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "hint"),
+    [
+        (["solve", "x.csv", "--ouputs=LOSS"], "--outputs"),
+        (["figure", "scen", "-o", "x.svg"], "scene"),
+        (["witness", "--rom", "x", "--captues", "3"], "--captures"),
+        (["oracle", "--class", "edgy"], "edge"),
+    ],
+)
+def test_a_misspelled_option_or_choice_is_pointed_at(words: list[str], hint: str) -> None:
+    assert f"; did you mean {hint}?" in command(*words).stderr
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "tcsh"])
+def test_completion_knows_every_command(shell: str) -> None:
+    pytest.importorskip("shtab", reason="extra: completion")
+    done = command("completion", shell)
+    assert done.returncode == 0, done.stderr
+    known = (*COMMANDS, "--outputs") if shell != "tcsh" else ("verify", "--outputs")
+    assert all(name in done.stdout for name in (*known, "chapter"))
 
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_has_help_and_refuses_an_unknown_option(name: str) -> None:
     asked = command(name, "--help")
     assert asked.returncode == 0, asked.stderr
-    assert asked.stdout.startswith(f"usage: impact88 {name}")
+    where = "chapter " if name in CHAPTER else ""
+    assert asked.stdout.startswith(f"usage: impact88 {where}{name}")
     refused = command(name, "--no-such-option")
     assert refused.returncode == 2
     assert refused.stdout == ""
@@ -350,7 +398,7 @@ def test_help_of_a_command_and_the_version_in_short() -> None:
 def test_a_command_near_the_one_typed_is_pointed_at() -> None:
     done = command("slove")
     assert done.returncode == 2
-    assert "'slove' is no command; did you mean solve?" in done.stderr
+    assert "'slove' is not a command; did you mean solve?" in done.stderr
 
 
 def test_the_result_is_utf_8_whatever_the_locale(tmp_path: Path) -> None:

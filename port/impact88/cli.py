@@ -5,19 +5,21 @@ Applesoft error, a bad row, a printout that differs), 2 unusable input, 3 a bug 
 Control-C, a broken pipe and a signal to leave end with the shell's usual 130, 141 and 128 + signal.
 There is never a traceback, unless IMPACT88_DEBUG=1 asks for a bug's.
 
-Each command lives in ``impact88.commands.NAME_command`` and is imported only when it is asked for.
+A command is imported only when it is asked for.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from importlib import import_module
 
+from .commands import CHAPTER, COMMANDS, module_of
 from .errors import UserError, shown
 from .files import ESCAPED
 from .signals import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
@@ -27,30 +29,6 @@ from .version import __version__
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import IO
-
-COMMANDS = {
-    "run": "run the 1988 program on its own data, a sample or a scene file",
-    "basic": "the ] prompt with the restored listing, or run any Applesoft program",
-    "scene": "print a scene file to fill in, or a sample's",
-    "verify": "say whether an old printout is right, digit for digit, and if not, why",
-    "oracle": "answer scenes with all that is known of them, for checking other programs",
-    "compare": "say where another program's results agree with these, and if not, why",
-    "selfcheck": "replay the packaged captures here, and say pass or fail, for the record",
-    "schema": "the forms of what the commands print with --json, and the conventions",
-    "witness": "the captures and this project against your own Apple II Plus ROM (extra: witness)",
-    "solve": "solve a table of scenes: double precision, or Applesoft's arithmetic, fast",
-    "bench": "run time against error of every method, measured on this machine",
-    "bounds": "lower and upper bounds, quantiles and drivers from ranges of a scene's values",
-    "figure": "draw a scene, its bounds or a figure of the chapter (extra: plot)",
-    "reconstruct": "solve the impact equations for any unknowns: velocities, coefficients",
-    "barrier": "the impact of one vehicle on a rigid barrier",
-    "colinear": "the direct colinear impact, Equations 1-12, forward or inverse",
-    "delta-v": "delta-V of both vehicles from speeds, masses and energy loss, Equation 19",
-    "staged": "the eleven staged collisions: Tables 1 and 2 recomputed, fitted, compared",
-    "example": "Section VII's reconstruction, step by step",
-    "desk": "a page in your browser, served by your own machine (extra: desk)",
-}
-"""Command -> one line of help, in the order ``--help`` lists them."""
 
 UNUSABLE = 2
 BUG = 3
@@ -64,7 +42,18 @@ class _Parser(argparse.ArgumentParser):
     """argparse's errors in this project's form: one line, status 2."""
 
     def error(self, message: str) -> None:  # type: ignore[override]
-        raise UserError(f"{message} (see {self.prog} --help)")
+        raise UserError(f"{message}{self._hint(message)} (see {self.prog} --help)")
+
+    def _hint(self, message: str) -> str:
+        """The option or the choice that a misspelled word comes near to."""
+        from .names import did_you_mean
+
+        if found := re.search(r"unrecognized arguments: (-[^\s=]+)", message):
+            return did_you_mean(found[1], self._option_string_actions)
+        if found := re.search(r"invalid choice: '([^']*)'", message):
+            choices = [c for action in self._actions for c in action.choices or ()]
+            return did_you_mean(found[1], [c for c in choices if isinstance(c, str)])
+        return ""
 
     def _print_message(self, message: str, file: IO[str] | None = None) -> None:  # type: ignore[override]
         """argparse swallows what goes wrong here, and a full disk would look like success."""
@@ -72,60 +61,53 @@ class _Parser(argparse.ArgumentParser):
             (file or sys.stderr).write(message)
 
 
-def _help_formatter(prog: str) -> argparse.HelpFormatter:
-    """Help as wide as this project's text; argparse would load shutil to ask the terminal."""
-    return argparse.RawDescriptionHelpFormatter(prog, width=96)
-
-
-def _overview() -> str:
-    width = max(map(len, COMMANDS)) + 2
-    lines = [f"  {name:<{width}}{help_line}" for name, help_line in COMMANDS.items()]
-    return "\n".join(
-        [
-            "usage: impact88 COMMAND [options]",
-            "",
-            "R. M. Brach's 1988 program for the planar impact of two vehicles, digit for digit,",
-            "and the same mechanics for today's work.",
-            "",
-            "commands:",
-            *lines,
-            "",
-            "impact88 help COMMAND tells a command's options; impact88 -V the version.",
-            "exit status: 0 done, 1 done with an adverse result, 2 unusable input, 3 a bug here",
-        ]
-    )
-
-
 def _dispatch(arguments: Sequence[str]) -> int:
     if not arguments:
         raise UserError("no command given (see impact88 --help)")
     name, *rest = arguments
     if name == "help" and rest:  # help COMMAND is COMMAND --help
-        name, rest = rest[0], ["--help"]
-    if name in ("-h", "--help", "help"):
-        print(_overview())
-        return 0
+        name, *rest = [*rest, "--help"]
     if name in ("-V", "--version"):
         print(f"impact88 {__version__}")
         return 0
-    if name not in COMMANDS:
+    if name in ("-h", "--help", "help"):
+        from .commands.helptext import overview
+
+        print(overview())
+        return 0
+    known: Collection[str] = [*COMMANDS, "chapter"]
+    if name == "chapter":
+        if not rest or rest[0] in ("-h", "--help"):
+            from .commands.helptext import chapter_overview
+
+            print(chapter_overview())
+            return 0
+        name, *rest = rest
+        known = CHAPTER
+    if name not in known:
         from .names import did_you_mean
 
-        hint = did_you_mean(name, COMMANDS)
-        raise UserError(f"{name!r} is no command{hint} (expected one of: {' '.join(COMMANDS)})")
-    module = import_module(f".commands.{name.replace('-', '_')}_command", __package__)
+        hint = did_you_mean(name, known)
+        raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(known)})")
+    return _run(name, rest)
+
+
+def _run(name: str, arguments: Sequence[str]) -> int:
+    module = import_module(module_of(name))
+    from .commands import options
+    from .commands.helptext import Formatter
+
     parser = _Parser(
-        prog=f"impact88 {name}",
-        description=COMMANDS[name][0].upper() + COMMANDS[name][1:] + ".",
+        prog=f"impact88 chapter {name}" if name in CHAPTER else f"impact88 {name}",
+        description=f"{COMMANDS[name][0].upper()}{COMMANDS[name][1:]}.",
         epilog=module.__doc__,
-        formatter_class=_help_formatter,
+        formatter_class=Formatter,
     )
     module.add_arguments(parser)
     try:
-        args = parser.parse_args(rest)
+        args = parser.parse_args(arguments)
     except SystemExit:  # --help has been printed
         return 0
-    options = import_module(".commands.options", __package__)
     options.check_files(parser, args)
     with suppress(_NothingToKeep), options.output_of(args):
         status = int(module.main(args))
@@ -167,7 +149,7 @@ def _speak_any_character() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    called = arguments[0] if arguments and arguments[0] in COMMANDS else None
+    called = next((word for word in arguments[:2] if word in COMMANDS), None)
     debug = os.environ.get("IMPACT88_DEBUG") == "1"
     with orderly(), warnings.catch_warnings():
         if not sys.warnoptions and not debug:

@@ -9,6 +9,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Protocol
 
+from .stderr import note
+
+SECONDS_BETWEEN_LINES = 2.0
+
 
 class Meter(Protocol):
     """Where progress is told: ``update(n)`` says that ``n`` more units are done."""
@@ -52,11 +56,28 @@ class _Line:
         sys.stderr.flush()
 
 
+class _Lines:
+    """A line on stderr now and then, for a log."""
+
+    def __init__(self, total: int | None, what: str) -> None:
+        self.total = total
+        self.what = what
+        self.done = 0
+        self._last = time.monotonic()
+
+    def update(self, n: int) -> None:
+        self.done += n
+        if time.monotonic() - self._last >= SECONDS_BETWEEN_LINES:
+            self._last = time.monotonic()
+            note(None, f"{self.what}: {self.done:,} of {self.total:,}")
+
+
 @contextmanager
-def progress(total: int | None, what: str, unit: str = "") -> Iterator[Meter]:
-    """A meter for work of ``total`` units (None: unknown). Silent when stderr is no terminal."""
+def progress(total: int | None, what: str, unit: str = "", lines: bool = False) -> Iterator[Meter]:
+    """A meter for work of ``total`` units (None: unknown). Where stderr is not a terminal it is
+    silent, or writes plain ``lines``."""
     if not sys.stderr.isatty():
-        yield _Silent()
+        yield _Lines(total, what) if lines else _Silent()
         return
     meter: Any
     try:

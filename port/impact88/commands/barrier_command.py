@@ -9,11 +9,12 @@ Units: any consistent set; angles in degrees, spins in rad per unit of time. PDO
 comes from, clockwise from the vehicle's front.
 
 examples:
-  impact88 barrier --set MA=143.5 --set IA=3728 --set DA=7.59 --set PA=-19.8 --set TA=0 \\
-      --set GA=-30 --set E=.005 --set MU=.4 --set EM=-.715 --set UX=-29.04 --set UY=0 --set WA=0
-  impact88 barrier --template > car.toml        a file to fill in
-  impact88 barrier car.toml --contact-time .1
-  impact88 barrier rebound.toml --json          VAX VAY WAF known, UX UY WA left out
+  impact88 chapter barrier --set MA=143.5 --set IA=3728 --set DA=7.59 \\
+      --set PA=-19.8 --set TA=0 --set GA=-30 --set E=.005 --set MU=.4 \\
+      --set EM=-.715 --set UX=-29.04 --set UY=0 --set WA=0
+  impact88 chapter barrier --template -o car.toml    a file to fill in
+  impact88 chapter barrier car.toml --contact-time .1
+  impact88 chapter barrier rebound.toml --set UX= --set UY= --set WA= --json
 
 exit status: 0 solved; 2 bad input, or unknowns that are not determined
 """

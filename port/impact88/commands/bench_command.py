@@ -10,9 +10,9 @@ examples:
   impact88 bench                             the table, about two minutes
   impact88 bench --scenes 300 --quick        a quick look
   impact88 bench --figure work-precision.pdf --json > bench.json
-  impact88 bench --paths                     what skipping saves, path by path (processor time)
+  impact88 bench --paths                     what skipping saves, path by path
   impact88 bench --files                     a million rows from file to file
-  impact88 bench --sizes                     growth to ten million scenes (takes 2 GB)
+  impact88 bench --sizes                     to ten million scenes (takes 2 GB)
 
 exit status: 0 done; 2 bad input
 """

@@ -24,9 +24,9 @@ WBF and MUP, the signed P_t/P_n; if it gives none, those of the scene's forward 
 
 examples:
   impact88 bounds --sample 1 --range MU="0.7 .. 1" --range UX="+- 10%"
-  impact88 bounds crash.toml --outputs DVA DVB LOSS --samples 1000000 --seed 7
-  impact88 bounds --sample 3 --reconstruct --range VAX="+- 2" --range VBY="normal 41.5 1.5"
-  impact88 bounds crash.toml --range UX="+- 3" --range VX="+- 3" --correlation UX,VX=0.8 --json
+  impact88 bounds crash.toml --outputs DVA,DVB,LOSS --samples 1000000 --seed 7
+  impact88 bounds --sample 3 --reconstruct --range VBY="normal 41.5 1.5"
+  impact88 bounds ranges.toml --correlation UX,VX=0.8 --json
 """
 
 from __future__ import annotations

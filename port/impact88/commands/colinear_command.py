@@ -4,11 +4,9 @@ the velocities before (UN UT of A, VN VT of B), Equations 9-12 give those after;
 Equation 8: no rule chooses its sign here. Units: any consistent set.
 
 examples:
-  impact88 colinear --set MA=154.7 --set MB=99.1 --set E=.071 --set MUP=-.008 \\
-      --set UN=-56.76 --set UT=0 --set VN=0 --set VT=0
-  impact88 colinear --template > rear-end.toml          a file to fill in
-  impact88 colinear rear-end.toml --contact-time .12
-  impact88 colinear rear-end.toml --json
+  impact88 chapter colinear --template -o rear-end.toml    a file to fill in
+  impact88 chapter colinear rear-end.toml --contact-time .12
+  impact88 chapter colinear rear-end.toml --json
 
 exit status: 0 solved; 2 bad input, or E = 0 in the inverse problem
 """

@@ -10,11 +10,8 @@ file (impact88 scene) gives masses and velocities; its other values are not used
 consistent set.
 
 examples:
-  impact88 delta-v --set MA=96 --set MB=145 --set SA=36.667 --set SB=58.667 --set LOSS=37.4
-  impact88 delta-v crash.toml --like 90-side
-  impact88 delta-v --set MA=96 --set MB=145 --set VAX=-10 --set VAY=20 --set VBX=-20 --set VBY=45 \
-      --set DT=.374
-  impact88 delta-v crash.toml --set LOSS=40 --as-printed --json
+  impact88 chapter delta-v crash.toml --like 90-side
+  impact88 chapter delta-v crash.toml --set LOSS=40 --as-printed --json
 
 exit status: 0 done; 2 bad input
 """

@@ -3,8 +3,8 @@ final velocities, by momentum, by Equation 19, and its coefficients estimated. W
 prints stands beside each number. Units: ft, s, slug.
 
 examples:
-  impact88 example
-  impact88 example --json
+  impact88 chapter example
+  impact88 chapter example --json
 
 exit status: 0 all printed numbers reproduced; 1 not all
 """

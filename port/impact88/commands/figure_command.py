@@ -1,11 +1,11 @@
 """kinds:
-  scene            the scene from above: vehicles, contact plane, velocities, impulse
-  barrier          one vehicle against a rigid barrier, from above; FILE.toml as impact88 barrier's
+  scene            from above: vehicles, contact plane, velocities, impulse
+  barrier          one vehicle against a barrier; FILE.toml as chapter barrier's
   friction         energy loss and delta-V against MU, with the critical value
-  sweep            results of a scene as one value runs through a range (--sweep, --outputs)
+  sweep            results as a value runs through a range (--sweep, --outputs)
   histogram        the draws of uncertain results; options as impact88 bounds
   tornado          how far each uncertain input takes each result
-  staged           Figure 5: calculated against experimental delta-V of the staged collisions
+  staged           Figure 5: staged collisions, calculated and measured delta-V
   force            Figure 1: force between vehicles and its impulse
   colinear         Figure 2: free bodies, direct colinear impact
   planar           Figure 3: free bodies, planar impact, of any scene
@@ -19,9 +19,8 @@ examples:
   impact88 figure scene crash.toml --set MU=-10 -o pivot.pdf
   impact88 figure barrier car.toml -o barrier.svg
   impact88 figure friction --sample 3 -o friction.png
-  impact88 figure sweep --sample 1 --sweep GA=-50:-10:81 --outputs DVA,LOSS -o gamma.svg
-  impact88 figure tornado --sample 1 --range GA="+- 10" --range MU=".7 .. 1" \\
-      --outputs DVA LOSS -o tornado.pdf
+  impact88 figure sweep --sample 1 --sweep GA=-50:-10:81 -o gamma.svg
+  impact88 figure tornado --sample 1 --range GA="+- 10" -o tornado.pdf
   impact88 figure staged -o figure5.pdf
 """
 
@@ -37,7 +36,6 @@ from .options import (
     OutputFile,
     add_move_argument,
     add_names_argument,
-    add_set_argument,
     add_sweep_argument,
     known_values,
     names_given,
@@ -69,7 +67,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where to write: .svg, .png or .pdf",
     )
     add_range_arguments(parser)
-    add_set_argument(parser, "change a value of the scene")
     add_move_argument(parser)
     add_sweep_argument(parser)
     add_names_argument(parser, "--outputs", "NAMES", "the results wanted")
@@ -92,7 +89,6 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
     if kind in OF_RANGES:
         from ..figures import charts
 
-        args.ranges = [*args.set, *args.ranges]
         draw = charts.histograms if kind == "histogram" else charts.tornado
         outputs = args.outputs
         if kind == "tornado" and not outputs:

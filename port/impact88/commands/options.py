@@ -322,16 +322,17 @@ def with_contact_moved(scene: Scene, move: str | None) -> Scene:
 
 
 def add_names_argument(
-    parser: argparse.ArgumentParser, option: str, metavar: str, meaning: str
+    parser: argparse.ArgumentParser, option: str, metavar: str, meaning: str, old: str = ""
 ) -> None:
-    """An option that takes names: separated by commas, or the option repeated."""
-    parser.add_argument(
-        option,
-        action="append",
-        default=[],
-        metavar=metavar,
-        help=f"{meaning}; separated by commas, or repeated",
-    )
+    """An option that takes names: separated by commas, or the option repeated; ``old``: what
+    version 0.2 called it."""
+    meanings = {option: f"{meaning}; separated by commas, or repeated"}
+    if old:
+        meanings[old] = argparse.SUPPRESS
+    for spelling, text in meanings.items():
+        parser.add_argument(
+            spelling, action="append", default=[], dest=option[2:], metavar=metavar, help=text
+        )
 
 
 def names_given(

@@ -21,6 +21,7 @@ exit status: 0 every line was answered; 1 some lines could not be used; 2 no usa
 from __future__ import annotations
 
 import argparse
+import codecs
 import json
 import sys
 from collections.abc import Iterator
@@ -29,7 +30,7 @@ from typing import Any
 from ..checking.oracle import Request, answer
 from ..checking.vectors import CLASSES
 from ..errors import UserError
-from ..files import called, open_bytes
+from ..files import called, encoding_of, open_bytes
 from .options import InputFile, add_output_argument, whole_number
 
 MOST_VECTORS = 10_000_000
@@ -91,25 +92,25 @@ def _batches(path: str) -> Iterator[list[Request]]:
     from ..checking.oracle import BATCH, LONGEST_LINE
 
     number = 0
-    rest = b""
+    rest = ""
     with open_bytes(path) as source:
+        encoding = encoding_of(source.peek(3)[:3])
+        name = "utf-8-sig" if encoding == "utf-8" else encoding
+        decoder = codecs.getincrementaldecoder(name)("replace")
         while True:
             arrived = source.read1(1 << 16)
-            lines = (rest + arrived).split(b"\n")
-            rest = lines.pop() if arrived else b""
+            lines = (rest + decoder.decode(arrived, not arrived)).split("\n")
+            rest = lines.pop() if arrived else ""
             if len(rest) > LONGEST_LINE:
                 raise UserError(
                     f"line {number + len(lines) + 1} is longer than {LONGEST_LINE:,} "
-                    "bytes; expected one JSON object a line",
+                    "characters; expected one JSON object a line",
                     called(path),
                 )
             batch = []
             for line in lines:
                 number += 1
-                if number == 1:
-                    line = line.removeprefix(b"\xef\xbb\xbf")
-                text = line.decode("utf-8", "replace").strip()
-                if text:
+                if text := line.strip():
                     batch.append(Request(number, text))
             for at in range(0, len(batch), BATCH):
                 yield batch[at : at + BATCH]

@@ -12,7 +12,14 @@ from ..progress import progress
 from ..scene import entries_in, sample
 from ..stderr import note
 from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
-from .options import add_names_argument, add_scene_argument, changes_in_base, note_remarks, pairs
+from .options import (
+    add_names_argument,
+    add_scene_argument,
+    add_set_argument,
+    changes_in_base,
+    note_remarks,
+    pairs,
+)
 
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
@@ -21,13 +28,14 @@ if TYPE_CHECKING:
 def add_range_arguments(parser: argparse.ArgumentParser) -> None:
     """The options that say what is uncertain, and how it is explored."""
     add_scene_argument(parser)
+    add_set_argument(parser, "change a value of the scene")
     parser.add_argument(
         "--range",
         action="append",
         default=[],
         metavar="NAME=RANGE",
         dest="ranges",
-        help="a value or range in place of the scene's; repeatable",
+        help="a range in place of the scene's value; repeatable",
     )
     parser.add_argument(
         "--correlation",
@@ -76,7 +84,7 @@ def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
         note_remarks(entries)
         units, source = entries.units, called(args.scene)
     texts = entries.values if entries else dict(sample(args.sample))
-    changes = pairs(args.ranges, "--range", "NAME=RANGE, such as MU='.7 .. .9'")
+    changes = pairs([*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'")
     changes, units = changes_in_base(changes, "--range", units, args.scene)
     problem = "reconstruction" if args.reconstruct else "forward"
     inputs = read_inputs(texts, changes, problem, source)

@@ -2,17 +2,17 @@
 is not known is left out, or left empty, and is solved for. The vehicles and their geometry (DA DB
 GA PA PB TA TB MA MB IA IB) must be known; then any of
 
-  before         UX UY WA   VX VY WB      A, then B; x, y, spin; or SA HA, SB HB: speed and course
-  after          VAX VAY WAF  VBX VBY WBF                        or SAF HAF, SBF HBF
+  before         UX UY WA VX VY WB (x, y, spin), or SA HA SB HB (speed, course)
+  after          VAX VAY WAF VBX VBY WBF, or SAF HAF SBF HBF
   coefficients   E, EM and MU or MUP
-  the rest       DVA DVB (velocity changes; DVAF DVAR DVBF DVBR along and across the vehicle),
-                 KI KF, EL (energy lost, such as in crush), LOSS (percent) or DT (fraction)
+  changes        DVA DVB; along and across the vehicle DVAF DVAR DVBF DVBR
+  energies       KI KF, EL (lost, as in crush), LOSS (percent) or DT (fraction)
 
 Each is a number, exact, or known within limits: "41 +- 2", "0.7 .. 0.9", "normal 41 1.5" (impact88
 bounds --help). Equations 13 to 18 always hold. With more known than needed the values with limits
 are adjusted (adjustment of observations with conditions, weighted by their tolerances): the table
-shows each as measured, as adjusted, and how many tolerances it moved. With exact values alone, sets
-that the equations do not determine are refused with the reason; --for asks for some of them only.
+shows each as measured, as adjusted, and how many tolerances it moved. With exact values alone, what
+the equations do not determine is refused with the reason; --outputs asks for some names only.
 Uncertainties stand side by side: first order, random draws, bounds that are attained.
 
 MU is the number of line 280: friction opposes the sliding (line 400). Where the velocities before
@@ -24,13 +24,13 @@ IA = "estimate +- 20%" (impact88 scene --help says from what).
 PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
 
 examples:
-  impact88 reconstruct --template > after.toml          a file to fill in
-  impact88 reconstruct after.toml                       all that the file leaves out
+  impact88 reconstruct --template -o after.toml         a file to fill in
+  impact88 reconstruct after.toml                       all that is left out
   impact88 reconstruct after.toml --set E=.1            a value changed
   impact88 reconstruct after.toml --set VAX="+- 2"      known within 2
-  impact88 reconstruct after.toml --set E= --set MU=    two values no longer known
-  impact88 reconstruct after.toml --for UX,VY           only these; others may stay unknown
-  impact88 reconstruct after.toml --write-scene found.toml       for run, figure, bounds
+  impact88 reconstruct after.toml --set E= --set MU=    both unknown
+  impact88 reconstruct after.toml --outputs UX,VY       these only
+  impact88 reconstruct after.toml --write-scene found.toml
   impact88 reconstruct after.toml --contact-time .15 --json
 
 exit status: 0 solved; 2 bad input, or unknowns that are not determined
@@ -51,6 +51,7 @@ from ..scene import template as scene_template
 from ..schemas import stamped
 from .options import (
     OutputFile,
+    add_names_argument,
     add_solution_arguments,
     known_within_limits,
     names_given,
@@ -68,11 +69,8 @@ SAMPLES = 20_000
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 reconstruct`."""
-    parser.add_argument(
-        "--for",
-        dest="wanted",
-        metavar="NAMES",
-        help="solve for these names only; others may stay unknown",
+    add_names_argument(
+        parser, "--outputs", "NAMES", "solve for these only; others may stay unknown", old="--for"
     )
     parser.add_argument(
         "--samples",
@@ -103,17 +101,19 @@ def main(args: argparse.Namespace) -> int:
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..reconstruction.adjustment import needs_adjustment
+    from ..reconstruction.state import QUANTITIES
     from ..units import system_of
 
+    wanted = names_given(args.outputs, QUANTITIES, "--outputs") or None
     known, named = known_within_limits(args.file, args.set, KNOWABLE, args.units)
     units = system_of(named)
-    if not args.write_scene and not needs_adjustment(known, _wanted(args)):
+    if not args.write_scene and not needs_adjustment(known, wanted):
         from ..reconstruction.solutiontable import show
 
         numbers = {name: item.nominal for name, item in known.items()}
-        show(numbers, _wanted(args), source_of(args.file), args.contact_time, args.json, units)
+        show(numbers, wanted, source_of(args.file), args.contact_time, args.json, units)
         return 0
-    _reconstruct(known, args, units)
+    _reconstruct(known, wanted, args, units)
     return 0
 
 
@@ -122,14 +122,11 @@ def source_of(path: str | None) -> str | None:
     return None if path is None else called(path)
 
 
-def _wanted(args: argparse.Namespace) -> list[str] | None:
-    return args.wanted.upper().replace(",", " ").split() if args.wanted else None
-
-
-def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: System) -> None:
+def _reconstruct(
+    known: dict[str, Uncertain], wanted: list[str] | None, args: argparse.Namespace, units: System
+) -> None:
     from ..progress import progress
     from ..reconstruction.adjustment import reconstruct
-    from ..reconstruction.state import QUANTITIES
     from ..uncertainty.reconstructedtable import (
         as_json,
         as_text,
@@ -138,7 +135,6 @@ def _reconstruct(known: dict[str, Uncertain], args: argparse.Namespace, units: S
         uncertainty,
     )
 
-    wanted = names_given([args.wanted], QUANTITIES, "--for") if args.wanted else None
     try:
         solutions = reconstruct(known)
     except UserError as error:

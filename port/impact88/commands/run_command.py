@@ -7,7 +7,7 @@ examples:
   impact88 run crash.toml --set MU=.5     a scene file, one value changed
   impact88 run --sample 1 --arithmetic float64
   impact88 run --sample 1 --no-dos --json
-  impact88 run --sample 1 --raw > apple.txt   every character, control characters too
+  impact88 run --sample 1 --raw           control characters, too
 
 exit status: 0 the program ended, ZERO DETERMINANT included; 1 an Applesoft error; 2 bad input
 """

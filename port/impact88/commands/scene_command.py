@@ -7,8 +7,8 @@ may stand for DA PA, CBF CBL for DB PB. IA = "estimate" has the yaw inertia esti
 vehicle's length and width where LA BA are given (LB BB for IB), else for a car from its weight.
 
 examples:
-impact88 scene > mine.toml        a template to fill in
-impact88 scene --sample 2         the scene of the Appendix's second sample run
+  impact88 scene -o mine.toml       a template to fill in
+  impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
 
 from __future__ import annotations

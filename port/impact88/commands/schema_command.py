@@ -5,9 +5,9 @@ A field that is added leaves the number as it is; anything that could break a re
 removing or renaming a field, another type, unit or meaning, null where it could not be.
 
 examples:
-  impact88 schema                    the names, their numbers and what they are of
+  impact88 schema                    the names and numbers of all forms
   impact88 schema compare            one schema
-  impact88 schema conventions        axes, signs, units, stored bytes, bounds, vector classes
+  impact88 schema conventions        axes, signs, units, stored bytes, bounds
 
 exit status: 0 done; 2 no such schema
 """

@@ -20,10 +20,10 @@ Conventions (axes, signs of angles and spins, units): impact88 schema convention
 
 examples:
   impact88 solve cases.csv -o results.csv
-  impact88 solve cases.csv -o results.jsonl --outputs VAX,VAY,VBX,VBY,WAF,WBF,STATUS
+  impact88 solve cases.csv -o results.jsonl --outputs VAX,VAY,STATUS
   impact88 solve cases.csv -o results.csv --set MU=-10 --errors bad-rows.csv
   impact88 solve cases.npz -o results.npz --results-only
-  impact88 solve crash.toml --sweep MU=0:1:51 --sweep GA=-35:-25:3 --outputs DVA,LOSS
+  impact88 solve crash.toml --sweep MU=0:1:51 --outputs DVA,LOSS
   impact88 solve cases.csv -o results.csv --arithmetic applesoft
 
 exit status: 0 all rows solved; 1 some could not be, or ended with an Applesoft error; 2 bad input
@@ -48,7 +48,7 @@ from ..errors import UserError, quoted
 from ..files import called, replacing
 from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..progress import progress
-from ..scene import VALUE_LIMIT, Entries, Scene, entries_in
+from ..scene import VALUE_LIMIT, Entries, Scene, entries_in, sample
 from ..status import Status
 from ..stderr import note
 from ..tables.overlap import ahead, behind, may_wait
@@ -70,6 +70,7 @@ from .options import (
     OutputFile,
     add_encoding_argument,
     add_names_argument,
+    add_sample_argument,
     add_set_argument,
     add_sweep_argument,
     add_units_argument,
@@ -96,7 +97,7 @@ __doc__ = (__doc__ or "").format(results=_list_of_results())
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 solve`."""
     parser.add_argument(
-        "cases", type=InputFile, metavar="CASES", help="the table of scenes (- is stdin)"
+        "cases", nargs="?", type=InputFile, metavar="CASES", help="the table of scenes (- is stdin)"
     )
     parser.add_argument(
         "-o",
@@ -113,6 +114,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="float64",
         help="the numbers to compute with (default: %(default)s)",
     )
+    add_sample_argument(parser, "a published run's scene in place of CASES")
     add_set_argument(parser, "a value for all rows, in place of a column")
     add_sweep_argument(parser)
     add_units_argument(parser)
@@ -136,17 +138,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _sweep(
-    path: str, texts: Mapping[str, str], units: str | None
+    arguments: argparse.Namespace, texts: Mapping[str, str]
 ) -> AbstractContextManager[Reader]:
-    """The table that a scene file makes, swept or as it is, in the file's units."""
-    scene = Scene.from_toml(path, units)
+    """The table that a scene makes, swept or as it is, in the file's units."""
+    path = arguments.cases
+    scene = Scene.from_toml(path, arguments.units) if path else sample(arguments.sample)
     note_remarks(scene.entries)
     return read_sweep(scene, read_ranges(texts, scene.units), scene.units)
 
 
 def main(arguments: argparse.Namespace) -> int:
     """Solve a table. Returns 1 when a row is bad or ended with an Applesoft error."""
-    swept = arguments.cases.lower().endswith(".toml")
+    if bool(arguments.cases) == bool(arguments.sample):
+        raise UserError("expected one table or scene: CASES, or --sample 1, 2 or 3")
+    swept = arguments.cases is None or arguments.cases.lower().endswith(".toml")
     if arguments.sweep and not swept:
         raise UserError("--sweep is for one scene; expected CASES to be a scene file (.toml)")
     source_format = "csv" if swept else format_of(arguments.cases, arguments.form)
@@ -158,7 +163,7 @@ def main(arguments: argparse.Namespace) -> int:
     complaints = _Complaints(arguments.errors)
     with ExitStack() as stack:
         source = stack.enter_context(
-            _sweep(arguments.cases, sweeps(arguments.sweep), arguments.units)
+            _sweep(arguments, sweeps(arguments.sweep))
             if swept
             else open_reader(arguments.cases, source_format, arguments.encoding)
         )
@@ -167,7 +172,7 @@ def main(arguments: argparse.Namespace) -> int:
         blocks = chain([] if first is None else [first], blocks)
         filling = _filling(arguments)
         known = arguments.units or (filling.units if filling else None)
-        units = TableUnits(source.names, known, first, where=called(arguments.cases))
+        units = TableUnits(source.names, known, first, where=called(arguments.cases or "--sample"))
         given = settings(arguments.set, others=("inf",), units=units.system.name or None)
         if filling:
             given = {n: t for n, t in filling.values.items() if n not in source.names} | given
@@ -193,7 +198,7 @@ def main(arguments: argparse.Namespace) -> int:
         write = writer.write
         if not may_wait(arguments.output):
             write = stack.enter_context(behind(writer.write))
-        if not may_wait(arguments.cases):
+        if not may_wait(arguments.cases or ""):
             blocks = stack.enter_context(ahead(blocks))
         position = 0
         for rows in blocks:

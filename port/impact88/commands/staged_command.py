@@ -1,26 +1,25 @@
 """Tables 1 and 2 of the chapter: eleven staged, instrumented collisions. Without options: Table 2
 cell by cell beside its recomputation, the differences explained. Units: ft, s, slug.
 
-  --fit     e, e_m and mu by least squares (weights and bounds stated) beside Table 2's, and how
-            little the data fix e_m
-  --cells   every cell of both tables that is not as printed or is doubtful, with the evidence
-  --measured  energy and momentum of the measured velocities themselves, nothing fitted
-  --claims  what the text says of its method, checked on the eleven collisions
-  --table 1 or 2   the table itself, emended
+  --fit       e, e_m and mu by least squares beside Table 2's
+  --cells     each cell that is not as printed or is doubtful, with the evidence
+  --measured  energy and momentum of the measured velocities, nothing fitted
+  --claims    what the text says of its method, checked on the collisions
+  --table N   table 1 or 2 itself, emended
 
-FILE.toml is a staged collision of one's own, with the listing's names: vehicles and geometry, the
+FILE.toml is another staged collision, with the listing's names: vehicles and geometry, the
 velocities before (UX UY WA VX VY WB) and after (VAX VAY WAF VBX VBY WBF), any consistent units. Its
 e, e_m and mu are fitted as Section V's are; --spin-weight says what a squared spin counts against a
 squared velocity (25 ft² for the chapter's; by default the square of the radius of gyration).
 impact88 reconstruct fits the same with a tolerance for each velocity.
 
 examples:
-  impact88 staged
-  impact88 staged mine.toml
-  impact88 staged --fit
-  impact88 staged --cells
-  impact88 staged --table 1
-  impact88 staged --json          all of it, for a program
+  impact88 chapter staged
+  impact88 chapter staged mine.toml
+  impact88 chapter staged --fit
+  impact88 chapter staged --cells
+  impact88 chapter staged --table 1
+  impact88 chapter staged --json          all of it, for a program
 
 exit status: 0 done; 1 a cell of Table 2 differs and nothing explains it
 """
@@ -38,7 +37,7 @@ from .options import InputFile, add_json_argument, add_output_argument, known_va
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 staged`."""
+    """The options of `impact88 chapter staged`."""
     parser.add_argument(
         "file", nargs="?", type=InputFile, metavar="FILE.toml", help="another collision"
     )

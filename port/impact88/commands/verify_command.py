@@ -4,17 +4,17 @@ or left over. The scene is recovered, replayed in the Apple's arithmetic, and ev
 What exact arithmetic gives and physical warnings stand beside the verdict and do not change it.
 
 verdicts:
-  IDENTICAL                 every number read exactly, and each is what the program prints
-  IDENTICAL AS FAR AS READ  the program's page explains the paper; doubtful places are listed
-  DIFFERS                   something on the paper contradicts every scene its inputs allow
-  INCOMPLETE                numbers are missing or were not read; what could be compared agrees
+  IDENTICAL                 every number was read, and is what the program prints
+  IDENTICAL AS FAR AS READ  the program's page explains the paper; doubts are listed
+  DIFFERS                   something contradicts every scene that the inputs allow
+  INCOMPLETE                numbers are missing; what could be compared agrees
 
 examples:
-  impact88 verify printout.txt                      verdict, all fields, explanations
+  impact88 verify printout.txt                      verdict, fields, explanations
   impact88 verify --brief box7/*.txt                a few lines a printout
-  impact88 verify --json printout.txt               one JSON object a printout or unreadable file
-  impact88 verify results.txt --scene crash.toml    inputs from a file, when only results survive
-  impact88 verify printout.txt --report case.html --case 17/88 --examiner "A. Doe" --date 2024-05-17
+  impact88 verify --json printout.txt               one JSON object a printout
+  impact88 verify results.txt --scene crash.toml    inputs from a file
+  impact88 verify printout.txt --report case.html --case 17/88
   impact88 run --sample 1 | impact88 verify -       - is standard input
 
 exit status: 0 identical; 1 any other verdict; 2 unreadable; of several files the highest
@@ -31,7 +31,15 @@ from ..reporting.examination import Examined, Verdict, examine
 from ..reporting.verification import lines
 from ..schemas import stamped
 from ..stderr import note
-from .options import InputFile, OutputFile, add_json_argument, add_output_argument
+from .options import (
+    InputFile,
+    OutputFile,
+    add_json_argument,
+    add_output_argument,
+    add_sample_argument,
+    add_set_argument,
+    one_scene,
+)
 
 _ON_REPORT = ("date", "case", "examiner")
 
@@ -53,6 +61,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--report", type=OutputFile, metavar="FILE.html", help="write a page for the case file"
     )
+    add_sample_argument(parser, "inputs apart: those of a published run")
+    add_set_argument(parser, "change a value of these inputs")
     parser.add_argument("--date", help="date to stand on the report, as given")
     parser.add_argument("--case", help="case to stand on the report, as given")
     parser.add_argument("--examiner", help="examiner to stand on the report, as given")
@@ -64,10 +74,8 @@ def main(args: argparse.Namespace) -> int:
         if getattr(args, option) and not args.report:
             raise UserError(f"--{option} is for the report; expected --report FILE.html with it")
     given = None
-    if args.scene:
-        from ..scene import Scene
-
-        given = dict(Scene.from_toml(args.scene).items())
+    if args.scene or args.sample or args.set:
+        given = dict(one_scene(args))
     status = 0
     examined = []
     for path in args.printouts:

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
 from ..progress import progress
-from ..scene import SAMPLES, Scene
+from ..scene import SAMPLES, Scene, sample
 from ..schemas import stamped
 from .options import (
     InputFile,
@@ -32,6 +32,8 @@ from .options import (
     add_json_argument,
     add_output_argument,
     add_sample_argument,
+    add_set_argument,
+    settings,
 )
 
 if TYPE_CHECKING:
@@ -57,7 +59,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rom", type=InputFile, required=True, metavar="FILE", help="the ROM image"
     )
-    add_sample_argument(parser, "one published run; all three when nothing is asked for")
+    add_sample_argument(parser, "a published run's scene; all three when nothing is asked for")
+    add_set_argument(parser, "change a value of these scenes")
     parser.add_argument(
         "--captures", metavar="N", help="N random packaged captures of each kind's mix, or all"
     )
@@ -100,11 +103,17 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
     from ..witness.packaged import ALL, cases
 
     jobs: list[Job] = []
+    changes = settings(args.set)
     asked = args.scenes or args.captures is not None or args.random
     for number in [args.sample] if args.sample else () if asked else SAMPLES:
-        jobs.append(partial(hearing.hear_sample, number=number))
+        if changes:
+            scene = sample(number).replaced(changes)
+            jobs.append(partial(hearing.hear_scene, name=f"sample {number}", scene=scene))
+        else:
+            jobs.append(partial(hearing.hear_sample, number=number))
     for path in args.scenes:
-        jobs.append(partial(hearing.hear_scene, name=path, scene=Scene.from_toml(path)))
+        scene = Scene.from_toml(path).replaced(changes)
+        jobs.append(partial(hearing.hear_scene, name=path, scene=scene))
     if args.captures is not None:
         count = None if args.captures == ALL else _count("--captures", args.captures)
         for case in cases(count, args.seed):
@@ -128,7 +137,7 @@ def _count(option: str, text: str) -> int:
 
 
 def _hear(session: Session, jobs: list[Job]) -> Iterator[Heard]:
-    with progress(len(jobs), "on the ROM") as meter:
+    with progress(len(jobs), "on the ROM", lines=True) as meter:
         for job in jobs:
             yield job(session)
             meter.update(1)

@@ -1,0 +1,60 @@
+"""Needs pip install 'impact88[completion]' (shtab). The script is made from the options as they
+are; make it again after an update.
+
+examples:
+  impact88 completion bash > ~/.local/share/bash-completion/completions/impact88
+  impact88 completion zsh > ~/.zsh/completions/_impact88
+  impact88 completion tcsh >> ~/.tcshrc
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+from importlib import import_module
+
+from ..errors import UserError
+from . import CHAPTER, CHAPTER_MEANING, COMMANDS, module_of
+from .options import InputFile, OutputFile, OutputFolder, add_output_argument
+
+SHELLS = ("bash", "zsh", "tcsh")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 completion`."""
+    parser.add_argument("shell", choices=SHELLS, metavar="SHELL", help="bash, zsh or tcsh")
+    add_output_argument(parser)
+
+
+def main(args: argparse.Namespace) -> int:
+    """Print the script."""
+    try:
+        import shtab
+    except ImportError:
+        raise UserError("completion needs shtab; pip install 'impact88[completion]'") from None
+    print(shtab.complete(whole_parser(), args.shell))
+    return 0
+
+
+def whole_parser() -> argparse.ArgumentParser:
+    """All commands with all options, files marked for shtab."""
+    parser = argparse.ArgumentParser(prog="impact88")
+    commands = parser.add_subparsers()
+    _add(commands, [name for name in COMMANDS if name not in CHAPTER])
+    _add(commands.add_parser("chapter", help=CHAPTER_MEANING).add_subparsers(), CHAPTER)
+    return parser
+
+
+def _add(
+    commands: argparse._SubParsersAction[argparse.ArgumentParser], names: Iterable[str]
+) -> None:
+    import shtab
+
+    for name in names:
+        parser = commands.add_parser(name, help=COMMANDS[name])
+        import_module(module_of(name)).add_arguments(parser)
+        for action in parser._actions:
+            if action.type in (InputFile, OutputFile):
+                action.complete = shtab.FILE  # type: ignore[attr-defined]
+            elif action.type is OutputFolder:
+                action.complete = shtab.DIRECTORY  # type: ignore[attr-defined]

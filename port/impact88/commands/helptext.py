@@ -1,0 +1,113 @@
+"""Help that fits the terminal: paragraphs are filled, lines that begin with a blank stand as they
+are unless they are too long."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import textwrap
+from collections.abc import Iterable, Iterator
+
+from . import CHAPTER, CHAPTER_MEANING, COMMANDS, GROUPS
+
+NARROWEST, WIDEST = 40, 100
+
+
+class Formatter(argparse.HelpFormatter):
+    """argparse's help as wide as the terminal. The width is asked for only when help is printed:
+    argparse makes a formatter for every argument."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, width=80)
+
+    def format_help(self) -> str:
+        """The whole help."""
+        self._width = width = terminal_width()
+        # argparse leaves a group of options on one line
+        return "\n".join(
+            part for line in super().format_help().split("\n") for part in _hanging(line, width)
+        )
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return fitted(text, width)
+
+
+def terminal_width() -> int:
+    """Columns of the terminal, 80 when unknown."""
+    from shutil import get_terminal_size
+
+    return min(max(get_terminal_size((80, 24)).columns, NARROWEST), WIDEST)
+
+
+def fitted(text: str, width: int) -> str:
+    """A docstring in so many columns."""
+    lines: list[str] = []
+    for kind, block in _blocks(text):
+        if kind == "paragraph":
+            lines += textwrap.wrap(" ".join(block), width, break_on_hyphens=False)
+        else:
+            for line in block:
+                lines += _hanging(line, width)
+    return "\n".join(lines)
+
+
+def _blocks(text: str) -> Iterator[tuple[str, list[str]]]:
+    paragraph: list[str] = []
+    for line in text.strip("\n").splitlines():
+        if line[:1].strip():
+            paragraph.append(line)
+            continue
+        if paragraph:
+            yield "paragraph", paragraph
+            paragraph = []
+        yield "as it stands", [line]
+    if paragraph:
+        yield "paragraph", paragraph
+
+
+def _hanging(line: str, width: int) -> list[str]:
+    """A line, or several below its last column that leaves room for them."""
+    if len(line) <= width:
+        return [line]
+    if re.match(r" *impact88 (?!.*\S  )", line):  # a command alone stays one for the shell
+        *begun, last = _wrapped(line, width - 2, 6)
+        return [*(f"{part} \\" for part in begun), last]
+    columns = [m.end() for m in re.finditer(r"\S {2,}", line[: width * 3 // 4])]
+    return _wrapped(line, width, columns[-1] if columns else len(line) - len(line.lstrip()) + 4)
+
+
+def _wrapped(line: str, width: int, indent: int) -> list[str]:
+    return textwrap.wrap(
+        line, width, subsequent_indent=" " * indent, break_on_hyphens=False, break_long_words=False
+    )
+
+
+def overview() -> str:
+    """The first page: every command in its group."""
+    width = terminal_width()
+    lines = ["usage: impact88 COMMAND [options]", ""]
+    lines += textwrap.wrap(
+        "R. M. Brach's 1988 program for the planar impact of two vehicles, digit for digit, and "
+        "the same mechanics for today's work.",
+        width,
+    )
+    for group, names in GROUPS.items():
+        lines += ["", group or "-" * 11, *_listed(names, width)]
+    lines += ["", *textwrap.wrap("impact88 help COMMAND lists a command's options.", width)]
+    lines += textwrap.wrap(
+        "exit status: 0 done, 1 adverse result, 2 unusable input, 3 a bug of impact88", width
+    )
+    return "\n".join(lines)
+
+
+def chapter_overview() -> str:
+    """What follows ``impact88 chapter``."""
+    lines = ["usage: impact88 chapter PROBLEM [options]", "", *_listed(CHAPTER, terminal_width())]
+    return "\n".join([*lines, "", "impact88 help chapter PROBLEM lists a problem's options."])
+
+
+def _listed(names: Iterable[str], width: int) -> list[str]:
+    lines: list[str] = []
+    for name in names:
+        lines += _hanging(f"  {name:<13}{COMMANDS.get(name, CHAPTER_MEANING)}", width)
+    return lines
