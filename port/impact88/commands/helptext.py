@@ -103,7 +103,7 @@ def overview() -> str:
 def chapter_overview() -> str:
     """What follows ``impact88 chapter``."""
     lines = ["usage: impact88 chapter PROBLEM [options]", "", *_listed(CHAPTER, terminal_width())]
-    return "\n".join([*lines, "", "impact88 help chapter PROBLEM lists a problem's options."])
+    return "\n".join([*lines, "", "impact88 help chapter PROBLEM lists its options."])
 
 
 def _listed(names: Iterable[str], width: int) -> list[str]:
