@@ -16,14 +16,15 @@ from captures import ROOT
 
 pytest.importorskip("setuptools", "70.1", reason="older ones build no wheel by themselves")
 
-DOCUMENTS = {".md", ".typed"}
+DOCUMENTS = {".md", ".typed", ".c"}
 """Kinds of files that are there to be read, by people or by type checkers, too."""
 
 BUILD = "import sys; sys.path.insert(0, '.ci'); import backend; backend.build_wheel(sys.argv[1])"
 USE = """
 import contextlib, io, json, os, sys
 opened = set()
-sys.addaudithook(lambda event, told: opened.add(str(told[0])) if event == "open" else None)
+uses = ("open", "ctypes.dlopen")
+sys.addaudithook(lambda event, told: opened.add(str(told[0])) if event in uses else None)
 from impact88 import cli
 from impact88.desk import app
 from impact88.schemas import NUMBERS, text
@@ -40,7 +41,8 @@ for name in NUMBERS:
 run("basic")
 for name in "listing run1 run2 table3".split():
     run("verify", "--brief", os.path.join(sys.argv[1], "legacy", f"{name}-as-printed.txt"))
-run("staged")
+run("solve", "--sample", "1")
+run("chapter", "staged")
 desk = app.Desk()
 client = app.application(desk, 8088, "word").test_client()
 pages = ["/word/", *(f"/word/static/{name}" for name in sys.argv[2:])]
