@@ -11,6 +11,7 @@ COMMANDS = {
     "bounds": "bounds, quantiles and drivers from ranges of the inputs",
     "reconstruct": "solve the equations for any unknowns, with tolerances",
     "figure": "draw a scene, its bounds or a figure of the chapter",
+    "report": "a page for the case file: answer, drawing, inputs, method",
     "oracle": "answer scenes with all that is known of them",
     "compare": "say where another program's results differ, and why",
     "selfcheck": "replay captures of a real Apple II Plus: pass or fail",
@@ -34,7 +35,7 @@ CHAPTER_MEANING = "colinear, barrier, delta-v, staged or example: its other prob
 
 GROUPS = {
     "printouts": ("verify",),
-    "collisions": ("scene", "run", "solve", "bounds", "reconstruct", "figure"),
+    "collisions": ("scene", "run", "solve", "bounds", "reconstruct", "figure", "report"),
     "programs": ("oracle", "compare", "selfcheck", "witness"),
     "the Apple": ("basic",),
     "the page": ("desk",),

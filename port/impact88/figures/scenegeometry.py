@@ -76,9 +76,14 @@ class Plan(NamedTuple):
     apart: bool
     remarks: tuple[str, ...]
     numbers: dict[str, float]
+    measured: tuple[str, ...]
 
 
-def plan(scene: Any, result: Mapping[str, Any] | None = None) -> Plan:
+def plan(
+    scene: Any,
+    result: Mapping[str, Any] | None = None,
+    outlines: Mapping[str, float] | None = None,
+) -> Plan:
     """Where everything is. ``scene`` gives the listing's names as texts or numbers; ``result`` has
     VAX, VAY, VBX, VBY and, unless the scene has point masses, WAF and WBF; STATUS where known.
 
@@ -102,7 +107,7 @@ def plan(scene: Any, result: Mapping[str, Any] | None = None) -> Plan:
     }
     front = {"A": scaled(direction(values["TA"]), -1.0), "B": direction(values["TB"])}
     apart = values["DA"] == 0 == values["DB"]
-    sizes = _sizes(values, reach, front)
+    sizes = _sizes(values, reach, front, outlines or {})
     vehicles = []
     for name, side in (("A", 1.0), ("B", -1.0)):
         length, width = sizes[name]
@@ -139,7 +144,9 @@ def plan(scene: Any, result: Mapping[str, Any] | None = None) -> Plan:
         change = minus(final[moved].velocity, before[moved].velocity)
         impulse = scaled(change, sense * values["M" + moved])
     remarks = _remarks(result, values)
-    return Plan((vehicles[0], vehicles[1]), normal, tangent, impulse, apart, remarks, values)
+    measured = tuple(name for name in "AB" if outlines and f"L{name}" in outlines)
+    pair = (vehicles[0], vehicles[1])
+    return Plan(pair, normal, tangent, impulse, apart, remarks, values, measured)
 
 
 def _finals(result: Mapping[str, Any] | None) -> dict[str, Motion]:
@@ -181,7 +188,10 @@ def dot(first: Point, second: Point) -> float:
 
 
 def _sizes(
-    values: Mapping[str, float], reach: Mapping[str, Point], front: Mapping[str, Point]
+    values: Mapping[str, float],
+    reach: Mapping[str, Point],
+    front: Mapping[str, Point],
+    outlines: Mapping[str, float],
 ) -> dict[str, tuple[float, float]]:
     """Length and width of both vehicles, see the module's text."""
     lengths: dict[str, float] = {}
@@ -195,6 +205,9 @@ def _sizes(
     usual = max(lengths.values(), default=1.0)
     sizes = {}
     for name in "AB":
+        if f"L{name}" in outlines:
+            sizes[name] = (outlines[f"L{name}"], outlines[f"B{name}"])
+            continue
         length = lengths.get(name, usual)
         x = dot(reach[name], front[name])
         y = dot(reach[name], (-front[name][1], front[name][0]))

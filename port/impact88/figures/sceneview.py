@@ -34,13 +34,16 @@ def scene_drawing(
     width: float = d.COLUMN,
     title: str = "Scene from above",
     units: System | None = None,
+    outlines: Mapping[str, float] | None = None,
 ) -> Drawing:
     """The scene from above, with key and table, ``width`` mm wide. Arguments as `plan`.
 
     Velocities before the impact end at the center of gravity, those after it start there, in one
     scale; both vehicles' spins turn around their centers.
     """
-    shapes = plan(scene, result)
+    if outlines is None and hasattr(scene, "entries"):
+        outlines = scene.entries.outlines
+    shapes = plan(scene, result, outlines)
     if units is None:
         units = system_of(getattr(scene, "units", None))
     field = _Field(shapes, width)

@@ -1,0 +1,88 @@
+"""FILE.toml is a scene or a file for reconstruct (impact88 scene --help, impact88 reconstruct
+--help). A whole scene gives the velocities after the impact; any other file is reconstructed.
+
+The page stands in one file and is made to be printed: answer, drawing to scale, inputs as given
+with tolerances and sources, what drives the result, remarks, method, versions and hashes, a line to
+sign.
+In the file, case = "24-117" is the case's number, and UX_source = "event data recorder" (or UX =
+{value = "-25 mph", source = "event data recorder"}) says where a value comes from.
+
+The same input, options and version give the same bytes.
+
+examples:
+  impact88 report crash.toml -o case.html
+  impact88 report crash.toml -o case.html --case 24-117 --paper a4 --seed 7
+  impact88 report after.toml -o case.html --csv tables.csv --xlsx tables.xlsx
+
+exit status: 0 written; 2 bad input
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+
+from ..files import called, decode, read_bytes, replacing
+from ..scene import TOML_LIMIT, entries_of, toml_texts
+from .options import InputFile, OutputFile, add_units_argument, note_remarks, whole_number
+
+SAMPLES = 20_000
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `impact88 report`."""
+    parser.add_argument(
+        "file", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"
+    )
+    parser.add_argument(
+        "-o", "--output", type=OutputFile, required=True, metavar="FILE.html", help="the page"
+    )
+    parser.add_argument("--case", default="", metavar="NUMBER", help="the case's number")
+    parser.add_argument("--title", default="", metavar="TEXT", help="what stands on top")
+    parser.add_argument(
+        "--paper",
+        choices=("letter", "a4"),
+        default="",
+        help="what it is printed on (default: letter for us units, else a4)",
+    )
+    parser.add_argument(
+        "--samples",
+        type=whole_number(0, 100_000_000),
+        default=SAMPLES,
+        metavar="N",
+        help="random draws (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--seed", type=whole_number(0, 2**63), default=0, help="which draws (default: 0)"
+    )
+    parser.add_argument("--csv", type=OutputFile, metavar="FILE", help="write the tables as CSV")
+    parser.add_argument("--xlsx", type=OutputFile, metavar="FILE", help="and as a workbook")
+    add_units_argument(parser)
+
+
+def main(args: argparse.Namespace) -> int:
+    """Write the report of a collision."""
+    from ..report.collision import report
+    from ..report.tablefiles import as_rows, write_workbook
+
+    data, source = read_bytes(args.file, TOML_LIMIT), called(args.file)
+    entries = entries_of(toml_texts(decode(data, source), source), source, args.units)
+    note_remarks(entries)
+    made = report(
+        entries,
+        source,
+        data,
+        samples=args.samples,
+        seed=args.seed,
+        case=args.case,
+        title=args.title,
+        paper=args.paper,
+    )
+    with replacing(args.output) as out:
+        out.write(made.page)
+    if args.csv:
+        with replacing(args.csv) as out:
+            csv.writer(out, lineterminator="\n").writerows(as_rows(made.tables))
+    if args.xlsx:
+        write_workbook(args.xlsx, made.tables)
+    return 0

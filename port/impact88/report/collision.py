@@ -1,0 +1,374 @@
+"""The report of a collision: forward from a scene, inverse from a reconstruction file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import UserError
+from ..figures.sceneview import scene_drawing
+from ..figures.svg import svg
+from ..names import DEFAULT_M, SCENE, check_names, quantity
+from ..plaintable import fixed, number
+from ..reconstruction.contact import MOVES, moved
+from ..reconstruction.impulse import clock
+from ..reconstruction.knowable import KNOWABLE
+from ..scene import Entries
+from ..status import sentences
+from ..units import RULES, System, base_of, system_of
+from .frame import render
+
+FIGURE_WIDTH = 150.0
+"""Of the drawing, in mm: what both papers leave between their margins, less a little."""
+DRIVERS = 3
+FORWARD = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF", "DVA", "DVB", "LOSS")
+"""Results that a scene's ranges are followed to."""
+INVERSE = (
+    *("SA", "HA", "SB", "HB", "UX", "UY", "WA", "VX", "VY", "WB", "SAF", "SBF", "DVA", "DVB"),
+    *("LOSS", "E", "MUP", "EM"),
+)
+"""Results of a reconstruction that the answer shows, where they were not known."""
+_SPREAD = ("value", "sd", "5 %", "95 %", "lower bound", "upper bound")
+_CONSEQUENCES = (
+    *("SA", "HA", "SAF", "HAF", "DVA", "DVAF", "DVAR", "PDOFA"),
+    *("SB", "HB", "SBF", "HBF", "DVB", "DVBF", "DVBR", "PDOFB"),
+    *("P", "E", "MUP", "MUC", "EM", "KI", "KF", "EL", "LOSS"),
+)
+
+
+class Table(NamedTuple):
+    """One table of a report; columns in ``left`` start at the left; ``place``: before the figure
+    ("answer") or after it ("content")."""
+
+    title: str
+    headings: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    left: Sequence[int]
+    place: str = "content"
+    caption: str = ""
+
+
+class Spread(NamedTuple):
+    """How uncertain a result is, in base units; NaN for what is not known."""
+
+    deviation: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+    lower: float = math.nan
+    upper: float = math.nan
+
+
+class Findings(NamedTuple):
+    """What was found: an impact's ``values`` with all that follows, the ``spreads`` of ``main``
+    results, what drives each, ``remarks`` in sentences, and the ``scene`` that is drawn."""
+
+    kind: str
+    values: Mapping[str, float]
+    main: Sequence[str]
+    spreads: Mapping[str, Spread]
+    drivers: Mapping[str, Sequence[str]]
+    driving: str
+    remarks: Sequence[str]
+    scene: Mapping[str, float]
+    method: Sequence[str]
+    settings: str
+
+
+class Report(NamedTuple):
+    """The page, and its tables for other programs."""
+
+    page: str
+    tables: list[Table]
+
+
+def report(
+    entries: Entries,
+    source: str,
+    data: bytes,
+    *,
+    samples: int,
+    seed: int,
+    case: str = "",
+    title: str = "",
+    paper: str = "",
+) -> Report:
+    """The report of what a file (``source``, its bytes ``data``) says of a collision.
+
+    A file with the whole scene and nothing after the impact is answered forward, any other is
+    reconstructed. Raises UserError for a file that can be used in neither way.
+    """
+    units = system_of(entries.units)
+    given = {n for n, text in entries.values.items() if text.strip()}
+    whole = set(SCENE) - {"M"} <= given <= {*SCENE, *MOVES, "correlations"}
+    check_names(given - {"correlations"}, (*KNOWABLE, *MOVES), "value here", source)
+    find = _forward if whole else _inverse
+    found = find(entries, source, samples, seed, units)
+    case = case or entries.case or ""
+    title = title or entries.title or "Planar impact of two vehicles"
+    drawing = None
+    if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
+        drawing = scene_drawing(
+            found.scene, found.values, FIGURE_WIDTH, "Scene from above", units, entries.outlines
+        )
+    tables = [_answer(found, units), *_details(found, entries, units)]
+    page = render(
+        "collision.html",
+        title=title,
+        case=case,
+        paper=paper or ("letter" if units.name in ("us", "chapter", "") else "a4"),
+        files=[(source, data)],
+        kind=found.kind,
+        units="any consistent set" if units is RULES else f"those of the file ({units.name})",
+        answer=_sentences(found, units),
+        tables=tables,
+        drawing=svg(drawing) if drawing else "",
+        figure_caption=drawing.description if drawing else "",
+        remarks=[*entries.remarks.values(), *found.remarks],
+        doubtful=bool(found.remarks),
+        method=[*found.method, _UNITS.format(base=base_of(units))],
+        limits=_LIMITS,
+        settings=found.settings,
+    )
+    return Report(page, tables)
+
+
+# --- what is found -------------------------------------------------------------------------------
+
+
+def _forward(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
+    from ..closedform.solve import solve
+    from ..reconstruction.solutiontable import completed
+    from ..uncertainty.bounds import bounds
+    from ..uncertainty.ranges import read_inputs
+
+    inputs = read_inputs(entries.values, {}, "forward", source)
+    nominal = moved({name: item.nominal for name, item in inputs.values.items()})
+    results = {name: float(value) for name, value in solve(nominal).items()}
+    values = completed({**{n: float(v) for n, v in nominal.items()}, **results}, None)
+    spreads: dict[str, Spread] = {}
+    drivers: dict[str, list[str]] = {}
+    remarks = sentences(int(results["STATUS"]), {**nominal, **results})
+    settings = ""
+    if any(item.varies for item in inputs.values.values()):
+        found = bounds(
+            inputs.values, FORWARD, samples=samples, seed=seed, correlations=inputs.correlations
+        )
+        for name, bound in found.bounds.items():
+            spread = found.spreads[name]
+            low, high = spread.quantiles[0.05], spread.quantiles[0.95]
+            spreads[name] = Spread(spread.deviation, low, high, bound.lower, bound.upper)
+            ranked = sorted(found.drives[name].items(), key=lambda entry: -entry[1].swing)
+            drivers[name] = [
+                f"{source} {number(drive.swing * units.factor(name), 3)} {units.unit(name)}".strip()
+                for source, drive in ranked[:DRIVERS]
+                if drive.swing > 0
+            ]
+        remarks += [
+            f"{100 * share:.3g} % of the draws carry the warning {name}"
+            for name, share in found.warnings.items()
+        ]
+        settings = f"{samples:,} random draws, seed {seed}."
+    method = [_FORWARD, _RANGES if spreads else _NO_RANGES]
+    scene = {name: float(nominal[name]) for name in SCENE}
+    kind = "Velocities after the impact from those before it"
+    driving = "how far the result goes while one input goes through its limits, largest first"
+    return Findings(
+        *(kind, values, FORWARD, spreads, drivers, driving, remarks, scene, method, settings)
+    )
+
+
+def _inverse(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
+    from ..reconstruction.adjustment import reconstruct
+    from ..uncertainty.reconstructedtable import completed_values, uncertainty, warnings
+    from ..uncertainty.uncertain import read
+
+    texts = {n: text for n, text in entries.values.items() if text.strip() and n in KNOWABLE}
+    texts.setdefault("M", DEFAULT_M)
+    try:
+        found = reconstruct({n: read(text, f"{source}: {n}") for n, text in texts.items()})
+    except UserError as error:
+        text = str(error)
+        raise UserError(text if text.startswith(source) else f"{source}: {text}") from None
+    best = found[0]
+    values = completed_values(best, None)
+    wanted = [n for n in INVERSE if n in values and n not in best.system.known]
+    spread = uncertainty(best, samples, seed, wanted)
+    spreads, drivers = {}, {}
+    for row, name in enumerate(spread.names):
+        low = high = lower = upper = math.nan
+        if spread.draws:
+            drawn = spread.draws.values[name]
+            drawn = drawn[np.isfinite(drawn)]
+            if len(drawn):
+                low, high = np.quantile(drawn, (0.05, 0.95)).tolist()
+            lower, upper = spread.ranges[name].lower, spread.ranges[name].upper
+        spreads[name] = Spread(float(spread.deviations[name]), low, high, lower, upper)
+        shares = spread.responses[row] ** 2
+        total = float(shares.sum()) or 1.0
+        ranked = np.argsort(-shares, kind="stable")[:DRIVERS].tolist()
+        drivers[name] = [
+            f"{best.system.observations[i]} {100 * shares[i] / total:.0f} %"
+            for i in ranked
+            if shares[i] >= 0.005 * total
+        ]
+    remarks = warnings(best, values, spread, units)
+    if len(found) > 1:
+        remarks.append(f"{len(found)} impacts agree with what is known; this is the first of them")
+    scene = {n: values[n] for n in SCENE if n in values}
+    scene.setdefault("M", float(DEFAULT_M))
+    if scene["M"] == 4 or "EM" not in scene:
+        scene["EM"] = 0.0  # which nothing drawn depends on
+    settings = f"{samples:,} random draws, seed {seed}." if spread.draws else ""
+    kind = "Velocities reconstructed from what is known of the impact"
+    method = [_INVERSE, _TOLERANCES if spread.names else _NO_RANGES]
+    driving = "share of the variance, largest first"
+    return Findings(
+        *(kind, values, wanted, spreads, drivers, driving, remarks, scene, method, settings)
+    )
+
+
+# --- how it is said ------------------------------------------------------------------------------
+
+
+def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
+    """A value as it is shown: two digits of its standard deviation, or five of itself."""
+    shown = value * units.factor(name)
+    if math.isnan(shown):
+        return ""
+    if math.isinf(shown):
+        return "unbounded"
+    if like > 0 and math.isfinite(like):
+        return fixed(shown, max(0, 1 - math.floor(math.log10(like * units.factor(name)))))
+    return f"{shown:,.0f}" if 1e4 <= abs(shown) < 1e12 else number(shown, 4)
+
+
+def _sentences(found: Findings, units: System) -> list[str]:
+    """The answer, in a sentence for each vehicle."""
+
+    def said(name: str) -> str:
+        if name not in found.values:
+            return ""
+        spread = found.spreads.get(name, Spread())
+        text = _amount(name, found.values[name], units, spread.deviation)
+        if math.isfinite(spread.deviation):
+            text += f" ± {_amount(name, spread.deviation, units, spread.deviation)}"
+        return f"{text} {units.unit(name)}".strip()
+
+    lines = []
+    for vehicle in "AB":
+        words = [
+            f"{word} {said(name + vehicle + end)}"
+            for word, name, end in _SAID
+            if said(name + vehicle + end)
+        ]
+        pdof = found.values.get(f"PDOF{vehicle}", math.nan)
+        if math.isfinite(pdof):
+            words.append(f"force from {pdof:.0f}°, {clock(pdof)}")
+        if words:
+            lines.append(f"{vehicle}: {', '.join(words)}")
+    return lines
+
+
+def _unit(name: str, units: System) -> str:
+    label = units.label(quantity(name).unit)
+    return {"percent": "%", "1": ""}.get(label, label)
+
+
+_SAID = (("speed before", "S", ""), ("after", "S", "F"), ("ΔV", "DV", ""))
+
+
+def _answer(found: Findings, units: System) -> Table:
+    rows = []
+    for name in found.main:
+        if name not in found.values:
+            continue
+        spread = found.spreads.get(name, Spread())
+        like = spread.deviation
+        cells = [_amount(name, x, units, like) for x in (found.values[name], *spread)]
+        rows.append([name, quantity(name).meaning, *cells, _unit(name, units)])
+    caption = (
+        "sd: standard deviation; 5 and 95 %: of the draws; bounds: attained within the limits "
+        "of the inputs, not proven to be the farthest"
+        if found.spreads
+        else ""
+    )
+    headings = ["", "result", *(_SPREAD if found.spreads else _SPREAD[:1]), "unit"]
+    if not found.spreads:
+        rows = [[*row[:3], row[-1]] for row in rows]
+    return Table("Answer", headings, rows, (0, 1, len(headings) - 1), "answer", caption)
+
+
+def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
+    tables = []
+    rows = []
+    for name, text in entries.given.items():
+        if name in ("title", "case", "units", "correlations") or not text.strip():
+            continue
+        bare = not any(map(str.isalpha, text.replace("e", "").replace("E", ""))) and "°" not in text
+        unit = units.unit(name) if bare and "'" not in text else ""
+        source = entries.sources.get(name, "")
+        if name in entries.estimated:
+            source = "; ".join(filter(None, [source, "estimate: " + entries.estimated[name]]))
+        rows.append([name, quantity(name).meaning, text, unit, source])
+    headings = ["", "input", "given", "unit", "source"]
+    tables.append(Table("Inputs as given", headings, rows, (0, 1, 3, 4)))
+    if found.drivers:
+        rows = [
+            [name, quantity(name).meaning, ", ".join(ranked)]
+            for name, ranked in found.drivers.items()
+            if ranked
+        ]
+        caption = found.driving
+        headings = ["", "result", "driven by"]
+        tables.append(Table("What drives the result", headings, rows, (0, 1, 2), caption=caption))
+    rows = [
+        [name, quantity(name).meaning, _amount(name, found.values[name], units), label]
+        for name in _CONSEQUENCES
+        if name in found.values and math.isfinite(found.values[name])
+        for label in [_unit(name, units)]
+    ]
+    tables.append(Table("The impact in full", ["", "quantity", "value", "unit"], rows, (0, 1, 3)))
+    return tables
+
+
+_FORWARD = (
+    "The velocities after the impact follow from those before it by Equations 13 to 18 of R. M. "
+    "Brach, Vehicle Collision Analysis (1988): momentum along x and y (13, 14), restitution e of "
+    "the normal relative velocity at the contact point (15), tangential over normal impulse μ "
+    "(16), angular momentum (17), and moment restitution e_m (18). They are solved in closed form "
+    "in double precision."
+)
+_INVERSE = (
+    "What is not known is solved for from Equations 13 to 18 of R. M. Brach, Vehicle Collision "
+    "Analysis (1988): momentum along x and y (13, 14), restitution e (15), friction μ (16), "
+    "angular momentum (17), moment restitution e_m (18). The equations hold exactly; where more "
+    "is known than needed, the values known within limits are adjusted by least squares, weighted "
+    "by their tolerances."
+)
+_RANGES = (
+    "Inputs known within limits are drawn at random, uniformly unless the file says otherwise, and "
+    "each draw is solved: standard deviation and percentiles are those of the draws. The bounds "
+    "are the smallest and largest results found for any inputs within their limits."
+)
+_TOLERANCES = (
+    "The standard deviation is to first order, from the tolerances of what is known; the 5 and "
+    "95 % come from random draws of it; the bounds are the smallest and largest values found "
+    "with every known value within its limits."
+)
+_NO_RANGES = "No input was given a tolerance, so no uncertainty is stated."
+_UNITS = (
+    "Values with units are converted once, by exact fractions; the computation is in {base}, "
+    "angles in degrees and spins in radians per unit of time. PDOF is where the force comes from, "
+    "clockwise from the vehicle's front."
+)
+_LIMITS = (
+    "The vehicles are rigid bodies in the plane, the impulse acts at one point, and other forces "
+    "during contact are neglected: tire forces, restraint by a third body, rotation out of the "
+    "plane.",
+    "Coefficients, contact point and orientation of the contact plane are inputs. They are not "
+    "verified here, and the result is no better than they are.",
+    "A bound is attained by inputs within the stated limits; inputs outside them are not covered.",
+)
