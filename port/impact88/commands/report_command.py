@@ -62,7 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Write the report of a collision."""
-    from ..report.collision import report
+    from ..report.findings import report
     from ..report.tablefiles import as_rows, write_workbook
 
     data, source = read_bytes(args.file, TOML_LIMIT), called(args.file)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from ..errors import UserError
 from ..files import replacing
-from .collision import Table
+from .findings import Table
 
 
 def as_rows(tables: Sequence[Table]) -> Iterator[Sequence[str]]:
