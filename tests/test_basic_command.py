@@ -18,7 +18,6 @@ from impact88.scene import sample
 from installed import COMMAND, impact88
 
 REPLIES = "-29.04,0,0\n14.52,25.15,0\n"
-BEL = "\a"
 
 
 @pytest.fixture
@@ -38,14 +37,13 @@ def test_the_listing_is_loaded_and_runs():
     assert (done.returncode, done.stderr) == (0, "")
     shown = done.stdout.removeprefix("\n]RUN\n")
     # comma zones do not occur in it, so the printout is the port's
-    assert shown.removesuffix("\n]\n") == run(sample(1)).printout
+    assert shown.removesuffix("\n]\n") == run(sample(1)).page
 
 
 def test_retype_a_line_and_run():
     lines = sample(1).replaced({"MU": ".5"}).typed_lines()
     done = impact88("basic", input="\n".join([*lines, "RUN", REPLIES]))
-    printout = run(sample(1).replaced({"MU": ".5"})).printout
-    assert printout in done.stdout
+    assert run(sample(1).replaced({"MU": ".5"})).page in done.stdout
 
 
 def test_list_shows_the_line_as_the_rom_does():
@@ -60,7 +58,8 @@ def test_a_file_runs_and_leaves(program):
 
 def test_a_file_with_input(program):
     path = program("10 INPUT A,B\n20 PRINT A*B")
-    assert impact88("basic", path, input="6,7\n").stdout == "?\x006,7\n42\n"
+    assert impact88("basic", path, input="6,7\n").stdout == "?6,7\n42\n"
+    assert impact88("basic", path, "--raw", input="6,7\n").stdout == "?\x006,7\n42\n"
     done = impact88("basic", path, input="6\n")
     assert done.returncode == 2
     assert done.stderr.startswith("impact88 basic: the input ended")
@@ -70,8 +69,9 @@ def test_a_file_with_input(program):
 def test_the_published_program_as_a_file(program):
     path = program(packaged_text("impact88.legacy", "impact.bas"))
     done = impact88("basic", path, input=REPLIES)
-    assert done.stdout == run(sample(1)).printout
-    assert impact88("basic", path, "--no-dos", input=REPLIES).stdout == (
+    assert done.stdout == run(sample(1)).page
+    assert impact88("basic", path, "--raw", input=REPLIES).stdout == run(sample(1)).printout
+    assert impact88("basic", path, "--no-dos", "--raw", input=REPLIES).stdout == (
         run(sample(1), dos=False).printout
     )
 
@@ -79,7 +79,7 @@ def test_the_published_program_as_a_file(program):
 def test_an_error_is_status_1(program):
     done = impact88("basic", program("10 PRINT 1/0"))
     assert done.returncode == 1
-    assert done.stdout == f"\n?DIVISION BY ZERO ERROR{BEL} IN 10\n"
+    assert done.stdout == "\n?DIVISION BY ZERO ERROR IN 10\n"
 
 
 def test_prompt_stays(program):
@@ -105,12 +105,13 @@ def test_printer(program, tmp_path):
 
 
 def test_load_and_save(program, tmp_path):
-    path = program('10 PRINT "mixed Case":rem\n20 REM  as  It is\n')
+    path = program('10 print "mixed Case":rem\n20 REM  as  It is\n25 data low\n')
     other = tmp_path / "Other.bas"
     done = impact88("basic", input=f"LOAD {path}\n30 PRINT 3\nSAVE {other}\nLIST 20\n")
     assert done.stderr == ""
     assert "20  REM   as  It is" in done.stdout
-    assert other.read_text() == '10 PRINT "mixed Case":rem\n20 REM  as  It is\n30 PRINT 3\n'
+    saved = '10 PRINT "mixed Case": REM\n20 REM  as  It is\n25 DATA LOW\n30 PRINT 3\n'
+    assert other.read_text() == saved
     done = impact88("basic", input=f"LOAD {tmp_path / 'none'}\nPRINT 5\n")
     assert "cannot be read" in done.stderr
     assert "5\n" in done.stdout
@@ -131,6 +132,21 @@ def test_what_is_no_program(program, text, words):
     assert done.stderr.count("\n") == 1
 
 
+def test_a_long_line_survives_save_new_load(tmp_path):
+    line = "10 " + "GOSUB9:" * 33 + "END"
+    path = tmp_path / "long.bas"
+    done = impact88("basic", input=f"{line}\nSAVE {path}\nNEW\nLOAD {path}\nLIST 10\n")
+    assert done.stderr == ""
+    assert len(path.read_text()) > 300
+    assert "".join(done.stdout.partition("LIST")[2].split()).count("GOSUB9") == 33
+
+
+def test_a_program_is_no_scene(program):
+    done = impact88("run", program("10 PRINT 1\n"))
+    assert done.returncode == 2
+    assert "impact88 basic runs it" in done.stderr
+
+
 def test_a_missing_file_and_prompt_without_one():
     assert impact88("basic", "no-such.bas").returncode == 2
     assert impact88("basic", "--prompt").returncode == 2
@@ -138,7 +154,7 @@ def test_a_missing_file_and_prompt_without_one():
 
 def test_what_is_not_done_is_said(program):
     done = impact88("basic", program("10 HGR\n"))
-    assert (done.returncode, done.stdout) == (1, f"\n?SYNTAX ERROR{BEL} IN 10\n")
+    assert (done.returncode, done.stdout) == (1, "\n?SYNTAX ERROR IN 10\n")
     assert done.stderr == "impact88 basic: HGR is not done here: text only, no machine code\n"
 
 
@@ -155,7 +171,7 @@ def test_control_c_breaks_a_program(program):
     time.sleep(0.2)
     process.send_signal(signal.SIGINT)
     shown, complaints = process.communicate(timeout=20)
-    assert (shown, complaints) == (f"\nBREAK{BEL} IN 20\n", "")
+    assert (shown, complaints) == ("\nBREAK IN 20\n", "")
     assert process.returncode == 130
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from impact88.applesoft.console import EndOfInput
 from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.checking.captured import displayed, session
 from impact88.emulator.emulator import Applesoft
 from impact88.emulator.machine import TooManyStatements
-from impact88.emulator.tokens import TOKENS, split_number, tokenise, untokenised
+from impact88.emulator.tokens import KEYWORDS, TOKENS, split_number, tokenise, untokenised
 
 BEL = "\a"
 
@@ -261,7 +265,7 @@ def test_what_a_program_cannot_be():
     for text, words in [
         ("PRINT 1", "row 1 has no line number"),
         ("10 A\n64000 B", "row 2"),
-        ("10 " + "A" * 300, "row 1 has 303 characters"),
+        ("10 " + "A" * 300, "row 1 has 300 characters"),
     ]:
         with pytest.raises(ValueError, match=words):
             machine.load(text)
@@ -362,3 +366,69 @@ def test_refusals_are_remembered_a_few_times():
 def test_strings_lie_where_the_program_can_see_them():
     program = '10 A$="AB"+"C":FOR I=49149 TO 49151:PRINT CHR$(PEEK(I));:NEXT:POKE 49150,90:PRINT A$'
     assert displayed(program) == "ABCAZC\n"
+
+
+STEPS = st.lists(
+    st.sampled_from([*KEYWORDS, *'ABTO?N1.:;,()$%=" ', "PO", "STE", "AT", "REM", "DATA"]),
+    max_size=40,
+)
+
+
+@settings(max_examples=200, deadline=None)
+@given(STEPS)
+def test_what_can_be_typed_survives_save_and_load(words):
+    machine = Applesoft()
+    machine.type_line(f"10 A{''.join(words)}"[:239])
+    (line,) = machine.machine.lines()
+    machine.load(machine.source())
+    assert list(machine.machine.lines()) == [line]
+
+
+def test_cont_goes_on_in_the_line_it_stands_in():
+    """And after a subroutine called at the prompt the machine believes it is in line 0."""
+    shown = displayed("10 STOP\n20 PRINT 1/0", "CONT\n")
+    assert shown.endswith(f"\n?DIVISION BY ZERO ERROR{BEL} IN 20")
+    shown = displayed("10 REM", "20 PRINT 1:RETURN\nGOSUB 20\nCONT\n")
+    assert shown.endswith(f"?RETURN WITHOUT GOSUB ERROR{BEL} IN 0")
+
+
+def test_the_echo_of_keys_is_never_inverse():
+    machine, _ = session("10 HOME:INVERSE:INPUT A$:PRINT A$", "XY\n")
+    rows = machine.screen_rows()
+    assert rows[0][:3] == bytes((ord("?") & 0x3F, ord("X") | 0x80, ord("Y") | 0x80))
+    assert rows[1][:2] == bytes((ord("X") & 0x3F, ord("Y") & 0x3F))
+
+
+def test_a_temporary_that_onerr_left_is_in_the_way_of_numbers_too():
+    program = '10 ONERR GOTO 30\n20 PRINT ("A"+"B")+("C"+"D"+LEFT$("X",0))\n30 POKE 216,0:PRINT {}'
+    assert displayed(program.format('"X"')).startswith("\n?FORMULA TOO COMPLEX")
+    assert displayed(program.format("1")).startswith("\n?FORMULA TOO COMPLEX")
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        '10 PRINT 256^I%/"{0}"<>.5',
+        '10 A=1:B$="X"+"Y":P=PEEK(105)+256*PEEK(106)\n20 FOR I=0 TO 60:POKE P+I,{0}:NEXT\n'
+        "30 PRINT A;B$:DIM C(3),D$(2)\n40 FOR I=0 TO 90:POKE P+I,{0}:NEXT:PRINT C(1);D$(1);FRE(0)",
+        "10 FOR I=2049 TO 2120:POKE I,{0}:NEXT:GOTO 10",
+        "10 FOR I=105 TO 120:POKE I,{0}:NEXT:A=1:A$=STR$(A):DIM B(5):PRINT A$:GOTO 10",
+    ],
+)
+@pytest.mark.parametrize("byte", [0, 1, 7, 128, 200, 255])
+def test_a_program_may_poke_its_own_text_and_variables(program, byte):
+    machine = Applesoft()
+    machine.load(program.format(byte))
+    machine.machine.statements_left = 2000
+    for line in ("RUN", "LIST", "PRINT A;B;C$", "NEW"):
+        with suppress(TooManyStatements):
+            machine.type_line(line)
+    machine.reals()
+    machine.array("C")
+    machine.screen_text()
+
+
+def test_a_program_run_before_leaves_nothing_behind():
+    text = '10 A=A+1:B$=B$+"X":PRINT A;B$;FRE(0);RND(1)\n20 POKE 2055,66'
+    shown = [displayed(text), displayed("10 POKE 2055,67:A=7"), displayed(text)]
+    assert shown[0] == shown[2]

@@ -416,6 +416,12 @@ def _syntax_error(
     text: str, message: str, raw: Mapping[str, tuple[int, str]], source: str
 ) -> UserError:
     """What TOML refuses, with the spelling it would take when the value is one INPUT takes."""
+    if re.match(r"\s*\d+ *[A-Za-z?]", text):
+        return UserError(
+            "is a BASIC program, not a scene; impact88 basic runs it, with a scene's values "
+            "in its own lines",
+            source,
+        )
     place = re.search(r"\(at line (\d+)", message)
     number = int(place.group(1)) if place else text.count("\n") + 1
     where = f"{source}, line {number}"

@@ -73,6 +73,12 @@ class Editor:
     def typed(self) -> None:
         """A line was typed on a terminal, which has shown it."""
 
+    def begin_echo(self) -> None:
+        """What comes is the echo of a key, not of a program."""
+
+    def end_echo(self) -> None:
+        """The echo is over."""
+
 
 class Console:
     """A screen, a keyboard, and what stands between them and a program.
@@ -182,7 +188,7 @@ class Console:
         self.put(prompt)
         typed = capitals(self._typed_line())
         if typed.isprintable() and len(typed) <= WARNING:
-            self._echo(typed)
+            self._show_keys(typed)
         else:
             typed = self._edited(prompt, typed)
         self.editor.end_line()
@@ -202,7 +208,7 @@ class Console:
                 continue
             if key == CONTROL_U:
                 key = self.editor.under_cursor()
-            self._echo(key)
+            self._show_keys(key)
             if key == CONTROL_H and kept:
                 kept.pop()
             elif key == CONTROL_H:
@@ -231,6 +237,11 @@ class Console:
             self.editor.escape(_MOVES.get(key, key))
             if key not in _MOVES:
                 return
+
+    def _show_keys(self, keys: str) -> None:
+        self.editor.begin_echo()
+        self._echo(keys)
+        self.editor.end_echo()
 
     def _echo(self, text: str) -> None:
         if self.echo:

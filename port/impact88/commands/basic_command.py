@@ -28,10 +28,11 @@ from ..emulator.emulator import Applesoft
 from ..emulator.machine import TooManyStatements
 from ..errors import UserError
 from ..files import called, packaged_text, read_text, replacing, typed_line
+from ..program.run import page
 from ..signals import INTERRUPTED
 from ..stderr import note
 from .options import InputFile
-from .run_command import add_machine_arguments
+from .run_command import add_machine_arguments, add_raw_argument
 
 LISTING = "impact.bas"
 SLOT_LINE = '190 P$ = "PR# " + "{}"'
@@ -51,6 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-statements", type=_count, metavar="N", help="stop a program after so many statements"
     )
     add_machine_arguments(parser)
+    add_raw_argument(parser)
 
 
 def _count(text: str) -> int:
@@ -62,22 +64,26 @@ def _count(text: str) -> int:
 class Terminal:
     """Standard input as the keyboard, standard output as the screen."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, raw: bool = False) -> None:
         self.typing = sys.stdin.isatty()
         self.person = self.typing and sys.stdout.isatty()
         self.waiting = False
         self.last = ""
-        self._filter = sys.stdout.isatty()
+        self._raw = raw
+        self._terminal = sys.stdout.isatty()
         self._row = ""
         if self.typing:
             with suppress(ImportError):
                 import readline  # noqa: F401  (line editing and history in input())
 
     def show(self, text: str) -> None:
-        """Characters for the screen; a real terminal gets no control characters it would act on."""
+        """Characters for the screen; a terminal gets no control characters it would act on, a
+        pipe or a file the page a person reads, unless --raw asks for all."""
         self._row = (self._row + text).rpartition("\n")[2][-200:]
-        if self._filter:
+        if self._terminal:
             text = "".join(c for c in text if c >= " " or c in _SHOWN_CONTROLS)
+        elif not self._raw:
+            text = page(text)
         sys.stdout.write(text)
 
     def read(self) -> str | None:
@@ -137,7 +143,7 @@ def main(args: argparse.Namespace) -> int:
             f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
             "or --no-dos"
         )
-    terminal = Terminal()
+    terminal = Terminal(raw=args.raw)
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
         machine = Applesoft(

@@ -56,11 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_json_argument(parser, "the run as one JSON object")
     add_output_argument(parser)
     add_machine_arguments(parser)
-    parser.add_argument(
-        "--raw",
-        action="store_true",
-        help="every character as the Apple sends it: form feed, bells, NULs and control-D too",
-    )
+    add_raw_argument(parser)
 
 
 def add_machine_arguments(parser: argparse.ArgumentParser) -> None:
@@ -83,6 +79,15 @@ def add_machine_arguments(parser: argparse.ArgumentParser) -> None:
         type=OutputFile,
         metavar="FILE",
         help="where the printer's output goes (default: stdout)",
+    )
+
+
+def add_raw_argument(parser: argparse.ArgumentParser) -> None:
+    """The option --raw."""
+    parser.add_argument(
+        "--raw",
+        action="store_true",
+        help="every character as the Apple sends it: form feed, bells, NULs and control-D too",
     )
 
 

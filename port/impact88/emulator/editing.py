@@ -31,18 +31,17 @@ class Editing(Flow):
             address = self.word(address)
 
     def load(self, lines: Iterable[tuple[int, bytes]]) -> None:
-        """Put lines in place of the program. Raises OUT OF MEMORY, and leaves none."""
+        """Put lines in place of the program. Raises OUT OF MEMORY, and changes nothing then."""
         image = bytearray()
         for number, tokens in sorted(dict(lines).items()):
             if tokens:
                 image += b"\1\1" + number.to_bytes(2, "little") + tokens + b"\0"
-        fits = self.txttab + len(image) + len(END_MARK) < self.memsiz
-        image = (image if fits else bytearray()) + END_MARK
+        image += END_MARK
+        if self.txttab + len(image) >= self.memsiz:
+            raise Fault("OUT OF MEMORY", self.sp)
         self.ram[self.txttab : self.txttab + len(image)] = image
         self.vartab = self.txttab + len(image)
         self.fix_links()
-        if not fits:
-            raise Fault("OUT OF MEMORY", self.sp)
 
     def store_line(self, number: int, tokens: bytes) -> None:
         """A line typed with a number: put in, or taken out if it has no tokens. Raises OUT OF

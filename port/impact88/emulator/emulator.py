@@ -82,6 +82,10 @@ class Applesoft:
         self._output.clear()
         return text
 
+    def screen_rows(self) -> list[bytes]:
+        """The 24 rows of the text screen, 40 bytes each, as they lie in the machine's memory."""
+        return self.machine.screen.rows()
+
     def screen_text(self) -> str:
         """The 24 rows of the text screen."""
         return self.machine.screen.text()
@@ -89,12 +93,14 @@ class Applesoft:
     # --- the program --------------------------------------------------------------------------
 
     def load(self, text: str) -> None:
-        """A program from text, one numbered line a row, its case kept; replaces the one there is.
+        """A program from text, one numbered line a row; replaces the one there is. Small letters
+        are capitals outside quotes and remarks.
 
         Raises ValueError, naming the row, for a row that does not begin with a number up to 63999
-        or is too long to be typed, and ApplesoftError OUT OF MEMORY.
+        or holds more than could have been typed, and ApplesoftError OUT OF MEMORY; the program that
+        was there stays then.
         """
-        lines: list[tuple[int, str]] = []
+        lines: list[tuple[int, bytes]] = []
         for row, line in enumerate(text.split("\n"), 1):
             if not line.strip():
                 continue
@@ -104,10 +110,15 @@ class Applesoft:
                 raise ValueError(f"row {row}: {error}") from None
             if numbered is None:
                 raise ValueError(f"row {row} has no line number")
-            if len(line) > LINE_LIMIT:
-                raise ValueError(f"row {row} has {len(line)} characters; a line takes {LINE_LIMIT}")
-            lines.append(numbered)
-        self.machine.load((number, tokenise(rest)) for number, rest in lines)
+            number, rest = numbered
+            tokens = tokenise(rest, folded=True)
+            if len(tokens) > LINE_LIMIT:
+                raise ValueError(
+                    f"row {row} has {len(tokens)} characters and keywords; "
+                    f"a line that can be typed has {LINE_LIMIT}"
+                )
+            lines.append((number, tokens))
+        self.machine.load(lines)
 
     def type_line(self, text: str) -> ApplesoftError | None:
         """What the machine does with a line typed at the prompt, once RETURN is pressed.

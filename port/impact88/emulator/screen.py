@@ -41,7 +41,7 @@ class Screen(Editor):
         self.column = 0
         self._expected = 0
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
-        self.mask = NORMAL
+        self.mask = self._mask_between = NORMAL
         self._row = 0
         self._address = BASE
         self._pending: list[tuple[int, str]] = []
@@ -174,15 +174,16 @@ class Screen(Editor):
         self._draw()
         return self._row
 
+    def rows(self) -> list[bytes]:
+        """The 24 rows as they lie in memory, 40 bytes each."""
+        self._draw()
+        starts = (BASE + row % 8 * 0x80 + row // 8 * WIDTH for row in range(HEIGHT))
+        return [bytes(self._ram[start : start + WIDTH]) for start in starts]
+
     def text(self) -> str:
         """The 24 rows as text, blanks at the end of each cut; inverse and flashing characters as
         normal ones."""
-        self._draw()
-        rows = (BASE + row % 8 * 0x80 + row // 8 * WIDTH for row in range(HEIGHT))
-        return "".join(
-            "".join(map(_shown, self._ram[first : first + WIDTH])).rstrip(" ") + "\n"
-            for first in rows
-        )
+        return "".join("".join(map(_shown, row)).rstrip(" ") + "\n" for row in self.rows())
 
     def byte_at(self, address: int) -> int:
         """What screen memory holds."""
@@ -336,6 +337,17 @@ class Screen(Editor):
     def end_line(self) -> None:
         """RETURN: what stands behind the cursor in its row is cleared."""
         self.clear_to_end_of_line()
+
+    def begin_echo(self) -> None:
+        """A key is shown, which is never inverse."""
+        self._mask_between = self.mask
+        if self.mask != NORMAL:
+            self.set_mode(NORMAL)
+
+    def end_echo(self) -> None:
+        """The key is shown."""
+        if self._mask_between != NORMAL:
+            self.set_mode(self._mask_between)
 
     def typed(self) -> None:
         """A line was typed on a terminal, which has shown it: the cursor is at the left."""

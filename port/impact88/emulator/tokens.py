@@ -64,9 +64,13 @@ def _keyword(text: str, start: int) -> tuple[int, int] | None:
 
 
 @lru_cache(maxsize=4096)
-def tokenise(text: str) -> bytes:
-    """The bytes of a line's statements as the ROM's parser leaves them, without the final zero."""
-    text = keyed(text)
+def tokenise(kept: str, *, folded: bool = False) -> bytes:
+    """The bytes of a line's statements as the ROM's parser leaves them, without the final zero.
+
+    ``folded``: small letters are capitals outside quotes and remarks, as nobody types them else.
+    """
+    kept = keyed(kept)
+    text = kept.upper() if folded else kept
     out = bytearray()
     position = 0
     in_data = False
@@ -75,7 +79,7 @@ def tokenise(text: str) -> bytes:
         if character == " " and not in_data:
             position += 1
         elif character == _QUOTE:
-            position = _copy(text, position, _QUOTE, out)
+            position = _copy(kept, position, _QUOTE, out)
         elif in_data or "0" <= character <= ";":
             out.append(ord(character))
             position += 1
@@ -89,7 +93,7 @@ def tokenise(text: str) -> bytes:
             out.append(token)
             in_data = token == DATA
             if token == REM:
-                position = _copy(text, position, "", out)
+                position = _copy(kept, position, "", out)
         else:
             out.append(ord(character))
             position += 1
@@ -130,16 +134,25 @@ def untokenised(tokens: bytes) -> str:
     """Statement text that tokenises into ``tokens``.
 
     Blanks stand around keywords, except after REM and DATA, whose text is kept as it is. The blank
-    after AT keeps a following N or O from becoming ATN or TO.
+    after AT keeps a following N or O from becoming ATN or TO. PRINT is written as it was typed, as
+    a question mark, where its letters would make another word with those before: ``PO?``.
     """
+    text = _spelled(tokens, "PRINT")
+    return text if tokenise(text) == tokens else _spelled(tokens, "?")
+
+
+def _spelled(tokens: bytes, print_word: str) -> str:
     out = ""
+    keyword = False
     for byte in tokens:
+        keyword = byte >= FIRST and byte not in (REM, DATA)
         if byte < FIRST:
             out += chr(byte)
             continue
         index = byte - FIRST
         word = KEYWORDS[index] if index < len(KEYWORDS) else ""
+        word = print_word if byte == PRINT else word
         out += word if not out or out.endswith((" ", "(")) else f" {word}"
-        if byte not in (REM, DATA) and not word.endswith("("):
+        if keyword and not word.endswith("("):
             out += " "
-    return out.rstrip(" ") if REM not in tokens and DATA not in tokens else out
+    return out.rstrip(" ") if keyword else out
