@@ -80,7 +80,7 @@ class Editing(Flow):
         self.prgend = self.vartab
         self.remember(reading(bytes(ram[self.txttab : self.prgend]), self.txttab))
 
-    def new(self) -> None:
+    def new_(self) -> None:
         """NEW. A program that does it comes to its end, from where CONT can go on."""
         if not self.at_end():
             return
@@ -91,7 +91,7 @@ class Editing(Flow):
         self.text_changed()
         self.set_pointers()
 
-    def delete(self) -> None:
+    def del_(self) -> None:
         """DEL. The program ends, unless the range lies before its own beginning. Raises SYNTAX."""
         sp = self.sp - 2
         if not is_digit(self.character()):

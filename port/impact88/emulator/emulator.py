@@ -151,7 +151,7 @@ class Applesoft:
         return machine.error
 
     def _complain(self, error: ApplesoftError) -> ApplesoftError:
-        self.machine.output.put(f"\n?{error.kind} ERROR\a")
+        self.machine.put(f"\n?{error.kind} ERROR\a")
         self.machine.clear_stack()
         self.machine.error = error
         return error

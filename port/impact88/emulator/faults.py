@@ -31,7 +31,3 @@ class TooManyStatements(Exception):
 
 class Restart(Exception):
     """RESTART: the machine goes back to the prompt."""
-
-
-class NextStatement(Exception):
-    """JMP NEWSTT from somewhere deep within a statement."""

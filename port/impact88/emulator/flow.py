@@ -10,19 +10,19 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..applesoft.errorcodes import ApplesoftError
-from ..applesoft.real import ZERO, Number, add, compare, rounded
+from ..applesoft.real import ZERO, Number, add, compare, integer, rounded
 from .expressions import ONE
-from .faults import Fault, NextStatement, Restart
+from .faults import Fault, Restart
 from .inputs import BREAK_CODE, Inputs
 from .memory import DIRECT, STACK, TEMPORARIES
-from .text import COLON, COMMA, GOTO, is_digit
+from .text import COMMA, GOTO, is_digit
 from .tokens import TOKENS
 from .variables import SUBFLG_SIMPLE
 
 FOR_SIZE, FOR_ROOM = 18, 74
 GOSUB_SIZE, GOSUB_ROOM = 7, 64
 """Bytes on the stack, and where the stack pointer has to be at least."""
-TO, THEN, STEP, GOSUB = (TOKENS[word] for word in ("TO", "THEN", "STEP", "GOSUB"))
+TO, THEN, STEP, GOSUB, EQUAL = (TOKENS[word] for word in ("TO", "THEN", "STEP", "GOSUB", "="))
 NO_VARIABLE = -1
 
 
@@ -73,7 +73,7 @@ class Flow(Inputs):
         self.arytab = self.strend = self.vartab
         self.simple.clear()
         self.arrays.clear()
-        self.restore()
+        self.restore_()
         self.clear_stack()
 
     def set_pointers(self) -> None:
@@ -98,9 +98,34 @@ class Flow(Inputs):
 
     # --- FOR and NEXT -------------------------------------------------------------------------
 
+    def let_(self) -> None:
+        """LET with its keyword."""
+        self.let(self.sp - 2)
+
+    def expect_equal(self, sp: int) -> int:
+        """SYNCHR of the sign that assigns."""
+        return self.expect(EQUAL, sp)
+
     def let(self, sp: int) -> None:
-        """LET, of `machine`."""
-        raise NotImplementedError
+        """LET. Raises SYNTAX, TYPE MISMATCH, ILLEGAL QUANTITY, and what its formulas do."""
+        known = self.atoms.get(self.txtptr)
+        if known and known[1] in self.simple and self.ram[known[0]] == EQUAL:
+            self.forpnt = self.varpnt = target = self.simple[known[1]]
+            of_integer = of_string = self.subflg = 0
+            self.txtptr = known[0] + 1
+        else:
+            self.forpnt = target = self.variable(sp - 2)
+            of_integer, of_string = self.inttyp, self.valtyp
+            self.expect(EQUAL, sp - 2)
+        fac = self.formula(sp - 4)
+        if self.valtyp & 0x80 != of_string & 0x80:
+            raise Fault("TYPE MISMATCH", sp - 3)
+        if of_string:
+            self.assign_string(target, fac)
+        elif of_integer:
+            self.assign_integer(target, fac, sp - 2)
+        else:
+            self.assign(target, fac)
 
     def for_(self) -> None:
         """FOR. Raises OUT OF MEMORY, SYNTAX, TYPE MISMATCH."""
@@ -113,7 +138,7 @@ class Flow(Inputs):
             raise Fault("OUT OF MEMORY", self.sp - 2)
         sp = self.sp
         start = self.txtptr
-        self.to_statement_end()
+        self.data_()
         back, self.txtptr = self.txtptr, start
         self.expect(TO, sp - 6)
         if self.valtyp:
@@ -163,7 +188,7 @@ class Flow(Inputs):
         sp = sp or self.sp - 2
         start = self.txtptr
         number = self.line_number(sp - 2)
-        self.to_line_end()
+        self.rem_()
         beyond = self.txtptr + 1 if number >> 8 > self.curlin >> 8 else self.txttab
         address = self.line_address(number, beyond)
         if address is None:
@@ -172,7 +197,7 @@ class Flow(Inputs):
         if self.txttab <= start < self.prgend:
             self.targets[start] = self.txtptr
 
-    def goto_known(self) -> None:
+    def goto_(self) -> None:
         """GOTO, from a place where it has been done before."""
         target = self.targets.get(self.txtptr)
         if target is None:
@@ -181,7 +206,7 @@ class Flow(Inputs):
             self.txtptr = target
             self.charac = 0
 
-    def gosub(self) -> None:
+    def gosub_(self) -> None:
         """GOSUB. Raises OUT OF MEMORY, SYNTAX and UNDEF'D STATEMENT."""
         if self.sp - 4 & 0xFF < GOSUB_ROOM - 4:
             raise Fault("OUT OF MEMORY", self.sp - 4)
@@ -202,9 +227,9 @@ class Flow(Inputs):
         frame = self._subroutine()
         self.curlin = frame.line
         self.txtptr = frame.text
-        self.to_statement_end()
+        self.data_()
 
-    def pop(self) -> None:
+    def pop_(self) -> None:
         """POP. Raises RETURN WITHOUT GOSUB."""
         if self.at_end():
             self._subroutine()
@@ -225,7 +250,7 @@ class Flow(Inputs):
         self.sp = self.sp + GOSUB_SIZE & 0xFF
         return frame
 
-    def on(self) -> None:
+    def on_(self) -> None:
         """ON. Raises SYNTAX, ILLEGAL QUANTITY, and what GOTO or GOSUB do."""
         sp = self.sp - 2
         count = self.byte(sp - 2)
@@ -238,9 +263,9 @@ class Flow(Inputs):
             if not count:
                 self.character()
                 if command == GOTO:
-                    self.goto_known()
+                    self.goto_()
                 else:
-                    self.gosub()
+                    self.gosub_()
                 return
             self.line_number(sp - 3)
             if self.character() != COMMA:
@@ -259,21 +284,21 @@ class Flow(Inputs):
         else:
             byte = self.expect(THEN, sp - 2)
         if not fac[0]:
-            self.to_line_end()
+            self.rem_()
         elif is_digit(byte):
-            self.goto_known()
+            self.goto_()
         else:
             self.execute()
 
     # --- errors -------------------------------------------------------------------------------
 
-    def onerr(self) -> None:
+    def onerr_(self) -> None:
         """ONERR GOTO. Raises SYNTAX."""
         self.expect(GOTO, self.sp - 4)
         self.txtpsv = self.txtptr
         self.errflg = 0x80 | self.errflg >> 1
         self.cursv = self.curlin
-        self.to_line_end()
+        self.rem_()
 
     def handle(self, code: int, stack: int) -> None:
         """HANDLERR: an error goes to ONERR's line, and leaves the stack as it is. Raises UNDEF'D
@@ -288,12 +313,12 @@ class Flow(Inputs):
         if stack < 0:
             self.frames.clear()
         try:
-            self.goto_known()
+            self.goto_()
         except ApplesoftError:
             self.errflg = 0
             raise
 
-    def resume(self) -> None:
+    def resume_(self) -> None:
         """RESUME. Where there was no error the ROM goes on at address 0."""
         self.curlin = self.errlin
         self.txtptr = self.errpos
@@ -305,7 +330,7 @@ class Flow(Inputs):
 
     # --- the end ------------------------------------------------------------------------------
 
-    def run(self) -> None:
+    def run_(self) -> None:
         """RUN. Raises UNDEF'D STATEMENT.
 
         To say that a program runs now the machine takes 256 from the line number, also from that
@@ -324,13 +349,13 @@ class Flow(Inputs):
             self.oldtext = self.txtptr
             self.oldlin = self.curlin
 
-    def end(self) -> None:
+    def end_(self) -> None:
         """END."""
         if self.at_end():
             self._note_place()
             raise Restart
 
-    def stop(self) -> None:
+    def stop_(self) -> None:
         """STOP."""
         if self.at_end():
             self._note_place()
@@ -346,14 +371,18 @@ class Flow(Inputs):
         self.message(b"\rBREAK")
         raise Restart
 
+    def show_line_number(self) -> None:
+        """LINPRT of CURLIN."""
+        self.show_number(integer(self.curlin))
+
     def message(self, text: bytes) -> None:
         """What stands before the prompt: a text, the bell, the line if there is one."""
-        self.string_shown(text + b"\a")
+        self.show_message(text + b"\a")
         if self.curlin < DIRECT:
-            self.string_shown(b" IN ")
-            self.line_number_shown(self.curlin)
+            self.show_message(b" IN ")
+            self.show_line_number()
 
-    def cont(self) -> None:
+    def cont_(self) -> None:
         """CONT. Raises CAN'T CONTINUE."""
         if not self.at_end():
             return
@@ -361,6 +390,3 @@ class Flow(Inputs):
             raise Fault("CAN'T CONTINUE", self.sp - 2)
         self.txtptr = self.oldtext
         self.curlin = self.oldlin
-
-
-__all__ = ["COLON", "Flow", "NextStatement"]

@@ -29,10 +29,6 @@ REENTER, EXTRA_IGNORED = b"?REENTER\r", b"?EXTRA IGNORED\r"
 class Inputs(Printing):
     """The three statements."""
 
-    def break_(self) -> None:
-        """What control-C does, of `flow`."""
-        raise NotImplementedError
-
     def refuse_direct(self, sp: int) -> None:
         """ERRDIR. Raises ILLEGAL DIRECT at the prompt."""
         if self.curlin >= DIRECT:
@@ -45,11 +41,11 @@ class Inputs(Printing):
 
     # --- READ ---------------------------------------------------------------------------------
 
-    def read(self) -> None:
+    def read_(self) -> None:
         """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is no number."""
         self._take_items(FROM_DATA, self.datptr, self.sp - 2)
 
-    def restore(self) -> None:
+    def restore_(self) -> None:
         """RESTORE: READ begins with the first DATA again."""
         self.datptr = self.txttab - 1
 
@@ -57,7 +53,7 @@ class Inputs(Printing):
         """Put TXTPTR where the next DATA's text begins. Raises OUT OF DATA."""
         ram = self.ram
         while True:
-            self.to_statement_end()
+            self.data_()
             if not ram[self.txtptr]:
                 if not ram[self.txtptr + 2]:
                     raise Fault("OUT OF DATA", sp)
@@ -76,9 +72,9 @@ class Inputs(Printing):
             prompt = self.literal(self.txtptr + 1)
             self.txtptr = self.strng2
             self.expect(SEMICOLON, sp - 2)
-            self.output.out(self.used(prompt).decode("latin-1"))
+            self.show(self.used(prompt))
         else:
-            self.output.put("?")
+            self.put("?")
         self.refuse_direct(sp - 2)
         try:
             reply = self.console.read_line()
@@ -87,11 +83,10 @@ class Inputs(Printing):
         self.ram[INPUT_BUFFER - 1] = COMMA
         self.put_in_buffer(reply)
         if reply.startswith(CONTROL_C):
-            self.break_()
-        else:
-            self._take_items(FROM_REPLY, INPUT_BUFFER - 1, sp)
+            raise KeyboardInterrupt
+        self._take_items(FROM_REPLY, INPUT_BUFFER - 1, sp)
 
-    def get(self) -> None:
+    def get_(self) -> None:
         """GET. Raises ILLEGAL DIRECT, and SYNTAX, as if at the prompt, for a key that begins no
         number."""
         self.refuse_direct(self.sp - 4)
@@ -123,7 +118,7 @@ class Inputs(Printing):
         if source == FROM_DATA:
             self.datptr = values
         elif ram[values]:
-            self.string_shown(EXTRA_IGNORED)
+            self.show_message(EXTRA_IGNORED)
 
     def _more_values(self, source: int, sp: int) -> None:
         """Where the values are used up: the next DATA, a key, or another reply."""
@@ -133,7 +128,7 @@ class Inputs(Printing):
         if source == FROM_KEY:
             self.ram[INPUT_BUFFER] = ord(self.console.read_key()) & 0x7F
         else:
-            self.output.put("??")
+            self.put("??")
             self.put_in_buffer(self.console.read_line())
         self.txtptr = INPUT_BUFFER - 1
 
@@ -168,7 +163,7 @@ class Inputs(Printing):
         if source == FROM_REPLY:
             if self.errflg & 0x80:
                 raise Fault("SYNTAX", sp, BAD_REPLY)
-            self.string_shown(REENTER)
+            self.show_message(REENTER)
             self.txtptr = self.oldtext
             return
         self.curlin = self.datlin if source == FROM_DATA else AFTER_GET

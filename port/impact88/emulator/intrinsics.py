@@ -174,10 +174,6 @@ class Intrinsics(Expressions):
         self.refuse("PDL")
         return ZERO
 
-    def refuse(self, what: str) -> None:
-        """What is not done here is a SYNTAX error, and remembered."""
-        raise NotImplementedError
-
     # --- strings ------------------------------------------------------------------------------
 
     def _text(self, fac: Number, sp: int) -> bytes:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from ..applesoft.console import Console, Device, Keyboard
 from ..applesoft.real import from_stored, to_stored
-from .output import Output
+from .faults import Fault, TooManyStatements
 from .screen import BASE, END, Screen
 
 TEXT_START = 0x801
@@ -41,6 +41,9 @@ SPEED = 241
 SEED = range(201, 206)
 SCREEN = range(BASE, END)
 ADDRESSES = 0x10000
+REFUSALS = 8
+MORE_REFUSED = "more of the kind"
+"""What is not done here is remembered up to a number of different ones."""
 _BEYOND = 0x200
 """Zeros behind the last address, so that text that runs on to the end of memory ends there."""
 
@@ -74,14 +77,18 @@ BYTES = {
     0xDE: "errnum",
     0xDF: "errstk",
     0xF2: "trcflg",
+    0xF3: "flash",
     0xF8: "remstk",
 }
 OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
 
 
 class Memory:
-    """``ram``, the pointers, and the devices. ``refused`` holds what a program asked for that is
-    not done here."""
+    """``ram``, the pointers, and the devices.
+
+    ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``refused``
+    holds what was asked for and is not done here: drawing, tape, machine code.
+    """
 
     def __init__(
         self,
@@ -99,7 +106,6 @@ class Memory:
         self.screen = Screen(self.ram, screen, blanks=blanks)
         self.console = Console(keyboard, self.screen.write, printer, dos=dos, echo=echo)
         self.console.editor = self.screen
-        self.output = Output(self.console, self.screen)
         self.seed = FIRST_SEED
         self.sp = STACK
         self.txttab = TEXT_START
@@ -111,8 +117,31 @@ class Memory:
         self.varpnt = self.forpnt = 0
         self.errflg = self.errlin = self.errpos = self.errnum = self.errstk = 0
         self.txtpsv = self.cursv = self.remstk = 0
-        self.subflg = self.trcflg = self.lock = 0
+        self.subflg = self.trcflg = self.flash = self.lock = 0
         self.temppt, self.lastpt = TEMPORARIES, 0
+        self.interrupted = False
+        self.statements_left: int | None = None
+        self.refused: list[str] = []
+
+    # --- what stands outside ------------------------------------------------------------------
+
+    def pause(self) -> None:
+        """ISCNTC: control-C, or no more statements. Raises KeyboardInterrupt and
+        TooManyStatements."""
+        if self.interrupted:
+            raise KeyboardInterrupt
+        if self.statements_left is not None:
+            if self.statements_left <= 0:
+                raise TooManyStatements
+            self.statements_left -= 1
+
+    def refuse(self, what: str) -> None:
+        """What is not done here is a SYNTAX error, and remembered."""
+        if what not in self.refused and len(self.refused) <= REFUSALS:
+            self.refused.append(what if len(self.refused) < REFUSALS else MORE_REFUSED)
+        raise Fault("SYNTAX", self.sp - 4)
+
+    # --- the caches of what is above ----------------------------------------------------------
 
     def text_changed(self) -> None:
         """The program's bytes are other ones now: nothing remembered of them holds."""
@@ -143,7 +172,7 @@ class Memory:
             return int(getattr(self.screen, OF_SCREEN[address])) & 0xFF
         if address in SEED:
             return to_stored(self.seed)[address - SEED.start]
-        return self.output.flash_bit if address == 243 else self.ram[address]
+        return self.ram[address]
 
     def poke(self, address: int, value: int) -> None:
         """Put a byte at an address."""
@@ -174,8 +203,6 @@ class Memory:
             stored = bytearray(to_stored(self.seed))
             stored[address - SEED.start] = value
             self.seed = from_stored(bytes(stored))
-        elif address == 243:
-            self.output.flash_bit = value
         else:
             self.ram[address] = value
 

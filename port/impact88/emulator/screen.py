@@ -23,6 +23,11 @@ NORMAL, INVERSE, FLASHING = 0xFF, 0x3F, 0x7F
 _BLANK = 0xA0
 _SMALL_LETTERS = 0xE0
 _PENDING_LIMIT = 20_000
+_ESCAPES = {
+    **{"@": 0xFC58, "A": 0xFBF4, "B": 0xFC10, "C": 0xFC66},
+    **{"D": 0xFC1A, "E": 0xFC9C, "F": 0xFC42},
+}
+"""Keys after ESC, and the routines of the monitor that they call."""
 
 
 class Screen(Editor):
@@ -195,79 +200,48 @@ class Screen(Editor):
         self._draw()
         self._ram[address] = value
 
-    # --- statements ---------------------------------------------------------------------------
+    # --- the cursor -------------------------------------------------------------------------
 
-    def home(self) -> None:
-        """Clear the window; the cursor at its top left."""
-        self._draw()
+    def _home(self) -> None:
         self._row = self.top
         self.column = 0
         self._clear_rows(self.top, 0)
 
-    def clear_to_end_of_line(self) -> None:
-        """CALL -868."""
-        self._draw()
-        self._clear_from(self.column)
-
-    def clear_to_end(self) -> None:
-        """CALL -958."""
-        self._draw()
-        self._clear_rows(self._row, self.column)
-
-    def scroll(self) -> None:
-        """CALL -912."""
-        self._draw()
-        self._scroll()
-
-    def line_feed(self) -> None:
-        """CALL -922."""
-        self._draw()
-        self._line_feed()
-
-    def step_back(self) -> None:
-        """CALL -1008: the cursor one column to the left."""
-        self._draw()
+    def _step_back(self) -> None:
         self.column -= 1
         if self.column < 0:
             self.column = self.width - 1 & 0xFF
             self._step_up()
 
-    def step_up(self) -> None:
-        """CALL -998: the cursor one row up, not past the window's top."""
-        self._draw()
-        self._step_up()
-
-    def advance(self) -> None:
-        """CALL -1036: the cursor one column to the right."""
-        self._draw()
+    def _advance(self) -> None:
         self.column += 1
         if self.column >= self.width:
             self.column = 0
             self._line_feed()
 
-    def move_to_row(self, row: int) -> None:
-        """VTAB."""
+    def call(self, address: int) -> bool:
+        """CALL of a routine of the monitor that moves or clears; whether it is one."""
+        routine = {
+            0xFC58: self._home,
+            0xFC9C: lambda: self._clear_from(self.column),
+            0xFC42: lambda: self._clear_rows(self._row, self.column),
+            0xFC70: self._scroll,
+            0xFC66: self._line_feed,
+            0xFC1A: self._step_up,
+            0xFC10: self._step_back,
+            0xFBF4: self._advance,
+            0xFC62: lambda: self.write("\n"),
+            0xFB2F: self.full_window,
+        }.get(address)
+        if routine:
+            self._draw()
+            routine()
+        return routine is not None
+
+    def home(self) -> None:
+        """HOME: clear the window; the cursor at its top left."""
         self._draw()
-        self._row = row
-        self._go_to_row(row)
-
-    def put_row(self, row: int) -> None:
-        """POKE 37: the row's number alone; the cursor is still where it was."""
-        self._draw()
-        self._row = row
-
-    def stay_at(self, column: int) -> None:
-        """After a line feed: the column is what it was, and nothing has been skipped."""
-        self.column = self._expected = column
-
-    def move_to_column(self, column: int) -> None:
-        """The cursor's column within the window, without showing anything."""
-        self.column = column
-
-    def set_mode(self, mask: int) -> None:
-        """NORMAL, INVERSE or FLASHING, for characters from now on."""
-        self._draw()
-        self.mask = mask
+        self._home()
 
     def full_window(self) -> None:
         """TEXT: the whole screen, the cursor in the last row."""
@@ -275,40 +249,26 @@ class Screen(Editor):
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
         self.move_to_row(HEIGHT - 1)
 
-    def set_window(self, edge: str, value: int) -> None:
-        """POKE 32 to 35: ``left``, ``width``, ``top`` or ``bottom``."""
+    def move_to_row(self, row: int) -> None:
+        """VTAB."""
         self._draw()
-        setattr(self, edge, value)
+        self._row = row
+        self._go_to_row(row)
+
+    def stay_at(self, column: int) -> None:
+        """After a line feed: the column is what it was, and nothing has been skipped."""
+        self.column = self._expected = column
+
+    def set_mode(self, mask: int) -> None:
+        """NORMAL, INVERSE or FLASHING, for characters from now on."""
+        self._draw()
+        self.mask = mask
 
     def poke(self, field: str, value: int) -> None:
-        """POKE of what page 0 holds of the screen."""
-        if field == "column":
-            self.move_to_column(value)
-        elif field == "row":
-            self.put_row(value)
-        elif field == "mask":
-            self.set_mode(value)
-        else:
-            self.set_window(field, value)
-
-    def call(self, address: int) -> bool:
-        """CALL of a routine of the monitor that moves or clears; whether it is one."""
-        routine = {
-            0xFC58: self.home,
-            0xFC9C: self.clear_to_end_of_line,
-            0xFC42: self.clear_to_end,
-            0xFC70: self.scroll,
-            0xFC66: self.line_feed,
-            0xFC1A: self.step_up,
-            0xFC10: self.step_back,
-            0xFBF4: self.advance,
-            0xFC62: lambda: self.write("\n"),
-            0xFB2F: self.full_window,
-        }.get(address)
-        if routine is None:
-            return False
-        routine()
-        return True
+        """POKE of what page 0 holds of the screen. A row's number alone does not move the cursor,
+        an edge of the window acts when it moves."""
+        self._draw()
+        setattr(self, "_row" if field == "row" else field, value)
 
     # --- typing -------------------------------------------------------------------------------
 
@@ -321,22 +281,13 @@ class Screen(Editor):
 
     def escape(self, key: str) -> None:
         """ESC and @ and A to F: clear the screen, move, clear to the end of the row or window."""
-        moves: dict[str, Callable[[], object]] = {
-            "@": self.home,
-            "A": self.advance,
-            "B": self.step_back,
-            "C": self.line_feed,
-            "D": self.step_up,
-            "E": self.clear_to_end_of_line,
-            "F": self.clear_to_end,
-        }
-        if key in moves:
-            moves[key]()
+        if self.call(_ESCAPES.get(key, 0)):
             self._expected = self.column
 
     def end_line(self) -> None:
         """RETURN: what stands behind the cursor in its row is cleared."""
-        self.clear_to_end_of_line()
+        self._draw()
+        self._clear_from(self.column)
 
     def begin_echo(self) -> None:
         """A key is shown, which is never inverse."""

@@ -105,7 +105,7 @@ class Text(Memory):
         following = ram[self.txtptr]
         return following if following != BLANK else self.character()
 
-    def to_statement_end(self) -> None:
+    def data_(self) -> None:
         """DATA: to the next colon outside quotes, or the line's end."""
         ram, pos = self.ram, self.txtptr
         quoted = False
@@ -116,7 +116,7 @@ class Text(Memory):
         self.txtptr = pos
         self.charac = 0
 
-    def to_line_end(self) -> None:
+    def rem_(self) -> None:
         """REM: to the end of the line."""
         self.txtptr = self.ram.index(0, self.txtptr)
         self.charac = 0

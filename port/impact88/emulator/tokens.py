@@ -141,6 +141,12 @@ def untokenised(tokens: bytes) -> str:
     return text if tokenise(text) == tokens else _spelled(tokens, "?")
 
 
+def spelling(token: int) -> str:
+    """A token's keyword; nothing for one that there is none of."""
+    index = token - FIRST
+    return KEYWORDS[index] if index < len(KEYWORDS) else ""
+
+
 def _spelled(tokens: bytes, print_word: str) -> str:
     out = ""
     keyword = False
@@ -149,9 +155,7 @@ def _spelled(tokens: bytes, print_word: str) -> str:
         if byte < FIRST:
             out += chr(byte)
             continue
-        index = byte - FIRST
-        word = KEYWORDS[index] if index < len(KEYWORDS) else ""
-        word = print_word if byte == PRINT else word
+        word = print_word if byte == PRINT else spelling(byte)
         out += word if not out or out.endswith((" ", "(")) else f" {word}"
         if keyword and not word.endswith("("):
             out += " "
