@@ -6,6 +6,7 @@ alone, and where it was, `test_solve` and the tests beside it run both ways.
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
@@ -15,9 +16,10 @@ import pytest
 import impact88
 from impact88 import native
 from impact88.bench.measure import enlarged
-from impact88.bench.populations import POPULATIONS, scenes
+from impact88.bench.populations import POPULATIONS, scenes, texts
 from impact88.closedform.solve import FEW, TILE, quantities
 from impact88.names import RESULTS
+from impact88.replay import blocks
 
 pytestmark = pytest.mark.skipif(native.library is None, reason="built without a C compiler")
 
@@ -127,6 +129,50 @@ def test_quantities_that_are_no_results(monkeypatch):
     compiled = quantities(columns, names, sign=-1.0)
     monkeypatch.setattr(native, "library", None)
     assert_same_bits(compiled, quantities(columns, names, sign=-1.0))
+
+
+REPLAYED = (
+    "casework",
+    "heavy",
+    "singular",
+    "units",
+    "tangential",
+    "cancelling",
+    "em-half",
+    "pivots",
+)
+SCENES = int(os.environ.get("IMPACT88_REPLAY_SCENES", "0")) or 4000
+
+
+@pytest.mark.parametrize("name", REPLAYED)
+def test_replay_of_every_population(name, monkeypatch):
+    """Every stored real, code and line; scenes out of the ordinary go the way of the arrays."""
+    columns = texts(scenes(name, SCENES, 17))
+    few = {key: values[:8] for key, values in texts(scenes("extreme", 8, 1)).items()}
+    columns = {key: [*values, *few[key]] for key, values in columns.items()}
+    columns["M"] = ["4" if i % 50 == 0 else "6" for i in range(SCENES + 8)]
+    columns["MU"][::40] = ["-10"] * len(columns["MU"][::40])
+    columns["IA"][7] = "0"
+    compare_replays(columns, monkeypatch)
+
+
+@pytest.mark.parametrize("shared", ["MU", "UX", "IA"])
+def test_replay_of_scenes_that_share_all_but_one(shared, monkeypatch):
+    columns = texts(scenes("casework", 5000, 6))
+    one = {key: values[0] for key, values in columns.items()}
+    monkeypatch.setattr(blocks, "WORTH_SHARING", 0)
+    compare_replays({**one, shared: columns[shared]}, monkeypatch)
+
+
+def compare_replays(columns, monkeypatch):
+    compiled = impact88.replay(columns)
+    with monkeypatch.context() as patch:
+        patch.setattr(native, "library", None)
+        alone = impact88.replay(columns)
+    assert np.array_equal(compiled.code, alone.code)
+    assert np.array_equal(compiled.line, alone.line)
+    for name in alone.names:
+        assert np.array_equal(compiled.reals(name), alone.reals(name)), name
 
 
 def test_the_variable_turns_it_off(monkeypatch):

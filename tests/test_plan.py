@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from impact88.closedform.formulas import ExpressionTable
 from impact88.closedform.plan import Plan
+from impact88.native.formulas import ExpressionTable
 
 LENGTH = 7
 PLAIN = {"+": operator.add, "-": operator.sub, "*": operator.mul}

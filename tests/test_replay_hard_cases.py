@@ -23,6 +23,8 @@ from impact88.replay import polynomials, textcolumns
 from impact88.replay.reals import Reals, compare, floor, from_floats
 from impact88.replay.unit import Unit
 
+pytestmark = pytest.mark.usefixtures("both_machines")
+
 BYTES = (0x00, 0x01, 0x7F, 0x80, 0xFE, 0xFF)
 EXPONENTS = (
     1,

@@ -26,6 +26,8 @@ from impact88.replay.realcolumns import read_columns
 from impact88.replay.reals import from_floats
 from impact88.replay.unit import Unit
 
+pytestmark = pytest.mark.usefixtures("both_machines")
+
 AGAINST_THE_PORT = int(os.environ.get("IMPACT88_REPLAY_SCENES") or 300)
 LEFT_IN_VARIABLES = ("KI", "KF", "XA", "YA", "XB", "YB")
 

@@ -16,7 +16,7 @@ from impact88.replay import polynomials, textcolumns
 from impact88.replay.reals import Reals, compare, floor, from_floats
 from impact88.replay.unit import Unit
 
-pytestmark = pytest.mark.captures
+pytestmark = [pytest.mark.captures, pytest.mark.usefixtures("both_machines")]
 
 BINARY: dict[str, Callable[[Reals, Reals], Reals]] = {
     "add": operator.add,

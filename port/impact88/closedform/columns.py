@@ -18,7 +18,7 @@ from .. import native
 from ..errors import UserError
 from ..fields import ANGLES
 from ..names import DEFAULT_M, PIVOT, SCENE
-from . import fused
+from ..native.program import addresses, extremes
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
@@ -226,8 +226,8 @@ def _extremes(columns: Sequence[Floats]) -> list[Limits]:
     found = [(float(column[0]), float(column[0])) for column in columns]
     long = [i for i, column in enumerate(columns) if len(column) > 1]
     if long:
-        extremes = fused.extremes(fused.addresses(columns[i] for i in long), len(columns[long[0]]))
-        for i, (least, most) in zip(long, extremes.tolist(), strict=True):
+        found_extremes = extremes(addresses(columns[i] for i in long), len(columns[long[0]]))
+        for i, (least, most) in zip(long, found_extremes.tolist(), strict=True):
             found[i] = least, most
     return found
 

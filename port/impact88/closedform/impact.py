@@ -36,8 +36,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 from ..names import PIVOT
+from ..native.formulas import Expression, ExpressionTable
 from .energy import kinetic_energy
-from .formulas import Expression, ExpressionTable
 from .statusbits import findings
 
 Pair = tuple[Expression, Expression]

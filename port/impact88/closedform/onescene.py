@@ -19,11 +19,11 @@ from typing import Any
 import numpy as np
 
 from ..names import DEFAULT_M, PIVOT, SCENE
+from ..native.formulas import Expression, ExpressionTable
+from ..native.program import in_order
 from . import degrees
 from .columns import ANGLES, INERTIAS, LARGE_ANGLE, UNUSED_BY_POINTS
-from .formulas import Expression, ExpressionTable
 from .impact import Impact
-from .plan import in_order
 
 NAMES = tuple(SCENE)
 _PLAIN = {float, int, np.float64}
@@ -120,7 +120,7 @@ def _written(results: Sequence[Expression], point: bool) -> tuple[str, dict[str,
             continue
         name = place[id(e)] = f"v{number}"
         if e.operation == "constant":
-            constants[name] = float(e.value)  # type: ignore[arg-type]
+            constants[name] = float(e.value)
             continue
         lines.append(f"    {name} = {_formula(e.operation, operands)}")
     # adding 0.0 clears the sign of a zero, as the arrays do

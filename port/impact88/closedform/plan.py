@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..native.formulas import Expression
+from ..native.program import PROJECTIONS, in_order
 from .degrees import sine_and_cosine
-from .formulas import Expression
 
 Array = NDArray[Any]
 
@@ -55,8 +56,6 @@ OPERATIONS: dict[str, Callable[..., object]] = {
     "choose": _choose,
 }
 """Operation -> the function of its operands and ``out``."""
-
-PROJECTIONS = ("sine", "cosine")
 
 
 class _Slots:
@@ -248,21 +247,3 @@ def _weight(e: Expression) -> int:
     if e.operation == "column" or e.operation in PROJECTIONS:
         return 0
     return {"sine_and_cosine": 26, "against": 3, "choose": 2}.get(e.operation, 1)
-
-
-def in_order(results: Sequence[Expression]) -> list[Expression]:
-    """All that the results depend on, operands before what is made of them."""
-    seen: set[int] = set()
-    order: list[Expression] = []
-    stack = [(e, False) for e in reversed(results)]
-    while stack:
-        e, ready = stack.pop()
-        if id(e) in seen:
-            continue
-        if ready:
-            seen.add(id(e))
-            order.append(e)
-        else:
-            stack.append((e, True))
-            stack.extend((operand, False) for operand in reversed(e.operands))
-    return order

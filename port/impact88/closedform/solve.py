@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 from .. import native
 from ..errors import UserError
 from ..names import DEFAULT_M, PIVOT, RESULTS, SCENE
+from ..native.formulas import Expression, ExpressionTable
+from ..native.program import Program, addresses, extremes
 from ..processors import processors
 from ..status import Status
 from .columns import Block, Buffers, Limits, Source, examine, ordinary_kinds, sources
-from .formulas import Expression, ExpressionTable
-from .fused import Program, addresses, extremes
+from .fused import CIRCLE, fused
 from .impact import Impact
 from .onescene import solve_one
 from .plan import Plan
@@ -34,6 +35,7 @@ _NAMED = SCENE.keys() - {"M"}
 _SIX = float(DEFAULT_M)
 _PLAIN = {np.ndarray, np.float64, float, int}
 _ROWS = np.arange(len(RESULTS))
+_ROW = {name: row for row, name in enumerate(SCENE)}
 TILE = 16384
 """Scenes a pass works on. Two arrays fit the second-level cache and all of them the third; numpy's
 cost of starting an operation (half a microsecond) is spread over enough scenes not to matter.
@@ -214,7 +216,9 @@ def solve_few(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[st
         by_name["STATUS"] = np.empty(count, np.uint16)
         into[wanted.index("STATUS")] = by_name["STATUS"].ctypes.data
     fixed = dict(zip(SCENE, least.tolist(), strict=True))
-    program.run(fixed, where[program.rows], into, where[:0], least[:0], count, program.room())
+    rows = [_ROW[name] for name in program.columns]
+    room = program.room()
+    program.run(fixed, where[rows], into, where[:0], least[:0], count, room, CIRCLE)
     return by_name
 
 
@@ -323,6 +327,7 @@ class _Worker:
             np.array(list(limits.values()), np.float64),
             stop - start,
             self.workspaces[id(program)],
+            CIRCLE,
         )
 
     def run_plan(self, block: Block, start: int, stop: int) -> None:
@@ -360,7 +365,7 @@ def program_for(
     kinds: tuple[str, ...], wanted: tuple[str, ...], sign: float | None = None
 ) -> Program:
     """`plan_for`, for the compiled machine."""
-    return Program(_expressions(kinds, wanted, sign))
+    return fused(_expressions(kinds, wanted, sign))
 
 
 def _expressions(

@@ -31,7 +31,7 @@ def _load() -> ctypes.CDLL | None:
                 *(address, number, number, address, address, number, number, address, number),
                 *(address, address, number, number, address, address, number),
             ]
-            found.instructions.restype = ctypes.c_char_p
+            found.instructions.restype = found.operations.restype = ctypes.c_char_p
             found.strip.restype = found.most_places.restype = found.run.restype = number
             return found
     return None
@@ -40,8 +40,6 @@ def _load() -> ctypes.CDLL | None:
 library = _load()
 STRIP: int = library.strip() if library else 0
 """Scenes the machine takes at a time."""
-MOST_PLACES: int = library.most_places() if library else 0
-"""Values a program may have."""
 
 
 accelerated: str | None = library.instructions().decode() if library else None

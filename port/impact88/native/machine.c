@@ -43,7 +43,7 @@
 #endif
 
 /* Values a program may keep at a time. */
-#define PLACES 512
+#define PLACES 1024
 
 #define LOOP for (int i = 0; i < STRIP; i++)
 #if defined(__GNUC__) && !defined(__clang__)
@@ -54,13 +54,21 @@
 #define EACH __pragma(loop(ivdep)) LOOP
 #endif
 
-enum operation {
-    ADD, SUBTRACT, MULTIPLY, DIVIDE, NEGATIVE, ABSOLUTE, SQRT,
-    PRODUCT_PLUS, PRODUCT_MINUS, MINUS_PRODUCT, PRODUCTS_PLUS, PRODUCTS_MINUS,
-    SINE_AND_COSINE, AGAINST, CHOOSE,
-    EQUAL, LESS, LESS_OR_EQUAL, EITHER, BOTH, NOT, HYPOT,
-    RESULT, RESULT_OR_INFINITE, BITS
-};
+/* Each operation, by the name that expressions have for it. */
+#define OPERATIONS(X) \
+    X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(NEGATIVE) X(ABSOLUTE) X(SQRT) X(HYPOT) \
+    X(PRODUCT_PLUS) X(PRODUCT_MINUS) X(MINUS_PRODUCT) X(PRODUCTS_PLUS) X(PRODUCTS_MINUS) \
+    X(SINE_AND_COSINE) X(AGAINST) X(CHOOSE) \
+    X(EQUAL) X(LESS) X(LESS_OR_EQUAL) X(EITHER) X(BOTH) X(NOT) \
+    X(REAL_ROUNDED) X(REAL_ADD) X(REAL_SUBTRACT) X(REAL_MULTIPLY) X(REAL_DIVIDE) X(REAL_INT) \
+    X(REAL_LESS) X(REAL_FRACTION) X(REAL_EXPONENT) X(REAL_HALVED) X(REAL_WHOLE) X(REAL_SCALED) \
+    X(REAL_ORDINARY) X(ODD) \
+    X(RESULT) X(RESULT_OR_INFINITE) X(COPY) X(BITS)
+
+#define NAME(name) name,
+#define TEXT(name) #name " "
+enum operation { OPERATIONS(NAME) };
+EXPORT const char *operations(void) { return OPERATIONS(TEXT); }
 
 typedef struct {
     int32_t operation;
@@ -75,9 +83,11 @@ typedef struct {
     int64_t steps;
 } circle;
 
+#include "reals.h"
+
 static inline __attribute__((always_inline)) void perform(
     const step *steps, int64_t count, double *const *place, const circle *circle,
-    char *const *next, int64_t ahead, int64_t columns)
+    char *const *next, int64_t ahead, int64_t columns, int64_t *odd)
 {
     int64_t pace = columns ? count / columns : 0, wait = pace;
     for (const step *s = steps; s < steps + count; s++) {
@@ -117,6 +127,32 @@ static inline __attribute__((always_inline)) void perform(
         BINARY(BOTH, a[i] * b[i])
         UNARY(NOT, 1.0 - a[i])
         BINARY(HYPOT, hypot(a[i], b[i]))
+        /* the Apple's reals: see reals.h */
+        UNARY(REAL_ROUNDED, real_rounded(a[i]))
+        BINARY(REAL_ADD, ordinary(real_add(a[i], b[i]), odd + i))
+        BINARY(REAL_SUBTRACT, ordinary(real_add(a[i], -b[i]), odd + i))
+        BINARY(REAL_DIVIDE, ordinary(real_divide(a[i], b[i]), odd + i))
+        case REAL_MULTIPLY: { /* never into an operand's place, so that it can be done again */
+            int64_t defects = 0;
+            o = (double *)c;
+            EACH {
+                o[i] = ordinary(real_multiply(a[i], b[i]), odd + i);
+                defects |= has_defect(b[i]);
+            }
+            if (defects)
+                LOOP if (has_defect(b[i])) o[i] = ordinary(real_multiply_bytes(a[i], b[i]), odd + i);
+            break;
+        }
+        UNARY(REAL_INT, real_int(a[i]))
+        BINARY(REAL_LESS, real_less(a[i], b[i], odd + i))
+        UNARY(REAL_FRACTION, real_fraction(a[i]))
+        UNARY(REAL_EXPONENT, real_exponent(a[i]))
+        BINARY(REAL_HALVED, real_halved(a[i], b[i], odd + i))
+        UNARY(REAL_WHOLE, floor(real_cut(a[i])))
+        BINARY(REAL_SCALED, ordinary(real_scaled(a[i], b[i]), odd + i))
+        UNARY(REAL_ORDINARY, ordinary(a[i], odd + i))
+        UNARY(ODD, odd[i] || a[i] != 0.0 ? 1.0 : 0.0)
+        UNARY(COPY, a[i])
         /* a result: no negative zero, and one NaN for all that is none */
         UNARY(RESULT, a[i] - a[i] == 0.0 ? a[i] + 0.0 : NAN)
         UNARY(RESULT_OR_INFINITE, a[i] == a[i] ? a[i] + 0.0 : NAN)
@@ -165,10 +201,13 @@ EXPORT CLONES int64_t run(
     int64_t count, const circle *circle, double *room, int64_t places)
 {
     double *place[PLACES];
+    int64_t odd[STRIP] = {0};
     for (int64_t p = 0; p < places; p++) place[p] = room + p * STRIP;
     for (int64_t k = 0; k < scalar_count; k++)
         LOOP place[moving + k][i] = scalars[k];
-    perform(steps, once, place, circle, given, 0, 0);
+    perform(steps, once, place, circle, given, 0, 0, odd);
+    int64_t always[STRIP]; /* what the scenes share makes all of them odd */
+    memcpy(always, odd, sizeof odd);
     int64_t fetched = count * read > CACHED ? moving : 0;
     for (int64_t start = 0; start < count; start += STRIP) {
         int64_t many = count - start < STRIP ? count - start : STRIP;
@@ -179,13 +218,14 @@ EXPORT CLONES int64_t run(
             if (outside) return start;
         }
         int whole = many == STRIP;
+        memcpy(odd, always, sizeof odd);
         for (int64_t p = 0; p < moving; p++) {
             char *here = given[p] + start * width[p];
             place[p] = whole ? (double *)here : room + p * STRIP;
             if (!whole && p < read)
                 LOOP place[p][i] = ((double *)here)[i < many ? i : 0];
         }
-        perform(steps + once, length - once, place, circle, given, (start + AHEAD * STRIP) * 8, whole ? fetched : 0);
+        perform(steps + once, length - once, place, circle, given, (start + AHEAD * STRIP) * 8, whole ? fetched : 0, odd);
         for (int64_t p = read; p < moving && !whole; p++)
             memcpy(given[p] + start * width[p], place[p], (size_t)(many * width[p]));
     }

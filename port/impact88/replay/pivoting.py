@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..applesoft import decimaltext as scalar
-from .reals import Bools, Floats, Reals, compare, from_floats, from_number
+from .reals import Bools, Floats, Reals, compare, from_floats, from_number, select
 from .unit import Ints, Unit, stamp
 
 ZERO_DETERMINANT = 1
@@ -81,6 +81,39 @@ def solve(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool = Fa
         for place in places:
             A[place] = from_floats(block[place], unit, True)
     return [from_floats(block[row, M + 1], unit, True) for row in range(1, M + 1)]
+
+
+def solve_one_by_one(
+    unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool = False
+) -> list[Reals]:
+    """`solve`, an element at a time and every row of every column: for what takes each operation by
+    itself. A scene whose pivot stays below 1E-9 is recorded, whatever RX would be there."""
+    least = C_1E_9.rounded()
+    for J in range(1, M + 1):
+        if J < M:
+            largest, taken = least, {}
+            for row in range(J, M + 1):
+                if A[row, J].high:
+                    size = abs(A[row, J])
+                    taken[row] = ~(size.v < largest.v)
+                    largest = select(taken[row], size, largest)
+                    for earlier in [other for other in taken if other < row]:
+                        taken[earlier] = taken[earlier] & ~taken[row]
+            for row in [row for row in taken if row > J]:
+                for column in range(J, M + 2):
+                    mine, theirs = A[J, column], A[row, column]
+                    if mine.high or theirs.high:
+                        A[J, column] = select(taken[row], theirs, mine)
+                        A[row, column] = select(taken[row], mine, theirs)
+        AP = A[J, J]
+        unit.record(abs(AP).v < least.v, ZERO_DETERMINANT)
+        for column in [column for column in range(J + 1, M + 2) if A[J, column].high]:
+            A[J, column] = (A[J, column] / AP).rounded()
+            for row in range(1, M + 1):
+                if row != J and A[row, J].high:
+                    product = A[J, column] * A[row, J]
+                    A[row, column] = (A[row, column] - product).rounded()
+    return [A[row, M + 1] for row in range(1, M + 1)]
 
 
 def _bounds(part: Floats, unit: Unit) -> tuple[float, float]:

@@ -12,7 +12,6 @@ import numpy as np
 
 from ..applesoft import functions as scalar
 from .reals import (
-    BIAS,
     ILLEGAL_QUANTITY,
     OVERFLOW,
     WHOLE,
@@ -39,11 +38,7 @@ _HALF_PI = from_number(scalar.HALF_PI)
 _QUARTER = from_number(scalar.QUARTER)
 HALF = from_number(scalar.HALF)
 ONE = constant(1)
-
-_EXP_ROUNDING = np.int64(scalar.EXP_ROUNDING << 13)
-_32_BITS = np.int64(-1 << 21)
-_MANTISSA = np.int64((1 << 52) - 1)
-_BELOW_ONE = np.int64(1022 << 52)
+_TWO = constant(2)
 
 
 def polynomial(coefficients: Sequence[Reals], x: Reals) -> Reals:
@@ -72,41 +67,40 @@ def log(x: Reals) -> Reals:
     if illegal.any():
         x._unit().record(illegal, ILLEGAL_QUANTITY)
         x = select(illegal, ONE, x)
-    fraction = ((x.bits & _MANTISSA) | _BELOW_ONE).view(np.float64)
-    exponent = ((x.bits >> 52) - (BIAS + 128)).astype(np.float64)
-    f = Reals(fraction, x.unit, 0.5, 1.0, x.stored, True)
+    f = x.fraction()
     f = (ONE - _SQRT_TWO / (_SQRT_HALF + f)).within(0.172)  # 1 - sqrt 2 / (sqrt 1/2 + 1/2 ... 1)
     f = _MINUS_HALF + odd_polynomial(_LOG, f)
-    return _LN_TWO * (f + Reals(exponent, x.unit, 1.0, 128.0, True))
+    return _LN_TWO * (f + x.exponent())
 
 
 def exp(x: Reals) -> Reals:
     """e to the x. Records OVERFLOW; underflows to zero."""
-    f = _LOG2_E * x
-    unit = x._unit()
-    with_half = f.bits + _EXP_ROUNDING  # a carry into the exponent is the ROM's
-    v = with_half.view(np.float64)
-    if not f.full:
-        v[f.v == 0] = 0.0
+    f = (_LOG2_E * x).with_extension(scalar.EXP_ROUNDING)
     zero: Bools | None = None
     if f.high >= 127:
+        v = f.v
         beyond = np.abs(v) >= 128
-        whole = np.floor((with_half & _32_BITS).view(np.float64))
+        whole = f.whole().v
         overflow = (beyond & (v > 0)) | (whole == 127)
-        unit.record(overflow, OVERFLOW)
+        x._unit().record(overflow, OVERFLOW)
         zero = (beyond & (v < 0)) | (whole == -128)
         v[overflow | zero] = 0.0
-    whole = np.floor((with_half & _32_BITS).view(np.float64))
-    i = Reals(whole, x.unit, 1.0, min(f.high, 127.0) + 1, True)
-    f = Reals(v, x.unit, f.low, min(f.high, 128.0) * 1.1, False, False)
-    g = polynomial(_EXP, (-(i - f)).within(1.0))  # f less its floor
-    bits = g.bits + (whole.astype(np.int64) << 52)
-    power = 2.0 ** (min(f.high, 128.0) + 1)
-    result = Reals(bits.view(np.float64), x.unit, g.low / power, g.high * power, False, True)
+    i = f.whole()
+    # f less its floor
+    result = polynomial(_EXP, (-(i - f)).within(1.0)).scaled(i)
     if zero is not None:
         result.v[zero] = 0.0
         result._settle()
     return result
+
+
+def square(x: Reals) -> Reals:
+    """x ^ 2, which is EXP (2 * LOG (x)) with the sign left out; 0 ^ 2 is 0."""
+    nothing = x.v == 0
+    base = abs(x.rounded())
+    if not nothing.any():
+        return exp(_TWO * log(base))
+    return select(nothing, ZERO, exp(_TWO * log(select(nothing, ONE, base))))
 
 
 def power(left: Reals, right: Reals) -> Reals:

@@ -76,6 +76,7 @@ _BYTES_2_3 = _mask(29, 44)
 _BYTE_0 = _mask(13, 20)
 _BYTES_0_1 = _mask(13, 28)
 
+_BELOW_ONE = np.int64(1022 << 52)  # the exponent of numbers from 1/2 to 1
 _TO_UNITS = _wrapped((1023 + 39 + 1023) << 52)  # less an exponent: the scale that makes it 2^39
 _FROM_UNITS = np.int64(39 << 52)  # takes that scale's power of two back
 _BELOW_256 = np.int64(((1023 + 8) << 52) - 1)  # a sum of fewer units has its upper 32 bits clear
@@ -191,6 +192,44 @@ class Reals:
         self.high = min(self.high, high)
         return self
 
+    def floor(self) -> Reals:
+        """INT, see `floor`."""
+        v = np.floor(self.v)
+        if self.high < WHOLE:
+            return Reals(v, self.unit, 1.0, self.high + 1, True)
+        v = np.where(np.abs(self.v) < WHOLE, v, self.v)
+        return Reals(v, self.unit, 1.0, self.high + 1, self.stored, False)
+
+    # the parts that LOG and EXP take a number apart into, and put it together from
+
+    def fraction(self) -> Reals:
+        """The mantissa, as a number from 1/2 to 1."""
+        v = ((self.bits & _FRACTION) | _BELOW_ONE).view(np.float64)
+        return Reals(v, self.unit, 0.5, 1.0, self.stored, True)
+
+    def exponent(self) -> Reals:
+        """The power of two that goes with `fraction`."""
+        v = ((self.bits >> 52) - (BIAS + 128)).astype(np.float64)
+        return Reals(v, self.unit, 1.0, 128.0, True)
+
+    def with_extension(self, more: int) -> Reals:
+        """``more`` added to the extension; a carry runs into the exponent. Zero stays zero."""
+        v = (self.bits + np.int64(more << 13)).view(np.float64)
+        if not self.full:
+            v[self.v == 0] = 0.0
+        return Reals(v, self.unit, self.low, self.high * 1.1, False, False)
+
+    def whole(self) -> Reals:
+        """The largest whole number not above the upper 32 bits."""
+        v = np.floor((self.bits & _32_BITS).view(np.float64))
+        return Reals(v, self.unit, 1.0, min(self.high, 127.0) + 1, True)
+
+    def scaled(self, powers: Reals) -> Reals:
+        """Times two to ``powers``, whole numbers: by the exponent alone."""
+        v = (self.bits + (powers.v.astype(np.int64) << 52)).view(np.float64)
+        most = 2.0**powers.high
+        return Reals(v, self.unit, self.low / most, self.high * most, False, True)
+
     def packed(self) -> Packed:
         """The five bytes a variable would hold, as one number: 0x8468000000 for 14.5."""
         bits = self.rounded().bits.view(np.uint64)
@@ -274,8 +313,11 @@ def zero(unit: Unit | None) -> Reals:
     return Reals(ZERO.v, unit, 1.0, 0.0, True)
 
 
-def select(condition: Bools, yes: Reals, no: Reals) -> Reals:
-    """``yes`` where the condition holds, else ``no``."""
+def select(condition: Any, yes: Reals, no: Reals) -> Reals:
+    """``yes`` where the condition holds (an array, or one of `compiled`), else ``no``."""
+    if not isinstance(condition, np.ndarray):
+        selected: Reals = condition.select(yes, no)
+        return selected
     return Reals(
         np.where(condition, yes.v, no.v),
         yes.unit or no.unit,
@@ -576,11 +618,7 @@ def floor(x: Reals) -> Reals:
 
     From `WHOLE` on a number stays as it is, extension and all.
     """
-    v = np.floor(x.v)
-    if x.high < WHOLE:
-        return Reals(v, x.unit, 1.0, x.high + 1, True)
-    v = np.where(np.abs(x.v) < WHOLE, v, x.v)
-    return Reals(v, x.unit, 1.0, x.high + 1, x.stored, False)
+    return x.floor()
 
 
 def compare(stored: Reals, right: Reals) -> npt.NDArray[np.int8]:

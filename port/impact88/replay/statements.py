@@ -15,11 +15,10 @@ every bit agrees. What is saved is repetition only, and only where it cannot cha
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Mapping, Sequence
 from itertools import groupby
 from typing import NamedTuple
-
-import numpy as np
 
 from ..applesoft import decimaltext as scalar
 from ..fields import ANGLES, FIELDS
@@ -86,6 +85,8 @@ def each(
     computed once.
     """
     count = len(operands[0])
+    if unit.one_by_one:
+        return [operation(*(column[i] for column in operands)) for i in range(count)]
     places = [(where, 0)] * count if isinstance(where, int) else where
     results = [ZERO] * count
     lengths = [max(column[i].v.shape[-1] for column in operands) for i in range(count)]
@@ -116,22 +117,22 @@ def _some(
 def times(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Products, leaving out the rows in which a factor is known to be zero."""
     rows = [i for i in range(len(left)) if left[i].high and right[i].high]
-    computed = _some(unit, where, Reals.__mul__, rows, left, right)
+    computed = _some(unit, where, operator.mul, rows, left, right)
     return [computed.get(i) or zero(unit) for i in range(len(left))]
 
 
 def plus(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Sums, leaving out the rows in which a term is known to be zero."""
     rows = [i for i in range(len(left)) if left[i].high and right[i].high]
-    computed = _some(unit, where, Reals.__add__, rows, left, right)
-    return _rest_one_by_one(unit, where, Reals.__add__, computed, left, right)
+    computed = _some(unit, where, operator.add, rows, left, right)
+    return _rest_one_by_one(unit, where, operator.add, computed, left, right)
 
 
 def over(unit: Unit, where: Places, left: Rows, right: Rows) -> list[Reals]:
     """Quotients. Known zeros are divided one by one, to find the divisors that are zero."""
     rows = [i for i in range(len(left)) if left[i].high]
-    computed = _some(unit, where, Reals.__truediv__, rows, left, right)
-    return _rest_one_by_one(unit, where, Reals.__truediv__, computed, left, right)
+    computed = _some(unit, where, operator.truediv, rows, left, right)
+    return _rest_one_by_one(unit, where, operator.truediv, computed, left, right)
 
 
 def _rest_one_by_one(
@@ -154,12 +155,8 @@ def _rest_one_by_one(
 def squares(unit: Unit, where: Places, values: Rows) -> list[Reals]:
     """x ^ 2 of each, which is EXP (2 * LOG (x)); 0 ^ 2 is 0."""
     rows = [i for i in range(len(values)) if values[i].high]
-    computed = _some(unit, where, _square, rows, values)
+    computed = _some(unit, where, polynomials.square, rows, values)
     return [computed.get(i) or zero(unit) for i in range(len(values))]
-
-
-def _square(x: Reals) -> Reals:
-    return polynomials.power(x, C_2)
 
 
 def stored(values: list[Reals]) -> list[Reals]:
@@ -272,7 +269,8 @@ def run(
     A[5, last] = angular  # not before: of M = 4 it takes the place of IA
 
     # 570 GOSUB 1000
-    solution = pivoting.solve(unit, A, M, matrix)
+    eliminate = pivoting.solve_one_by_one if unit.one_by_one else pivoting.solve
+    solution = eliminate(unit, A, M, matrix)
     V = solution + [A[5, last], A[6, last]][M - 4 :]  # M = 4: what lines 700 and 710 find
 
     # 580 KF = (MA * (A(1,M + 1) ^ 2 + A(2,M + 1) ^ 2) + MB * (A(3,M + 1) ^ 2 + A(4,M + 1) ^ 2)) / 2
@@ -337,12 +335,12 @@ def _line_530(unit: Unit, MU: Reals, A32: Reals, A33: Reals, UY: Reals, VX: Real
     like_pivot = ~(MU > MINUS_10)
     some = bool(like_pivot.any())
     if some:
-        unit.elsewhere = np.broadcast_to(like_pivot, unit.first.shape)
+        unit.skip(like_pivot)
     # 530 A(3,M + 1) = MA * (COS (GA) - MU * SIN (GA)) * UY + MB * (SIN (GA) + MU * COS (GA)) * VX
     t1, t2 = times(unit, 530, [A32, A33], [UY, VX])
     unit.at(530)
     value = (t1 + t2).rounded()
-    unit.elsewhere = None
+    unit.skip(None)
     return select(like_pivot, ZERO, value) if some else value
 
 

@@ -46,6 +46,9 @@ class Unit:
     of errors so far, line and code packed so that the smallest is the first in program order.
     """
 
+    one_by_one = False
+    """Whether rows are computed one by one, and not stacked."""
+
     def __init__(self, count: int) -> None:
         self.count = count
         self.first: Ints = np.full(count, NEVER, dtype=np.int64)
@@ -55,6 +58,10 @@ class Unit:
         self._clock = 0
         self._pool = np.empty((SCRATCH, 0))
         self._views: dict[tuple[int, ...], Buffers] = {}
+
+    def skip(self, skipped: Bools | None) -> None:
+        """The scenes that do not run what follows, up to ``skip(None)``."""
+        self.elsewhere = None if skipped is None else np.broadcast_to(skipped, self.first.shape)
 
     def at(self, line: int, position: int = 0, order: int | None = None) -> None:
         """Go to a place, see `key`."""

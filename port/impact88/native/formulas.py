@@ -237,6 +237,12 @@ class ExpressionTable:
     def equals(self, a: Expression, number: float) -> Expression:
         return self.condition("equal", a, self.constant(number))
 
+    def combine(
+        self, operation: str, *operands: Expression, varies: bool | None = None
+    ) -> Expression:
+        """Any other operation of the machine's."""
+        return self._keep(operation, *operands, varies=varies)
+
     def bits(self, number: Expression) -> Expression:
         """A sum of bits as the whole number it is."""
         return self._keep("bits", number, dtype="bits")

@@ -1,0 +1,221 @@
+"""The replay's statements as a program for the compiled machine.
+
+`statements.run` is run once with values that only note what is done with them; the machine then
+does it to any number of scenes. Scenes out of the ordinary (an error, a value beyond 2^100 or below
+2^-100, a comparison without its carry) are marked and left to the arrays.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ..names import SCENE
+from ..native.formulas import Expression, ExpressionTable
+from ..native.program import Program
+from . import statements
+from .reals import Reals, constant
+from .unit import Unit
+
+LARGE = 2.0**100
+"""Beyond this, or below its inverse, a scene is marked: no ordinary one comes near, and what is
+computed of ordinary ones cannot overflow before it is marked in turn."""
+NAMES = tuple(name for name in SCENE if name != "M")
+ODD = "ODD"
+"""The result that marks a scene: 1, else 0."""
+
+
+class Condition:
+    """Where something holds, scene by scene; `any` scene may be one."""
+
+    def __init__(self, expression: Expression) -> None:
+        self.expression = expression
+
+    def __and__(self, other: Condition) -> Condition:
+        return Condition(self.expression & other.expression)
+
+    def __or__(self, other: Condition) -> Condition:
+        return Condition(self.expression | other.expression)
+
+    def __invert__(self) -> Condition:
+        return Condition(~self.expression)
+
+    def any(self) -> bool:
+        return True
+
+    def select(self, yes: Reals, no: Reals) -> Noted:
+        table, unit = self.expression.table, yes.unit or no.unit
+        chosen = table.choose(self.expression, noted(table, yes), noted(table, no))
+        return Noted(chosen, unit, yes.stored and no.stored)
+
+
+class _Values:
+    """The numbers of a `Noted`, to be compared with those of another or with a number."""
+
+    def __init__(self, expression: Expression) -> None:
+        self.expression = expression
+
+    def _other(self, other: Any) -> Expression | float:
+        return other.expression if isinstance(other, _Values) else float(np.ravel(other)[0])
+
+    def __lt__(self, other: Any) -> Condition:
+        return Condition(self.expression < self._other(other))
+
+    def __le__(self, other: Any) -> Condition:
+        return Condition(self.expression <= self._other(other))
+
+    def __ge__(self, other: Any) -> Condition:
+        return Condition(self.expression >= self._other(other))
+
+    def __eq__(self, other: Any) -> Condition:  # type: ignore[override]
+        number = self._other(other)
+        assert isinstance(number, float)
+        return Condition(self.expression.table.equals(self.expression, number))
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+class Noted(Reals):
+    """A real of which only the operation that makes it is noted."""
+
+    __slots__ = ("expression",)
+
+    def __init__(self, expression: Expression, unit: Unit | None, stored: bool = False) -> None:
+        self.expression = expression
+        self.unit = unit
+        self.stored = stored
+        self.low, self.high, self.full = 1 / LARGE, LARGE, False
+
+    @property
+    def v(self) -> Any:  # type: ignore[override]
+        return _Values(self.expression)
+
+    def _make(self, operation: str, *operands: Reals | int, stored: bool = False) -> Noted:
+        table = self.expression.table
+        return Noted(
+            table.combine(operation, *(noted(table, x) for x in operands)), self.unit, stored
+        )
+
+    def rounded(self) -> Reals:
+        return self if self.stored else self._make("real_rounded", self, stored=True)
+
+    def __neg__(self) -> Noted:
+        return self._make("negative", self, stored=self.stored)
+
+    def __abs__(self) -> Noted:
+        return self._make("absolute", self, stored=self.stored)
+
+    def _sum(self, operation: str, left: Reals | int, right: Reals | int) -> Reals:
+        """A known zero is no operand: x + 0 is x rounded, 0 + x is x."""
+        left, right = (constant(x) if isinstance(x, int) else x for x in (left, right))
+        if not right.high:
+            return left.rounded()
+        if not left.high:
+            return -right if operation == "real_subtract" else right
+        return self._make(operation, left, right)
+
+    def __add__(self, right: Reals | int) -> Reals:
+        return self._sum("real_add", self, right)
+
+    def __radd__(self, left: Reals | int) -> Reals:
+        return self._sum("real_add", left, self)
+
+    def __sub__(self, right: Reals | int) -> Reals:
+        return self._sum("real_subtract", self, right)
+
+    def __rsub__(self, left: Reals | int) -> Reals:
+        return self._sum("real_subtract", left, self)
+
+    def __mul__(self, right: Reals | int) -> Noted:
+        return self._make("real_multiply", self, right)
+
+    def __rmul__(self, left: Reals | int) -> Noted:
+        return self._make("real_multiply", left, self)
+
+    def __truediv__(self, right: Reals | int) -> Noted:
+        return self._make("real_divide", self, right)
+
+    def __rtruediv__(self, left: Reals | int) -> Noted:
+        return self._make("real_divide", left, self)
+
+    def __lt__(self, right: Reals | int) -> Any:
+        return Condition(self._make("real_less", self, right).expression)
+
+    def __gt__(self, right: Reals | int) -> Any:
+        return Condition(self._make("real_less", -self, -as_real(right)).expression)
+
+    def within(self, high: float) -> Noted:
+        return self
+
+    def floor(self) -> Noted:
+        return self._make("real_int", self)
+
+    def fraction(self) -> Noted:
+        return self._make("real_fraction", self, stored=self.stored)
+
+    def exponent(self) -> Noted:
+        return self._make("real_exponent", self, stored=True)
+
+    def with_extension(self, more: int) -> Noted:
+        bits = float(np.int64(more << 13).view(np.float64))
+        halved = self._make("real_halved", self)
+        table = self.expression.table
+        halved.expression = table.combine("real_halved", self.expression, table.constant(bits))
+        halved.high = 99.0  # else the scene is marked
+        return halved
+
+    def whole(self) -> Noted:
+        return self._make("real_whole", self, stored=True)
+
+    def scaled(self, powers: Reals) -> Noted:
+        return self._make("real_scaled", self, powers)
+
+
+def as_real(x: Reals | int) -> Reals:
+    return constant(x) if isinstance(x, int) else x
+
+
+def noted(table: ExpressionTable, x: Reals | int) -> Expression:
+    """The expression of a real, which may be a constant."""
+    x = as_real(x)
+    return x.expression if isinstance(x, Noted) else table.constant(float(x.v[0]))
+
+
+class _Notes(Unit):
+    """Where errors are recorded while notes are taken: nowhere but in the mark."""
+
+    one_by_one = True
+
+    def __init__(self) -> None:
+        super().__init__(1)
+        self.recorded: list[Condition] = []
+        self.always = False
+
+    def skip(self, skipped: Any) -> None:
+        """What is marked needlessly is computed all the same."""
+
+    def record(self, failed: Any, code: int) -> None:
+        if isinstance(failed, Condition):
+            self.recorded.append(failed)
+        elif np.any(failed):  # in every scene
+            self.always = True
+
+
+@lru_cache(maxsize=64)
+def program(kind: statements.Kind, varying: frozenset[str], names: tuple[str, ...]) -> Program:
+    """The program for a kind of scenes: of ``varying`` columns the results ``names``, and `ODD`."""
+    table, unit = ExpressionTable(), _Notes()
+    scene: dict[str, Reals] = {}
+    for name in NAMES:
+        column = table.column(name, name in varying)
+        ordinary = table.combine("real_ordinary", column)
+        scene[name] = Noted(ordinary, unit, True)
+    results = statements.run(unit, scene, kind)
+    shown = {name: noted(table, results[name]) for name in names if name in results}
+    mark = table.constant(float(unit.always))
+    for condition in unit.recorded:
+        mark = table.condition("either", mark, condition.expression)
+    shown[ODD] = table.combine("odd", mark, varies=True)
+    return Program(shown, ["COPY"] * len(shown))
