@@ -7,6 +7,7 @@ examples:
   impact88 run crash.toml --set MU=.5     a scene file, one value changed
   impact88 run --sample 1 --arithmetic float64
   impact88 run --sample 1 --no-dos --json
+  impact88 run --sample 1 --listing office.bas   another copy of the listing
   impact88 run --sample 1 --raw           control characters, too
 
 exit status: 0 the program ended, ZERO DETERMINANT included; 1 an Applesoft error; 2 bad input
@@ -56,6 +57,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_json_argument(parser, "the run as one JSON object")
     add_output_argument(parser)
     add_machine_arguments(parser)
+    parser.add_argument(
+        "--listing", metavar="THEIRS.bas", help="run another copy of the listing, in the emulator"
+    )
     add_raw_argument(parser)
 
 
@@ -119,6 +123,8 @@ def main(args: argparse.Namespace) -> int:
             "or --no-dos"
         )
     scene = chosen_scene(args)
+    if args.listing:
+        return _run_copy(args, scene)
     data: dict[str, str] | Scene = scene or published_data() | settings(args.set, units=args.units)
     replied = scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")
     replied.check_typed()
@@ -160,6 +166,28 @@ def main(args: argparse.Namespace) -> int:
     elif error is not None and sys.stdout.isatty():
         print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
     return 1 if error else 0
+
+
+def _run_copy(args: argparse.Namespace, scene: Scene | None) -> int:
+    """Run a copy of the listing on a scene."""
+    from ..program.listingcopy import ListingCopy
+
+    if scene is None:
+        raise UserError("--listing runs on a scene; expected a scene file or --sample")
+    if args.arithmetic != "applesoft":
+        raise UserError("--listing runs in the emulator; expected --arithmetic applesoft")
+    copy = ListingCopy(args.listing)
+    run = copy.run(scene, dos=not args.no_dos)
+    if args.json:
+        import json
+
+        from ..schemas import stamped
+
+        floats = {name: x if isfinite(x) else None for name, x in run.floats.items()}
+        print(json.dumps(stamped("run", {**run._asdict(), "floats": floats})))
+    else:
+        sys.stdout.write(run.printout if args.raw else run.page)
+    return 1 if run.error else 0
 
 
 def _show_page(text: str) -> None:

@@ -14,6 +14,7 @@ examples:
   impact88 verify --brief box7/*.txt                a few lines a printout
   impact88 verify --json printout.txt               one JSON object a printout
   impact88 verify results.txt --scene crash.toml    inputs from a file
+  impact88 verify printout.txt --listing office.bas
   impact88 verify printout.txt --report case.html --case 17/88
   impact88 run --sample 1 | impact88 verify -       - is standard input
 
@@ -59,6 +60,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="inputs apart, where the page has only results",
     )
     parser.add_argument(
+        "--listing", metavar="THEIRS.bas", help="hold the pages against another copy of the listing"
+    )
+    parser.add_argument(
         "--report", type=OutputFile, metavar="FILE.html", help="write a page for the case file"
     )
     add_sample_argument(parser, "inputs apart: those of a published run")
@@ -76,10 +80,15 @@ def main(args: argparse.Namespace) -> int:
     given = None
     if args.scene or args.sample or args.set:
         given = dict(one_scene(args))
+    copy = None
+    if args.listing:
+        from ..program.listingcopy import ListingCopy
+
+        copy = ListingCopy(args.listing)
     status = 0
     examined = []
     for path in args.printouts:
-        one = examine(path, given)
+        one = examine(path, given, copy)
         examined.append(one)
         _tell(one, args)
         adverse = any(result.verdict is not Verdict.IDENTICAL for result in one.results)

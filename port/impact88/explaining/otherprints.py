@@ -42,6 +42,9 @@ _LINES = (("VAX", "VBX"), ("VAY", "VBY"), ("XAF", "XBF"), ("YAF", "YBF"), ("WAF"
 _AXES = (("VAX", "VAY"), ("VBX", "VBY"), ("XAF", "YAF"), ("XBF", "YBF"))
 _SINGLE, _SINGLE_ERROR = 7, 3e-6
 """Digits of single precision, and the relative error left to its results."""
+SOME_LINES = 0.9
+"""What it asks to believe that an office's copy rounds on some lines: less than one misread digit,
+which a rounded last place looks like (24 pages of copies that round on line 760)."""
 _MOST_PLACES = 22
 """Decimals of a program's number, at most; to here the powers of ten are exact."""
 _SAME_TO = 1e-6
@@ -105,6 +108,24 @@ class Prints:
                 name: way(value, FIELDS[name].places or 0) for name, value in self._values.items()
             }
             yield self._made(kind, "", PROGRAM, fields)
+            yield from self._cut_on_some_lines(kind, fields)
+
+    def _cut_on_some_lines(self, kind: str, fields: Mapping[str, str]) -> Iterator[Hypothesis]:
+        """So on the lines of the listing whose numbers the page has so, and floored elsewhere."""
+        lines: dict[int, list[str]] = {}
+        for name in fields:
+            lines.setdefault(FIELDS[name].line, []).append(name)
+        floored = self._outcome.fields
+        some = [
+            line
+            for line, names in lines.items()
+            if sum(self._text(name) == fields[name] for name in names)
+            > sum(self._text(name) == floored.get(name) for name in names)
+        ]
+        if some and len(some) < len(lines):
+            own = {name: fields[name] for line in some for name in lines[line]}
+            where = f"on line{'' if len(some) == 1 else 's'} {', '.join(map(str, some))}"
+            yield self._made(kind, where, SOME_LINES, own)
 
     def other_decimals(self) -> Iterator[Hypothesis]:
         """To as many decimals as the page has, where those are not the listing's."""

@@ -12,6 +12,7 @@ from .. import files
 from ..errors import UserError
 from ..explaining.explanations import explain
 from ..judging import beside
+from ..judging.copies import held_against, in_order
 from ..judging.judgement import (
     FieldCheck,
     Status,
@@ -23,8 +24,10 @@ from ..judging.judgement import (
 )
 from ..judging.lookingpast import LookingPast
 from ..judging.unseen import unseen
-from ..reading.printout import LARGEST_FILE, Printout, read_bytes
-from ..recovery.recovered import recover, without_angles
+from ..program.listingcopy import ListingCopy
+from ..reading.plaintext import decoded
+from ..reading.printout import LARGEST_FILE, Printout, read_printouts
+from ..recovery.recovered import Recovered, recover, without_angles
 from . import provenance, wording
 from .verification import Examined, Verification
 
@@ -40,20 +43,28 @@ __all__ = [
 ]
 
 
-def examine(path: str, given: Mapping[str, str] | None = None) -> Examined:
-    """A file (``-``: standard input), every printout in it judged; what cannot be read is told."""
+def examine(
+    path: str, given: Mapping[str, str] | None = None, copy: ListingCopy | None = None
+) -> Examined:
+    """A file (``-``: standard input), every printout in it judged; what cannot be read is told.
+    ``copy``: the listing it is held against, in place of the restored one."""
     try:
         data = files.read_bytes(path, LARGEST_FILE)
     except UserError as error:
         return Examined(path, None, error=str(error))
-    return examine_bytes(path, data, given)
+    return examine_bytes(path, data, given, copy)
 
 
-def examine_bytes(path: str, data: bytes, given: Mapping[str, str] | None = None) -> Examined:
+def examine_bytes(
+    path: str,
+    data: bytes,
+    given: Mapping[str, str] | None = None,
+    copy: ListingCopy | None = None,
+) -> Examined:
     """The same of a file's bytes; ``path`` is what it is called."""
     digest = provenance.sha256(data)
     try:
-        results = list(_verified(path, data, digest, given))
+        results = list(_verified(path, data, digest, given, copy))
     except UserError as error:
         return Examined(path, digest, error=str(error))
     return Examined(path, digest, results)
@@ -66,20 +77,35 @@ def verify_file(path: str, given: Mapping[str, str] | None = None) -> Iterator[V
 
 
 def _verified(
-    path: str, data: bytes, digest: str, given: Mapping[str, str] | None
+    path: str,
+    data: bytes,
+    digest: str,
+    given: Mapping[str, str] | None,
+    copy: ListingCopy | None = None,
 ) -> Iterator[Verification]:
-    for number, shown in enumerate(read_bytes(data, files.called(path)), 1):
-        result = verify(shown, path, number, given)
+    where = files.called(path)
+    text = decoded(data, where)
+    text, lines = in_order(copy, text) if copy else (text, [])
+    for number, shown in enumerate(read_printouts(text, where), 1):
+        result = verify(shown, path, number, given, copy)
+        result.renumber(lines)
         result.sha256 = digest
         yield result
 
 
 def verify(
-    shown: Printout, file: str = "-", number: int = 1, given: Mapping[str, str] | None = None
+    shown: Printout,
+    file: str = "-",
+    number: int = 1,
+    given: Mapping[str, str] | None = None,
+    copy: ListingCopy | None = None,
 ) -> Verification:
     """The verdict on one printout, with explanations where it differs.
 
-    ``given``: texts of inputs by scene name, known from elsewhere than the printout."""
+    ``given``: texts of inputs by scene name, known from elsewhere than the printout. ``copy``: the
+    listing it is held against, in place of the restored one."""
+    if copy is not None:
+        return _against(copy, shown, recover(shown, given), file, number)
     recovered = recover(shown, given)
     past = LookingPast(shown, recovered, bool(given))
     looked_past = None
@@ -127,6 +153,46 @@ def verify(
         *wording.given_otherwise(given or {}, result.scene, result.fields),
     ]
     result.unseen = unseen(result.scene, result.missing)
+    if result.runnable:
+        scene = {name: text or "" for name, text in result.scene.items()}
+        beside.add_exact_values(scene, result.fields)
+        result.warnings = beside.warnings(scene)
+    return result
+
+
+def _against(
+    copy: ListingCopy, shown: Printout, recovered: Recovered, file: str, number: int
+) -> Verification:
+    """The verdict on a printout as a page of an office's copy of the listing."""
+    held = held_against(copy, shown, recovered)
+    checks = held.fields
+    replies = reply_checks(held.shown, held.recovered)
+    ending = ending_check(held.shown, held.recovered)
+    result = Verification(
+        file=file,
+        number=number,
+        line=shown.line,
+        verdict=verdict_of(held.shown, held.recovered, checks, replies, ending),
+        scene=held.recovered.scene_or_missing(),
+        fields=checks,
+        replies=replies,
+        ending=ending,
+        missing=held.recovered.missing,
+        remarks=[*map(str, shown.remarks), *shown.notes],
+        left_over=held.shown.left_over,
+        labels=held.shown.labels,
+        start=shown.start,
+        stop=shown.stop,
+        text=shown.page.text if shown.page else "",
+    )
+    result.guessed = _guessed(result)
+    result.unseen = unseen(result.scene, result.missing)
+    result.findings = wording.of_copy(copy, result.verdict, held)
+    result.copy = {
+        "file": copy.file,
+        "sha256": copy.sha256,
+        "lines": [line._asdict() for line in copy.changed_lines()],
+    }
     if result.runnable:
         scene = {name: text or "" for name, text in result.scene.items()}
         beside.add_exact_values(scene, result.fields)

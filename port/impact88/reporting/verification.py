@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,7 +22,8 @@ class Verification:
     """The result for one printout; `as_json` gives the documented object.
 
     ``guessed``: inputs whose printed number was not read exactly, or not at all; ``unseen``: what
-    the page cannot show; ``left_over``: text that belongs to no field and no label."""
+    the page cannot show; ``left_over``: text that belongs to no field and no label; ``copy``: the
+    listing it is held against where that is not the restored one."""
 
     file: str
     number: int
@@ -44,6 +45,7 @@ class Verification:
     start: int = 0
     stop: int = 0
     sha256: str | None = None
+    copy: dict[str, Any] | None = None
     text: str = field(default="", repr=False)
 
     @property
@@ -78,6 +80,18 @@ class Verification:
         """The fields the program prints and that were not read."""
         return [check.name for check in self.fields if check.status == Status.NOT_READ]
 
+    def renumber(self, lines: Sequence[int]) -> None:
+        """Give every place the number that its line had in the file; none: they stand."""
+        if not lines:
+            return
+        for check in [*self.fields, *self.replies]:
+            check.line = lines[check.line - 1] if check.line else None
+            for doubt in check.doubts:
+                doubt.line = lines[doubt.line - 1]
+        self.line = lines[self.line - 1]
+        self.labels = [one._replace(line=lines[one.line - 1]) for one in self.labels]
+        self.left_over = [one._replace(line=lines[one.line - 1]) for one in self.left_over]
+
     def _repr_html_(self) -> str:
         """What the command prints, as a notebook shows it."""
         return notebook.preformatted("\n".join(lines(self)))
@@ -105,6 +119,7 @@ class Verification:
             "findings": self.findings,
             "warnings": self.warnings,
             "remarks": self.remarks,
+            **({"listing": self.copy} if self.copy else {}),
         }
         return stamped("verify", whole)
 
@@ -134,7 +149,8 @@ def summary(result: Verification) -> Iterator[str]:
     verdict = result.verdict
     fields = result.fields
     if verdict is Verdict.IDENTICAL:
-        yield f"all {len(fields)} printed numbers are what the program prints, digit for digit"
+        who = f"the copy {result.copy['file']}" if result.copy else "the program"
+        yield f"all {len(fields)} printed numbers are what {who} prints, digit for digit"
     elif verdict is Verdict.DIFFERS:
         compared = sum(check.same is not None for check in fields)
         yield f"{compared} printed numbers compared, {len(result.differing)} differ"

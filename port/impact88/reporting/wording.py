@@ -6,7 +6,9 @@ from collections.abc import Mapping, Sequence
 
 from ..explaining.explanations import Explanation
 from ..fields import ANGLES, INPUTS
+from ..judging.copies import HeldAgainst
 from ..judging.judgement import FieldCheck, Status, Verdict, misread_at_all, swapped_digits
+from ..program.listingcopy import ListingCopy
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
 from ..reading.printout import Piece, Printout
@@ -146,6 +148,27 @@ def looked_past(fields: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> 
         f"read as another digit than the program prints: {', '.join(others)}; put down to the "
         f"reader of the page, who misread {misread} of {len(fields)} numbers: if the paper shows "
         "one of these digits as it was read, it differs from the program's page"
+    ]
+
+
+def of_copy(copy: ListingCopy, verdict: Verdict, held: HeldAgainst) -> list[str]:
+    """What an office's copy of the listing prints, and in which lines it is another program."""
+    agrees = verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+    says = f"this page is {'' if agrees else 'not '}what the copy {copy.file} prints"
+    others = [
+        f"{check.name} {held.restored.get(check.name, 'nothing')}"
+        for check in held.fields
+        if check.recomputed != held.restored.get(check.name)
+    ]
+    lines = [
+        f"line {line.line}: the copy has {line.copy or 'nothing'} | "
+        f"the restored listing {line.restored or 'nothing'}"
+        for line in copy.changed_lines()
+    ]
+    same = "the restored listing prints the same numbers"
+    return [
+        f"{says}; {'the restored listing prints ' + ', '.join(others) if others else same}",
+        *lines,
     ]
 
 

@@ -1,0 +1,124 @@
+"""An office's own copy of the listing: its pages are what it prints, and no others."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+from pathlib import Path
+
+import pytest
+
+import printouts
+from captures import ROOT
+from impact88.cli import main
+from impact88.errors import UserError
+from impact88.program.listingcopy import ListingCopy
+from impact88.reporting.examination import Verdict, examine_bytes
+
+LISTING = (ROOT / "legacy" / "impact.bas").read_text(encoding="utf-8")
+INT = re.compile(r"INT \(((?:[^()]|\([^()]*\))*)\)")
+SETTLED = (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+
+
+def line(number: int) -> str:
+    (text,) = re.findall(rf"(?m)^{number} .*$", LISTING)
+    return str(text)
+
+
+def changed(*lines: tuple[int, str]) -> str:
+    text = LISTING
+    for number, new in lines:
+        text = text.replace(line(number), new)
+    return text
+
+
+def rounding(*numbers: int) -> str:
+    """The results of some lines rounded to the nearest."""
+    return changed(*((number, INT.sub(r"INT (\1 + .5)", line(number))) for number in numbers))
+
+
+COPIES = {
+    "one line rounds": rounding(760),
+    "all lines round": rounding(660, 670, 690, 730, 740, 760),
+    "pi": LISTING.replace("3.14159265", "3.1416"),
+    "other data": changed((280, "280 E = .1:MU = .5:EM = - 1"), (290, line(290) + ": REM OURS")),
+    "READ and DATA": changed(
+        (280, "280 READ E,MU,EM: DATA .1,.5,-1"),
+        (290, "290 READ DA,DB,GA,PA,PB,TA,TB"),
+        (310, "310 READ MA,MB,IA,IB: DATA 1,2,3,4,5,6,7,100,90,2000,1000"),
+    ),
+    "INPUT": changed(
+        (280, '280 INPUT "E,MU,EM ";E,MU,EM'),
+        (290, "290 INPUT DA,DB: INPUT GA,PA,PB,TA,TB"),
+        (310, "310 INPUT MA,MB,IA,IB"),
+    ),
+    "other order": changed((730, "731" + line(740)[3:]), (740, "742" + line(730)[3:])),
+    "80 columns": changed((610, line(610) + ': PRINT CHR$ (9);"80N"')),
+}
+
+
+def copy_of(text: str, folder: Path) -> ListingCopy:
+    path = folder / "office.bas"
+    path.write_text(text, encoding="utf-8")
+    return ListingCopy(str(path))
+
+
+def verdicts(text: str, copy: ListingCopy | None) -> set[Verdict]:
+    return {result.verdict for result in examine_bytes("-", text.encode(), None, copy).results}
+
+
+@pytest.mark.captures
+@pytest.mark.parametrize("name", COPIES)
+def test_the_pages_of_a_copy_are_settled_and_others_are_not(name: str, tmp_path: Path) -> None:
+    rng = random.Random(name)
+    copy = copy_of(COPIES[name], tmp_path)
+    for row in rng.sample(printouts.normal_ends(), printouts.SWEEP or 1):
+        page = printouts.body(copy.run(row["scene"]).page)
+        assert verdicts(page, copy) <= set(SETTLED)
+        places = [one.start() for one in re.finditer(r"(?<=VAY= )-?[0-9.]+", page)]
+        at = next(at for at in range(places[0], len(page)) if page[at].isdigit())
+        digit = rng.choice([one for one in "123456789" if one != page[at]])
+        assert not verdicts(page[:at] + digit + page[at + 1 :], copy) & set(SETTLED)
+
+
+def test_a_copy_is_held_against_the_restored_listing(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
+    copy = copy_of(COPIES["one line rounds"], tmp_path)
+    main(["run", "--sample", "1", "--listing", str(tmp_path / "office.bas")])
+    page = tmp_path / "page.txt"
+    page.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert main(["verify", str(page), "--listing", str(tmp_path / "office.bas"), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["verdict"] == "identical"
+    assert [one["line"] for one in found["listing"]["lines"]] == [760]
+    assert found["listing"]["sha256"] == copy.sha256
+    assert found["findings"][0].startswith("this page is what the copy")
+    assert "the restored listing prints W" in found["findings"][0]
+    assert main(["verify", str(page)]) == 1
+
+
+@pytest.mark.captures
+def test_rounding_on_one_line_comes_before_a_misread_digit(tmp_path: Path) -> None:
+    copy = copy_of(COPIES["one line rounds"], tmp_path)
+    named = []
+    for row in random.Random(1).sample(printouts.normal_ends(), printouts.SWEEP or 4):
+        page = printouts.body(copy.run(row["scene"]).page)
+        for result in examine_bytes("-", page.encode()).results:
+            if result.verdict is Verdict.DIFFERS:
+                first = result.explanations[0]
+                named.append((first.kind, first.note.partition(";")[0]))
+    assert set(named) == {("rounded, not floored", "on line 760")}
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "holds no program"),
+        ("no numbers here", "no Applesoft program"),
+        ("10 INPUT A$: GOTO 10", "asks for more"),
+        ("10 GOTO 10", "does not end"),
+    ],
+)
+def test_what_is_no_copy_is_refused(text: str, says: str, tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=says):
+        copy_of(text, tmp_path).run({})
