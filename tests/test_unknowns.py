@@ -200,7 +200,7 @@ def test_coefficients_of_nothing_have_no_value() -> None:
         ({"vax": 1.0}, "did you mean VAX"),
         ({"M": 5.0}, "M must be 6"),
         ({"MU": 0.5}, "MU and MUP are both given"),
-        ({"UX": "fast"}, "UX = 'fast' is no number"),
+        ({"UX": "fast"}, "UX: 'fast' is not a number"),
     ],
 )
 def test_unusable_values_are_refused(changes: dict[str, Any], message: str) -> None:

@@ -11,7 +11,7 @@ The 1988 program
     Applesoft           the machine itself, for any Applesoft program
 
 Old printouts and other programs
-    read_printouts, verify, verify_file     is a printout what the program prints, and if not, why
+    verify, read_printouts      is a printout what the program prints, and if not, why
     oracle              all that is known of some scenes, to check another program with
     compare             another program's table against this one's results
 
@@ -59,7 +59,8 @@ if TYPE_CHECKING:
     from .reconstruction.adjustment import Reconstruction
     from .reconstruction.unknowns import Solution, solve_for
     from .replay import Replay, replay
-    from .reporting.examination import Verification, verify, verify_file
+    from .reporting.examination import Verification
+    from .reporting.papers import verify
     from .scene import Scene, sample
     from .tables.frames import solve_frame
     from .uncertainty.bounds import bounds
@@ -97,8 +98,7 @@ _LAZY = {
     "solve_frame": "tables.frames",
     "solve_for": "reconstruction.unknowns",
     "status": "",
-    "verify": "reporting.examination",
-    "verify_file": "reporting.examination",
+    "verify": "reporting.papers",
 }
 """Public name -> the module that holds it (after a colon, the name it has there), or nothing for a
 module of this package. A test holds this table against the imports above."""
@@ -135,7 +135,6 @@ __all__ = [  # written out: type checkers read no computed list
     "solve_frame",
     "status",
     "verify",
-    "verify_file",
 ]
 
 

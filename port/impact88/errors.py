@@ -44,6 +44,12 @@ class UserError(ValueError):
 
     The command line prints the message on stderr and leaves with status 2; nobody ever sees a
     traceback for it. ``where`` is the place (file, row, field), put in front when given.
+
+    >>> try:
+    ...     impact88.sample(1).replaced({"MU": "much"})
+    ... except impact88.UserError as error:
+    ...     print(str(error)[:21])
+    sample 1: MU = 'much'
     """
 
     def __init__(self, message: str, where: str | None = None) -> None:

@@ -6,6 +6,9 @@ template, table heading, help text and error message takes symbol, meaning and u
 Units: the listing is "independent of units" (User's Information): any consistent set will do,
 except that angles are typed and printed in degrees and spins are always radians per unit of time.
 So a unit here is a rule ("mass·length²"), not a unit.
+
+>>> impact88.names.SCENE["MU"].meaning
+'equivalent friction coefficient; -10 makes a pivot'
 """
 
 from __future__ import annotations

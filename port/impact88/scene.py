@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from . import notebook
 from .doubles import double, is_number
-from .errors import BEYOND_DOUBLES, UserError
+from .errors import BEYOND_DOUBLES, UserError, quoted
 from .files import called, packaged_text, read_text
 from .names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing, quantity
 
@@ -77,6 +77,10 @@ class Scene(Mapping[str, str]):
     units its file was written in (`impact88.units`), whose base units the values are in;
     ``estimated`` says of each value that is an estimate (`impact88.estimates`) how it was found;
     ``entries``: the file's, where it came from one.
+
+    >>> scene = impact88.sample(1).replaced({"MU": ".5"})
+    >>> scene["MU"], scene.numbers()["E"]
+    ('.5', 0.005)
     """
 
     __slots__ = ("_values", "entries", "estimated", "source", "title", "units")
@@ -90,6 +94,7 @@ class Scene(Mapping[str, str]):
         entries: Entries | None = None,
     ) -> None:
         """Raises UserError for a missing or unknown name and for text that is no number."""
+        check_mapping(values)
         given = dict(values)
         given.setdefault("M", DEFAULT_M)
         check_names(given, (*SCENE, "title"), "value of a scene", source)
@@ -242,6 +247,13 @@ def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
     return values
 
 
+def check_mapping(values: object) -> None:
+    """Raises UserError for what is no mapping, such as the name of a file."""
+    if not isinstance(values, Mapping):
+        hint = ", such as impact88.Scene.from_toml(...)" if isinstance(values, str) else ""
+        raise UserError(f"{quoted(values)}: expected a mapping of names to values{hint}")
+
+
 _BARE = frozenset("0123456789+-.eE ")
 _NO_AMOUNTS = ("title", "case", "correlations")
 SOURCE = "_source"
@@ -256,6 +268,7 @@ def entries_of(
 ) -> Entries:
     """The entries of a file, see `Entries`; ``units``: the system of bare numbers where it names
     none; ``single``: the middle of each value known within limits. Raises UserError."""
+    check_mapping(texts)
     given = {name: text for name, text in texts.items() if not name.endswith(SOURCE)}
     for name, text in given.items():
         if not isinstance(text, str):
@@ -569,7 +582,11 @@ SAMPLES = tuple(_SAMPLES)
 
 
 def sample(number: int) -> Scene:
-    """The scene of published run 1, 2 or 3. Raises UserError for another number."""
+    """The scene of published run 1, 2 or 3. Raises UserError for another number.
+
+    >>> impact88.sample(2)["M"]
+    '4'
+    """
     if number not in _SAMPLES:
         raise UserError(f"there is no sample {number}; expected {', '.join(map(str, SAMPLES))}")
     title, velocities, changes = _SAMPLES[number]

@@ -7,6 +7,9 @@ the sliding at separation to 0 and no further, so P_t lies between 0 and MUC·Pn
 
 A bit's number never changes its meaning. 16 stood for E, EM and MU together once; since EM and MU
 have numbers of their own it stands for E alone. `RETIRED` bits are not set any more.
+
+>>> impact88.status.names(64)
+['NOT_FINITE']
 """
 
 from __future__ import annotations

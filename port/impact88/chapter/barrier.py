@@ -15,6 +15,7 @@ import numpy as np
 
 from ..closedform.solve import solve
 from ..errors import UserError
+from ..mappings import in_base
 
 BARRIER = {
     **{"MB": np.inf, "IB": np.inf, "VX": 0.0, "VY": 0.0, "WB": 0.0},
@@ -40,7 +41,14 @@ def barrier(columns: Mapping[str, Any], outputs: Sequence[str] | None = None) ->
     degrees, units any consistent set; ``outputs``: some of `RESULTS`, all by default. An approach
     has the vehicle on the +n side of the barrier moving towards -n. Returns arrays by name. Raises
     UserError for unknown or missing names.
+
+    >>> car = {"DA": 7.59, "GA": -30, "PA": -19.8, "TA": 0, "MA": 143.5, "IA": 3728}
+    >>> car |= {"E": 0.1, "MU": 0.4, "EM": -1, "UX": -29, "UY": 0, "WA": 0}
+    >>> found = impact88.barrier(car)
+    >>> round(float(found["DVA"]), 2)
+    30.62
     """
+    columns = in_base(columns)
     for name in columns:
         if name not in (*VEHICLE, "M"):
             raise UserError(

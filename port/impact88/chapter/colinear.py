@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..closedform.statusbits import bits, findings
 from ..errors import UserError
+from ..mappings import columns
 from ..names import missing
 
 Array = NDArray[np.float64]
@@ -31,6 +32,11 @@ def colinear(known: Mapping[str, Any]) -> dict[str, Array]:
     ``known``: masses MA MB, coefficients E and MUP (signed P_t/P_n), initial velocities of A (UN
     UT) and B (VN VT) along n and t; numbers or arrays, which broadcast. Raises UserError for a
     name that is missing.
+
+    >>> known = {"MA": 154.7, "MB": 99.1, "E": 0.071, "MUP": 0, "UN": -56.76}
+    >>> found = impact88.colinear({**known, "UT": 0, "VN": 0, "VT": 0})
+    >>> round(float(found["VAN"]), 3)
+    -33.024
     """
     ma, mb, e, mu, *initial = _floats(known, INITIAL)
     final = _equations_9_to_12(ma, mb, e, mu, *initial)
@@ -44,6 +50,10 @@ def colinear_inverse(known: Mapping[str, Any]) -> dict[str, Array]:
     ``known``: as for `colinear`, with the final velocities VAN VAT VBN VBT in place of the initial
     ones. Errors of the final normal velocities grow as 1/e. Elements with e = 0 are NaN; raises
     UserError for a name that is missing, and if e is 0 throughout: there is no inverse then.
+
+    >>> known = {"MA": 154.7, "MB": 99.1, "E": 0.071, "MUP": 0, "VAN": -33, "VBN": -37}
+    >>> round(float(impact88.colinear_inverse({**known, "VAT": 0, "VBT": 0})["UN"]), 3)
+    -56.56
     """
     ma, mb, e, mu, *final = _floats(known, FINAL)
     if not e.any():
@@ -100,6 +110,7 @@ def report(
 
 def _floats(known: Mapping[str, Any], velocities: Sequence[str]) -> list[Array]:
     names = ("MA", "MB", "E", "MUP", *velocities)
+    known = columns(known)
     absent = [name for name in names if name not in known]
     if absent:
         raise UserError(missing(absent))

@@ -8,6 +8,7 @@ could not be compared is counted, and why.
 from __future__ import annotations
 
 import difflib
+import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,11 +21,12 @@ from ..closedform.solve import solve
 from ..doubles import double
 from ..errors import UserError
 from ..files import called
+from ..mappings import texts
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..plaintable import plain
 from ..progress import progress
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers, one_per_row
-from ..tables.table import open_reader
+from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
 from .agreement import Slack, Theirs, Verdict, given, judge, read_theirs, slack
 from .diagnosis import UNKNOWN, Case, diagnose
@@ -179,8 +181,8 @@ class _Waiting(NamedTuple):
 
 
 def compare_file(
-    path: str,
-    form: str,
+    path: str | os.PathLike[str],
+    form: str | None = None,
     values: Mapping[str, str] | None = None,
     rtol: float | None = None,
     encoding: str | None = None,
@@ -189,10 +191,22 @@ def compare_file(
     """Compare a table of scenes and results, block by block; ``units``: of columns whose heading
     names none.
 
-    ``values``: for all rows of columns the table lacks; ``rtol``: the difference, as a share of the
+    ``form``: csv, jsonl, npz, parquet, feather or xlsx where the name does not say; ``values``: for
+    all rows of columns the table lacks; ``rtol``: the difference, as a share of the
     scene's largest velocity, spin or energy, that agrees, in place of what rounding allows. Raises
-    UserError when the table has no result column or does not give a whole scene."""
-    values = values or {}
+    UserError when the table has no result column or does not give a whole scene.
+
+    >>> import json, pathlib, tempfile
+    >>> scene = impact88.sample(1).numbers()
+    >>> row = {**scene, "LOSS": float(impact88.solve(scene, ["LOSS"])["LOSS"])}
+    >>> table = pathlib.Path(tempfile.mkdtemp(), "theirs.jsonl")
+    >>> _ = table.write_text(json.dumps(row))
+    >>> impact88.compare(table).summary.partition(";")[0]
+    '1 rows: 1 agree, 0 disagree'
+    """
+    values = texts(values or {})
+    path = os.fspath(path)
+    form = format_of(path, form)
     comparison = Comparison()
     waiting: list[_Waiting] = []
     with open_reader(path, form, encoding) as reader:

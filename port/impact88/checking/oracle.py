@@ -100,8 +100,25 @@ def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[st
             yield stamped("oracle", whole)
 
 
-def look_up(scenes: Sequence[Mapping[str, str]], reference: bool = True) -> list[dict[str, Any]]:
-    """What is known about each scene, see the module; M must be 4 or 6."""
+def look_up(
+    scenes: Mapping[str, Any] | Iterable[Mapping[str, Any]], reference: bool = True
+) -> list[dict[str, Any]]:
+    """What is known about each scene, or about the only one, see the module.
+
+    A scene is a `Scene` or a mapping of names to decimal texts, or to numbers, which stand for
+    their shortest digits; M must be 4 or 6. Raises UserError.
+
+    >>> import impact88
+    >>> (answer,) = impact88.oracle(impact88.sample(1))
+    >>> answer["results"]["VAX"]["printed"], answer["results"]["VAX"]["stored"]
+    ('-13.263', '84d433d66f')
+    """
+    from ..mappings import typed
+
+    scenes = [typed(scene) for scene in ([scenes] if isinstance(scenes, Mapping) else scenes)]
+    for scene in scenes:
+        if doubles.double(scene["M"]) not in (4, 6):
+            raise UserError(f"M is {scene['M']}; expected 6 or 4")
     if not scenes:
         return []
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from .. import native
 from ..errors import UserError
 from ..fields import ANGLES
+from ..mappings import in_base, in_doubles
 from ..names import DEFAULT_M, PIVOT, SCENE
 from ..native.program import addresses, extremes
 
@@ -74,13 +75,14 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
     4 throughout, so may be what a point mass does not look at. Where it is 4 in some scenes, these
     may have anything there, such as NaN or None.
     """
+    columns = in_base(columns)
     unknown = [name for name in columns if name not in SCENE]
     if unknown:
         raise UserError(
             f"{unknown[0]!r} is no scene name; expected {' '.join(SCENE)} "
             "(impact88.solve_frame takes further columns)"
         )
-    arrays = {name: _numbers(name, columns[name]) for name in SCENE if name in columns}
+    arrays = {name: in_doubles(name, columns[name]) for name in SCENE if name in columns}
     arrays.setdefault("M", np.array(float(DEFAULT_M)))
     if arrays["M"].size and bool((arrays["M"] == 4).all()):
         for name in UNUSED_BY_POINTS:
@@ -94,29 +96,6 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
         shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
         raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
     return {name: _source(arrays[name], shape) for name in SCENE}, shape
-
-
-def _numbers(name: str, values: object) -> Array:
-    if type(values) is np.ndarray and values.dtype.kind in "fiub":
-        return values
-    if isinstance(values, np.ma.MaskedArray):
-        if values.dtype.kind not in "fiub":
-            raise UserError(f"holds {values.dtype} values; expected numbers", f"column {name}")
-        return np.ma.filled(values.astype(np.float64), np.nan)
-    if hasattr(values, "__dask_graph__") and values.__dask_graph__() is not None:
-        raise UserError(
-            "is not computed yet; expected .compute(), or impact88.solve within map_blocks",
-            f"column {name}",
-        )
-    array = np.asarray(values)
-    if array.dtype.kind in "fiub":
-        return array
-    try:
-        if array.dtype.kind in "USO":
-            return array.astype(np.float64)
-    except (TypeError, ValueError) as error:
-        raise UserError(f"{error}; expected numbers", f"column {name}") from None
-    raise UserError(f"holds {array.dtype} values; expected numbers", f"column {name}")
 
 
 def _source(array: Array, shape: tuple[int, ...]) -> Source:

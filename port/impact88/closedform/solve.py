@@ -21,6 +21,7 @@ from ..names import DEFAULT_M, PIVOT, RESULTS, SCENE
 from ..native.formulas import Expression, ExpressionTable
 from ..native.program import Program, addresses, extremes
 from ..processors import processors
+from ..scene import check_mapping
 from ..status import Status
 from .columns import Block, Buffers, Limits, Source, examine, ordinary_kinds, sources
 from .fused import CIRCLE, fused
@@ -103,7 +104,13 @@ def solve(
 
     Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast,
     and arrays in ``out`` that cannot take the results.
+
+    >>> scene = impact88.sample(1).numbers()
+    >>> impact88.solve({**scene, "MU": [0.5, 0.911, -10]}, ["LOSS"])["LOSS"].round(2)
+    array([44.43, 57.47, 57.56])
     """
+    if type(columns) is not dict:
+        check_mapping(columns)
     wanted = _wanted(tuple(out) if outputs is None and out is not None else outputs)
     if out is None:
         few = solve_one(columns, wanted) or solve_few(columns, wanted)

@@ -36,6 +36,11 @@ class Applesoft:
 
     `machine` is the machine itself; its ``after_line``, ``statements_left`` and ``interrupted`` are
     there to be set.
+
+    >>> apple = impact88.Applesoft()
+    >>> apple.enter("PRINT INT (100 * 14.52)")
+    >>> apple.take_output()
+    '1451\\n'
     """
 
     def __init__(

@@ -66,8 +66,13 @@ def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
     ``result``: VAX, VAY, VBX, VBY, WAF, WBF and, where known, STATUS (see `impact88.solve`);
     without it only what is before the impact is drawn. Units as the scene's. Raises UserError when
     a value of the scene is missing or not a finite number.
+
+    >>> impact88.scene_svg(impact88.sample(1))[:4]
+    '<svg'
     """
-    return svg(scene_drawing(scene, result))
+    from ..mappings import in_base
+
+    return svg(scene_drawing(in_base(scene), result))
 
 
 class _Field:

@@ -46,6 +46,10 @@ class Run(_Run):
     was assigned, as five stored bytes in hexadecimal. ``A``: the array's ``dims`` (sizes) and
     ``data``, first subscript fastest; None before line 360. In double precision the values are
     floats. ``zero_determinant``: whether the program ended at line 1160.
+
+    >>> run = impact88.run(impact88.sample(1))
+    >>> run.error, run.reals["KI"]
+    (None, '91451476e4')
     """
 
     __slots__ = ()
@@ -132,6 +136,9 @@ def run(
 
     Printer output (``slot`` 1) is part of the printout. Raises UserError for an unknown arithmetic
     and for a scene that could not be typed into the program (`Scene.check_typed`).
+
+    >>> impact88.run(impact88.sample(1)).page.splitlines()[-3]
+    ' WA= -1.745 WB= -.8202'
     """
     scene = scene if isinstance(scene, Scene) else Scene.from_mapping(scene)
     scene.check_typed()

@@ -213,7 +213,12 @@ def read_bytes(data: bytes, where: str) -> list[Printout]:
 
 
 def read_printouts(text: str, where: str = "text") -> list[Printout]:
-    """The printouts in a text, in order. Raises UserError (naming ``where``) if there is none."""
+    """The printouts in a text, in order. Raises UserError (naming ``where``) if there is none.
+
+    >>> (printout,) = impact88.read_printouts(impact88.run(impact88.sample(1)).page)
+    >>> printout.fields["MA"].text
+    '143.5'
+    """
     page = Page(pasted.unwrapped(text))
     shown = [printout for part in _parts(page) for printout in part]
     if shown:

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError
+from ..mappings import within_limits
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 from ..uncertainty.uncertain import Uncertain, fixed
 from .doublerange import within_doubles
@@ -528,6 +529,11 @@ class Reconstruction:
     squared adjustments in standard deviations; about the redundancy when tolerances are right.
     ``assumed``: the tolerances were not given but taken equal for all known velocities.
     ``against_sign``: friction drives the sliding that MU's sign was chosen to oppose.
+
+    >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
+    >>> best, *others = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
+    >>> round(best.values["MUP"], 2)
+    0.91
     """
 
     system: System
@@ -643,7 +649,7 @@ def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | Non
 
 
 @within_doubles
-def reconstruct(known: Mapping[str, Uncertain | float]) -> list[Reconstruction]:
+def reconstruct(known: Mapping[str, Uncertain | float | str]) -> list[Reconstruction]:
     """Every impact found that agrees with what is ``known`` (`KNOWABLE` names; M 6 where left out).
 
     A number is exact, an `Uncertain` known within its tolerance. MU is known in size only: friction
@@ -692,11 +698,8 @@ def _preferred(found: list[Reconstruction]) -> list[Reconstruction]:
     return sorted(kept, key=lambda s: (round(s.squares, 9), not s.collides))
 
 
-def _checked(known: Mapping[str, Uncertain | float]) -> dict[str, Uncertain]:
-    given = {
-        name: item if isinstance(item, Uncertain) else fixed(float(item))
-        for name, item in known.items()
-    }
+def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:
+    given = within_limits(known)
     for name in given:
         if name not in KNOWABLE:
             raise UserError(f"{name!r} is no value of an impact; expected {' '.join(KNOWABLE)}")

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..errors import UserError
+from ..mappings import columns
 from ..names import COEFFICIENTS, IMPULSES, PIVOT, RESULTS, SCENE, check_names, missing, quantity
 from .doublerange import within_doubles
 from .equations import FINAL, INITIAL, SPINS, Equations, Found
@@ -69,6 +70,10 @@ class Solution:
     a pure number like the others). ``agrees``: whether the sign of MUP is the one line 400 gives.
     ``mismatch``: for unknowns fewer than the equations, the equations' root-mean-square mismatch,
     a velocity; 0 otherwise.
+
+    >>> solution, *others = impact88.solve_for({**impact88.sample(1)})
+    >>> float(solution.values["VAX"].round(3))
+    -13.263
     """
 
     values: dict[str, Array]
@@ -122,6 +127,14 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     array that is not determined is NaN; a single scene, or an array without any determined element,
     raises `UnsolvableError` with the reason. Raises UserError for names or numbers that cannot be
     used.
+
+    >>> known = {**impact88.sample(1)}
+    >>> after = impact88.solve(known, impact88.names.FINAL_VELOCITIES)
+    >>> for name in impact88.names.VELOCITIES:
+    ...     del known[name]
+    >>> solution, *others = impact88.solve_for({**known, **after})
+    >>> float(solution.values["UX"].round(2))
+    -29.04
     """
     problem = _Problem.of(known, unknown)
     solutions = problem.solutions()
@@ -371,13 +384,9 @@ def _blame(name: str, value: float) -> str:
 
 def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:
     allowed = {*GEOMETRY, "M", *INITIAL, *FINAL, "E", "EM", "MU", "MUP"}
-    check_names(known, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
-    given = {}
-    for name, value in known.items():
-        try:
-            given[name] = np.asarray(value, np.float64)
-        except (TypeError, ValueError):
-            raise UserError(f"{name} = {value!r} is no number") from None
+    values = columns(known)
+    check_names(values, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
+    given = {name: np.asarray(value, np.float64) for name, value in values.items()}
     given = {name: np.asarray(value) for name, value in with_point_masses(given).items()}
     absent = [name for name in GEOMETRY if name not in given]
     if absent:

@@ -39,6 +39,9 @@ def replay(columns: Mapping[str, Any], fields: bool = False, threads: int | None
 
     Every bit is the listing's (lines 280-760 and 1000-1170). Raises UserError for columns it cannot
     use; a scene that fails on the machine fails here, alone, and never spoils another.
+
+    >>> impact88.replay(impact88.sample(1)).printed("XB").tolist()
+    ['14.51']
     """
     result = replay_scenes(read_columns(columns), threads)
     if fields:

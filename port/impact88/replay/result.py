@@ -29,6 +29,10 @@ class Replay:
     ``code``: 0, or the Applesoft error's code (53, 69, 133), 1 for ZERO DETERMINANT, 2 for an M
     that is neither 4 nor 6 (not replayed). ``line``: the line of the listing that ended the scene
     early (1160 for ZERO DETERMINANT), else 0. ``count``: the number of scenes.
+
+    >>> found = impact88.replay({**impact88.sample(1), "MU": [".5", ".911"]})
+    >>> found.printed("LOSS").tolist()
+    ['44.43', '57.47']
     """
 
     def __init__(self, scenes: Scenes, six: Bools, unit: Unit, values: dict[str, Floats]) -> None:

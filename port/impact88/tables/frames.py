@@ -55,6 +55,10 @@ def solve_frame(
 
     Raises UserError for a frame of another kind, a missing scene column, and where narwhals is
     needed and not installed.
+
+    >>> rows = impact88.solve_frame([{"MU": 0.5}, {"MU": None}], "LOSS", scene=impact88.sample(1))
+    >>> [round(row["LOSS"], 2) for row in rows]
+    [44.43, nan]
     """
 
     def solver(given: Mapping[str, Any], table: TableUnits) -> dict[str, Array]:

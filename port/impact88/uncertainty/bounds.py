@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from .. import status
 from ..closedform.solve import quantities
 from ..errors import UserError
+from ..mappings import check_mapping, within_limits
 from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
 from ..reconstruction.contact import MOVES, moved
 from ..reconstruction.model import (
@@ -79,7 +80,7 @@ def input_names(problem: str) -> tuple[str, ...]:
 
 @np.errstate(all="ignore")
 def bounds(
-    values: Mapping[str, Uncertain | float],
+    values: Mapping[str, Uncertain | float | str],
     outputs: Sequence[str] | None = None,
     *,
     problem: str = "forward",
@@ -103,11 +104,21 @@ def bounds(
 
     Raises UserError for a missing, unknown or unusable value, an unknown output, correlations that
     contradict one another, and when the nominal inputs have no finite result.
+
+    >>> found = impact88.bounds({**impact88.sample(1), "GA": "-30 +- 5"}, ["DVA"], samples=100)
+    >>> round(found.bounds["DVA"].lower, 2), round(found.bounds["DVA"].upper, 2)
+    (13.42, 18.37)
     """
     _check(samples, sigmas, quantiles)
-    box = _Box.of(values, outputs, problem, sigmas, exclude)
-    _check_memory(samples, len(box.outputs))
+    check_mapping(values)
+    given = dict(values)
     pairs = dict(correlations or {})
+    if isinstance(text := given.pop("correlations", None), str):
+        from .ranges import read_correlations
+
+        pairs = read_correlations(text, "correlations") | pairs
+    box = _Box.of(given, outputs, problem, sigmas, exclude)
+    _check_memory(samples, len(box.outputs))
     correlated = correlation_root(pairs, box.inputs)
     nominal = box.nominal()
     sweeps = box.sweeps()
@@ -199,7 +210,7 @@ class _Box:
     @classmethod
     def of(
         cls,
-        values: Mapping[str, Uncertain | float],
+        values: Mapping[str, Uncertain | float | str],
         outputs: Sequence[str] | None,
         problem: str,
         sigmas: float,
@@ -207,10 +218,7 @@ class _Box:
     ) -> _Box:
         if problem not in PROBLEMS:
             raise UserError(f"{problem!r} is no problem; expected {' or '.join(PROBLEMS)}")
-        given = {
-            name: item if isinstance(item, Uncertain) else fixed(float(item))
-            for name, item in values.items()
-        }
+        given = within_limits(values)
         given.setdefault("M", fixed(6.0))
         _check_values(given, problem)
         inputs = {name: item for name, item in given.items() if item.varies}

@@ -56,6 +56,10 @@ class Bounds:
     ``evaluations``: scenes solved in search of the bounds; ``draws``: each output's draws, arrays
     of the ``samples`` values, kept on request; ``units``: the system of units of all of it
     (`uncertainty.boundsunits`), None for base units or any others that are consistent.
+
+    >>> found = impact88.bounds({**impact88.sample(1), "MU": "0.7 .. 0.9"}, ["LOSS"], samples=100)
+    >>> round(found.bounds["LOSS"].lower, 2), round(found.bounds["LOSS"].upper, 2)
+    (52.93, 57.39)
     """
 
     problem: str

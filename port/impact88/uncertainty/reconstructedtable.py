@@ -219,8 +219,14 @@ class Reconstructions(list[Reconstruction]):
         return notebook.preformatted(in_turn([as_text(*one) for one in each]))
 
 
-def reconstruct(known: Mapping[str, Uncertain | float]) -> Reconstructions:
-    """`reconstruction.adjustment.reconstruct`, whose result a notebook can show."""
+def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions:
+    """`reconstruction.adjustment.reconstruct`, whose result a notebook can show.
+
+    >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
+    >>> best, *others = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
+    >>> round(best.values["VAX"], 1)
+    -13.3
+    """
     return Reconstructions(adjustment.reconstruct(known))
 
 

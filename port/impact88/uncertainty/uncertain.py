@@ -47,6 +47,9 @@ class Uncertain:
     is needed (the mode of a triangle, the mean of a normal, the middle of a range); ``low`` and
     ``high`` the limits, infinite for a normal without any; ``deviation`` a normal's standard
     deviation, else 0.
+
+    >>> impact88.Uncertain("uniform", 0.8, 0.7, 0.9).varies
+    True
     """
 
     kind: str

@@ -1,0 +1,124 @@
+"""What Python callers hand over: a mapping of the listing's names to texts, numbers or arrays.
+
+Texts are what a file may hold: numbers as INPUT reads them (`doubles`), amounts with units, ranges
+where a value may be uncertain, ``units``, ``CAF CAL``, ``"estimate"``. Every public function that
+computes in double precision reads its values here, so that one text means one thing everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .doubles import double
+from .errors import UserError, quoted
+from .scene import RANGES, Scene, check_mapping, entries_of
+
+if TYPE_CHECKING:
+    from .uncertainty.uncertain import Uncertain
+
+Array = NDArray[Any]
+
+
+def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The values in base units: texts are texts of numbers or of ranges afterwards.
+
+    Beside the entry ``units`` numbers and arrays are in that system, too. Raises UserError.
+    """
+    check_mapping(values)
+    texts = {name: value for name, value in values.items() if isinstance(value, str)}
+    if isinstance(values, Scene) or not texts:
+        return values
+    if "units" in texts:
+        scalars = {n: v for n, v in values.items() if type(v) in (int, float)}
+        texts |= {name: repr(value).upper() for name, value in scalars.items()}
+    found = entries_of(texts, "values")
+    kept = {name: value for name, value in values.items() if name not in texts}
+    if found.units:
+        from .units import system_of
+
+        system = system_of(found.units)
+        kept = {n: in_doubles(n, v) / system.factor(n) for n, v in kept.items()}
+    return {**kept, **found.values}
+
+
+def in_doubles(name: str, values: Any) -> Array:
+    """A value, or an array of any shape, as numbers (float64 where it held texts).
+
+    Raises UserError for what holds no numbers.
+    """
+    if type(values) is str:
+        return np.float64(_double(name, values))  # type: ignore[return-value]
+    if isinstance(values, np.ma.MaskedArray):
+        if values.dtype.kind not in "fiub":
+            raise UserError(f"holds {values.dtype} values; expected numbers", f"column {name}")
+        return np.ma.filled(values.astype(np.float64), np.nan)
+    if hasattr(values, "__dask_graph__") and values.__dask_graph__() is not None:
+        raise UserError(
+            "is not computed yet; expected .compute(), or impact88.solve within map_blocks",
+            f"column {name}",
+        )
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # rows of several lengths
+        raise UserError(f"{error}; expected numbers", f"column {name}") from None
+    if array.dtype.kind in "fiub":
+        return array
+    if array.dtype.kind not in "USO":
+        raise UserError(f"holds {array.dtype} values; expected numbers", f"column {name}")
+    cells = [_double(name, cell) for cell in array.reshape(-1).tolist()]
+    return np.array(cells, np.float64).reshape(array.shape)
+
+
+def _double(name: str, value: Any) -> float:
+    try:
+        if isinstance(value, bytes):
+            value = value.decode("ascii")
+        return double(value) if isinstance(value, str) else float(value)
+    except (TypeError, ValueError):
+        raise UserError(f"{quoted(value)} is not a number", f"column {name}") from None
+
+
+def columns(values: Mapping[str, Any]) -> dict[str, Array]:
+    """`in_base` and `in_doubles` of every value. Raises UserError."""
+    return {name: in_doubles(name, value) for name, value in in_base(values).items()}
+
+
+def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
+    """Every value as a number or a range: an `Uncertain`, a number, or the text of either. Raises
+    UserError."""
+    from .uncertainty.uncertain import Uncertain, fixed, read
+
+    def uncertain(name: str, value: Any) -> Uncertain:
+        if isinstance(value, Uncertain):
+            return value
+        if isinstance(value, str) and any(mark in value for mark in RANGES):
+            return read(value, name)
+        number = in_doubles(name, value)
+        if np.ndim(number):
+            raise UserError(f"{name} is an array; expected one number or range")
+        return fixed(float(number))
+
+    return {name: uncertain(name, value) for name, value in in_base(values).items()}
+
+
+def texts(values: Mapping[str, Any]) -> dict[str, str]:
+    """Every value as a text in base units; numbers by their shortest digits. Raises UserError."""
+    check_mapping(values)
+    given = {n: v if isinstance(v, str) else _shortest(n, v) for n, v in values.items()}
+    return entries_of(given, "values").values
+
+
+def typed(values: Mapping[str, Any]) -> Scene:
+    """A scene of such texts. Raises UserError."""
+    return values if isinstance(values, Scene) else Scene(texts(values))
+
+
+def _shortest(name: str, value: Any) -> str:
+    number = in_doubles(name, value)
+    if np.ndim(number) or not np.isfinite(number):
+        raise UserError(f"{name} is {quoted(value)}; expected one finite number")
+    return repr(float(number)).removesuffix(".0").upper()
