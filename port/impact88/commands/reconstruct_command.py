@@ -146,7 +146,7 @@ def _reconstruct(
         _write_scene(solutions, args, units)
     tables = []
     for solution in solutions:
-        with progress(args.samples, "reconstruct", "draws") as meter:
+        with progress(None, "reconstruct", "impacts") as meter:
             spread = uncertainty(solution, args.samples, args.seed, wanted, meter.update)
         tables.append((solution, completed_values(solution, args.contact_time), spread))
     if args.json:

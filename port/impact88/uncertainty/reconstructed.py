@@ -1,36 +1,49 @@
 """How uncertain a reconstruction is: draws of what is known, and bounds, beside the first order.
 
-A reconstruction without redundancy is a function of its known values: each draw, and each place of
-the box that their limits span, is solved for itself, by iterations with the inverse Jacobian of the
-nominal solution (one where only measured velocities vary, a few where coefficients or geometry do)
-and by Newton's method where those do not settle. With redundancy each draw is adjusted as the
-measured values are; bounds are sought over the impacts that lie within *all* limits.
+Of the values with limits as many as determine the impact are coordinates, the tightest first: each
+point of the box their limits span is an impact, solved for itself by iterations with the inverse
+Jacobian of the nominal solution (one where only measured velocities vary, a few where coefficients
+or geometry do) and by Newton's method where those do not settle. What is known beyond that is a
+wall: impacts outside its limits are none.
+
+Without redundancy draws are independent. With it they come from Markov chains whose density is that
+of all known values at the impact, over velocities before, coefficients and vehicles. A chain runs
+between walls that are quadratic functions, set back a little; its end is accepted by the densities
+proper (Metropolis, Hastings). Bounds climb from the draws and from points spread over the box
+(`ascent`): no draw lies outside.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import COEFFICIENTS
+from ..names import COEFFICIENTS, IMPULSES, VELOCITIES
 from ..reconstruction.adjustment import (
     PARAMETERS,
     Reconstruction,
     System,
     pseudo_inverse,
+    standard_deviation,
     tolerance,
 )
 from ..reconstruction.geometry import NAMES as GEOMETRY
 from ..reconstruction.geometry import Geometry
-from ..reconstruction.state import State
-from .extremes import Piece, extremes
+from ..reconstruction.state import COURSES, State
+from .ascent import OUTSIDE, climb
 from .uncertain import Uncertain
 
 Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
+SIGMAS = 3.0
+"""Where a normal without limits ends, for draws and bounds alike."""
+FAR = 6.0
+"""Standard deviations beyond which nobody looks for a normal value."""
 CHUNK = 1 << 14
 CHORDS = 8
 NEWTONS = 12
@@ -38,14 +51,29 @@ IDLE = 3
 """Steps without the half of what was left over, and no solution is in reach."""
 SETTLED = 1e-11
 """Scaled conditions below count as met by a draw."""
-ADJUSTMENTS = 12
-ADJUSTED = 1e-10
-"""A step so short, scaled, is the last."""
-DAMPING = 1e-12
-"""Of the largest square of a slope: holds still what next to nothing determines."""
 SCATTERED = 1024
+"""Points spread over the box, the half of them on faces."""
+SEEKERS = 48
+"""Of these so many seek the way inside all walls."""
+STARTS = 4
+"""Climbers of each extreme, each from the best of a part of all points."""
 LEAST_GAIN = 1e-7
-"""For the search for bounds: each of its impacts takes a dozen iterations."""
+"""Of a quantity's range: a gain not worth a step."""
+BUDGET = 150_000
+"""Impacts the search for bounds may take: most take a tenth."""
+WALKS = 20
+"""Times each chain's place is a draw, and"""
+LEARNT, UNSEEN = 6, 9
+"""before that, while the walls are learnt, and while it forgets its start."""
+PACES = 40
+"""Of a chain from one of these places to the next."""
+ENOUGH = 100
+"""Draws inside the walls that chains may start from alone."""
+NEAR = 1.5
+"""No farther from the middle between walls are they learnt: a quotient's pole would spoil them."""
+RIDGE = 1e-9
+"""Holds still what the places met do not tell of the walls."""
+_TINY = 1e-30
 _SINGULAR = 1e-12
 """Singular values of so little of the largest are none."""
 _GROWS = 1e10
@@ -54,22 +82,25 @@ _GROWS = 1e10
 
 @dataclass(frozen=True)
 class Draws:
-    """``values``: each quantity's draws, NaN where one has no solution; ``failed``: their share."""
+    """``values``: each quantity's draws, NaN where one has no solution; ``failed``: their share;
+    ``points``: where in the box they lie."""
 
     values: dict[str, Floats]
     failed: float
+    points: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
 
 
 @dataclass(frozen=True)
 class Range:
     """Lowest and highest value found of a quantity, and the known values that give them; NaN where
     no impact was found within all limits, infinite where E = 0 lies within its limits, or what a
-    coefficient is divided by may be 0."""
+    coefficient is divided by may be 0. ``searched``: whether the search came to its end."""
 
     lower: float
     upper: float
     at_lower: dict[str, float]
     at_upper: dict[str, float]
+    searched: bool = True
 
 
 def draws(
@@ -79,110 +110,405 @@ def draws(
     seed: int = 0,
     progress: Callable[[int], object] = lambda draws: None,
 ) -> Draws:
-    """``count`` random draws of what is known, each reconstructed: the quantities ``names``."""
+    """``count`` random draws of what is known, each reconstructed: the quantities ``names``. Where
+    no impact lies within all limits the known values are drawn as normal ones, each with its
+    standard deviation."""
     rng = np.random.default_rng([seed, 1])
-    known = solution.system.known
-    varying = solution.system.observations
-    solver = _Adjusting(solution) if solution.redundancy else _Solving(solution, known)
-    values = {name: np.empty(count) for name in names}
-    for first in range(0, count, CHUNK):
-        part = slice(first, min(first + CHUNK, count))
-        data = {name: known[name].draws(rng, part.stop - part.start) for name in varying}
-        state, usable = solver(data)
-        for name in names:
-            values[name][part] = np.where(usable, _quantity(state, known, name), np.nan)
-        progress(part.stop - part.start)
-    failed = np.isnan(np.stack(list(values.values()))).any(axis=0) if names else np.zeros(1)
-    return Draws(values, float(failed.mean()))
+    box = _Box(solution, names)
+    size = len(names)
+    if box.rest:
+        points, functions = _walked(box, count, rng, progress)
+        if not len(points):
+            _, functions = _walked(_Box(solution, names, walls=False), count, rng, progress)
+        values = np.full((count, size), np.nan)
+        values[: len(functions)] = functions[:, :size]
+    else:
+        points, values = np.empty((count, len(box.kept))), np.empty((count, size))
+        for first in range(0, count, CHUNK):
+            part = slice(first, min(first + CHUNK, count))
+            points[part] = box.drawn(rng, part.stop - part.start)
+            _, functions, _, usable = box.from_nominal(points[part])
+            values[part] = np.where(usable[:, None], functions[:, :size], np.nan)
+            progress(part.stop - part.start)
+    failed = np.isnan(values).any(axis=1).mean() if values.size else 0.0
+    return Draws(dict(zip(names, values.T, strict=True)), float(failed), points)
 
 
 def ranges(
-    solution: Reconstruction, names: Sequence[str], sigmas: float = 3.0, seed: int = 0
+    solution: Reconstruction,
+    names: Sequence[str],
+    sigmas: float = SIGMAS,
+    seed: int = 0,
+    drawn: Draws | None = None,
+    progress: Callable[[int], object] = lambda draws: None,
 ) -> dict[str, Range]:
-    """The lowest and highest value of each quantity over the limits of what is known."""
-    known = solution.system.known
-    kept, rest = _independent(solution)
-    solver = _Solving(solution, {n: item for n, item in known.items() if n not in rest})
-    limits = {name: known[name].limits(sigmas) for name in (*kept, *rest)}
-    endless = _endless(solver, known, names)
-    ratios = [name for name in names if name in COEFFICIENTS and name not in known]
+    """The lowest and highest value of each quantity over the limits of what is known. The search
+    begins from ``drawn``, too."""
+    box = _Box(solution, names, sigmas)
+    rng = np.random.default_rng([seed, 0])
+    taken = 0
 
-    def data_at(points: Floats) -> dict[str, Floats]:
-        columns = {}
-        for i, name in enumerate(kept):
-            low, high = limits[name]
-            columns[name] = np.where(points[:, i] < 1, low + points[:, i] * (high - low), high)
-        return columns
+    def budget(points: int) -> bool:
+        nonlocal taken
+        taken += points
+        progress(points)
+        return taken < BUDGET
 
-    def impacts(points: Floats) -> tuple[State, NDArray[np.bool_]]:
-        state, usable = solver(data_at(points))
-        return state, np.broadcast_to(usable, len(points))  # one where nothing is left to vary
-
-    def outputs(points: Floats) -> Floats:
-        state, usable = impacts(points)
-        with np.errstate(all="ignore"):
-            columns = [_quantity(state, known, name) for name in names]
-        columns += [state.divisor(name) for name in ratios]
-        broad = [np.broadcast_to(column, usable.shape) for column in columns]
-        return np.where(usable[:, None], np.stack(broad, axis=1), np.nan)
-
-    def within(points: Floats) -> Floats:
-        """How far inside the redundant values' limits, of their widths."""
-        state, usable = impacts(points)
-        inside = np.full(len(points), 1.0)
-        for name in rest:
-            low, high = limits[name]
-            nearest = np.minimum(state[name] - low, high - state[name]) / (high - low)
-            inside = np.minimum(inside, nearest + 1e-9)
-        return np.where(usable & ~np.isnan(inside), inside, -1.0)
-
-    adjusted = {item.name: item.adjusted for item in solution.adjusted}
-    nominal = [(adjusted[n] - limits[n][0]) / (limits[n][1] - limits[n][0]) for n in kept]
-    searched = extremes(
-        Piece(
-            _each_once(outputs),
-            len(names),
-            _each_once(within) if rest else None,
-        ),
-        len(kept),
-        np.random.default_rng([seed, 0]),
-        known=np.clip(np.array([nominal]), 0.0, 1.0),
-        scattered=SCATTERED,
-        least_gain=LEAST_GAIN,
+    points = box.inside(rng, budget)
+    if drawn is not None and drawn.points.shape[1] == points.shape[1]:
+        points = np.concatenate([points, drawn.points])
+    none = {name: Range(np.nan, np.nan, {}, {}) for name in names}
+    if not len(points):
+        return none
+    functions = np.concatenate(
+        [box.from_nominal(points[i : i + CHUNK])[1] for i in range(0, len(points), CHUNK)]
     )
-
-    def inputs(point: Floats) -> dict[str, float]:
-        return {name: float(column[0]) for name, column in data_at(point[None]).items()}
-
+    count = functions.shape[1]
+    number, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
+    height = np.where(np.isfinite(functions), functions, np.nan)[:, number] * sense
+    height = np.where(np.isnan(height), -np.inf, height)
+    # the best of each part of the points: climbers that stand apart
+    parts = [np.arange(i, len(points), STARTS) for i in range(min(STARTS, len(points)))]
+    first = np.concatenate([part[height[part].argmax(axis=0)] for part in parts])
+    number, sense = np.tile(number, len(parts)), np.tile(sense, len(parts))
+    span = np.nanmax(height, axis=0, initial=-np.inf) + np.nanmax(-height, axis=0, initial=-np.inf)
+    with np.errstate(all="ignore"):
+        finite = np.where(np.isfinite(functions), functions, np.nan)
+        span = np.nan_to_num(np.nanmax(finite, axis=0) - np.nanmin(finite, axis=0))
+    start = points[first]
+    u, _, reached, ended = climb(
+        box, start, box.from_nominal(start)[0], number, sense, LEAST_GAIN * span[number], budget
+    )
+    final = reached[np.arange(len(u)), number] * sense
+    final = np.where(np.isnan(final), -np.inf, final).reshape(len(parts), -1)
+    winner = final.argmax(axis=0)
+    extreme = np.where(np.isinf(final.max(axis=0)), np.nan, final.max(axis=0))
+    at = u.reshape(len(parts), 2 * count, -1)[winner, np.arange(2 * count)]
+    done = ended.reshape(len(parts), -1)[winner, np.arange(2 * count)]
+    lower, upper = -extreme[:count], extreme[count:]
+    endless = set(_endless(box.solver, solution.system.known, names))
+    # what divides a coefficient takes both signs
+    divided = {name for i, name in enumerate(box.ratios, len(names)) if lower[i] < 0 < upper[i]}
     return {
         name: Range(-np.inf, np.inf, {}, {})
-        if name in endless
+        if name in endless | divided
         else Range(
-            float(searched.lower[i]),
-            float(searched.upper[i]),
-            inputs(searched.at_lower[i]),
-            inputs(searched.at_upper[i]),
+            float(lower[i]),
+            float(upper[i]),
+            box.inputs(at[i]),
+            box.inputs(at[count + i]),
+            bool(done[i] and done[count + i]),
         )
         for i, name in enumerate(names)
     }
 
 
-def _each_once(function: Callable[[Floats], Floats]) -> Callable[[Floats], Floats]:
-    """Climbers on one corner, or before a face, try the same points."""
+class _Box:
+    """The impacts within limits: functions (the quantities wanted, then what divides coefficients
+    among them) and walls (redundant values, 0 to 1 from limit to limit) over k coordinates, 0 to 1
+    each."""
 
-    def once(points: Floats) -> Floats:
-        if not points.shape[1]:
-            return function(points)
-        different, of = np.unique(points, axis=0, return_inverse=True)
-        return function(different)[np.ravel(of)]
+    def __init__(
+        self,
+        solution: Reconstruction,
+        names: Sequence[str],
+        sigmas: float = SIGMAS,
+        walls: bool = True,
+    ) -> None:
+        """``walls``: whether limits are kept, or each value is normal about its nominal one."""
+        known, self.limited = solution.system.known, walls
+        self.kept, self.rest = _independent(solution)
+        adjusted = {item.name: item.adjusted for item in solution.adjusted}
+        self.items = {
+            n: _cut(known[n], sigmas) if walls else _normal(known[n], adjusted[n])
+            for n in (*self.kept, *self.rest)
+        }
+        self.solver = _Solving(solution, {n: v for n, v in known.items() if n not in self.rest})
+        self.names = names
+        self.ratios = [n for n in names if n in COEFFICIENTS and n not in self.solver.system.known]
+        self.nominal = solution.values
+        self.middle = np.clip(
+            np.array([[self._share(n, adjusted[n]) for n in self.kept]]), 0.0, 1.0
+        ).reshape(1, len(self.kept))
 
-    return once
+    def _share(self, name: str, value: Any) -> Any:
+        item = self.items[name]
+        return (value - item.low) / (item.high - item.low)
+
+    def data(self, u: Floats) -> dict[str, Floats]:
+        """The known values at points of the box; exact at the limits."""
+        columns = {}
+        for i, name in enumerate(self.kept):
+            item = self.items[name]
+            columns[name] = np.where(
+                u[:, i] < 1, item.low + u[:, i] * (item.high - item.low), item.high
+            )
+        return columns
+
+    def inputs(self, u: Floats) -> dict[str, float]:
+        return {name: float(column[0]) for name, column in self.data(u[None]).items()}
+
+    def drawn(self, rng: np.random.Generator, count: int) -> Floats:
+        """Points of the box by the coordinates' own distributions."""
+        columns = [self._share(n, self.items[n].draws(rng, count)) for n in self.kept]
+        return np.stack(columns, axis=1) if columns else np.empty((count, 0))
+
+    # -- impacts
+
+    def _told(self, state: State, count: int) -> tuple[Floats, Floats]:
+        """Functions and walls of impacts, real or complex."""
+        known = self.solver.system.known
+        columns = []
+        for name in self.names:
+            value = state.values[name] if name in known and name in PARAMETERS else state[name]
+            columns.append(_near(name, value, self.nominal.get(name)))
+        columns += [state.divisor(name) for name in self.ratios]
+        walls = [
+            self._share(name, _near(name, state[name], self.items[name].nominal))
+            for name in self.rest
+        ]
+        stacked = [np.broadcast_to(column, count) for column in (*columns, *walls)]
+        whole = np.stack(stacked, axis=1) if stacked else np.empty((count, 0))
+        return whole[:, : len(columns)], whole[:, len(columns) :]
+
+    def _found(
+        self, u: Floats, x: Floats, state: State, usable: Flags
+    ) -> tuple[Floats, Floats, Floats, Flags]:
+        with np.errstate(all="ignore"):
+            functions, walls = self._told(state, len(u))
+        usable = usable & np.isfinite(walls).all(axis=1)
+        return x, functions, np.where(np.isfinite(walls), walls, -1e9), usable
+
+    def from_nominal(self, u: Floats) -> tuple[Floats, Floats, Floats, Flags]:
+        """As `at`, reached from the nominal impact."""
+        x, state, usable = self.solver(self.data(u), len(u))
+        return self._found(u, x, state, usable)
+
+    def at(self, u: Floats, guess: Floats) -> tuple[Floats, Floats, Floats, Flags]:
+        """`ascent.Landscape`."""
+        data = self.data(u)
+        with np.errstate(all="ignore"):
+            x, settled = self.solver.newton(data, guess)
+        return self._found(u, x, self.solver.system.state(x, data), settled)
+
+    def slopes(self, u: Floats, x: Floats) -> tuple[Floats, Floats, Floats]:
+        """`ascent.Landscape`: by the derivatives of the conditions, without error."""
+        system, (n, k) = self.solver.system, u.shape
+        data = self.data(u)
+        with np.errstate(all="ignore"):
+            jacobian = system.linearized(x, system.left, data, data)[1].transpose(2, 0, 1)
+            moved = {name: np.tile(column.astype(complex), k) for name, column in data.items()}
+            for i, name in enumerate(self.kept):
+                item = self.items[name]
+                moved[name][i * n : (i + 1) * n] += 1j * _TINY * (item.high - item.low)
+            still = np.tile(x.astype(complex), k)
+            left = np.imag(system.left(system.state(still, moved), moved)) / _TINY
+            right = np.broadcast_to(left, (len(left), k * n)).reshape(-1, k, n).transpose(2, 0, 1)
+            turns = -_solutions_of(jacobian, right)
+            still += 1j * _TINY * turns.transpose(1, 2, 0).reshape(len(x), -1)
+            functions, walls = (
+                (np.imag(part) / _TINY).reshape(k, n, -1).transpose(1, 2, 0)
+                for part in self._told(system.state(still, moved), k * n)
+            )
+        return np.nan_to_num(functions), np.nan_to_num(walls), turns
+
+    def log_volume(self, u: Floats, x: Floats) -> Floats:
+        """The logarithm, but for a constant, of how much of the space of velocities before,
+        coefficients and vehicles a piece of the box takes up around its impacts: 0 where the known
+        values do not determine all, or are taken for normal ones.
+
+        With the laws L (Equations 15, 16 and 18), the impulse P and a coefficient c that is not
+        known, |dL/dP| over |d(laws and known values)/d(velocities, P)| and each |dL/dc|."""
+        if not (self.solver.square and self.limited):
+            return np.zeros(len(u))
+        system, data = self.solver.system, self.data(u)
+        jacobian = system.linearized(x, system.left, data, data)[1]
+        state = system.state(x, data)
+        laws = [n for n in COEFFICIENTS if not (system.point and n == "EM")]
+        values = {**state.values, **dict(zip(VELOCITIES, state.before, strict=True))}
+        divided = np.zeros(len(u))
+        for name in laws:
+            if name not in system.known:
+                values[name] = state[name]
+                divided += np.log(np.abs(state.divisor(name)))
+        rows = []
+        for name in IMPULSES[: len(laws)]:
+            pushed = State({**values, name: values[name] + 1j * _TINY}, state.here)
+            rows.append([np.broadcast_to(np.imag(pushed.law(n)), len(u)) for n in laws])
+        forward = np.linalg.slogdet(np.array(rows).transpose(2, 0, 1) / _TINY)[1]
+        inverse = np.linalg.slogdet(jacobian.transpose(2, 0, 1))[1]
+        return np.asarray(forward - inverse - divided)
+
+    # -- points within all walls
+
+    def scattered(self, rng: np.random.Generator) -> Floats:
+        """Points spread over the box and its faces, the nominal impact first."""
+        k = len(self.kept)
+        strata = rng.permuted(np.tile(np.arange(SCATTERED), (k, 1)), axis=1).T
+        points = (strata + rng.random(strata.shape)) / SCATTERED
+        on_faces = rng.random(points.shape) < rng.choice([0.0, 0.5, 1.0], (SCATTERED, 1))
+        points = np.where(on_faces, np.round(points), points)
+        return np.concatenate([self.middle, points])
+
+    def inside(
+        self, rng: np.random.Generator, taken: Callable[[int], bool] = lambda points: True
+    ) -> Floats:
+        """Points of the box that lie within all walls; none where none was found."""
+        points = self.scattered(rng)
+        x, _, walls, usable = self.from_nominal(points)
+        outside = np.maximum(np.maximum(-walls, walls - 1), 0.0).max(axis=1, initial=0.0)
+        outside = np.where(usable, outside, np.inf)
+        good = outside <= OUTSIDE
+        if not self.rest or good.sum() >= SEEKERS:
+            return points[good]
+        nearest = np.argsort(outside, kind="stable")[:SEEKERS]
+        nearest = nearest[np.isfinite(outside[nearest]) & ~good[nearest]]
+        nobody = np.full(len(nearest), -1)
+        u, _, _, _ = climb(
+            *(self, points[nearest], x[:, nearest], nobody, np.ones(len(nearest))),
+            *(np.full(len(nearest), OUTSIDE), taken),
+        )
+        _, _, walls, usable = self.from_nominal(u)
+        reached = usable & ((walls >= -OUTSIDE) & (walls <= 1 + OUTSIDE)).all(axis=1)
+        return np.concatenate([points[good], u[reached]])
+
+    def proper_density(self, u: Floats, x: Floats, walls: Floats) -> Floats:
+        """`density` over the velocities before, the coefficients and the vehicles."""
+        with np.errstate(all="ignore"):
+            whole = self.density(u, walls) + self.log_volume(u, x)
+        return np.where(np.isnan(whole), -np.inf, whole)
+
+    def density(self, u: Floats, walls: Floats, beyond: Floats | float = 0.0) -> Floats:
+        """The logarithm of all known values' density, but for a constant; ``beyond``: how far the
+        walls are set back."""
+        shares = np.concatenate([u, walls], axis=1)
+        back = np.concatenate([np.zeros(u.shape[1]), np.broadcast_to(beyond, walls.shape[1])])
+        inside = ((shares >= -back) & (shares <= 1 + back)).all(axis=1)
+        whole = np.where(inside, 0.0, -np.inf)
+        for i, item in enumerate(self.items.values()):
+            if item.kind != "uniform":
+                whole += _log_density(item, np.clip(shares[:, i], 0.0, 1.0))
+        return whole
 
 
-def _quantity(state: State, known: Mapping[str, Uncertain], name: str) -> Floats:
-    """A quantity of drawn impacts; a coefficient that is known is what was drawn."""
-    value: Floats = state.values[name] if name in known and name in state.values else state[name]
-    return value
+def _near(name: str, value: Floats, nominal: float | None) -> Floats:
+    """A course by full turns so that it is near the nominal one; other quantities as they are."""
+    if name not in COURSES or nominal is None:
+        return value
+    return np.asarray(value - 360 * np.round((np.real(value) - nominal) / 360))
+
+
+def _cut(item: Uncertain, sigmas: float) -> Uncertain:
+    """The same within finite limits."""
+    low, high = item.limits(sigmas)
+    return replace(item, low=low, high=high)
+
+
+def _normal(item: Uncertain, adjusted: float) -> Uncertain:
+    """A normal value instead, that reaches well beyond the adjusted one."""
+    deviation = standard_deviation(item)
+    low, high = sorted((item.nominal, adjusted))
+    return Uncertain(
+        *("normal", item.nominal, low - FAR * deviation, high + FAR * deviation), deviation
+    )
+
+
+def _log_density(item: Uncertain, share: Floats) -> Floats:
+    """Of a normal or triangular value so far from limit to limit, but for a constant."""
+    value = item.low + share * (item.high - item.low)
+    if item.kind == "normal":
+        return -0.5 * np.square((value - item.nominal) / item.deviation)
+    rise, fall = item.nominal - item.low, item.high - item.nominal
+    with np.errstate(divide="ignore", invalid="ignore"):
+        up = (value - item.low) / rise if rise else np.ones(len(share))
+        down = (item.high - value) / fall if fall else np.ones(len(share))
+        return np.log(np.clip(np.minimum(up, down), 0.0, 1.0))
+
+
+def _walked(
+    box: _Box, count: int, rng: np.random.Generator, progress: Callable[[int], object]
+) -> tuple[Floats, Floats]:
+    """``count`` points within all walls, by Markov chains, and the functions there; none where
+    there is no such point."""
+    begin = box.inside(rng)
+    if not len(begin):
+        return begin, begin
+    chains = -(-count // WALKS)
+    # draws as without walls, and points between those inside: out of a corner hardly a step leads
+    free = box.drawn(rng, CHUNK)
+    shares = rng.dirichlet(np.ones(4), chains)[:, :, None]
+    free = np.concatenate(
+        [free, (shares * begin[rng.integers(len(begin), size=(chains, 4))]).sum(axis=1)]
+    )
+    x, _, met, usable = box.from_nominal(free)
+    inside = usable & np.isfinite(box.density(free, met))
+    weights = np.zeros(len(free))
+    if inside.any():
+        x, points, level = x[:, inside], free[inside], met[inside]
+        more = box.proper_density(points, x, level) - box.density(points, np.full_like(level, 0.5))
+        weights[inside] = np.exp(np.nan_to_num(more - more.max(), nan=-np.inf))
+    else:
+        weights, free, met = np.ones(len(begin)), begin, box.from_nominal(begin)[2]
+    if (weights[:CHUNK] > 0).sum() >= ENOUGH:
+        weights[CHUNK:] = 0.0
+    weights /= weights.sum()
+    u = free[rng.choice(len(free), chains, p=weights)]
+    seen = (np.abs(met - 0.5) < NEAR).all(axis=1)
+    free, met = free[seen], met[seen]
+    center = u[:1]
+    x, _, level, _ = box.from_nominal(center)
+    bends = box.slopes(center, x)[1][0]
+    k = len(box.kept)
+    one, other = np.triu_indices(k)
+    model = np.concatenate([level, bends.T, np.zeros((len(one), len(box.rest)))])
+
+    def terms(points: Floats) -> Floats:
+        off = points - center
+        return np.concatenate([np.ones((len(off), 1)), off, off[:, one] * off[:, other]], axis=1)
+
+    precision = 12 * (np.eye(k) + bends.T @ bends)
+    root = np.linalg.cholesky(np.linalg.inv(precision)).T * 2.4 / np.sqrt(k)
+    x, functions, walls, _ = box.from_nominal(u)
+    whole, drawn = box.proper_density(u, x, walls), []
+    back = 1.1 * np.abs(walls - terms(u) @ model).max(axis=0)
+    for walk in range(UNSEEN + WALKS):
+        height = plain = box.density(u, terms(u) @ model, back)
+        v = u
+        for pace in range(PACES):
+            move = rng.standard_normal(v.shape) @ root
+            if pace % 2:
+                move *= rng.random(v.shape) < 0.3
+            tried = v + move * np.exp(rng.standard_normal((chains, 1)))
+            after = box.density(tried, terms(tried) @ model, back)
+            moved = -rng.standard_exponential(chains) < after - height
+            v, height = np.where(moved[:, None], tried, v), np.where(moved, after, height)
+        x, values, ahead, usable = box.from_nominal(v)
+        after = np.where(usable, box.proper_density(v, x, ahead), -np.inf)
+        moved = -rng.standard_exponential(chains) < (after - whole) - (height - plain)
+        u, walls = np.where(moved[:, None], v, u), np.where(moved[:, None], ahead, walls)
+        functions = np.where(moved[:, None], values, functions)
+        whole = np.where(moved, after, whole)
+        if walk < LEARNT:
+            # who started where hardly anybody comes follows one who has moved
+            if moved.any():
+                of = np.where(moved, np.arange(chains), rng.choice(np.flatnonzero(moved), chains))
+                u, walls, functions, whole = u[of], walls[of], functions[of], whole[of]
+            # the walls as they were met, and how far they are from that
+            near = usable & (np.abs(ahead - 0.5) < NEAR).all(axis=1)
+            points = np.concatenate([free, u, v[near]])
+            level = np.concatenate([met, walls, ahead[near]])
+            matrix = terms(points)
+            square = matrix.T @ matrix
+            square += RIDGE * np.trace(square) / len(square) * np.eye(len(square))
+            model = np.linalg.solve(square, matrix.T @ level)
+            back = 1.1 * np.abs(walls - terms(u) @ model).max(axis=0)
+            spread = np.cov(u.T).reshape(k, k) + 1e-6 * np.eye(k)
+            root = np.linalg.cholesky(spread).T * 2.4 / np.sqrt(k)
+        elif walk >= UNSEEN:
+            drawn.append((u, functions))
+            progress(chains)
+    points, values = (np.concatenate(part)[:count] for part in zip(*drawn, strict=True))
+    return points, values
 
 
 class _Solving:
@@ -199,8 +525,8 @@ class _Solving:
         self.inverse, null = pseudo_inverse(jacobian)
         self.square = jacobian.shape[0] == jacobian.shape[1] and not null.shape[1]
 
-    def __call__(self, data: Mapping[str, Floats]) -> tuple[State, NDArray[np.bool_]]:
-        """The impacts, and which of them meet all conditions."""
+    def __call__(self, data: Mapping[str, Floats], count: int) -> tuple[Floats, State, Flags]:
+        """The ``count`` impacts, as variables and states, and which of them meet all conditions."""
         geometry = None
         if set(data) & set(GEOMETRY):
             geometry = Geometry.of({**self.system.constants, **data})
@@ -209,8 +535,8 @@ class _Solving:
                 x = self._linear(data, geometry)
                 settled = np.asarray(np.isfinite(x).all(axis=0))
             else:
-                x, settled = self._chords(data, geometry)
-        return self.system.state(x, data, geometry), settled
+                x, settled = self._chords(data, geometry, count)
+        return x, self.system.state(x, data, geometry), settled
 
     def _linear(self, data: Mapping[str, Floats], geometry: Geometry | None) -> Floats:
         """The conditions are linear in the variables: their matrix, column by column, and right
@@ -226,9 +552,8 @@ class _Solving:
         return -_solved(matrices, right.T).T
 
     def _chords(
-        self, data: Mapping[str, Floats], geometry: Geometry | None
-    ) -> tuple[Floats, NDArray[np.bool_]]:
-        count = len(next(iter(data.values()))) if data else 1
+        self, data: Mapping[str, Floats], geometry: Geometry | None, count: int
+    ) -> tuple[Floats, Flags]:
         x = np.repeat(self.x, count, axis=1)
         residual = self.left(x, data, geometry)
         left = np.abs(residual).max(axis=0, initial=0.0)
@@ -243,9 +568,10 @@ class _Solving:
         settled = left <= SETTLED
         if not settled.all():
             wild = np.broadcast_to(~settled, (count,))
-            x[:, wild] = self._newton({n: column[wild] for n, column in data.items()}, wild.sum())
-            residual = self.left(x, data, geometry)
-            settled = np.abs(residual).max(axis=0, initial=0.0) <= 100 * SETTLED
+            part = {n: column[wild] for n, column in data.items()}
+            x[:, wild], met = self.newton(part, np.repeat(self.x, wild.sum(), axis=1))
+            settled = np.broadcast_to(settled, (count,)).copy()
+            settled[wild] = met
         return x, np.broadcast_to(settled, (count,))
 
     def left(
@@ -253,10 +579,10 @@ class _Solving:
     ) -> Floats:
         return np.asarray(self.system.left(self.system.state(x, data, geometry), data))
 
-    def _newton(self, data: Mapping[str, Floats], count: int) -> Floats:
-        """The same by Newton's method, from the nominal impact. A point that comes no nearer a
+    def newton(self, data: Mapping[str, Floats], x: Floats) -> tuple[Floats, Flags]:
+        """The same by Newton's method, from the impacts ``x``. A point that comes no nearer a
         solution for a while has none in reach."""
-        x = np.repeat(self.x, count, axis=1)
+        x, count = x.copy(), x.shape[1]
         least, idle = np.full(count, np.inf), np.zeros(count, int)
         going = np.arange(count)
         for _ in range(NEWTONS):
@@ -271,45 +597,8 @@ class _Solving:
                 break
             step = _solved(jacobian[:, :, more].transpose(2, 0, 1), residual[:, more].T).T
             x[:, going] = here[:, more] - np.nan_to_num(step)
-        return x
-
-
-class _Adjusting:
-    """Impacts adjusted to measured values: n of each -> n impacts."""
-
-    def __init__(self, solution: Reconstruction) -> None:
-        self.system, self.x = solution.system, solution.x
-
-    def __call__(self, data: Mapping[str, Floats]) -> tuple[State, NDArray[np.bool_]]:
-        system, count = self.system, len(self.system.conditions)
-        x = np.repeat(self.x, len(next(iter(data.values()))), axis=1)
-        size, going = len(system.variables), np.arange(x.shape[1])
-        with np.errstate(all="ignore"):
-            for _ in range(ADJUSTMENTS):
-                targets = {name: column[going] for name, column in data.items()}
-                residual, slopes = system.linearized(x[:, going], system.left, targets=targets)
-                jacobian = slopes.transpose(2, 0, 1)
-                exact, loose = jacobian[:, :count], jacobian[:, count:]
-                # tight tolerances must not drown the conditions
-                weight = np.abs(loose).max(axis=(1, 2), initial=1e-300)
-                loose = loose / weight[:, None, None]
-                # Lagrange: the normal equations bordered with the conditions
-                bordered = np.zeros((len(going), size + count, size + count))
-                normal = loose.transpose(0, 2, 1) @ loose
-                bordered[:, :size, :size] = normal + DAMPING * np.eye(size)
-                bordered[:, :size, size:] = exact.transpose(0, 2, 1)
-                bordered[:, size:, :size] = exact
-                right = np.zeros((len(going), size + count))
-                right[:, :size] = np.einsum("nji,jn->ni", loose, residual[count:] / weight)
-                right[:, size:] = residual[:count].T
-                step = _solved(bordered, right).T[:size]
-                x[:, going] -= step
-                going = going[np.abs(step).max(axis=0, initial=0.0) > ADJUSTED]
-                if not len(going):
-                    break
-            state = system.state(x)
-            met = np.abs(system.left(state, data)[:count]).max(axis=0, initial=0.0) <= 1e-9
-        return state, np.broadcast_to(met, x.shape[1:])
+        over = np.abs(self.left(x, data)).max(axis=0, initial=0.0)
+        return x, np.broadcast_to(over <= 100 * SETTLED, (count,))
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats:
@@ -351,6 +640,18 @@ def _eliminated(matrices: Floats, right: Floats) -> Floats:
 def _least(matrices: Floats, right: Floats) -> Floats:
     """The least solutions, of the equations that a singular matrix leaves."""
     product: Floats = (np.linalg.pinv(matrices, rcond=_SINGULAR) @ right[:, :, None])[:, :, 0]
+    return product
+
+
+def _solutions_of(matrices: Floats, right: Floats) -> Floats:
+    """The solutions for several right sides, n x rows x k, the least where there are many."""
+    if matrices.shape[1] == matrices.shape[2]:
+        try:
+            return np.asarray(np.linalg.solve(matrices, right))
+        except np.linalg.LinAlgError:
+            pass
+    finite = np.isfinite(matrices).all(axis=(1, 2), keepdims=True)
+    product: Floats = np.linalg.pinv(np.where(finite, matrices, 0.0), rcond=_SINGULAR) @ right
     return product
 
 

@@ -15,7 +15,7 @@ from .. import notebook
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..plaintable import number, paragraph, plain, table
 from ..reconstruction import adjustment
-from ..reconstruction.adjustment import Reconstruction, typed_friction
+from ..reconstruction.adjustment import Reconstruction, standard_deviation, typed_friction
 from ..reconstruction.doublerange import within_doubles
 from ..reconstruction.solutiontable import (
     CHANGES,
@@ -74,7 +74,7 @@ def uncertainty(
     drawn, bounds = None, {}
     if samples and names and not solution.assumed:
         drawn = draws(solution, names, samples, seed, progress)
-        bounds = ranges(solution, names, seed=seed)
+        bounds = ranges(solution, names, seed=seed, drawn=drawn, progress=progress)
     return Uncertainty(
         names=tuple(names),
         deviations=deviations,
@@ -86,8 +86,8 @@ def uncertainty(
 
 
 def _along_an_axis(solution: Reconstruction, name: str) -> bool:
-    """Whether a speed or course says no more than the velocity's components do."""
-    components = SPEEDS.get(COURSES.get(name, name), ())
+    """Whether a course says no more than the velocity's components do."""
+    components = SPEEDS[COURSES[name]] if name in COURSES else ()
     known = solution.system.known
     return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
 
@@ -120,8 +120,8 @@ def warnings(
         )
     if solution.against_sign:
         lines.append(
-            "friction drives the sliding: neither sign of MU opposes the sliding it leads to "
-            "(line 400)"
+            "neither sign of MU is the one that line 400 gives it: no friction that opposes the "
+            "sliding before the impact joins what is known"
         )
     if solution.assumed:
         lines.append(
@@ -139,7 +139,16 @@ def warnings(
     lines += _ill_posed(solution, spread, units)
     missing = [name for name, bound in spread.ranges.items() if math.isnan(bound.lower)]
     if missing:
-        lines.append("no impact was found that lies within the limits of all known values at once")
+        lines.append(
+            "no impact was found that lies within the limits of all known values at once: the "
+            "draws are those of normal values with the same standard deviations"
+        )
+    unsearched = [name for name, bound in spread.ranges.items() if not bound.searched]
+    if unsearched:
+        lines.append(
+            "the search for bounds ended before its time; not searched to the end, and perhaps "
+            f"wider: {' '.join(unsearched)}"
+        )
     if spread.draws and spread.draws.failed:
         lines.append(f"{100 * spread.draws.failed:.3g} % of the draws have no solution")
     return lines + sentences(int(values.get("STATUS", 0)), values)
@@ -236,11 +245,15 @@ def _adjustments(solution: Reconstruction, units: System) -> list[str]:
     rows = []
     for a in solution.adjusted:
         unit = quantity(a.name).unit
-        shown = [units.shown(unit, x) for x in (a.measured, a.tolerance, a.adjusted)]
-        cells = [a.name, number(shown[0]), number(shown[1], 3), number(shown[2])]
+        item = solution.system.known[a.name]
+        half = math.nan if item.kind == "normal" else a.tolerance
+        sizes = [units.shown(unit, x) for x in (half, standard_deviation(item))]
+        measured, adjusted = (number(units.shown(unit, x)) for x in (a.measured, a.adjusted))
+        cells = [a.name, measured, *(number(size, 3) for size in sizes), adjusted]
         rows.append([*cells, f"{a.moved + 0.0:.2f}", units.label(unit)])
-    heading = ["known", "measured", "+-", "adjusted", "moved, tolerances", "unit"]
-    lines = table(rows, heading, left=(0, 5))
+    heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
+    lines = table(rows, heading, left=(0, 6))
+    lines += ["A tolerance is the half-width of limits, or the sd of a normal value."]
     count = solution.redundancy
     lines += paragraph(
         "Adjusted by least squares so that Equations 13 to 18 hold exactly (adjustment of "
@@ -254,9 +267,9 @@ def _adjustments(solution: Reconstruction, units: System) -> list[str]:
 def _spreads(spread: Uncertainty, units: System) -> list[str]:
     if not spread.names:
         return []
-    heading = ["result", "first order +-"]
+    heading = ["result", "first order sd"]
     if spread.draws:
-        heading += ["draws +-", *(f"{100 * share:g} %" for share in QUANTILES)]
+        heading += ["draws sd", *(f"{100 * share:g} %" for share in QUANTILES)]
         heading += ["lower bound", "upper bound"]
     rows = []
     for name in spread.names:

@@ -1,0 +1,176 @@
+"""Climbing within limits: steps of sequential linear programming, many climbers at once.
+
+A function of k coordinates, each from 0 to 1, with r walls (functions that must stay from 0 to 1,
+too) is replaced by its slopes within reach of each climber. The linear programs that remain are
+solved by a primal-dual interior-point method; where the walls bend away from their slopes the
+program is solved again with them put right. A step that gains doubles the reach, one that does not
+cuts it to a quarter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+REACH = 0.5
+LAST_REACH = 1e-7
+"""The longest step of a coordinate, and the shortest that is tried."""
+OUTSIDE = 1e-9
+"""A wall passed by no more is touched."""
+ROUNDS = 80
+"""Of climbing at most; a vertex takes about ten, a bend inside twenty to forty."""
+CORRECTIONS = 3
+"""Times the walls are put right."""
+CENTRED = 1e-8
+"""Where the interior-point method ends: nearer the walls rounding drives it off."""
+ITERATIONS = 20
+"""Of the interior-point method: each leaves about a fifth of what the last one did."""
+
+
+class Landscape(Protocol):
+    """What is climbed: m functions and r walls over k coordinates."""
+
+    def at(self, u: Array, guess: Array) -> tuple[Array, Array, Array, Flags]:
+        """Coordinates, n x k, and the states they are reached from, s x n -> the states there, the
+        functions, n x m, the walls, n x r, and whether there is anything at all."""
+
+    def slopes(self, u: Array, x: Array) -> tuple[Array, Array, Array]:
+        """Of functions, n x m x k, walls, n x r x k, and states, n x s x k."""
+
+
+def climb(
+    ground: Landscape,
+    u: Array,
+    x: Array,
+    number: NDArray[np.intp],
+    sense: Array,
+    least: Array,
+    taken: Callable[[int], bool] = lambda points: True,
+) -> tuple[Array, Array, Array, Flags]:
+    """Where c climbers that start at ``u`` (c x k) and the states ``x`` (s x c) end: coordinates,
+    states, all functions there, and whether each climber came to its end.
+
+    ``number``: whose function each climbs, -1 for those who only seek the way inside the walls;
+    ``sense``: +1 up, -1 down; ``least``: the gain not worth a step; ``taken`` is told how many
+    points were looked at, and says whether to go on.
+    """
+    x, functions, walls, usable = ground.at(u, x)
+    u, reach = u.copy(), np.where(usable, REACH, 0.0)
+    for _ in range(ROUNDS):
+        who = np.flatnonzero(reach >= LAST_REACH)
+        if not len(who) or not taken(len(who) * (u.shape[1] + CORRECTIONS)):
+            break
+        slopes, bends, turns = ground.slopes(u[who], x[:, who])
+        here, inside = u[who], walls[who]
+        at = np.arange(len(who))
+        uphill = sense[who, None] * slopes[at, number[who]]
+        height = _height(functions[who], inside, number[who], sense[who])
+        seeking = number[who] < 0
+        away = (inside < 0).astype(float) - (inside > 1)
+        uphill[seeking] = np.einsum("cr,crk->ck", away, bends)[seeking]
+        low, high = np.maximum(-here, -reach[who, None]), np.minimum(1 - here, reach[who, None])
+        # who stands outside a wall may go no farther out
+        below, above = np.minimum(-inside, 0.0), np.maximum(1 - inside, 0.0)
+        outer = np.maximum(np.maximum(-inside, inside - 1).max(axis=1, initial=0.0), OUTSIDE)
+        bent = np.zeros_like(inside)
+        step = best(uphill, low, high, bends, below, above)
+        promised = (uphill * step).sum(axis=1)
+        for again in range(CORRECTIONS):
+            tried = np.clip(here + step, 0.0, 1.0)
+            guess = x[:, who] + np.einsum("csk,ck->sc", turns, tried - here)
+            state, values, reached, good = ground.at(tried, guess)
+            passed = np.maximum(-reached, reached - 1).max(axis=1, initial=0.0)
+            out = good & (passed > outer)
+            if not out.any() or again == CORRECTIONS - 1:
+                break
+            bent[out] = (reached - inside - np.einsum("crk,ck->cr", bends, tried - here))[out]
+            step[out] = best(
+                *(part[out] for part in (uphill, low, high, bends, below - bent, above - bent))
+            )
+        with np.errstate(invalid="ignore"):
+            gain = _height(values, reached, number[who], sense[who]) - height
+        better = good & ~out & (gain > 0)
+        up = who[better]
+        u[up], x[:, up] = tried[better], state[:, better]
+        functions[up], walls[up] = values[better], reached[better]
+        reach[who] = np.where(better, np.minimum(2 * reach[who], REACH), reach[who] / 4)
+        # nothing is promised any more
+        reach[who[promised <= least[who]]] = 0.0
+    return u, x, functions, reach < LAST_REACH
+
+
+def _height(functions: Array, walls: Array, number: NDArray[np.intp], sense: Array) -> Array:
+    own = sense * functions[np.arange(len(functions)), number]
+    outside = np.maximum(np.maximum(-walls, walls - 1), 0.0).sum(axis=1)
+    return np.where(number < 0, -outside, own)
+
+
+def best(uphill: Array, low: Array, high: Array, rows: Array, below: Array, above: Array) -> Array:
+    """The steps, c x k, that go farthest ``uphill`` from ``low`` to ``high`` while ``rows`` (c x r
+    x k) times the step stays from ``below`` to ``above``: c linear programs of one size, by a
+    primal-dual interior-point method. Where a program has no solution, anything."""
+    k, r = rows.shape[2], rows.shape[1]
+    if not r:
+        return np.where(uphill > 0, high, np.where(uphill < 0, low, 0.0))
+    size = np.abs(uphill).max(axis=1, keepdims=True)
+    unit = np.maximum(high, -low).max(axis=1)[:, None]
+    goal = uphill / np.where(size > 0, size, 1.0)
+    floor = np.concatenate([low, below], axis=1) / unit
+    ceiling = np.concatenate([high, above], axis=1) / unit
+    step = 0.5 * (floor + ceiling)[:, :k]
+
+    def all_rows(move: Array) -> Array:
+        return np.concatenate([move, np.einsum("crk,ck->cr", rows, move)], axis=1)
+
+    def back(weights: Array) -> Array:
+        product: Array = weights[:, :k] + np.einsum("crk,cr->ck", rows, weights[:, k:])
+        return product
+
+    def room(values: Array, changes: Array) -> Array:
+        """The longest share of the changes that leaves values above 0, nearly."""
+        shares = np.where(changes < 0, -values / np.where(changes < 0, changes, -1.0), np.inf)
+        return np.minimum(1.0, 0.99 * shares.min(axis=1))[:, None]
+
+    gap = np.maximum(ceiling - floor, 1e-12)
+    over = np.clip(all_rows(step) - floor, 0.1 * gap, gap)
+    under = np.clip(ceiling - all_rows(step), 0.1 * gap, gap)
+    push, pull = 1 / np.maximum(over, 0.1), 1 / np.maximum(under, 0.1)
+    eye = np.eye(r)
+    with np.errstate(all="ignore"):
+        for _ in range(ITERATIONS):
+            mean = 0.1 * ((over * push + under * pull).mean(axis=1) / 2)[:, None]
+            going = mean > CENTRED
+            now = all_rows(step)
+            off_low, off_high = now - floor - over, ceiling - now - under
+            weight = push / over + pull / under
+            want = (mean - over * push - push * off_low) / over
+            want -= (mean - under * pull - pull * off_high) / under
+            right = goal + back(push - pull) + back(want)
+            # diagonal and r rows: solved by way of r equations
+            across = rows / weight[:, None, :k]
+            inner = np.einsum("crk,csk->crs", across, rows) + eye / weight[:, k:, None]
+            plain = right / weight[:, :k]
+            load = np.einsum("crk,ck->cr", rows, plain)
+            finite = np.isfinite(inner).all(axis=(1, 2)) & np.isfinite(load).all(axis=1)
+            inner[~finite], load[~finite] = eye, 0.0
+            try:
+                held = np.linalg.solve(inner, load[:, :, None])[:, :, 0]
+            except np.linalg.LinAlgError:
+                break
+            move = plain - np.einsum("crk,cr->ck", across, held)
+            moved = all_rows(move)
+            d_over, d_under = moved + off_low, off_high - moved
+            d_push = (mean - over * push - push * d_over) / over
+            d_pull = (mean - under * pull - pull * d_under) / under
+            first = going * np.minimum(room(over, d_over), room(under, d_under))
+            second = going * np.minimum(room(push, d_push), room(pull, d_pull))
+            step = step + first * move
+            over, under = over + first * d_over, under + first * d_under
+            push, pull = push + second * d_push, pull + second * d_pull
+    return np.clip(np.nan_to_num(step * unit), low, high)
