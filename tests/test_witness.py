@@ -22,7 +22,7 @@ from impact88.witness import basic
 from impact88.witness.apple import Apple, Lost
 from impact88.witness.hearing import hear, hear_sample, hear_scene
 from impact88.witness.image import APPLE_II_PLUS, read_image
-from impact88.witness.packaged import Case, cases
+from impact88.witness.packaged import Case, cases, own_programs
 from impact88.witness.session import Session
 from installed import impact88
 from tinyrom import CODE, START, rom
@@ -165,6 +165,29 @@ def test_programs_and_calculations_are_compared() -> None:
         assert result(heard.capture[4]) == result(row[4])
     row = ["neg", "8490000001", "", "20", "8410000000:849000000000:20"]
     assert len(hear(machine, Case("arithmetic", "neg", row)).differences) == 1
+
+
+def test_a_folder_of_programs(tmp_path, played: bytes) -> None:
+    path, folder, saved = tmp_path / "own.rom", tmp_path / "programs", tmp_path / "saved"
+    path.write_bytes(rom("HELLO\n", {}, None))
+    folder.mkdir()
+    options = ("--rom", str(path), "--any-rom", "--programs", str(folder), "--save", str(saved))
+    done = impact88("witness", *options)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "holds no .bas" in done.stderr
+    (folder / "same.bas").write_bytes(b'10 PRINT "HELLO"\r\n')
+    heard = hear(Session(path.read_bytes()), own_programs(str(folder))[0])
+    assert {one.what for one in heard.differences} <= {"screen"}  # the small ROM draws none
+    (folder / "other.BAS").write_text("10 INPUT A$:PRINT A$\n")
+    (folder / "other.in").write_text("HI\n")
+    done = impact88("witness", *options)
+    assert done.returncode == 1
+    assert "+?HI" in done.stdout
+    assert "own programs, emulator" in done.stdout
+    assert (saved / "programs" / "same.out").read_text() == "HELLO\n"
+    (folder / "loop.bas").write_text("10 GOTO 10\n")
+    (folder / "other.BAS").write_text(f"10 REM {'X' * 240}\n")
+    assert "row 1 has 247 characters" in impact88("witness", *options).stderr
 
 
 def test_captures_are_drawn_without_repeating() -> None:

@@ -9,6 +9,7 @@ examples:
   impact88 witness --rom apple2plus.rom --captures 50 --random 50 --seed 7
   impact88 witness --rom apple2plus.rom crash.toml --json > witness.json
   impact88 witness --rom apple2plus.rom --captures all --save again
+  impact88 witness --rom apple2plus.rom --programs games   every .bas, with its replies in .in
 
 exit status: 0 no difference; 1 a difference; 2 bad input, or a ROM that does not come to a prompt
 """
@@ -64,6 +65,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--captures", metavar="N", help="N random packaged captures of each kind's mix, or all"
     )
+    parser.add_argument(
+        "--programs",
+        metavar="FOLDER",
+        help="every .bas of a folder, its replies in a .in beside it, on the ROM and the emulator",
+    )
     parser.add_argument("--random", type=int, default=0, metavar="N", help="N fresh scenes")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of what is random")
     parser.add_argument("--any-rom", action="store_true", help="take a ROM that is not known, too")
@@ -100,11 +106,11 @@ def main(args: argparse.Namespace) -> int:
 def _jobs(args: argparse.Namespace) -> list[Job]:
     """What is to be done; all input is read before the machine is started."""
     from ..witness import hearing
-    from ..witness.packaged import ALL, cases
+    from ..witness.packaged import ALL, cases, own_programs
 
     jobs: list[Job] = []
     changes = settings(args.set)
-    asked = args.scenes or args.captures is not None or args.random
+    asked = args.scenes or args.captures is not None or args.random or args.programs
     for number in [args.sample] if args.sample else () if asked else SAMPLES:
         if changes:
             scene = sample(number).replaced(changes)
@@ -118,6 +124,8 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         count = None if args.captures == ALL else _count("--captures", args.captures)
         for case in cases(count, args.seed):
             jobs.append(partial(hearing.hear, case=case))
+    if args.programs:
+        jobs += [partial(hearing.hear, case=case) for case in own_programs(args.programs)]
     if _count("--random", str(args.random)):
         from ..checking.vectors import scenes
 

@@ -22,6 +22,8 @@ BASE, END = 0x400, 0x800
 NORMAL, INVERSE, FLASHING = 0xFF, 0x3F, 0x7F
 _BLANK = 0xA0
 _SMALL_LETTERS = 0xE0
+_TITLE, _TITLE_COLUMN = bytes(code | 0x80 for code in b"APPLE ]["), 15
+"""What switching on shows in the first row."""
 _PENDING_LIMIT = 20_000
 _ESCAPES = {
     **{"@": 0xFC58, "A": 0xFBF4, "B": 0xFC10, "C": 0xFC66},
@@ -52,6 +54,8 @@ class Screen(Editor):
         self._pending: list[tuple[int, str]] = []
         self._pending_size = 0
         ram[BASE:END] = bytes([_BLANK]) * (END - BASE)
+        ram[BASE + _TITLE_COLUMN : BASE + _TITLE_COLUMN + len(_TITLE)] = _TITLE
+        self.move_to_row(1)
 
     # --- characters ---------------------------------------------------------------------------
 

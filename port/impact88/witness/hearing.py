@@ -15,13 +15,15 @@ from typing import Any, NamedTuple
 from ..applesoft.console import Console
 from ..checking import captured
 from ..checking.selfcheck import GOLDEN_RUNS
+from ..emulator.machine import TooManyStatements
 from ..fields import FIELDS, outcome_fields
 from ..files import packaged_bytes
 from ..names import SCENE
 from ..program import emulated
 from ..program.run import run
 from ..scene import Scene, sample
-from .packaged import ARITHMETIC, FUZZ, PROGRAMS, SCENES, Case
+from .apple import Lost
+from .packaged import ARITHMETIC, FUZZ, OWN, PROGRAMS, SCENES, Case
 from .session import Finished, Session
 
 CAPTURE, PORT, EMULATOR, REPLAY, PUBLISHED = "capture", "port", "emulator", "replay", "published"
@@ -63,12 +65,12 @@ def _visible(text: str) -> list[str]:
 
 
 def hear(session: Session, case: Case) -> Heard:
-    """A packaged capture done again on the ROM."""
+    """A packaged capture done again on the ROM, or a program of the user's own."""
     if case.kind == SCENES:
         return hear_scene(session, case.name, Scene(case.data["scene"]), case.data)
     if case.kind == ARITHMETIC:
         return _hear_call(session, case)
-    return _hear_program(session, case)
+    return _hear_own_program(session, case) if case.kind == OWN else _hear_program(session, case)
 
 
 # --- scenes --------------------------------------------------------------------------------------
@@ -169,6 +171,36 @@ def _hear_program(session: Session, case: Case) -> Heard:
         if done["scr"] != case.data["scr"]:
             differences.append(Difference(CAPTURE, "screen", done["scr"], case.data["scr"]))
     return Heard(PROGRAMS, case.name, tuple(others), differences, done)
+
+
+def _hear_own_program(session: Session, case: Case) -> Heard:
+    """A program without a capture, in both: all that is displayed, and the screen at the end. One
+    that does not come to an end is a difference."""
+    program, keys = case.data["bas"], case.data["in"]
+    differences = []
+    try:
+        rom, screen = session.run_program(program, keys), session.apple.screen_text()
+    except Lost as lost:
+        rom, screen = session.apple.take_output(), ""
+        differences.append(Difference(EMULATOR, "the ROM", str(lost), "not compared"))
+    else:
+        try:
+            machine, shown = captured.session(program, keys)
+        except TooManyStatements:
+            allowed = f"no end after {captured.PLENTY:,} statements"
+            differences.append(Difference(EMULATOR, "the emulator", "came to an end", allowed))
+        else:
+            compared = (
+                ("displayed", rom, shown.replace("\0", "")),
+                ("screen", screen, machine.screen_text()),
+            )
+            differences += [
+                Difference(EMULATOR, what, one, other)
+                for what, one, other in compared
+                if one != other
+            ]
+    done = {**case.data, "out": rom, "scr": screen, "instructions": session.apple.instructions}
+    return Heard(OWN, case.name, (EMULATOR,), differences, done)
 
 
 def _hear_call(session: Session, case: Case) -> Heard:

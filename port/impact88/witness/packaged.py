@@ -1,4 +1,4 @@
-"""The packaged captures as cases to be done again: scenes, programs, calls of the arithmetic."""
+"""Cases for the ROM: the packaged captures, to be done again, and a folder of programs."""
 
 from __future__ import annotations
 
@@ -7,13 +7,20 @@ import json
 from collections.abc import Iterator
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+from ..errors import UserError
+from ..files import read_bytes
 from .routines import OPERATIONS
 
 SCENES, PROGRAMS, FUZZ, ARITHMETIC = "scenes", "programs", "fuzz", "arithmetic"
 ALL = "all"
+OWN = "own programs"
+PROGRAM_LIMIT = 1_000_000
+LONGEST_TYPED = 239
+"""Characters of the longest line the monitor's line reader keeps."""
 
 
 class Case(NamedTuple):
@@ -49,6 +56,36 @@ def cases(count: int | None, seed: int = 0) -> list[Case]:
             used.add((operation, place))
             drawn.append(calls[place])
     return drawn
+
+
+def own_programs(folder: str) -> list[Case]:
+    """Every ``.bas`` in a folder, with the replies in the ``.in`` beside it if there is one.
+
+    Raises UserError when there is none, one cannot be read, or a line is too long to be typed.
+    """
+    try:
+        paths = sorted(path for path in Path(folder).iterdir() if path.suffix.lower() == ".bas")
+    except OSError as error:
+        raise UserError(f"cannot be read: {error.strerror or error}", folder) from None
+    if not paths:
+        raise UserError("holds no .bas", folder)
+    return [_own_program(path) for path in paths]
+
+
+def _own_program(path: Path) -> Case:
+    program, replies = _text(path), path.with_suffix(".in")
+    for row, line in enumerate(program.split("\n"), 1):
+        if len(line) > LONGEST_TYPED:
+            raise UserError(
+                f"row {row} has {len(line)} characters; {LONGEST_TYPED} can be typed on a line",
+                str(path),
+            )
+    return Case(OWN, path.stem, {"bas": program, "in": _text(replies) if replies.exists() else ""})
+
+
+def _text(path: Path) -> str:
+    text = read_bytes(str(path), limit=PROGRAM_LIMIT).decode("latin-1")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _golden() -> Any:

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from ..errors import UserError
 from ..files import replacing
 from .hearing import Heard
-from .packaged import ARITHMETIC, FUZZ, PROGRAMS, SCENES, program_index
+from .packaged import ARITHMETIC, FUZZ, OWN, PROGRAMS, SCENES, program_index
 
 _ENDINGS = ("bas", "in", "out", "scr")
 
@@ -35,23 +35,28 @@ def save(folder: str, heard: Iterable[Heard]) -> None:
             calls.setdefault(one.capture[0], []).append("\t".join(one.capture))
         for operation, rows in calls.items():
             _write_gzip(os.path.join(folder, ARITHMETIC, f"{operation}.tsv.gz"), rows)
+    if OWN in kinds:
+        _write_texts(os.path.join(folder, PROGRAMS), kinds[OWN])
     if PROGRAMS in kinds:
         _save_programs(os.path.join(folder, PROGRAMS), kinds[PROGRAMS])
 
 
 def _save_programs(folder: str, heard: list[Heard]) -> None:
-    _make(folder)
-    counts = {}
-    for one in heard:
-        counts[one.name] = str(one.capture["instructions"])
-        for ending in _ENDINGS:
-            if ending in one.capture:
-                with replacing(os.path.join(folder, f"{one.name}.{ending}"), "wb") as file:
-                    file.write(one.capture[ending].encode("latin-1"))
+    _write_texts(folder, heard)
+    counts = {one.name: str(one.capture["instructions"]) for one in heard}
     heading, *rows = program_index()
     with replacing(os.path.join(folder, "index.tsv")) as file:
         for row in [heading, *([*row[:-1], counts[row[0]]] for row in rows if row[0] in counts)]:
             file.write("\t".join(row) + "\n")
+
+
+def _write_texts(folder: str, heard: list[Heard]) -> None:
+    _make(folder)
+    for one in heard:
+        for ending in _ENDINGS:
+            if one.capture.get(ending):
+                with replacing(os.path.join(folder, f"{one.name}.{ending}"), "wb") as file:
+                    file.write(one.capture[ending].encode("latin-1"))
 
 
 def _make(folder: str) -> None:

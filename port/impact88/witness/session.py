@@ -16,10 +16,9 @@ from ..progress import progress
 from ..scene import Scene
 from . import basic, routines
 from .apple import Apple, Lost, State
+from .packaged import LONGEST_TYPED
 
 PROMPT = "]"
-LONGEST_TYPED = 239
-"""Characters of the longest line the monitor's line reader keeps."""
 _OTHER_PROMPTS = {
     "*": "the monitor's prompt *: an older monitor, or no Applesoft in this ROM",
     ">": "the prompt > of Integer BASIC; the listing is Applesoft",
