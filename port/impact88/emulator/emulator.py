@@ -142,13 +142,16 @@ class Applesoft:
         typed = keyed(text).encode("ascii")
         try:
             numbered = split_number(text)
+            number, rest = numbered or (None, text)
             if machine.lock & 0x80:
                 machine.run_locked()
-            elif numbered is None:
-                machine.execute_direct(typed, tokenise(text))
+                return machine.error
+            tokens = tokenise(rest)
+            machine.parse(typed, tokens)
+            if number is None:
+                machine.execute_direct()
             else:
-                number, rest = numbered
-                machine.store_line(number, tokenise(rest))
+                machine.store_line(number, tokens)
         except ValueError:
             return self._complain(ApplesoftError("SYNTAX"))
         except ApplesoftError as error:

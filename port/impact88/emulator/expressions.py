@@ -220,19 +220,7 @@ class Expressions(Variables):
                 self.inttyp = False
                 e, m = stored_at(ram, self.array_element(name, sp - 5))
                 return (e, (m | 0x80000000) << 8, m >> 31) if e else ZERO
-            if subscripts or name & INTEGER or self.subflg:
-                return self._variable(sp - 5, name, subscripts)
-            address = self.simple.get(name)
-            if address is None:
-                return ZERO
-            self.varpnt = address
-            e, m = stored_at(ram, address)
-            return (e, (m | 0x80000000) << 8, m >> 31) if e else ZERO
-        if DIGIT_0 <= byte <= DIGIT_9 or byte == POINT:
-            known = self.atoms.get(pos)
-            if known and known[2]:
-                self.txtptr = known[0]
-                return known[2]
+            return self._variable(sp - 5, name, subscripts)
         self.txtptr = pos
         try:
             return self._other_element(sp, byte)

@@ -17,7 +17,7 @@ from .inputs import BREAK_CODE, Inputs
 from .memory import DIRECT, STACK, TEMPORARIES
 from .text import COMMA, GOTO, is_digit
 from .tokens import TOKENS
-from .variables import SUBFLG_SIMPLE
+from .variables import SUBFLG_SIMPLE, store
 
 FOR_SIZE, FOR_ROOM = 18, 74
 GOSUB_SIZE, GOSUB_ROOM = 7, 64
@@ -102,10 +102,6 @@ class Flow(Inputs):
         """LET with its keyword."""
         self.let(self.sp - 2)
 
-    def expect_equal(self, sp: int) -> int:
-        """SYNCHR of the sign that assigns."""
-        return self.expect(EQUAL, sp)
-
     def let(self, sp: int) -> None:
         """LET. Raises SYNTAX, TYPE MISMATCH, ILLEGAL QUANTITY, and what its formulas do."""
         known = self.atoms.get(self.txtptr)
@@ -125,7 +121,8 @@ class Flow(Inputs):
         elif of_integer:
             self.assign_integer(target, fac, sp - 2)
         else:
-            self.assign(target, fac)
+            e, m, s = self.fac = rounded(fac) if fac[1] & 0xFF else fac
+            store(self.ram, target, e, m >> 8 & 0x7FFFFFFF | s << 31)
 
     def for_(self) -> None:
         """FOR. Raises OUT OF MEMORY, SYNTAX, TYPE MISMATCH."""

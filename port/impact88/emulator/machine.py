@@ -15,8 +15,10 @@ from typing import Any
 from ..applesoft.errorcodes import ApplesoftError
 from .editing import Editing
 from .faults import Fault, Restart, TooManyStatements, placed
+from .flow import EQUAL
 from .intrinsics import address_of
 from .memory import DIRECT, INPUT_BUFFER, RTS, SPEED
+from .screen import FLASHING, INVERSE, NORMAL
 from .text import BLANK, CLOSE, COLON, COMMA, OPEN
 from .tokens import KEYWORDS, LAST_STATEMENT
 from .variables import SUBFLG_SIMPLE
@@ -33,6 +35,7 @@ KEPT = {
 """Statements that put a byte into memory for drawing, which is not done here, and for PEEK: where,
 and what for each number."""
 FIRST_TOKEN = 0x80
+FLASH_BIT = 0x40
 AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
 """What the ROM's parser leaves in the accumulator: an address."""
 
@@ -50,10 +53,18 @@ class Machine(Editing):
         self.after_line: Callable[[int], object] | None = None
         self.error: ApplesoftError | None = None
         self.fac = AFTER_TYPING
+        others: dict[str, Callable[[], None]] = {
+            **{word: partial(self.keep_byte, *where) for word, where in KEPT.items()},
+            "HOME": self.screen.home,
+            "TEXT": self.screen.full_window,
+            "NORMAL": partial(self.set_mode, NORMAL),
+            "INVERSE": partial(self.set_mode, INVERSE),
+            "FLASH": partial(self.set_mode, FLASHING, FLASH_BIT),
+        }
         self.statements = [
-            partial(self.keep_byte, *KEPT[word])
-            if word in KEPT
-            else getattr(self, f"{word.lower().rstrip('#:')}_", None) or partial(self.refuse, word)
+            others.get(word)
+            or getattr(self, f"{word.lower().rstrip('#:')}_", None)
+            or partial(self.refuse, word)
             for word in KEYWORDS[: LAST_STATEMENT - FIRST_TOKEN + 1]
         ]
         self.text_changed()
@@ -61,19 +72,18 @@ class Machine(Editing):
 
     # --- running ------------------------------------------------------------------------------
 
-    def execute_direct(self, typed: bytes, tokens: bytes) -> None:
-        """Do a line typed without a number, and whatever it starts, until the machine is back at
-        the prompt; ``error`` then holds the error that ended it, or None.
-
-        ``typed``: the line before it was made tokens. Raises TooManyStatements and
-        `console.EndOfInput`.
-        """
-        ram = self.ram
-        ram[INPUT_BUFFER : INPUT_BUFFER + len(typed) + 1] = typed + b"\0"
-        ram[INPUT_BUFFER : INPUT_BUFFER + len(tokens) + 1] = tokens + b"\0"
-        ram[INPUT_BUFFER + len(tokens) + 2] = 0
+    def parse(self, typed: bytes, tokens: bytes) -> None:
+        """PARSE: on page 2 tokens come in the place of the line that was typed."""
+        for line in (typed, tokens):
+            self.ram[INPUT_BUFFER : INPUT_BUFFER + len(line) + 1] = line + b"\0"
+        self.ram[INPUT_BUFFER + len(tokens) + 2] = 0
         self.txtptr = INPUT_BUFFER
         self.fac = AFTER_TYPING
+
+    def execute_direct(self) -> None:
+        """Do a line typed without a number, and whatever it starts, until the machine is back at
+        the prompt; ``error`` then holds the error that ended it, or None. Raises TooManyStatements
+        and `console.EndOfInput`."""
         self._go(self.execute)
 
     def run_locked(self) -> None:
@@ -197,7 +207,7 @@ class Machine(Editing):
         if self.valtyp:
             raise Fault("TYPE MISMATCH", sp)
         self.expect(CLOSE, sp)
-        first = self.expect_equal(sp)
+        first = self.expect(EQUAL, sp)
         self.put_word(function, self.txtptr)
         self.put_word(function + 2, argument)
         self.ram[function + 4] = first
@@ -240,9 +250,9 @@ class Machine(Editing):
             0xFD8E: partial(self.put, "\n"),
             0xFF3A: partial(self.put, "\a"),
             0xFBDD: partial(self.put, "\a"),
-            0xFE80: self.inverse_,
-            0xFE84: self.normal_,
-            0xF273: self.normal_,
+            0xFE80: partial(self.set_mode, INVERSE),
+            0xFE84: partial(self.set_mode, NORMAL),
+            0xF273: partial(self.set_mode, NORMAL),
             0xFCA8: int,  # WAIT
         }
         if place in routines:

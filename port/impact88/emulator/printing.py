@@ -6,12 +6,11 @@ from ..applesoft.real import Number, integer
 from .faults import Fault
 from .intrinsics import Intrinsics, byte_of
 from .memory import ADDRESSES
-from .screen import FLASHING, HEIGHT, INVERSE, NORMAL, WIDTH
+from .screen import HEIGHT, WIDTH
 from .text import CLOSE, COLON, COMMA, HEADER, MINUS, SEMICOLON, is_digit
 from .tokens import FIRST, TOKENS, spelling
 
 TAB, SPC = TOKENS["TAB("], TOKENS["SPC("]
-FLASH_BIT = 0x40
 ZONE = 16
 LAST_ZONE_FROM = 24
 """From this column on a comma begins a new line."""
@@ -123,27 +122,8 @@ class Printing(Intrinsics):
             raise Fault("ILLEGAL QUANTITY", self.sp - 2)
         self.screen.move_to_row(row - 1)
 
-    def home_(self) -> None:
-        """HOME."""
-        self.screen.home()
-
-    def text_(self) -> None:
-        """TEXT."""
-        self.screen.full_window()
-
-    def normal_(self) -> None:
-        """NORMAL."""
-        self._set_mode(NORMAL)
-
-    def inverse_(self) -> None:
-        """INVERSE."""
-        self._set_mode(INVERSE)
-
-    def flash_(self) -> None:
-        """FLASH."""
-        self._set_mode(FLASHING, FLASH_BIT)
-
-    def _set_mode(self, mask: int, flash: int = 0) -> None:
+    def set_mode(self, mask: int, flash: int = 0) -> None:
+        """NORMAL, INVERSE, FLASH."""
         self.flash = flash
         self.screen.set_mode(mask)
 

@@ -165,9 +165,13 @@ class Variables(Strings):
             known = self.atoms.get(self.txtptr + 1)
             if known and ram[known[0]] in AFTER_SUBSCRIPT and depth >= DEEPEST:
                 self.txtptr, simple, constant = known
-                place = self.simple.get(simple)
-                self.fac = constant or (self.value(place) if place else ZERO)
-                e, m, s = self.fac
+                if constant:
+                    e, m, s = self.fac = constant
+                else:
+                    e, m = stored_at(ram, self.simple.get(simple, EMPTY))
+                    s = m >> 31
+                    m = (m | 0x80000000) << 8 if e else 0
+                    self.fac = e, m, s
             else:
                 self.txtptr += 1
                 e, m, s = self.formula(depth - 4)
