@@ -52,22 +52,23 @@ def oracle_bounds(
     from .sensitivity import movements
 
     sizes = scales(columns, solved)
-    with np.errstate(all="ignore"):
-        moved = movements(columns)
-        shares = [
-            DOUBLE * (CLOSED_FORM * moved[name] + np.abs(solved[name])) / sizes[name]
-            for name in FINAL_VELOCITIES
-        ]
-    double = np.nan_to_num(np.max(shares, axis=0), nan=np.inf)
-    applesoft = []
+    moved = movements(columns)
+    double = {name: DOUBLE * (CLOSED_FORM * moved[name] + abs(solved[name])) for name in moved}
+    listing = {name: np.full(len(scenes), np.inf) for name in FINAL_VELOCITIES}
     for i, scene in enumerate(scenes):
         errors = listing_errors(scene, {name: float(solved[name][i]) for name in FINAL_VELOCITIES})
-        share = np.inf
-        if errors is not None:
-            with np.errstate(all="ignore"):
-                share = max(np.float64(errors[name]) / sizes[name][i] for name in errors)
-        applesoft.append(float(share) if share == share else np.inf)
-    return double.tolist(), applesoft
+        for name, error in (errors or {}).items():
+            listing[name][i] = error
+    return _shares(double, sizes), _shares(listing, sizes)
+
+
+def _shares(errors: Mapping[str, Floats], sizes: Mapping[str, Floats]) -> list[float]:
+    """The largest of the errors by their sizes; no error is none of nothing, too."""
+    with np.errstate(all="ignore"):
+        shares = [np.where(e == 0, 0.0, e / sizes[name]) for name, e in errors.items()]
+    largest = np.max(shares, axis=0)
+    whole: list[float] = np.where(np.isnan(largest), np.inf, largest).tolist()
+    return whole
 
 
 def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Floats]:

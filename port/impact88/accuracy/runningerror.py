@@ -111,6 +111,8 @@ class _Terms:
             s, c = _turn(g["TA"], g["PA"])
             self.D3, self.D4 = g["DA"] * s, g["DA"] * c
             self.WA, self.WB = g["WA"], g["WB"]
+        elif any(g[d].v and g[w].v for d, w in (("DA", "WA"), ("DB", "WB"))):
+            raise Uncertain  # line 340 turns point masses all the same
         across = g["UX"] + self.D3 * self.WA - g["VX"] + self.D1 * self.WB
         along = g["UY"] - self.D4 * self.WA - g["VY"] - self.D2 * self.WB
         self.gn = along * self.s + across * self.c
@@ -119,6 +121,8 @@ class _Terms:
         if not self.pivot and g["MU"].v and not slip.e < abs(slip.v):
             raise Uncertain  # line 400 may turn MU, or not
         self.mu = -g["MU"] if slip.v > 0 and not self.pivot else g["MU"]
+        if not self.pivot and min(g["MU"].v, self.mu.v) - self.mu.e <= PIVOT:
+            raise Uncertain  # line 390 or 510 takes it for a pivot's
 
 
 class Numeral(NamedTuple):
