@@ -242,6 +242,28 @@ def test_errors_of_the_program_are_answers() -> None:
     assert one["ending"] == "ZERO DETERMINANT"
 
 
+def test_bounds_where_the_listing_solves_other_equations() -> None:
+    """Null where it takes MU for a pivot's, or turns point masses; a number where nothing spins."""
+    still = {"DA": "0", "DB": "0"}
+    turned = {"M": "4", "DA": "5", "WA": "1"}
+    for changes, bounded in (
+        ({}, True),
+        (still, True),
+        ({"M": "4"}, True),
+        ({**still, "M": "4"}, True),
+        ({**turned, "DA": "0"}, True),
+        (turned, False),
+        ({"MU": "10"}, False),
+        ({"MU": "-10.5"}, False),
+        ({"MU": "-9.99999999999"}, False),
+        ({"MU": "9.99"}, True),
+        ({"MU": "-10"}, True),
+    ):
+        (one,) = look_up([sample(1).replaced(changes)], reference=False)
+        assert (one["error_bound"]["applesoft"] is not None) == bounded, changes
+        assert one["error_bound"]["double"] < 1e-12
+
+
 def test_exact_decimals() -> None:
     assert decimal_of(Fraction(-3, 8)) == "-0.375"
     assert decimal_of(Fraction(2**130)) == str(2**130)

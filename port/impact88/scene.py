@@ -101,11 +101,17 @@ class Scene(Mapping[str, str]):
         absent = [name for name in SCENE if name not in given]
         if absent:
             raise UserError(missing(absent), source)
+        entries = entries or Entries(dict(given), dict(given))
+        if is_share(given["MU"]):
+            from .closedform.share import resolved
+
+            checked = {n: check_value(n, text, source) for n, text in given.items() if n != "MU"}
+            given["MU"], entries.remarks["MU"] = resolved({**checked, "MU": given["MU"]}, source)
         self._values = {name: check_value(name, given[name], source) for name in SCENE}
         self.title = title
         self.source = source
         self.units = units
-        self.entries = entries or Entries(dict(self._values), self._values)
+        self.entries = entries
         self.estimated = self.entries.estimated
 
     @classmethod
@@ -147,8 +153,11 @@ class Scene(Mapping[str, str]):
         return notebook.preformatted(self.to_toml())
 
     def replaced(self, changes: Mapping[str, str]) -> Scene:
-        """This scene with some values changed. Raises UserError as the constructor does."""
-        values, entries = {**self._values, **changes}, self.entries.changed(changes)
+        """This scene with some values changed; a share of the critical friction stays that share.
+        Raises UserError as the constructor does."""
+        entries = self.entries.changed(changes)
+        share = {n: text for n, text in entries.values.items() if n == "MU" and is_share(text)}
+        values = {**self._values, **changes, **share}
         return Scene(values, self.title, self.source, self.units, entries)
 
     def keyboard(self) -> list[str]:
@@ -305,6 +314,11 @@ def entries_of(
 def entries_in(path: str, units: str | None = None, single: bool = False) -> Entries:
     """The entries of a TOML file (``-`` is standard input), see `entries_of`."""
     return entries_of(toml_file(path), called(path), units, single)
+
+
+def is_share(text: object) -> bool:
+    """Whether MU is given as a share of the critical friction, such as ``85 %``."""
+    return isinstance(text, str) and text.endswith("%")
 
 
 def _is_range(text: str) -> bool:

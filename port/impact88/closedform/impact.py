@@ -629,8 +629,9 @@ class Impact:
 
         The determinant with every sum in it replaced by the sum of the absolute values, divided by
         the determinant, times 3: the typical ratio to Bauer's number, the spectral radius of
-        |A^-1||A|. Measured over the benchmark's populations: within a factor 5 of it for 98 % of
-        the scenes of each, and within 50 always.
+        |A^-1||A|. Measured over 10^4 scenes of each of the benchmark's populations: within a factor
+        5 of it for 98 % of the scenes and within 55 always; where EM is within 1e-1 to 1e-16 of
+        1/2, within a factor 5 for 91 % and 400 at most.
         """
         absolute = self.table.absolute
         an, at, bn, bt = (absolute(arm) for arm in (*self._a, *self._b))

@@ -92,7 +92,9 @@ def solve(
     NOT_FINITE alone in STATUS; a scene without solution is NaN in what depends on it, and so are
     ratios of zeros (LOSS and MUC where nothing moves) and what overflows; NOT_FINITE tells of all
     but MUC, which other results seldom need. None disturbs another scene: every scene gets the bits
-    it would get alone. A zero is +0.0 always.
+    it would get alone, unless something overflows on the way (where numbers reach 1e±150): a term
+    that is known to be 0 is left out, and beside scenes where it is not, 0 times infinity is NaN.
+    A zero is +0.0 always.
 
     Where the listing does not solve its own equations, the equations are solved: an MU below -10,
     or MU = 10 that the sign rule makes -10 (there line 510 zeroes a right-hand side that is not a

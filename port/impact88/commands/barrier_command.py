@@ -4,7 +4,8 @@ of UX UY WA (before), VAX VAY WAF (after), E, EM and MU all but at most three; w
 solved for. As everywhere A is on the +n side, n = (cos GA, sin GA): with GA = 0 it drives towards
 -x, and TA = 0 then means that it faces the barrier. M = 4 makes it a point mass.
 
-MU is the number of line 280: friction opposes the sliding (line 400); MUP is the signed P_t/P_n.
+MU is the number of line 280: friction opposes the sliding (line 400); MU = "85 %" is a share of the
+friction that just ends it. MUP is the signed P_t/P_n.
 Units: any consistent set; angles in degrees, spins in rad per unit of time. PDOF: where the force
 comes from, clockwise from the vehicle's front.
 
@@ -14,6 +15,9 @@ examples:
       --set EM=-.715 --set UX=-29.04 --set UY=0 --set WA=0
   impact88 chapter barrier --template -o car.toml    a file to fill in
   impact88 chapter barrier car.toml --contact-time .1
+  impact88 chapter barrier --units us --set DA=4.14 --set PA=29 --set TA=0 \\
+      --set GA=74.6 --set MA=3574.2 --set IA=2336.3 --set E=0 --set EM=1 \\
+      --set MU='85.18 %' --set UX=-39.95 --set UY=0 --set WA=0     IIHS test CF11002
   impact88 chapter barrier rebound.toml --set UX= --set UY= --set WA= --json
 
 exit status: 0 solved; 2 bad input, or unknowns that are not determined
@@ -25,7 +29,8 @@ import argparse
 
 from ..errors import UserError
 from ..scene import known_template
-from .options import add_solution_arguments, known_values
+from ..stderr import note
+from .options import add_solution_arguments, known_within_limits
 from .reconstruct_command import source_of
 
 KNOWABLE = (
@@ -42,7 +47,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
     from ..chapter.barrier import BARRIER, BARRIER_AFTER
+    from ..reconstruction.frictionshare import share_resolved
     from ..reconstruction.solutiontable import show
+    from ..uncertainty.uncertain import fixed
 
     if args.template:
         print(known_template(KNOWABLE))
@@ -51,7 +58,12 @@ def main(args: argparse.Namespace) -> int:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..units import system_of
 
-    known, named = known_values(args.file, args.set, KNOWABLE, args.units)
-    everything = {**known, **BARRIER, **BARRIER_AFTER}
+    given, named = known_within_limits(args.file, args.set, KNOWABLE, args.units, single=True)
+    wall = {name: fixed(value) for name, value in BARRIER.items()}
+    resting = {} if "UX" in given else {n: fixed(value) for n, value in BARRIER_AFTER.items()}
+    known, found = share_resolved(given | wall | resting)
+    if found:
+        note(None, found)
+    everything = {name: item.nominal for name, item in known.items()} | BARRIER_AFTER
     show(everything, None, source_of(args.file), args.contact_time, args.json, system_of(named))
     return 0

@@ -16,7 +16,17 @@ from ..doubles import double
 from ..errors import UserError, quoted
 from ..files import called, check_apart
 from ..names import SCENE, check_names
-from ..scene import RANGES, SAMPLES, Entries, Scene, check_value, entries_in, in_base_units, sample
+from ..scene import (
+    RANGES,
+    SAMPLES,
+    Entries,
+    Scene,
+    check_value,
+    entries_in,
+    in_base_units,
+    is_share,
+    sample,
+)
 from ..stderr import note
 
 TYPE_CHECKING = False
@@ -124,7 +134,7 @@ def settings(
     check_names(given, allowed, "value here", "--set")
     given, _ = in_base_units(given, "--set", units)
     for name, text in given.items():
-        if text not in others:
+        if text not in others and not (name == "MU" and is_share(text)):
             check_value(name, text, "--set")
     return given
 
@@ -203,7 +213,7 @@ def note_remarks(entries: Entries, based: str = "") -> None:
 def _within_limits(name: str, text: str, source: str, center: float | None = None) -> Uncertain:
     from ..uncertainty.uncertain import fixed, read
 
-    if any(mark in text for mark in RANGES):
+    if any(mark in text for mark in RANGES) or is_share(text):
         return read(text, f"{source}: {name}", center)
     return fixed(_double(name, text, source))
 

@@ -49,6 +49,7 @@ from ..reconstruction.knowable import KNOWABLE
 from ..scene import known_template, shown_texts
 from ..scene import template as scene_template
 from ..schemas import stamped
+from ..stderr import note
 from .options import (
     OutputFile,
     add_names_argument,
@@ -101,11 +102,15 @@ def main(args: argparse.Namespace) -> int:
     if args.file is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..reconstruction.adjustment import needs_adjustment
+    from ..reconstruction.frictionshare import share_resolved
     from ..reconstruction.state import QUANTITIES
     from ..units import system_of
 
     wanted = names_given(args.outputs, QUANTITIES, "--outputs") or None
     known, named = known_within_limits(args.file, args.set, KNOWABLE, args.units)
+    known, found = share_resolved(known)
+    if found:
+        note(None, found)
     units = system_of(named)
     if not args.write_scene and not needs_adjustment(known, wanted):
         from ..reconstruction.solutiontable import show

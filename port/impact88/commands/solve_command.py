@@ -42,6 +42,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..closedform.columns import INERTIAS, UNUSED_BY_POINTS, refusals
+from ..closedform.share import share_of, typed_friction
 from ..closedform.solve import solve
 from ..doubles import is_number
 from ..errors import UserError, quoted
@@ -242,6 +243,7 @@ class _Float64:
 
     def __call__(self, rows: Rows, units: TableUnits) -> Results:
         columns = numbers(rows, units)
+        _read_shares(rows, columns)
         unread = {bad.row - rows.first for bad in rows.bad}
         for refusal in refusals(columns):
             for index in np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist():
@@ -255,6 +257,25 @@ class _Float64:
         for name, result in results.items():
             result[unusable] = Status.NOT_FINITE if name == "STATUS" else np.nan
         return results
+
+
+def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
+    """Read the cells of MU that are shares of the critical friction, and withdraw the complaints
+    about them."""
+    found = {}
+    for bad in rows.bad:
+        if bad.column == "MU":
+            share = share_of(rows.columns["MU"][bad.row - rows.first])
+            if share is not None:
+                found[bad.row - rows.first] = share
+    if found:
+        at = list(found)
+        shared = {n: np.broadcast_to(x, (rows.count,))[at] for n, x in columns.items()}
+        columns["MU"] = columns["MU"].copy()
+        columns["MU"][at] = typed_friction(shared, list(found.values()))
+        rows.bad[:] = [
+            bad for bad in rows.bad if bad.column != "MU" or bad.row - rows.first not in found
+        ]
 
 
 def _complete(rows: Rows) -> Rows:

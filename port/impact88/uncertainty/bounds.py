@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import status
+from ..closedform.share import typed_friction
 from ..closedform.solve import quantities
 from ..errors import UserError
 from ..mappings import check_mapping, within_limits
@@ -206,6 +207,8 @@ class _Box:
     outputs: tuple[str, ...]
     limits: dict[str, tuple[float, float]]
     excluded: int
+    share: bool
+    """MU is a share of the critical friction."""
 
     @classmethod
     def of(
@@ -241,7 +244,8 @@ class _Box:
             if name not in WARNINGS:
                 raise UserError(f"{name!r} is no warning; expected some of {' '.join(WARNINGS)}")
         excluded = sum({WARNINGS[name] for name in exclude})
-        return cls(model, divided, known, inputs, wanted, limits, excluded)
+        share = "MU" in given and given["MU"].share
+        return cls(model, divided, known, inputs, wanted, limits, excluded, share)
 
     def columns(self, point: Array) -> dict[str, Array]:
         """Points of the unit cube, n x k -> the inputs that vary, n each; exact at the limits."""
@@ -262,13 +266,16 @@ class _Box:
     def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
         """All inputs, the contact point moved by CX and CY where they are among them."""
         values: dict[str, Array | float] = {**self.known, **columns}
-        return moved(values) if set(MOVES) & set(values) else values
+        if set(MOVES) & set(values):
+            values = dict(moved(values))
+        return {**values, "MU": typed_friction(values, values["MU"])} if self.share else values
 
     def extremes(self, rng: np.random.Generator) -> Extremes:
         """The extremes of the outputs over the box."""
         count = len(self.inputs)
         friction = self.known.get("MU")
-        if self.model is not forward_model or friction in (0.0, PIVOT):
+        # a share of the critical friction has the sign that ends the sliding, whatever gt is
+        if self.model is not forward_model or friction in (0.0, PIVOT) or self.share:
             return extremes(self.piece(None), count, rng)
         slip = extremes(Piece(lambda points: self.slip(points)[:, None], 1), count, rng)
         ends = np.concatenate([slip.at_lower, slip.at_upper])

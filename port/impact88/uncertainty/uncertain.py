@@ -46,7 +46,7 @@ class Uncertain:
     ``kind`` is fixed, uniform, triangular or normal; ``nominal`` the value taken where a single one
     is needed (the mode of a triangle, the mean of a normal, the middle of a range); ``low`` and
     ``high`` the limits, infinite for a normal without any; ``deviation`` a normal's standard
-    deviation, else 0.
+    deviation, else 0; ``share``: all of them are shares of the critical friction (MU = "85 %").
 
     >>> impact88.Uncertain("uniform", 0.8, 0.7, 0.9).varies
     True
@@ -57,6 +57,7 @@ class Uncertain:
     low: float
     high: float
     deviation: float = 0.0
+    share: bool = False
 
     @property
     def varies(self) -> bool:
@@ -158,14 +159,18 @@ def read(text: str, name: str, center: float | None = None) -> Uncertain:
         numbers = [double(a.sign + a.parts[0][0]) for a in amounts if a]
     except ValueError:
         raise UserError(f"{text!r} is not an amount; {ACCEPTED}", name) from None
-    if any(a and (a.units or len(a.parts) > 1) for a in amounts):
+    units = [unit for a in amounts if a for unit in a.units]
+    shares = bool(units) and set(units) == {"%"} and name.endswith("MU")
+    if shares:
+        numbers = [numbers[0] / 100, *(x if share else x / 100 for x in numbers[1:])]
+    elif any(a and (a.units or len(a.parts) > 1) for a in amounts):
         raise UserError(f"{text!r} has a unit, and is not in base units", name)
     if not all(map(math.isfinite, numbers)):
         raise UserError(f"{text!r} has a number too large", name)
     if kind == "fixed":
-        return fixed(numbers[0])
-    value = _of_kind(kind, numbers, center, share, text, name)
-    return value if center is None else value.around(center)
+        return replace(fixed(numbers[0]), share=shares)
+    value = replace(_of_kind(kind, numbers, center, share, text, name), share=shares)
+    return value if center is None or shares else value.around(center)
 
 
 def _of_kind(
