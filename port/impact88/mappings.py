@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .doubles import double
 from .errors import UserError, quoted
-from .scene import RANGES, Scene, check_mapping, entries_of
+from .scene import RANGES, Scene, check_mapping, entries_of, is_share
 
 if TYPE_CHECKING:
     from .uncertainty.uncertain import Uncertain
@@ -95,7 +95,7 @@ def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
     def uncertain(name: str, value: Any) -> Uncertain:
         if isinstance(value, Uncertain):
             return value
-        if isinstance(value, str) and any(mark in value for mark in RANGES):
+        if isinstance(value, str) and (is_share(value) or any(mark in value for mark in RANGES)):
             return read(value, name)
         number = in_doubles(name, value)
         if np.ndim(number):
