@@ -772,3 +772,55 @@ class TestCommand:
             )
         assert list(tmp_path.iterdir()) == []
         assert self.run(capsys, "scene", "--sample", "1", "-o", str(tmp_path / "x.svg"))[0] == 0
+
+
+class TestToScale:
+    def test_measured_outlines_are_drawn_and_said(self):
+        text = sample(1).to_toml() + "LA = 16\nBA = 6\n"
+        scene = Scene.from_toml_text(text, "s.toml")
+        a, b = plan(scene, None, scene.entries.outlines).vehicles
+        assert (a.length, a.width) == (16, 6)
+        assert b.length / b.width == pytest.approx(2.6)
+        drawing = scene_drawing(scene, solved(scene))
+        notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
+        assert "A drawn as measured, 16 by 6." in notes
+        assert "Outline of B from I/m" in notes
+        assert f"Closing speed {math.hypot(29.04 + 14.52, 25.15):.4g}." in notes
+
+    def test_force_and_change_of_velocity(self):
+        scene = sample(1)
+        drawing = scene_drawing(scene, solved(scene))
+        for vehicle, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
+            after = {"A": ("VAX", "VAY"), "B": ("VBX", "VBY")}[vehicle]
+            result = solved(scene)
+            change = np.array([result[after[0]], result[after[1]]])
+            change -= [float(scene[x]), float(scene[y])]
+            found = direction(one(drawing, f"{vehicle} change"))
+            assert found == pytest.approx(change / np.hypot(*change), abs=1e-6)
+        texts = [text.text for text in drawing.texts()]
+        assert "P, 12 o'clock" in texts  # PDOF −12°, as `reconstruct` has it
+        assert "−P, 2 o'clock" in texts  # 48°
+        assert {"−12°", "48°"} <= set(texts)
+
+    def test_a_strip_moves_and_turns_the_vehicles(self):
+        from impact88.figures.strip import strip_drawing
+
+        scene = sample(1)
+        drawing = strip_drawing(scene, solved(scene))
+        assert overlaps(drawing) == []
+        assert off_page(drawing) == []
+        assert drawing.width == 170
+        outlines = [i for i in drawing.items if isinstance(i, Path) and i.role == "A outline"]
+        sides = [np.subtract(*outline.points[1:3]) for outline in (outlines[0], outlines[2])]
+        before, after = (math.atan2(*side[::-1]) for side in sides)
+        size = plan(scene).vehicles[0].length
+        expected = solved(scene)["WAF"] * size / math.hypot(14.52, 25.15)
+        assert after - before == pytest.approx(expected, abs=1e-3)
+
+    def test_an_exhibit_is_the_same_drawing_larger(self, tmp_path):
+        small, large = tmp_path / "s.svg", tmp_path / "l.svg"
+        line = ["figure", "scene", "--sample", "1", "-o"]
+        assert main([*line, str(small)]) == main([*line, str(large), "--width", "850"]) == 0
+        first, second = (path.read_text("utf-8") for path in (small, large))
+        assert 'width="850mm"' in second
+        assert first.partition("viewBox")[2] == second.partition("viewBox")[2]

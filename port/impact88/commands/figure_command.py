@@ -1,5 +1,6 @@
 """kinds:
   scene            from above: vehicles, contact plane, velocities, impulse
+  strip            before, impact and after side by side, two columns wide
   barrier          one vehicle against a barrier; FILE.toml as chapter barrier's
   friction         energy loss and delta-V against MU, with the critical value
   sweep            results as a value runs through a range (--sweep, --outputs)
@@ -11,12 +12,14 @@
   planar           Figure 3: free bodies, planar impact, of any scene
   configurations   Figure 4: the staged collisions' configurations
 
-The ending of FILE says how it is written: .svg, .png or .pdf; all are one column (85 mm) wide. It
-takes pip install 'impact88[plot]', but for scene, planar, colinear and configurations as .svg.
+The ending of FILE says how it is written: .svg, .png or .pdf; all but strip are one column (85 mm)
+wide, or --width. It takes pip install 'impact88[plot]', but for scene, strip, planar, colinear and
+configurations as .svg. Vehicles are drawn as measured where the file gives LA BA, LB BB.
 
 examples:
   impact88 figure scene --sample 1 -o scene.svg
   impact88 figure scene crash.toml --set MU=-10 -o pivot.pdf
+  impact88 figure strip crash.toml -o board.pdf --width 900
   impact88 figure barrier car.toml -o barrier.svg
   impact88 figure friction --sample 3 -o friction.png
   impact88 figure sweep --sample 1 --sweep GA=-50:-10:81 -o gamma.svg
@@ -41,6 +44,7 @@ from .options import (
     names_given,
     one_scene,
     sweeps,
+    whole_number,
 )
 from .rangeoptions import add_range_arguments, explored
 
@@ -49,7 +53,7 @@ if TYPE_CHECKING:
 
     from ..figures.drawing import Drawing
 
-OF_A_SCENE = ("scene", "friction", "sweep")
+OF_A_SCENE = ("scene", "strip", "friction", "sweep")
 OF_RANGES = ("histogram", "tornado")
 OF_NOTHING = ("staged", "force", "colinear", "configurations")
 KINDS = (*OF_A_SCENE, "barrier", *OF_RANGES, "planar", *OF_NOTHING)
@@ -70,14 +74,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_move_argument(parser)
     add_sweep_argument(parser)
     add_names_argument(parser, "--outputs", "NAMES", "the results wanted")
+    parser.add_argument(
+        "--width",
+        type=whole_number(40, 3000),
+        metavar="MM",
+        help="how wide it is written, such as 900 for an exhibit board (default: 85, strip 170)",
+    )
 
 
 def main(args: argparse.Namespace) -> int:
     """Draw one figure."""
-    from ..figures.canvas import check_ending, save
+    from ..figures.canvas import check_ending, enlarged, save
+    from ..figures.drawing import COLUMN, Drawing
 
     check_ending(args.output)
-    save(_drawn(args), args.output)
+    with enlarged(args.width / COLUMN if args.width else 1.0):
+        drawn = _drawn(args)
+    if isinstance(drawn, Drawing) and args.width:
+        drawn.enlarged = args.width / drawn.width
+    save(drawn, args.output)
     return 0
 
 
@@ -112,6 +127,11 @@ def _drawn(args: argparse.Namespace) -> Figure | Drawing:
 
         scene = one_scene(args)
         return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
+    if kind == "strip":
+        from ..figures.strip import strip_drawing
+
+        scene = one_scene(args)
+        return strip_drawing(scene, solved(scene), scene.title or "Before, impact and after")
     if kind == "planar":
         from ..figures import freebody
 

@@ -65,7 +65,9 @@ def new_figure(width_mm: float, height_mm: float) -> Figure:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width_mm / 25.4, height_mm / 25.4), dpi=DOTS_PER_INCH)
+    factor = _enlarged[-1]
+    inches = (factor * width_mm / 25.4, factor * height_mm / 25.4)
+    figure = Figure(figsize=inches, dpi=DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     return figure
 
@@ -79,8 +81,24 @@ def style() -> Iterator[None]:
 
     with _quiet(), matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(dict[Any, Any](STYLE))
+        factor = _enlarged[-1]
+        sizes = {k: v * factor if isinstance(v, float | int) else v for k, v in STYLE.items()}
+        sizes |= {name: STYLE[name] for name in STYLE if isinstance(STYLE[name], bool)}
+        matplotlib.rcParams.update(dict[Any, Any](sizes | {"pdf.fonttype": 42}))
         yield
+
+
+_enlarged = [1.0]
+
+
+@contextmanager
+def enlarged(factor: float) -> Iterator[None]:
+    """A context in which charts are drawn ``factor`` times as large, their texts and lines too."""
+    _enlarged.append(factor)
+    try:
+        yield
+    finally:
+        _enlarged.pop()
 
 
 def import_matplotlib() -> None:
@@ -140,40 +158,42 @@ def _quiet() -> Iterator[None]:
 def drawn(drawing: Drawing) -> Figure:
     """The drawing as a matplotlib figure of exactly its size."""
     with style():
-        from matplotlib.patheffects import Normal, Stroke
+        from matplotlib.patheffects import Stroke
 
-        figure = new_figure(drawing.width, drawing.height)
+        size = drawing.enlarged
+        figure = new_figure(size * drawing.width, size * drawing.height)
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_xlim(0, drawing.width)
         axes.set_ylim(0, drawing.height)
         axes.axis("off")
-        halo = [Stroke(linewidth=0.5 / MM_PER_POINT, foreground="white"), Normal()]
+        halo = [Stroke(linewidth=size * 0.5 / MM_PER_POINT, foreground="white")]
         for order, item in enumerate(drawing.items):
             if isinstance(item, Path):
-                _add_path(axes, item, order)
+                _add_path(axes, item, order, size)
                 continue
+            look: dict[str, Any] = {
+                "fontweight": "bold" if item.bold else "normal",
+                "zorder": 10 + order,
+            }
             for run in text_runs(item):
+                shown = run.text.replace("$", r"\$")
+                # the halo is drawn as outlines, the text itself stays text
+                axes.text(run.x, run.y, shown, fontsize=size * run.size, path_effects=halo, **look)
                 axes.text(
-                    run.x,
-                    run.y,
-                    run.text.replace("$", r"\$"),
-                    fontsize=run.size,
+                    *(run.x, run.y, shown),
+                    fontsize=size * run.size,
                     color=item.colour,
-                    fontweight="bold" if item.bold else "normal",
-                    ha="left",
-                    va="baseline",
-                    zorder=10 + order,
                     gid=item.role or None,
-                    path_effects=halo,
+                    **look,
                 )
     return figure
 
 
-def _add_path(axes: Any, path: Path, order: int) -> None:
+def _add_path(axes: Any, path: Path, order: int, size: float) -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Outline
 
-    points = path.width / MM_PER_POINT
+    points = size * path.width / MM_PER_POINT
     dashes = tuple(part / path.width for part in path.dash)
     corners = (*path.points, path.points[0]) if path.fill else path.points
     axes.add_patch(

@@ -164,7 +164,8 @@ def check_drawable(values: Iterable[float], name: str) -> None:
 
 @dataclass
 class Drawing:
-    """``width`` x ``height`` mm with what is drawn on it, lowest first. ``description`` tells in
+    """``width`` x ``height`` mm with what is drawn on it, lowest first, all of it written
+    ``enlarged`` times as large. ``description`` tells in
     words what a reader who cannot see it misses."""
 
     width: float
@@ -172,6 +173,7 @@ class Drawing:
     title: str
     description: str = ""
     items: list[Path | Text] = field(default_factory=list)
+    enlarged: float = 1.0
 
     def texts(self) -> list[Text]:
         """The texts only."""

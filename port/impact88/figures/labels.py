@@ -16,7 +16,7 @@ LEADER_FROM = 3.6
 """Beyond this distance a thin line leads from the label to its point."""
 WEIGHTS = {
     **{"glass": 0.4, "heading": 1.5, "body": 0.0, "after": 2.5, "impulse": 2.5, "head": 2.5},
-    **{"spin": 2.0, "moment": 2.5, "before": 2.0, "angle": 1.5},
+    **{"spin": 2.0, "moment": 2.5, "before": 2.0, "angle": 1.5, "change": 1.5},
 }
 """What crossing a line of the role ending so costs, against 1 for any other."""
 

@@ -10,11 +10,12 @@ So A's front looks along TA + 180 degrees and B's along TB, and on either vehicl
 stands at the angle PA or PB from the front: all of Table 1 reads so (every A has TA = 0 and drives
 in -x; the struck rears of collisions 3 to 5 have PB = 168 ... 171).
 
-A scene has no outlines. A vehicle is drawn as the rectangle that has its radius of gyration when
-mass lies evenly on it, L² + W² = 12 I/m, at L/W = 2.6, a passenger car's; then lengthened or
-widened where the contact point would lie outside. A vehicle 10,000 times as heavy as the other and
-at rest is drawn as a wall behind the contact plane; point masses (both distances 0) are drawn moved
-apart along n until they touch. What reaches beyond the contact plane is drawn as crushed, dashed.
+A vehicle is drawn as measured where its length and width are known (LA BA, LB BB), else as the
+rectangle that has its radius of gyration when mass lies evenly on it, L² + W² = 12 I/m, at L/W =
+2.6, a passenger car's; then lengthened or widened where the contact point would lie outside. A
+vehicle 10,000 times as heavy as the other and at rest is drawn as a wall behind the contact plane;
+point masses (both distances 0) are drawn moved apart along n until they touch. What reaches beyond
+the contact plane is drawn as crushed, dashed.
 """
 
 from __future__ import annotations
@@ -67,7 +68,8 @@ class Vehicle(NamedTuple):
 
 class Plan(NamedTuple):
     """A scene in plan. ``normal`` and ``tangent`` are unit vectors; ``impulse`` acts on A;
-    ``apart``: whether point masses were moved apart to be seen."""
+    ``apart``: whether point masses were moved apart to be seen; ``measured``: the vehicles whose
+    length and width are known."""
 
     vehicles: tuple[Vehicle, Vehicle]
     normal: Point
@@ -77,6 +79,12 @@ class Plan(NamedTuple):
     remarks: tuple[str, ...]
     numbers: dict[str, float]
     measured: tuple[str, ...]
+
+    @property
+    def closing(self) -> float:
+        """How fast the centers of gravity move relative to each other before the impact."""
+        a, b = (vehicle.before.velocity for vehicle in self.vehicles)
+        return math.dist(a, b)
 
 
 def plan(

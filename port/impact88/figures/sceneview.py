@@ -22,9 +22,9 @@ IMPULSE = "#a03c78"
 """A darker reddish purple than Okabe and Ito's: thin lines need it on white."""
 
 _MARGIN = 6.0
-_TEXT = 6.5
-_ROW = 3.4
-_FIELD = 70.0
+TEXT = 6.5
+ROW = 3.4
+FIELD = 70.0
 """Largest height in mm of the drawing proper."""
 
 
@@ -47,13 +47,13 @@ def scene_drawing(
     if units is None:
         units = system_of(getattr(scene, "units", None))
     field = _Field(shapes, width)
-    notes = _notes(shapes, units)
-    footer = _ROW * (4 + 3 + len(notes)) + 5.5
+    notes = notes_of(shapes, units, width - 4)
+    footer = ROW * (4 + 3 + len(notes)) + 5.5
     head = _wrapped(title, (width - 4) / d.BOLD)
-    height = field.height + footer + _ROW * len(head)
-    drawing = Drawing(width, height, title, _description(shapes, units))
+    height = field.height + footer + ROW * len(head)
+    drawing = Drawing(width, height, title, description(shapes, units))
     for line, text in enumerate(head, 1):
-        drawing.items.append(Text(2.0, height - _ROW * line, text, 7, bold=True, role="title"))
+        drawing.items.append(Text(2.0, height - ROW * line, text, 7, bold=True, role="title"))
     field.draw(drawing, footer)
     _legend(drawing, shapes, field, footer, notes, units)
     return drawing
@@ -90,7 +90,8 @@ class _Field:
         box = d.extent(self._points())
         room = width - 2 * margin
         self.scale = min(
-            room / (box.right - box.left), (_FIELD - 2 * margin) / (box.top - box.bottom)
+            room / (box.right - box.left),
+            (FIELD + 0.3 * (width - d.COLUMN) - 2 * margin) / (box.top - box.bottom),
         )
         self.height = self.scale * (box.top - box.bottom) + 2 * margin
         self.origin = (
@@ -114,7 +115,7 @@ class _Field:
             plus(scaled(self.shapes.tangent, half), scaled(self.shapes.normal, 0.3 * self.size))
         )
         if tip := self.impulse_end():
-            points.append(tip)
+            points += [tip, scaled(tip, -1.0)]
         return points
 
     def plane_half(self) -> float:
@@ -151,6 +152,12 @@ class _Field:
                     unit = scaled(back, 1 / math.hypot(*back))
                     start = plus(start, scaled((-unit[1], unit[0]), 0.06 * self.size))
             result["after"] = (start, plus(start, run))
+        if vehicle.after:
+            change = minus(vehicle.after.velocity, vehicle.before.velocity)
+            # where one of the two is zero, the change lies on the other
+            if min(vehicle.before.speed, vehicle.after.speed, math.hypot(*change)) > least:
+                end = plus(vehicle.center, scaled(change, self.per_speed))
+                result["change"] = (vehicle.center, end)
         return result
 
     def impulse_end(self) -> Point | None:
@@ -159,6 +166,20 @@ class _Field:
         if impulse is None or math.hypot(*impulse) == 0:
             return None
         return scaled(impulse, 0.5 * self.size / math.hypot(*impulse))
+
+    def _draw_impulse(self, items: list[Path | Text], labels: list[Label], at: Any) -> None:
+        """The force on each vehicle, and from where on its clock it comes."""
+        if not (end := self.impulse_end()):
+            return
+        for vehicle, sense, sign in zip(self.shapes.vehicles, (1.0, -1.0), "P−", strict=True):
+            if vehicle.wall:
+                continue
+            tip = scaled(end, sense)
+            role = "impulse" if sign == "P" else "opposite impulse"
+            width, head = (0.9, 2.8) if sign == "P" else (0.45, 2.2)
+            items += d.arrow(at((0.0, 0.0)), at(tip), IMPULSE, width, head=head, role=role)
+            text = f"{sign.strip('P')}P, {clock_of(vehicle, self.shapes.impulse)}"
+            labels.append(Label(at(tip), tip, text, 7.5, IMPULSE, sign == "P", f"{role} label"))
 
     def paper(self, point: Point, footer: float = 0.0) -> Point:
         """A point of the plan on paper."""
@@ -187,9 +208,7 @@ class _Field:
         for vehicle in self.shapes.vehicles:
             if not vehicle.wall:
                 self._draw_motion(items, labels, vehicle, at)
-        if end := self.impulse_end():
-            items += d.arrow(at((0.0, 0.0)), at(end), IMPULSE, 0.9, head=2.8, role="impulse")
-            labels.append(Label(at(end), end, "P", 8.5, IMPULSE, True, "impulse label"))
+        self._draw_impulse(items, labels, at)
         contact = at((0.0, 0.0))
         items.append(Path(d.circle(contact, 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
         items.append(Path(d.circle(contact, 0.2), None, fill=d.BLACK))
@@ -238,84 +257,42 @@ class _Field:
     ) -> None:
         colour, name = COLOURS[vehicle.name], vehicle.name.lower()
         center = project(vehicle.center)
-        arrows = self.arrows(vehicle)
-        if "before" in arrows:
-            start, end = arrows["before"]
-            items += d.arrow(
-                project(start),
-                project(end),
-                colour,
-                0.45,
-                (1.3, 0.7),
-                2.2,
-                f"{vehicle.name} before",
-            )
+        for kind, (start, end) in self.arrows(vehicle).items():
+            symbol, width, dash, head = ARROWS[kind]
+            role = f"{vehicle.name} {kind}"
+            items += d.arrow(project(start), project(end), colour, width, dash, head, role)
+            at, back = (start, end) if kind == "before" else (end, start)
+            text = f"{symbol}_{name}"
             labels.append(
-                Label(
-                    project(start),
-                    minus(start, end),
-                    f"v_{name}",
-                    8,
-                    colour,
-                    False,
-                    f"v_{name} label",
-                )
-            )
-        if "after" in arrows:
-            start, end = arrows["after"]
-            items += d.arrow(
-                project(start), project(end), colour, 0.65, (), 2.5, f"{vehicle.name} after"
-            )
-            labels.append(
-                Label(
-                    project(end),
-                    minus(end, start),
-                    f"V_{name}",
-                    8,
-                    colour,
-                    False,
-                    f"V_{name} label",
-                )
+                Label(project(at), minus(at, back), text, 8, colour, False, f"{text} label")
             )
         least = 1e-4 * self.speed / self.size
-        spins: list[tuple[str, float, float, tuple[float, ...]]] = [
-            ("ω", vehicle.before.spin, 2.9, (0.9, 0.6))
-        ]
+        turns: list[tuple[str, float, float, tuple[float, ...]]]
+        turns = [("ω", vehicle.before.spin, 2.9, (0.9, 0.6))]
         if vehicle.after:
-            spins.append(("Ω", vehicle.after.spin, 3.9, ()))
+            turns.append(("Ω", vehicle.after.spin, 3.9, ()))
         opening = math.degrees(math.atan2(vehicle.front[1], vehicle.front[0])) + 180
-        for symbol, spin, radius, dash in spins:
+        for symbol, spin, radius, dash in turns:
             if not abs(spin) > least:
                 continue
+            role = f"{vehicle.name} spin"
             items += d.turning_arrow(
-                center,
-                radius,
-                spin > 0,
-                colour,
-                0.4,
-                dash,
-                opening,
-                role=f"{vehicle.name} spin",
+                center, radius, spin > 0, colour, 0.4, dash, opening, role=role
             )
-            angle = math.radians(opening + 180)
-            edge = (
-                center[0] + radius * math.cos(angle),
-                center[1] + radius * math.sin(angle),
-            )
-            labels.append(
-                Label(
-                    edge,
-                    minus(edge, center),
-                    f"{symbol}_{name}",
-                    8,
-                    colour,
-                    False,
-                    f"{symbol}_{name} label",
-                )
-            )
+            edge = plus(center, scaled(vehicle.front, radius))
+            text = f"{symbol}_{name}"
+            labels.append(Label(edge, minus(edge, center), text, 8, colour, False, f"{text} label"))
         items.append(
             Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=f"{vehicle.name} center")
         )
+
+
+ARROWS: dict[str, tuple[str, float, tuple[float, ...], float]] = {
+    "before": ("v", 0.45, (1.3, 0.7), 2.2),
+    "after": ("V", 0.65, (), 2.5),
+    "change": ("ΔV", 0.3, (0.4, 0.5), 1.8),
+}
+"""Velocities of a vehicle: symbol, width, dashes and head of the arrow."""
 
 
 def draw_axes(drawing: Drawing, bottom: float, top: float) -> None:
@@ -389,24 +366,49 @@ def short(value: float) -> str:
     return (f"{value:.3g}" if "e" in text else text).replace("-", "−")
 
 
-def _notes(shapes: Plan, units: System) -> list[str]:
-    notes = ["Outlines from I/m, L/W = 2.6: not measured."]
+def notes_of(shapes: Plan, units: System, room: float) -> list[str]:
+    """What a reader must know of a drawing, in lines of that many mm."""
+    notes = []
+    for vehicle in shapes.vehicles:
+        if vehicle.name in shapes.measured:
+            size = (short(units.shown(_LENGTH, x)) for x in (vehicle.length, vehicle.width))
+            unit = "" if units is RULES else " " + units.label(_LENGTH)
+            notes.append(f"{vehicle.name} drawn as measured, {' by '.join(size)}{unit}.")
+    assumed = [v.name for v in shapes.vehicles if v.name not in shapes.measured]
+    if assumed:
+        whose = "Outlines" if len(assumed) == 2 else f"Outline of {assumed[0]}"
+        notes.append(f"{whose} from I/m, L/W = 2.6: not measured.")
+    if not any(vehicle.wall for vehicle in shapes.vehicles):
+        speed = short(units.shown(_SPEED, shapes.closing))
+        notes.append(f"Closing speed {speed}{'' if units is RULES else ' ' + units.label(_SPEED)}.")
     if units is not RULES:
         notes.append(f"Speeds in {units.label(_SPEED)}, spins in {units.label(_SPIN)}.")
+    notes = [" ".join(notes)]
     if shapes.apart:
         notes.append("Point masses: drawn moved apart along n.")
     if any(vehicle.wall for vehicle in shapes.vehicles):
         notes.append("The hatched vehicle's mass makes it a rigid barrier.")
-    for remark in shapes.remarks:
-        notes += _wrapped("Remark: " + remark + ".", d.COLUMN - 4)
-    return [line for note in notes for line in _wrapped(note, d.COLUMN - 4)]
+    notes += [f"Remark: {remark}." for remark in shapes.remarks]
+    return [line for note in notes for line in _wrapped(note, room)]
+
+
+def clock_of(vehicle: Vehicle, impulse: Point | None) -> str:
+    """The hour from which the force on a vehicle comes; ``impulse`` acts on A."""
+    return f"{round(pdof(vehicle, impulse) / 30) % 12 or 12} o'clock" if impulse else ""
+
+
+def pdof(vehicle: Vehicle, impulse: Point) -> float:
+    """Where the force on a vehicle comes from, in degrees clockwise from its front."""
+    source = scaled(impulse, -1.0 if vehicle.name == "A" else 1.0)
+    across = vehicle.front[0] * source[1] - vehicle.front[1] * source[0]
+    return -math.degrees(math.atan2(across, dot(vehicle.front, source)))
 
 
 def _wrapped(text: str, room: float) -> list[str]:
     lines = [""]
     for word in text.split():
         longer = f"{lines[-1]} {word}".strip()
-        if d.text_width(longer, _TEXT) > room and lines[-1]:
+        if d.text_width(longer, TEXT) > room and lines[-1]:
             lines.append(word)
         else:
             lines[-1] = longer
@@ -431,55 +433,51 @@ def _legend(
 ) -> None:
     """Key, scales, table and notes below the drawing."""
     items = drawing.items
-    left, middle = 2.0, 35.0
-    y = footer - _ROW
+    left, middle = 2.0, 44.0
+    y = footer - ROW
     sample = 8.0
 
     def entry(x: float, y: float, paths: list[Path], text: str) -> None:
         items.extend(paths)
-        items.append(Text(x + sample + 1.5, y - 0.8, text, _TEXT, role="legend"))
+        items.append(Text(x + sample + 1.5, y - 0.8, text, TEXT, role="legend"))
 
-    entry(
-        left,
-        y,
-        d.arrow((left, y), (left + sample, y), d.BLACK, 0.45, (1.3, 0.7), 2.2),
-        "velocity before",
-    )
-    plane = [Path(((middle + 5, y), (middle + 5 + sample, y)), d.BLACK, 0.3, (2.4, 0.8, 0.4, 0.8))]
-    entry(middle + 5, y, plane, "contact plane, Γ = " + short(shapes.numbers["GA"]) + "°")
-    y -= _ROW
-    entry(
-        left,
-        y,
-        d.arrow((left, y), (left + sample, y), d.BLACK, 0.65, (), 2.5),
-        "velocity after",
-    )
+    def velocity(y: float, kind: str, text: str) -> None:
+        _, width, dash, head = ARROWS[kind]
+        entry(left, y, d.arrow((left, y), (left + sample, y), d.BLACK, width, dash, head), text)
+
+    velocity(y, "before", "velocity before")
+    plane = [Path(((middle, y), (middle + sample, y)), d.BLACK, 0.3, (2.4, 0.8, 0.4, 0.8))]
+    entry(middle, y, plane, "contact plane, Γ = " + short(shapes.numbers["GA"]) + "°")
+    y -= ROW
+    velocity(y, "after", "velocity after")
     if field.speed:
         per_unit = field.scale * field.per_speed / units.shown(_SPEED, 1.0)
-        _scale(items, middle + 5, y, units.shown(_SPEED, field.speed), per_unit, _SPEED, units)
-    y -= _ROW
+        _scale(items, middle, y, units.shown(_SPEED, field.speed), per_unit, _SPEED, units)
+    y -= ROW
     if shapes.impulse is not None:
-        size = short(math.hypot(*shapes.impulse))
-        unit = "" if units is RULES else " " + units.label("mass·length/time")
-        entry(
-            left,
-            y,
-            d.arrow((left, y), (left + sample, y), IMPULSE, 0.9, (), 2.8),
-            f"impulse on A, |P| = {size}{unit}; on B its opposite",
-        )
-    y -= _ROW
-    if any(v.kept != v.outline and not v.wall for v in shapes.vehicles):
-        crushed = [Path(((left, y), (left + sample, y)), d.GREY, 0.25, (0.7, 0.5))]
-        entry(left, y, crushed, "crushed")
+        velocity(y, "change", "velocity change ΔV")
     per_unit = field.scale / units.shown(_LENGTH, 1.0)
-    _scale(items, middle + 5, y, units.shown(_LENGTH, field.size), per_unit, _LENGTH, units)
+    _scale(items, middle, y, units.shown(_LENGTH, field.size), per_unit, _LENGTH, units)
+    y -= ROW
+    if shapes.impulse is not None:
+        size = short(math.hypot(*shapes.impulse) * units.shown("mass·length/time", 1.0))
+        unit = "" if units is RULES else " " + units.label("mass·length/time")
+        force = d.arrow((left, y), (left + sample, y), IMPULSE, 0.9, (), 2.8)
+        entry(left, y, force, f"impulse P on A, {size}{unit}")
+    if any(v.kept != v.outline and not v.wall for v in shapes.vehicles):
+        entry(
+            middle,
+            y,
+            [Path(((middle, y), (middle + sample, y)), d.GREY, 0.25, (0.7, 0.5))],
+            "crushed",
+        )
     y -= 2.4
     items.append(Path(((left, y), (drawing.width - left, y)), d.GREY, 0.2))
-    y = _table(drawing, shapes, y, units)
+    y = draw_table(drawing, shapes, y, units)
     items.append(Path(((left, y + 2.0), (drawing.width - left, y + 2.0)), d.GREY, 0.2))
     for note in notes:
-        items.append(Text(left, y - 0.9, note, _TEXT, colour=d.GREY, role="note"))
-        y -= _ROW
+        items.append(Text(left, y - 0.9, note, TEXT, colour=d.GREY, role="note"))
+        y -= ROW
 
 
 _SPEED, _LENGTH, _SPIN = "length/time", "length", "rad/time"
@@ -502,37 +500,44 @@ def _scale(
     for tick in (x, end):
         items.append(Path(((tick, y - 0.7), (tick, y + 0.7)), d.BLACK, 0.4))
     text = f"{word} {short(amount)}" if units is RULES else f"{short(amount)} {units.label(rule)}"
-    items.append(Text(end + 1.5, y - 0.8, text, _TEXT, role="legend"))
+    items.append(Text(end + 1.5, y - 0.8, text, TEXT, role="legend"))
 
 
-def _table(drawing: Drawing, shapes: Plan, y: float, units: System) -> float:
-    columns = (21.0, 37.0, 50.0, 67.0, 83.0)
-    heads = ("|v| before", "|V| after", "ΔV", "ω before", "Ω after")
-    y -= _ROW - 0.3
+_COLUMNS = {
+    **{"speed before": 17.2, "after": 28.8, "ΔV": 40.4},
+    **{"force from": 53.4, "spin before": 68.0, "spin after": 83.0},
+}
+"""The table's headings and where its columns end, in mm of a drawing one column wide."""
+
+
+def draw_table(drawing: Drawing, shapes: Plan, y: float, units: System) -> float:
+    """Speeds, changes, directions and spins below ``y``; returns where what follows goes on."""
+    y -= ROW - 0.3
+    columns = [end * drawing.width / d.COLUMN for end in _COLUMNS.values()]
     drawing.items += [
-        Text(x, y, head, _TEXT, "end", role="table") for x, head in zip(columns, heads, strict=True)
+        Text(x, y, head.replace("spin after", "after"), TEXT, "end", role="table")
+        for x, head in zip(columns, _COLUMNS, strict=True)
     ]
     for vehicle in shapes.vehicles:
-        y -= _ROW
+        y -= ROW
         before, after = vehicle.before, vehicle.after
+        point, wall = shapes.numbers["M"] == 4, vehicle.wall
+        force = shapes.impulse if after and not wall else None
         cells = [
             short(units.shown(_SPEED, before.speed)),
-            short(units.shown(_SPEED, after.speed)) if after else "–",
-            short(units.shown(_SPEED, _change(vehicle))) if after else "–",
-            short(units.shown(_SPIN, before.spin)),
-            short(units.shown(_SPIN, after.spin)) if after else "–",
+            short(units.shown(_SPEED, after.speed)) if after and not wall else "–",
+            short(units.shown(_SPEED, _change(vehicle))) if after and not wall else "–",
+            f"{pdof(vehicle, force):.0f}°".replace("-", "−") if force and any(force) else "–",
+            short(before.spin) if not point else "–",
+            short(after.spin) if after and not wall and not point else "–",
         ]
-        if shapes.numbers["M"] == 4:
-            cells[3:] = "–", "–"
-        if vehicle.wall:
-            cells[1:3], cells[4] = ("–", "–"), "–"
         colour = COLOURS[vehicle.name]
-        drawing.items.append(Text(2.0, y, vehicle.name, _TEXT, "start", colour, True, "table"))
+        drawing.items.append(Text(2.0, y, vehicle.name, TEXT, "start", colour, True, "table"))
         drawing.items += [
-            Text(x, y, cell, _TEXT, "end", role="table")
+            Text(x, y, cell, TEXT, "end", role="table")
             for x, cell in zip(columns, cells, strict=True)
         ]
-    return y - _ROW
+    return y - ROW
 
 
 def _change(vehicle: Vehicle) -> float:
@@ -541,7 +546,9 @@ def _change(vehicle: Vehicle) -> float:
     return math.dist(vehicle.after.velocity, vehicle.before.velocity)
 
 
-def _description(shapes: Plan, units: System) -> str:
+def description(shapes: Plan, units: System) -> str:
+    """What a drawing shows, in words."""
+
     def speed(value: float) -> str:
         unit = "" if units is RULES else " " + units.label(_SPEED)
         return short(units.shown(_SPEED, value)) + unit
@@ -552,5 +559,7 @@ def _description(shapes: Plan, units: System) -> str:
         if vehicle.after:
             change = speed(_change(vehicle))
             text += f", {speed(vehicle.after.speed)} after, change of velocity {change}"
+        if vehicle.after and shapes.impulse and any(shapes.impulse) and not vehicle.wall:
+            text += f", force from {clock_of(vehicle, shapes.impulse)}"
         parts.append(text + ".")
     return " ".join(parts)

@@ -20,8 +20,9 @@ def svg(drawing: Drawing) -> Svg:
     """The drawing as one SVG element, in millimetres, with title and description for readers who
     cannot see it. May stand in a file by itself or inside an HTML page."""
     width, height = _number(drawing.width), _number(drawing.height)
+    across, up = (_number(x * drawing.enlarged) for x in (drawing.width, drawing.height))
     lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{across}mm" height="{up}mm" '
         f'viewBox="0 0 {width} {height}" role="img" font-family="{FONTS}">',
         f"<title>{escape(drawing.title)}</title>",
         f"<desc>{escape(drawing.description)}</desc>",
