@@ -10,17 +10,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .doubles import double
 from .errors import UserError, quoted
 from .scene import RANGES, Scene, check_mapping, entries_of, is_share
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from .uncertainty.uncertain import Uncertain
 
-Array = NDArray[Any]
+    Array = NDArray[Any]
 
 
 def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -50,6 +49,8 @@ def in_doubles(name: str, values: Any) -> Array:
 
     Raises UserError for what holds no numbers.
     """
+    import numpy as np
+
     if type(values) is str:
         return np.float64(_double(name, values))  # type: ignore[return-value]
     if isinstance(values, np.ma.MaskedArray):
@@ -90,6 +91,8 @@ def columns(values: Mapping[str, Any]) -> dict[str, Array]:
 def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
     """Every value as a number or a range: an `Uncertain`, a number, or the text of either. Raises
     UserError."""
+    import numpy as np
+
     from .uncertainty.uncertain import Uncertain, fixed, read
 
     def uncertain(name: str, value: Any) -> Uncertain:
@@ -118,6 +121,8 @@ def typed(values: Mapping[str, Any]) -> Scene:
 
 
 def _shortest(name: str, value: Any) -> str:
+    import numpy as np
+
     number = in_doubles(name, value)
     if np.ndim(number) or not np.isfinite(number):
         raise UserError(f"{name} is {quoted(value)}; expected one finite number")
