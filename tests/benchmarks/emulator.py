@@ -3,9 +3,10 @@
     python tests/benchmarks/emulator.py [--pcbasic PYTHON]
 
 Both run the same scenes in turns, in process; the ratio is the median of the scenes' ratios. Typing
-a scene's lines into the emulator and compiling them is counted apart: it is done once, the run as
-often as wanted. With --pcbasic the same listing, its INPUT lines replaced by assignments, runs as a
-process under PC-BASIC (``pip install pcbasic``), beside ``impact88 basic`` on the very same file.
+a scene's lines into the emulator is counted apart: it is done once, the run as often as wanted.
+Loops that do one thing follow. With --pcbasic the same listing, its INPUT lines replaced by
+assignments, runs as a process under PC-BASIC (``pip install pcbasic``), beside ``impact88 basic``
+on the very same file.
 """
 
 from __future__ import annotations
@@ -56,6 +57,32 @@ def in_process() -> None:
     print(f"emulator  {statistics.median(ours):6.2f} ms a scene (slowest {max(ours):.2f})")
     print(f"ratio     {statistics.median(ratios):6.2f} (largest {max(ratios):.2f})")
     print(f"typing in {statistics.median(typing):6.2f} ms a scene")
+
+
+KERNELS = {
+    "FOR and NEXT": "10 FOR I=1 TO 2000:NEXT",
+    "IF and GOTO": "10 I=I+1:IF I<1000 THEN 10",
+    "arithmetic": "10 FOR I=1 TO 300:X=(I+2)*3-I/7+A*B:NEXT",
+    "array": "10 DIM A(20,20)\n20 FOR I=1 TO 20:FOR J=1 TO 20:A(I,J)=A(I,J)+I*J:NEXT J,I",
+    "GOSUB": "10 FOR I=1 TO 500:GOSUB 100:NEXT:END\n100 RETURN",
+    "FN": "10 DEF FN A(X)=X*X+1\n20 FOR I=1 TO 300:Y=FN A(I):NEXT",
+    "strings": '10 FOR I=1 TO 300:A$=LEFT$("HELLO",3)+CHR$(65)+STR$(I):NEXT',
+    "functions": "10 FOR I=1 TO 200:X=SIN(I)+SQR(I)+LOG(I):NEXT",
+    "PRINT": '10 FOR I=1 TO 200:PRINT I;" ";I/3:NEXT',
+}
+
+
+def kernels() -> None:
+    """Loops that do one thing: the fastest of several runs."""
+    for name, program in KERNELS.items():
+        machine = Applesoft()
+        machine.load(program)
+        times = []
+        for _ in range(ROUNDS):
+            start = time.process_time()
+            machine.run()
+            times.append((time.process_time() - start) * 1e3)
+        print(f"{name:<13} {min(times):6.2f} ms")
 
 
 def assigned() -> str:
@@ -109,6 +136,7 @@ def main() -> None:
     parser.add_argument("--pcbasic", metavar="PYTHON", help="a Python that has PC-BASIC installed")
     arguments = parser.parse_args()
     in_process()
+    kernels()
     if arguments.pcbasic:
         against_pcbasic(arguments.pcbasic)
 

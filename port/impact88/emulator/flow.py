@@ -338,7 +338,7 @@ class Flow(Inputs):
             self.set_pointers()
         else:
             self.clear()
-            self.goto(self.sp - 4)
+            self.goto(self.sp - 2)
 
     def _note_place(self) -> None:
         """Where CONT goes on, unless at the prompt."""

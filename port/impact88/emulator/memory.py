@@ -47,39 +47,22 @@ MORE_REFUSED = "more of the kind"
 _BEYOND = 0x200
 """Zeros behind the last address, so that text that runs on to the end of memory ends there."""
 
-WORDS = {
-    0x67: "txttab",
-    0x69: "vartab",
-    0x6B: "arytab",
-    0x6D: "strend",
-    0x6F: "fretop",
-    0x73: "memsiz",
-    0x75: "curlin",
-    0x77: "oldlin",
-    0x79: "oldtext",
-    0x7B: "datlin",
-    0x7D: "datptr",
-    0x83: "varpnt",
-    0x85: "forpnt",
-    0xAF: "prgend",
-    0xB8: "txtptr",
-    0xDA: "errlin",
-    0xDC: "errpos",
-    0xF4: "txtpsv",
-    0xF6: "cursv",
-}
-BYTES = {
-    0x14: "subflg",
-    0x52: "temppt",
-    0x53: "lastpt",
-    0xD6: "lock",
-    0xD8: "errflg",
-    0xDE: "errnum",
-    0xDF: "errstk",
-    0xF2: "trcflg",
-    0xF3: "flash",
-    0xF8: "remstk",
-}
+
+def _named(text: str) -> dict[int, str]:
+    """Names by address, from the hexadecimal addresses before them."""
+    words = text.split()
+    return {int(address, 16): name for address, name in zip(words[::2], words[1::2], strict=True)}
+
+
+WORDS = _named(
+    "67 txttab 69 vartab 6B arytab 6D strend 6F fretop 73 memsiz 75 curlin 77 oldlin 79 oldtext "
+    "7B datlin 7D datptr 83 varpnt 85 forpnt AF prgend B8 txtptr DA errlin DC errpos F4 txtpsv "
+    "F6 cursv"
+)
+BYTES = _named(
+    "14 subflg 52 temppt 53 lastpt D6 lock D8 errflg DE errnum DF errstk F2 trcflg F3 flash "
+    "F8 remstk"
+)
 OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
 
 

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from ..applesoft.console import keyed
+from ..applesoft.errorcodes import CODES
 
 FIRST = 0x80
 KEYWORDS = (
@@ -38,6 +39,7 @@ LAST_LINE = 63999
 LINE_LIMIT = 239
 """The monitor hands over no more of a line than this."""
 
+_LISTED = (*KEYWORDS, "", *[*CODES][1:], " ERROR\a")
 _BY_LETTER: dict[str, list[tuple[str, int]]] = {}
 for _word, _token in TOKENS.items():
     _BY_LETTER.setdefault(_word[0], []).append((_word, _token))
@@ -142,9 +144,10 @@ def untokenised(tokens: bytes) -> str:
 
 
 def spelling(token: int) -> str:
-    """A token's keyword; nothing for one that there is none of."""
+    """What LIST writes for a token. Behind the keywords stand the error messages, the first one
+    after a zero that ends the table and the word."""
     index = token - FIRST
-    return KEYWORDS[index] if index < len(KEYWORDS) else ""
+    return _LISTED[index] if index < len(_LISTED) else ""
 
 
 def _spelled(tokens: bytes, print_word: str) -> str:
