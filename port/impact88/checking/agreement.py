@@ -22,11 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
+from ..accuracy.elimination import fill
 from ..doubles import double, doubles
 from ..errors import quoted
 from ..names import FINAL_VELOCITIES
 from ..tables.rows import Rows, one_per_row
-from . import otherprograms
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -112,7 +112,7 @@ def slack(scene: Columns, ours: Columns, rtol: float | None = None) -> Slack:
     sizes = errorbound.scales(scene, ours)
     best = errorbound.relative_bounds(ours["COND"], 1.0)
     with np.errstate(all="ignore"):
-        condition = otherprograms.plain_condition(scene)
+        condition = plain_condition(scene)
         unknowns = np.stack([np.abs(ours[name]) for name in FINAL_VELOCITIES])
         error = condition * np.nanmax(unknowns, axis=0, initial=0.0)
         shares = [error / sizes[name] for name in ("VAX", *_SPINS)]
@@ -122,6 +122,21 @@ def slack(scene: Columns, ours: Columns, rtol: float | None = None) -> Slack:
         alike = np.full(best.size, rtol)
         return Slack(sizes, alike, alike, per_unit)
     return Slack(sizes, best * errorbound.DOUBLE, per_unit * errorbound.DOUBLE, per_unit)
+
+
+def plain_condition(scene: Columns) -> Floats:
+    """The condition numbers (largest row sum) of the listing's matrices as they stand; infinite
+    where there is no finite one. Point masses are bodies without arms that nothing turns."""
+    point = scene["M"] == 4
+    alone = {"DA": 0.0, "DB": 0.0, "EM": 1.0, "IA": 1.0, "IB": 1.0}
+    changed = {name: np.where(point, value, scene[name]) for name, value in alone.items()}
+    matrix, _ = fill({**scene, **changed})
+    usable = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
+    signs, _ = np.linalg.slogdet(np.where(usable[:, None, None], matrix, np.eye(6)))
+    usable = usable & (signs != 0)
+    inverse = np.linalg.inv(np.where(usable[:, None, None], matrix, np.eye(6)))
+    condition = np.abs(matrix).sum(2).max(1) * np.abs(inverse).sum(2).max(1)
+    return np.where(usable & np.isfinite(condition), condition, np.inf)
 
 
 def judge(theirs: Theirs, ours: Floats, name: str, allowed: Slack) -> Verdict:

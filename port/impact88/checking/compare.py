@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..doubles import double
+from ..equations.program import Program
 from ..errors import UserError
 from ..files import called
 from ..mappings import texts
@@ -29,7 +30,7 @@ from ..tables.rows import BadCell, Rows, check_scene_columns, numbers, one_per_r
 from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
 from .agreement import Slack, Theirs, Verdict, given, judge, read_theirs, slack
-from .diagnosis import UNKNOWN, Case, diagnose
+from .diagnosis import UNKNOWN, Case, Cause, diagnose
 from .vectors import FAILURE
 
 Floats = NDArray[np.float64]
@@ -109,6 +110,8 @@ class Comparison:
     not_compared: Counter[str] = field(default_factory=Counter)
     places_not_compared: dict[str, list[int]] = field(default_factory=dict)
     elimination: Elimination = field(default_factory=Elimination)
+    evidence: list[Cause] = field(default_factory=list)
+    programs: list[Program] = field(default_factory=list)
     equations: dict[str, tuple[int, int]] = field(default_factory=dict)
     bad: list[BadCell] = field(default_factory=list)
     unknown: dict[str, str] = field(default_factory=dict)
@@ -413,6 +416,8 @@ def _explain(waiting: list[_Waiting], comparison: Comparison) -> None:
         rows = np.concatenate([np.flatnonzero(case.wrong), np.flatnonzero(~case.wrong)[:DIAGNOSED]])
         diagnosis = diagnose(case.part(rows))
         comparison.equations = diagnosis.equations
+        comparison.evidence = diagnosis.evidence
+        comparison.programs = diagnosis.programs
         comparison.differences = [
             row._replace(cause=cause)
             for row, cause in zip(comparison.differences, diagnosis.causes, strict=True)

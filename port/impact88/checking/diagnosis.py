@@ -1,10 +1,9 @@
 """Why another program's results differ: one cause for a table where one explains it.
 
-Every imagined program (`slips.SLIPS`) is run over a sample of the table, those that explain rows
-are run over all of it, and rows are given to the cause that explains most, then to the one that
-explains most of what is left. Where that leaves much unexplained, slips are tried in pairs. A cause
-must earn its name: the digits that it gets right must be many more than chance would give
-(`_CERTAIN`), and it must explain a share of the rows that disagree.
+What is looked for, in turn: right numbers written otherwise; one mistake (`search`); the velocities
+and the rest apart; two mistakes (`faults`); rows of several programs; coarser arithmetic. A cause
+must earn its name: rows that agree must bear it out, and the bits that it gets right in rows that
+disagree must be many more than choosing among so many programs yields by chance.
 """
 
 from __future__ import annotations
@@ -12,28 +11,27 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
+from ..equations.evaluation import Run
+from ..equations.program import Program, variants
+from ..equations.spelling import LISTING, spellings
 from ..errors import UserError
 from ..fields import FIELDS
+from ..names import FINAL_VELOCITIES
+from ..progress import progress
 from ..replay import replay
-from . import otherprograms, residuals
+from . import faults, residuals
 from .agreement import Slack, Theirs, given
-from .slip import Slip
-from .slips import RARE, READINGS, SLIPS
-from .slipsfilling import in_one_equation
-from .slipsreading import changing, constant_of, times
-from .slipsshowing import ALL_SPEEDS, ENERGIES, FINAL_SPINS, IMPULSES, scaled
+from .search import BORNE_OUT, Found, Judge, outputs, ranked, run, singles, spread
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Columns = dict[str, Floats]
-Program = tuple[Slip, ...]
 
 PRINTED = "digits of the 1988 printout, which floors"
 FLOORED = "floored to the digits given, not rounded"
@@ -44,26 +42,21 @@ UNKNOWN = "unexplained"
 IN_THESE_ROWS = ", in these rows only"
 """Behind a cause that rows that agree refute."""
 
-_WRONG_SAMPLE, _RIGHT_SAMPLE = 60, 30
-_PAIR_SAMPLES = (5, 24)
-_ENOUGH = 0.9
-"""The share of rows explained from which no pairs are tried."""
-_MAIN = 0.5
-"""The share of the rows that disagree that makes a cause the table's."""
-_SMALL = 0.2
-"""Below this share of the rows a cause is small."""
-_STRAY = 0.1
-"""The share of rows that violate an equation in which nothing is wrong, at most."""
-_LEAST_SHARE = 0.03
-"""A cause of a smaller share of the rows that disagree is not named, where there are many."""
-_MANY = 40
-_LEAST_PAIR_SHARE = 0.6
-_BORNE_OUT = 0.9
-"""The share of the rows that agree that a cause must fit, too: less refutes it."""
+_WRONG_SAMPLE, _RIGHT_SAMPLE = 45, 30
+_FEW = 8
+"""Rows that disagree on which pairs are looked for, and half as many for pairs of readings."""
+_SHARE = 0.1
+"""The least share of the rows that the first of two mistakes explains alone."""
+_FIRSTS = 4
+"""Mistakes on top of which another is looked for."""
+_SEVERAL = 3
+"""Causes that a table of several programs' rows may have."""
 _LARGE = 1e-5
-"""Differences below this share of their size are no pair of slips."""
-_CERTAIN, _PAIR_CERTAIN = 4.0, 8.0
-"""Digits that a cause must get right beyond ours, all rows together."""
+"""Differences below this share of their size are no pair of mistakes."""
+_NEED, _NEED_NAMED, _NEED_PAIR = 22.0, 10.0, 32.0
+"""Bits that a cause must get right: some ten more than one of 30,000 edits, one less than one of
+500 known alternatives, and as many as one pair of 30,000 edits in different equations."""
+_BITS_A_ROW = 40.0
 _CLOSE = 1e-9
 """Results this close, as a share of their size, are the same program's."""
 _EXPLAINED = 0.1
@@ -72,9 +65,11 @@ _WIDESPREAD = 0.5
 """The share of the rows in which coarser arithmetic can be seen that it spoils."""
 _TYPICAL = 1 / 64
 """Its error there, as a share of the bound."""
-_BITS = {SINGLE: (24, (27.0, 33.5)), APPLESOFT: (32, (34.0, 40.0))}
+_WIDTHS = {SINGLE: (24, (27.0, 33.5)), APPLESOFT: (32, (34.0, 40.0))}
 """Cause -> bits of the arithmetic, and the range in which the bits measured against the bound lie:
 rounding spoils a few bits less than the bound allows."""
+_EQUIVALENTS = 4
+"""Other ways to say a cause that are listed."""
 
 
 @dataclass
@@ -102,21 +97,27 @@ class Case:
         )
 
 
-@dataclass
-class Diagnosis:
-    """What `diagnose` found: the cause of each row that disagrees, in order; and for each equation
-    in how many rows that disagree it could be checked, and is violated."""
-
-    causes: list[str]
-    equations: dict[str, tuple[int, int]] = field(default_factory=dict)
-
-
-class _Fit(NamedTuple):
-    """How a program fits a case: the rows it explains, and the digits it gets right in each."""
+class Cause(NamedTuple):
+    """A cause: what is said of it, how many of the rows that disagree it explains and of those that
+    agree it fits, of how many each, and what would do the same."""
 
     says: str
-    rows: Bools
-    digits: Floats
+    explains: int
+    disagreeing: int
+    fits: int
+    agreeing: int
+    equivalents: list[str]
+
+
+@dataclass
+class Diagnosis:
+    """What `diagnose` found: the cause of each row that disagrees, in order; the evidence for each;
+    and for each equation in how many rows that disagree it could be checked, and is violated."""
+
+    causes: list[str]
+    evidence: list[Cause] = field(default_factory=list)
+    equations: dict[str, tuple[int, int]] = field(default_factory=dict)
+    programs: list[Program] = field(default_factory=list)
 
 
 @np.errstate(all="ignore")
@@ -124,263 +125,295 @@ def diagnose(case: Case) -> Diagnosis:
     """The likely causes of a case's disagreements."""
     if not case.wrong.any():
         return Diagnosis([])
-    fits = [*_cuts(case), *_fits(_candidates(case), case)]
     causes = np.where(case.wrong, UNKNOWN, "").astype(object)
-    covering = _worth_naming([fits[place] for place in _cover(fits, case)], case)
-    if not covering or (covering[0].rows & case.wrong).sum() < _MAIN * case.wrong.sum():
-        _by_precision(causes, case)
-    for fit in covering:
-        stands = (fit.rows & ~case.wrong).sum() >= _BORNE_OUT * (~case.wrong).sum()
-        causes[(causes == UNKNOWN) & fit.rows] = fit.says + ("" if stands else IN_THESE_ROWS)
+    result = Diagnosis([])
+    measure = _Measure(case)
+    if not _by_digits(causes, case):
+        _by_search(causes, case, measure, result)
+        if (causes == UNKNOWN).sum() > (1 - BORNE_OUT) * case.wrong.sum():
+            _by_precision(causes, case, measure)
     violations = residuals.violated(case.scene, case.theirs, case.allowed)
-    _by_residuals(causes, case, violations)
+    _by_residuals(causes, measure, violations)
     rows = int(case.wrong.sum())
-    return Diagnosis(
-        causes[case.wrong].tolist(),
-        {number: (rows, int((off & case.wrong).sum())) for number, off in violations.items()},
+    result.causes = causes[case.wrong].tolist()
+    result.equations = {n: (rows, int((off & case.wrong).sum())) for n, off in violations.items()}
+    return result
+
+
+def _by_search(
+    causes: NDArray[np.object_], case: Case, measure: _Measure, result: Diagnosis
+) -> None:
+    """Name programs that give their numbers."""
+    whole = Judge(
+        case.scene,
+        {name: column.values for name, column in case.theirs.items()},
+        dict(zip(measure.names, measure.limits, strict=True)),
+        case.wrong,
     )
+    # rows that the equations as they stand do not give: near-singular, or decided by rounding
+    usual = Judge(case.scene, case.ours, whole.limit, case.wrong).of(measure.names)
+    clear = usual.near(Program().results(case.scene), {})
+    rows = _sample(case, clear)
+    sample = whole.part(rows)
+    bits, choices = measure.bits(whole)
+    if not sample.wrong.any():
+        return
+    whole = whole.of(_telling(sample))
+    for several in _explanations(sample, measure.off[rows]):
+        right = clear & ~case.wrong
+        for found in several:
+            fits = run(found.program, whole).rows
+            explained = fits & (causes == UNKNOWN)
+            if _evidence(explained & clear, bits, choices & clear) < _need(found.program):
+                continue
+            stands = (fits & right).sum() >= BORNE_OUT * right.sum()
+            says = found.program.says + ("" if stands else IN_THESE_ROWS)
+            causes[explained] = says
+            same = [other.program.says for other in found.others][:_EQUIVALENTS]
+            result.evidence.append(
+                Cause(
+                    says,
+                    int(explained.sum()),
+                    int(case.wrong.sum()),
+                    int((fits & right).sum()),
+                    int(right.sum()),
+                    same,
+                )
+            )
+            result.programs.append(found.program)
+        if result.evidence:
+            return
 
 
-def _worth_naming(covering: list[_Fit], case: Case) -> list[_Fit]:
-    """The causes to be named: where most of a table stays unexplained, a cause that explains a
-    small part of it may only happen to say the same there as the one that is not known."""
-    rows = case.wrong.sum()
-    if not covering or rows < _MANY:
-        return covering
-    explained = np.logical_or.reduce([fit.rows for fit in covering]) & case.wrong
-    if explained.sum() >= _MAIN * rows:
-        return covering
-    return [fit for fit in covering if (fit.rows & case.wrong).sum() >= _SMALL * rows]
+def _evidence(explained: Bools, bits: Floats, choices: Bools) -> float:
+    """The bits that a cause has got right: of branches taken, which rows of those that show it."""
+    taken, possible = int((explained & choices).sum()), int(choices.sum())
+    return float(bits[explained & ~choices].sum()) + math.log2(math.comb(possible, taken))
 
 
-# --- which programs to imagine -------------------------------------------------------------------
+def _need(program: Program) -> float:
+    named = not any(edit.rank for edit in program.edits)
+    count = len(program.edits) + len(program.readings)
+    return _NEED_PAIR if count > 1 else _NEED_NAMED if named else _NEED
 
 
-def _candidates(case: Case) -> list[Program]:
-    """The programs that explain rows of a sample, alone or, where none alone does, in pairs."""
-    sample = case.part(_spread(case, _WRONG_SAMPLE, _RIGHT_SAMPLE))
-    measure = _Measure(sample)
-    total = sample.wrong.sum()
-    seen: list[Slip] = []
-    fits: list[_Fit] = []
-    chosen: list[Slip] = []
-    unexplained = sample.wrong
-    stages = [(*SLIPS, *_measured(case)), RARE, _in_the_equation(sample)]
-    for slips in stages:
-        more = list(_visible(slips, sample))
-        seen += [slip for slip, _ in more]
-        fits += [measure.fit(slip.says, results) for slip, results in more]
-        places = _cover(fits, sample)
-        chosen = [seen[place] for place in places]
-        unexplained = sample.wrong & ~np.logical_or.reduce([fits[place].rows for place in places])
-        if unexplained.sum() <= (1 - _ENOUGH) * total:
-            break
-    found: list[Program] = [(slip,) for slip in chosen]
-    if unexplained.sum() > (1 - _ENOUGH) * total and np.median(measure.off[unexplained]) > _LARGE:
-        common = [slip for slip in seen if slip.common]
-        main = chosen if unexplained.sum() <= (1 - _MAIN) * total else common
-        found += _pairs(main, common, sample, unexplained)
-    return found
-
-
-def _in_the_equation(sample: Case) -> tuple[Slip, ...]:
-    """Readings in the one equation that the results violate, if it is one."""
-    violations = residuals.violated(sample.scene, sample.theirs, sample.allowed)
-    rows = sample.wrong.sum()
-    broken = [n for n, off in violations.items() if (off & sample.wrong).sum() > _STRAY * rows]
-    return tuple(in_one_equation(broken[0], READINGS)) if len(broken) == 1 else ()
-
-
-def _visible(slips: Sequence[Slip], sample: Case) -> Iterator[tuple[Slip, Columns]]:
-    """The slips that can be seen in the table's columns at all, and their results."""
-    plain, *results = otherprograms.run([(), *((slip,) for slip in slips)], sample.scene)
-    for slip, changed in zip(slips, results, strict=True):
-        if any(
-            name in changed and not np.array_equal(changed[name], plain[name], equal_nan=True)
-            for name in sample.theirs
-        ):
-            yield slip, changed
-
-
-def _spread(case: Case, wrong: int, right: int) -> NDArray[np.intp]:
-    """Row numbers of some rows that disagree and some that agree, spread over the table."""
+def _sample(case: Case, clear: Bools) -> NDArray[np.intp]:
+    """Rows that disagree, then some that agree, of every kind of scene."""
+    g = case.scene
+    kinds = np.stack(
+        [
+            *(g["MU"] == -10, g["M"] == 4, g["MU"] == 0, (g["WA"] == 0) & (g["WB"] == 0)),
+            *(case.ours["MUP"] == g["MU"], (g["DA"] == 0) & (g["DB"] == 0)),
+        ]
+    )
+    kind = (kinds * 2 ** np.arange(len(kinds))[:, None]).sum(0)
     chosen = []
-    for rows, count in ((case.wrong, wrong), (~case.wrong, right)):
-        places = np.flatnonzero(rows)
-        if places.size > count:
-            places = places[np.linspace(0, places.size - 1, count).astype(int)]
-        chosen.append(places)
+    for rows, count in ((case.wrong, _WRONG_SAMPLE), (~case.wrong, _RIGHT_SAMPLE)):
+        places = np.flatnonzero(rows & clear)
+        groups = [places[kind[places] == one] for one in np.unique(kind[places])]
+        least = -(-count // max(4 * len(groups), 1))
+        taken = [spread(group, least) for group in groups]
+        rest = np.setdiff1d(places, np.concatenate(taken)) if groups else places
+        taken.append(spread(rest, max(count - sum(map(len, taken)), 0)))
+        together = np.sort(np.concatenate(taken)).astype(np.intp)
+        chosen.append(together[np.argsort(kind[together], kind="stable")])
     return np.concatenate(chosen)
 
 
-def _measured(case: Case) -> list[Slip]:
-    """Slips whose size the table itself tells: results a constant times ours, coefficients that
-    are the same in every row."""
-    slips = []
-    groups = {
-        "velocities": ALL_SPEEDS,
-        "final spins": FINAL_SPINS,
-        "energies": ENERGIES,
-        "impulses": IMPULSES,
-        **{name: (name,) for name in case.theirs if name != "MUC"},  # of which no program has any
-    }
-    for what, names in groups.items():
-        there = [name for name in names if name in case.theirs]
-        factor = _ratio(
-            [case.theirs[name].values[case.wrong] for name in there],
-            [case.ours[name][case.wrong] for name in there],
-        )
-        if factor is not None:
-            says = f"{what} {factor:.6g} times as large as here"
-            slips.append(Slip(says, results=scaled(there, factor), common=False))
-    for name, values in residuals.effective(case.scene, case.theirs).items():
-        usable = values[case.wrong & np.isfinite(values)]
-        if usable.size and (constant := _rounded(float(np.median(usable)))) is not None:
-            change = changing((name,), constant_of(constant))
-            slips.append(Slip(f"{name} fixed at {constant:g}", change, late=True, common=False))
-        own = case.ours["MUP"] if name == "MU" else case.scene[name]
-        factor = _ratio([values[case.wrong]], [own[case.wrong]])
-        if factor is not None:
-            change = times((name,), factor)
-            slips.append(Slip(f"{name} taken {factor:.6g} times as large", change, common=False))
-    return slips
+# --- which programs ------------------------------------------------------------------------------
 
 
-def _ratio(theirs: Sequence[Floats], ours: Sequence[Floats]) -> float | None:
-    """The median ratio, where there is one that is not 1."""
-    if not theirs:
-        return None
-    with np.errstate(all="ignore"):
-        ratios = np.concatenate(theirs) / np.concatenate(ours)
-    ratios = ratios[np.isfinite(ratios)]
-    if not ratios.size:
-        return None
-    factor = float(f"{np.median(ratios):.12g}")
-    return None if abs(factor - 1) < 1e-6 or factor == 0 else factor
+class _Chosen(NamedTuple):
+    """A program that explains rows, and others that explain the same."""
+
+    program: Program
+    others: list[Found]
 
 
-def _rounded(value: float) -> float | None:
-    """A constant as somebody would type it: three digits."""
-    return float(f"{value:.3g}") if math.isfinite(value) else None
+def _explanations(judge: Judge, off: Floats) -> Iterator[list[_Chosen]]:
+    """Lists of programs that together explain a table, the simplest first."""
+    with progress(5, "look for the cause") as meter:
+        meter.update(0)
+        reduced = judge.of(_telling(judge))
+        alone = singles(reduced, reduced.wrong)
+        if alone and alone[0].whole(judge.wrong):
+            yield [_best(alone, judge)]
+        meter.update(1)
+        if np.median(off[judge.wrong]) > _LARGE:
+            for programs in _pairs(judge, reduced, alone, meter.update):
+                found = ranked([run(program, reduced) for program in programs], judge.wrong)
+                found = [one for one in found if one.whole(judge.wrong)]
+                if found:
+                    yield [_best(found, judge)]
+        several = _several(alone, judge)
+        if several:
+            yield several
+
+
+def _telling(judge: Judge) -> list[str]:
+    """The final velocities, and what does not follow from theirs as it should: what does says
+    nothing more."""
+    names = list(judge.theirs)
+    if not _has_velocities(judge):
+        return names
+    theirs = {name: judge.theirs[name] for name in FINAL_VELOCITIES}
+    follows = Run(spellings()[LISTING], judge.scene, theirs).names
+    return [
+        name
+        for name in names
+        if name in FINAL_VELOCITIES
+        or name not in follows
+        or judge.of([name]).near(follows, {}).mean() < BORNE_OUT
+    ]
+
+
+def _has_velocities(judge: Judge) -> bool:
+    return all(name in judge.theirs for name in FINAL_VELOCITIES)
+
+
+def _best(found: Sequence[Found], judge: Judge) -> _Chosen:
+    """Of programs that explain alike, the one that all results bear out, or the likeliest."""
+    top = found[0]
+    alike = [one for one in found if np.array_equal(one.rows, top.rows)]
+    full = [run(one.program, judge, one.rank) for one in alike]
+    order = sorted(range(len(alike)), key=lambda i: (-int(full[i].rows.sum()), alike[i].rank))
+    return _Chosen(alike[order[0]].program, [alike[i] for i in order[1:]])
 
 
 def _pairs(
-    main: Sequence[Slip], common: Sequence[Slip], sample: Case, unexplained: Bools
-) -> list[Program]:
-    """Pairs that explain what no slip alone explains: one of ``main``, which explain other rows
-    alone if any do, and one of ``common``."""
-    if main is common:
-        pairs: list[Program] = list(combinations(common, 2))
-    else:
-        pairs = [(one, other) for one in main for other in common if other not in main]
-    for size in _PAIR_SAMPLES:
-        places = np.flatnonzero(unexplained)
-        few = sample.part(places[:: max(1, places.size // size)][:size])
-        results = otherprograms.run(pairs, few.scene)
-        measure = _Measure(few)
-        explained = [measure.fit("", one).rows.mean() >= _LEAST_PAIR_SHARE for one in results]
-        pairs = [pair for pair, good in zip(pairs, explained, strict=True) if good]
-        if not pairs:
+    judge: Judge, reduced: Judge, alone: Sequence[Found], done: Callable[[int], object]
+) -> Iterator[list[Program]]:
+    """Programs with two mistakes, by stages."""
+    few = reduced.part(reduced.few(reduced.wrong, _FEW))
+    if _has_velocities(judge):
+        velocities = judge.of(FINAL_VELOCITIES)
+        ours = run(Program(), velocities)
+        wrong = judge.wrong & ~ours.rows
+        if wrong.sum() <= (1 - BORNE_OUT) * judge.wrong.sum():
+            yield list(outputs(reduced, Program()))
+            done(1)
+            return
+        velocities = Judge(judge.scene, velocities.theirs, judge.limit, wrong)
+        first = [one for one in singles(velocities, wrong) if one.whole(wrong)]
+        done(1)
+        for one in first[:_FIRSTS]:
+            yield list(outputs(reduced, one.program))
+        finals = velocities.part(velocities.few(wrong, _FEW))
+        finals = finals.part(
+            np.flatnonzero(np.all([np.isfinite(c) for c in finals.theirs.values()], axis=0))
+        )
+        for look in (faults.pairs, faults.read_and_edited):
+            found = [run(program, velocities) for program in look(finals)]
+            good = [one for one in ranked(found, wrong) if one.whole(wrong)]
+            yield [one.program for one in good]
+            for one in good[:_FIRSTS]:
+                yield list(outputs(reduced, one.program))
+        done(1)
+    yield list(_by_rows(reduced, alone))
+    done(1)
+    yield list(faults.two_readings(few.part(few.few(few.wrong, _FEW // 2))))
+
+
+def _by_rows(judge: Judge, alone: Sequence[Found]) -> Iterator[Program]:
+    """One mistake explains some rows alone; another, on top of it, the others."""
+    tried: list[Bools] = []
+    for one in alone:
+        if one.explains(judge.wrong) < _SHARE * judge.wrong.sum() or not one.stands(judge.wrong):
+            continue
+        if any(np.array_equal(one.rows, rows) for rows in tried):
+            continue
+        tried.append(one.rows)
+        if len(tried) > _FIRSTS:
+            return
+        unexplained = judge.wrong & ~one.rows
+        for other in singles(judge, unexplained, one.program)[:2]:
+            yield other.program
+
+
+def _several(alone: Sequence[Found], judge: Judge) -> list[_Chosen]:
+    """Few programs that explain nearly all rows, each some: a table of several programs' rows."""
+    left = judge.wrong.copy()
+    chosen: list[_Chosen] = []
+    while alone and left.any() and len(chosen) < _SEVERAL:
+        best = max(alone, key=lambda one: ((one.rows & left).sum(), -one.rank))
+        if not (best.rows & left).any():
             break
-    return pairs
+        chosen.append(_Chosen(best.program, []))
+        left &= ~best.rows
+    explained = judge.wrong.sum() - left.sum()
+    return chosen if explained >= BORNE_OUT * judge.wrong.sum() else []
 
 
-def _says(program: Program) -> str:
-    return "; and ".join(slip.says for slip in program)
-
-
-# --- which of them fit ---------------------------------------------------------------------------
-
-
-def _fits(programs: Sequence[Program], case: Case) -> list[_Fit]:
-    results = otherprograms.run(programs, case.scene) if programs else []
-    measure = _Measure(case)
-    return [
-        measure.fit(_says(program), result, len(program))
-        for program, result in zip(programs, results, strict=True)
-    ]
+# --- how near ------------------------------------------------------------------------------------
 
 
 class _Measure:
     """How far a case's results are from ours, and how near a program must come to explain them."""
 
     def __init__(self, case: Case) -> None:
-        # a result is a row here: numpy then has few operations to start for each program
         self.names = list(case.theirs)
         there = given(case.theirs, case.ours)
-        self.there = np.stack([there[name] for name in self.names])
-        self.values = np.stack([case.theirs[name].values for name in self.names])
-        units = np.stack([case.theirs[name].units for name in self.names])
-        self.sizes = np.stack([case.allowed.sizes[name] for name in self.names])
-        self.written = units * (0.5 + 1e-9)
-        with np.errstate(all="ignore"):
-            real = np.where(self.there, self._difference(case.ours), 0.0)
-            shown = np.where(self.there & (self.sizes > 0), self.written / self.sizes, 0.0)
-            worst = np.argmax(real, axis=0)[None]
-            off = np.take_along_axis(real, worst, 0)[0]
-            room = np.fmax(np.take_along_axis(shown, worst, 0)[0], case.allowed.elimination)
-            digits = np.log10(np.clip(off / np.fmax(room, 1e-12), 1.0, 1e12))
-        near = np.fmin(np.fmax(4 * case.allowed.elimination, _CLOSE), _EXPLAINED * off)
-        self.limit = np.where(case.wrong, near, case.allowed.elimination)
-        self.off, self.room = off, room
-        self.digits = np.where(case.wrong, digits, 0.0)
+        mask = np.stack([there[name] for name in self.names])
+        values = np.stack([case.theirs[name].values for name in self.names])
+        ours = np.stack([case.ours[name] for name in self.names])
+        sizes = np.stack([case.allowed.sizes[name] for name in self.names])
+        written = np.stack([case.theirs[name].units for name in self.names]) * (0.5 + 1e-9)
+        beyond = np.maximum(np.abs(values - ours) - written, 0.0)
+        share = np.where(sizes > 0, beyond / sizes, np.where(beyond == 0, 0.0, 1.0))
+        share = np.where(mask, share, 0.0)
+        worst = np.argmax(share, axis=0)[None]
+        self.off = np.take_along_axis(share, worst, 0)[0]
+        shown = np.where(mask & (sizes > 0), written / sizes, 0.0)
+        self.room = np.fmax(np.take_along_axis(shown, worst, 0)[0], case.allowed.elimination)
+        near = np.fmin(np.fmax(4 * case.allowed.elimination, _CLOSE), _EXPLAINED * self.off)
+        self.limits = np.where(case.wrong, near, np.fmax(case.allowed.elimination, _CLOSE)) * sizes
+        self.limits = self.limits + written
 
-    def _difference(self, results: Columns) -> Floats:
-        """How far results are off beyond the digits they are written with, as shares."""
-        mine = np.stack([results.get(name, values) for name, values in self._columns()])
-        beyond = np.maximum(np.abs(self.values - mine) - self.written, 0.0)
-        return np.where(self.sizes > 0, beyond / self.sizes, np.where(beyond == 0, 0.0, np.inf))
-
-    def _columns(self) -> Iterator[tuple[str, Floats]]:
-        return zip(self.names, self.values, strict=True)
-
-    def fit(self, says: str, results: Columns, slips: int = 1) -> _Fit:
-        """The rows whose every result a program explains; MUC, which it does not give, it does."""
-        with np.errstate(all="ignore"):
-            near = (self._difference(results) <= self.limit) | ~self.there
-        need = _CERTAIN if slips == 1 else _PAIR_CERTAIN
-        rows: Bools = np.logical_and.reduce(near)
-        return _Fit(says, rows, self.digits * _CERTAIN / need)
+    def bits(self, judge: Judge) -> tuple[Floats, Bools]:
+        """What a cause that explains a row has got right by it; and the rows that show nothing but
+        which branch is taken, of friction's sign or of the pivot."""
+        bits = np.clip(np.log2(self.off / np.fmax(self.room, 1e-12)), 0.0, _BITS_A_ROW)
+        choices = np.zeros(bits.size, bool)
+        for edit in variants():
+            if edit.says in _BRANCHES:
+                other = run(Program((edit,)), judge).rows
+                choices |= other & judge.wrong
+        if choices.any():
+            choices |= ~judge.wrong & (judge.scene["MU"] != 0) & (judge.scene["MU"] != -10)
+        return np.where(judge.wrong, bits, 0.0), choices
 
 
-def _cover(fits: Sequence[_Fit], case: Case) -> list[int]:
-    """The programs that explain most rows that disagree, then most of those left. Of equals, the
-    one that the rows that agree do not contradict, then the first."""
-    unexplained = case.wrong.copy()
-    chosen: list[int] = []
-    least = _LEAST_SHARE * case.wrong.sum() if case.wrong.sum() >= _MANY else 0
-    while unexplained.any() and fits:
-        merit = [
-            (int((fit.rows & unexplained).sum()), int((fit.rows & ~case.wrong).sum()), -place)
-            for place, fit in enumerate(fits)
-        ]
-        best = -max(merit)[2]
-        explained = fits[best].rows & unexplained
-        if explained.sum() <= least or fits[best].digits[explained].sum() < _CERTAIN:
-            break
-        chosen.append(best)
-        unexplained &= ~fits[best].rows
-    return chosen
+_BRANCHES = (
+    "MU's sign rule inverted",
+    "the critical ratio used in place of MU",
+    "no pivot: MU = -10 taken as a coefficient",
+)
+"""What takes the other branch in every row."""
 
 
 # --- digits and rounding -------------------------------------------------------------------------
 
 
-def _cuts(case: Case) -> list[_Fit]:
-    """Ways of writing right numbers: as the 1988 program does, floored, cut off."""
-    digits = np.where(case.wrong, _CERTAIN, 0.0)
+def _by_digits(causes: NDArray[np.object_], case: Case) -> bool:
+    """Name the way right numbers are written, as the 1988 program does, floored or cut off, where
+    that is all; whether it is."""
+    fits = {PRINTED: _as_printed(case)}
     cuts: list[tuple[str, Callable[[Floats], Floats]]] = [
         (FLOORED, np.floor),
         (TRUNCATED, np.trunc),
     ]
-    fits = [_Fit(PRINTED, _as_printed(case), digits)]
     for says, cut in cuts:
         rows = np.ones(case.wrong.size, bool)
         for name, column in case.theirs.items():
             there = np.isfinite(column.values)
             rows &= ~there | _is_cut(column, case.ours[name], cut)
-        fits.append(_Fit(says, rows, digits))
-    return fits
+        fits[says] = rows
+    best = max(fits, key=lambda says: int((fits[says] & case.wrong).sum()))
+    if (fits[best] & case.wrong).sum() < BORNE_OUT * case.wrong.sum():
+        return False
+    for says in (best, *fits):
+        causes[(causes == UNKNOWN) & fits[says]] = says
+    return True
 
 
 def _is_cut(theirs: Theirs, ours: Floats, cut: Callable[[Floats], Floats]) -> Bools:
@@ -410,31 +443,30 @@ def _as_printed(case: Case) -> Bools:
     return rows
 
 
-def _by_precision(causes: NDArray[np.object_], case: Case) -> None:
+def _by_precision(causes: NDArray[np.object_], case: Case, measure: _Measure) -> None:
     """Name coarser arithmetic where it is the whole table's: most rows in which it could be seen
     suffer from it, and hardly a row more than it explains."""
-    measure = _Measure(case)
-    bound = case.allowed.per_unit
-    with np.errstate(all="ignore"):
-        share = measure.off / bound
-        best = measure.off / errorbound.relative_bounds(case.ours["COND"], 1.0)
-        bits = -math.log2(max(float(np.median(best[case.wrong])), 1e-300))
-    for says, (width, (low, high)) in _BITS.items():
+    share = measure.off / case.allowed.per_unit
+    best = measure.off / errorbound.relative_bounds(case.ours["COND"], 1.0)
+    bits = -math.log2(max(float(np.median(best[case.wrong])), 1e-300))
+    for says, (width, (low, high)) in _WIDTHS.items():
         visible = errorbound.relative_bounds(case.ours["COND"], 2.0**-width) * _TYPICAL
         seen = visible > measure.room
         explained = case.wrong & (share <= 2.0**-width)
         if (
             low <= bits < high
-            and explained.sum() >= _ENOUGH * case.wrong.sum()
+            and explained.sum() >= BORNE_OUT * case.wrong.sum()
             and (case.wrong & seen).sum() >= _WIDESPREAD * seen.sum()
         ):
-            causes[explained] = says
+            causes[explained & (causes == UNKNOWN)] = says
             return
 
 
-def _by_residuals(causes: NDArray[np.object_], case: Case, violations: Mapping[str, Bools]) -> None:
+def _by_residuals(
+    causes: NDArray[np.object_], measure: _Measure, violations: Mapping[str, Bools]
+) -> None:
     """For rows without a cause: how closely they agree, or which equations they violate."""
-    worst = _Measure(case).off
+    worst = measure.off
     for row in np.flatnonzero(causes == UNKNOWN).tolist():
         broken = [number for number, off in violations.items() if off[row]]
         if broken and len(broken) < len(violations):

@@ -6,21 +6,31 @@ equation is violated when its two sides differ by more than the digits written, 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..accuracy.elimination import ORDER
-from ..reconstruction.geometry import Geometry
+from ..equations.evaluation import Run
+from ..equations.spelling import spellings
 from .agreement import Slack, Theirs
-from .otherprograms import matrices
-from .slipsfilling import EQUATIONS, ON_A
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Columns = dict[str, Floats]
 
+EQUATIONS = {
+    "13": "momentum along x",
+    "14": "momentum along y",
+    "15": "restitution",
+    "16": "friction",
+    "17": "angular momentum",
+    "18": "moment",
+}
+"""Number and subject."""
+FORM = "equations with A's impulse"
+"""The spelling in which each equation can be violated alone: none takes another for granted."""
 _SPINS = {"WAF": "WA", "WBF": "WB"}
 _ROUNDING = 1e-13
 """Of the sum of an equation's terms, for evaluating it."""
@@ -31,18 +41,17 @@ def violated(scene: Columns, theirs: Mapping[str, Theirs], allowed: Slack) -> di
 
     Empty when the table lacks a final velocity. A scene with a missing number violates nothing.
     """
-    unknowns = _unknowns(scene, theirs)
+    spelling = spellings()[FORM]
+    unknowns = _unknowns(scene, theirs, spelling.unknown)
     if unknowns is None:
         return {}
-    matrix, right = matrices(scene)
-    for form in ON_A:
-        form(matrix, right, scene)
+    matrix, right = Run(spelling, scene).system()
     with np.errstate(all="ignore"):
-        values = np.stack([unknowns[name].values for name in ORDER], axis=1)
+        values = np.stack([unknowns[name].values for name in spelling.unknown], axis=1)
         room = np.stack(
             [
                 unknowns[name].units * 0.5 + allowed.elimination * allowed.sizes[name]
-                for name in ORDER
+                for name in spelling.unknown
             ],
             axis=1,
         )
@@ -50,15 +59,18 @@ def violated(scene: Columns, theirs: Mapping[str, Theirs], allowed: Slack) -> di
         limit = (np.abs(matrix) * room[:, None, :]).sum(2)
         limit += _ROUNDING * (terms.sum(2) + np.abs(right))
         off = np.abs((matrix * values[:, None, :]).sum(2) - right) > limit
-    numbers = list(EQUATIONS)
-    return {number: off[:, numbers.index(number)] for number in sorted(EQUATIONS)}
+    subjects = [spelling.statements[index].subject for index in spelling.equations]
+    numbers = [found[0] for text in subjects if (found := re.search("[0-9]+", text))]
+    return {number: off[:, numbers.index(number)] for number in EQUATIONS}
 
 
-def _unknowns(scene: Columns, theirs: Mapping[str, Theirs]) -> dict[str, Theirs] | None:
+def _unknowns(
+    scene: Columns, theirs: Mapping[str, Theirs], names: tuple[str, ...]
+) -> dict[str, Theirs] | None:
     """The six final velocities; point masses keep their spins, given or not."""
     point = scene["M"] == 4
     unknowns = {}
-    for name in ORDER:
+    for name in names:
         column = theirs.get(name)
         if name in _SPINS and point.any():
             kept = scene[_SPINS[name]]
@@ -69,29 +81,3 @@ def _unknowns(scene: Columns, theirs: Mapping[str, Theirs]) -> dict[str, Theirs]
             return None
         unknowns[name] = column
     return unknowns
-
-
-def effective(scene: Columns, theirs: Mapping[str, Theirs]) -> Columns:
-    """The coefficients that their results have: E, MU (as it is used) and EM; empty when a final
-    velocity is missing. NaN or infinite where a coefficient plays no part."""
-    unknowns = _unknowns(scene, theirs)
-    if unknowns is None:
-        return {}
-    geometry = Geometry.of(scene)
-    with np.errstate(all="ignore"):
-        before = [scene[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB")]
-        after = [unknowns[name].values for name in ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")]
-        pn = scene["MA"] * (
-            geometry.cosine * (after[0] - before[0]) + geometry.sine * (after[1] - before[1])
-        )
-        pt = scene["MA"] * (
-            geometry.cosine * (after[1] - before[1]) - geometry.sine * (after[0] - before[0])
-        )
-        moment = scene["IA"] * (after[2] - before[2]) - geometry.an * pn - geometry.at * pt
-        shared = moment * geometry.inverse_spin_inertia
-        spinning = after[2] - after[5]
-        return {
-            "E": -geometry.relative(after)[0] / geometry.relative(before)[0],
-            "MU": pt / pn,
-            "EM": spinning / (shared + spinning),
-        }

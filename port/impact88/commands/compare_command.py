@@ -27,7 +27,7 @@ from collections.abc import Iterator
 
 from ..accuracy.errorbound import DOUBLE
 from ..checking.compare import HARMLESS, Comparison, compare_file
-from ..checking.slipsfilling import EQUATIONS
+from ..checking.residuals import EQUATIONS
 from ..errors import UserError, shown
 from ..schemas import stamped
 from ..stderr import note
