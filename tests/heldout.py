@@ -395,7 +395,8 @@ def answers(
     for scene in scenes:
         g = {name: float(text) for name, text in scene.items()}
         try:
-            row = compiled(program, *bugs)(g)
+            with np.errstate(all="ignore"):
+                row = compiled(program, *bugs)(g)
         except (ArithmeticError, np.linalg.LinAlgError):
             row = {}
         values = {name: row.get(name) for name in RESULTS}

@@ -96,7 +96,8 @@ class Elimination:
 class Comparison:
     """The result of `compare_file`.
 
-    ``causes``: likely cause -> rows it explains; ``differences``: every row that disagrees, as long
+    ``causes``: likely cause -> rows it explains; ``evidence`` and ``programs``: what bears out each
+    cause that is a program, and the program; ``differences``: every row that disagrees, as long
     as they are few (`DIAGNOSED`); ``not_compared``: reason -> rows; ``unknown``: columns that were
     not recognised -> the name that was meant, or "".
     """
@@ -159,11 +160,15 @@ class Comparison:
                 "differing": self.differing,
                 "results": {name: vars(tally) for name, tally in self.tallies.items()},
                 "causes": dict(self.causes.most_common()),
+                "evidence": [one._asdict() for one in self.evidence],
                 "equations": {
                     number: {"checked": checked, "violated": violated}
                     for number, (checked, violated) in self.equations.items()
                 },
                 "worst": [one._asdict() for one in self.worst],
+                "differences": [
+                    {"row": one.row, "id": one.id, "cause": one.cause} for one in self.differences
+                ],
                 "elimination": vars(self.elimination),
                 "not_compared": {
                     reason: {"rows": count, "first": self.places_not_compared[reason]}
@@ -190,14 +195,16 @@ def compare_file(
     rtol: float | None = None,
     encoding: str | None = None,
     units: str | None = None,
+    causes: bool = True,
 ) -> Comparison:
     """Compare a table of scenes and results, block by block; ``units``: of columns whose heading
     names none.
 
     ``form``: csv, jsonl, npz, parquet, feather or xlsx where the name does not say; ``values``: for
     all rows of columns the table lacks; ``rtol``: the difference, as a share of the
-    scene's largest velocity, spin or energy, that agrees, in place of what rounding allows. Raises
-    UserError when the table has no result column or does not give a whole scene.
+    scene's largest velocity, spin or energy, that agrees, in place of what rounding allows;
+    ``causes``: look for causes where rows disagree. Raises UserError when the table has no result
+    column or does not give a whole scene.
 
     >>> import json, pathlib, tempfile
     >>> scene = impact88.sample(1).numbers()
@@ -241,7 +248,8 @@ def compare_file(
                 before = reader.position()
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
-    _explain(waiting, comparison)
+    if causes:
+        _explain(waiting, comparison)
     return comparison
 
 

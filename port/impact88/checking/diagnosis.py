@@ -146,13 +146,15 @@ def _by_search(
     """Name programs that give their numbers."""
     whole = Judge(
         case.scene,
-        {name: column.values for name, column in case.theirs.items()},
+        {name: column.values for name, column in case.theirs.items() if name != "MUC"},
         dict(zip(measure.names, measure.limits, strict=True)),
         case.wrong,
     )
     # rows that the equations as they stand do not give: near-singular, or decided by rounding
     usual = Judge(case.scene, case.ours, whole.limit, case.wrong).of(measure.names)
     clear = usual.near(Program().results(case.scene), {})
+    # rows that are wrong in what no spelling computes
+    clear &= ~(case.wrong & run(Program(), whole).rows)
     rows = _sample(case, clear)
     sample = whole.part(rows)
     bits, choices = measure.bits(whole)
@@ -186,9 +188,10 @@ def _by_search(
 
 
 def _evidence(explained: Bools, bits: Floats, choices: Bools) -> float:
-    """The bits that a cause has got right: of branches taken, which rows of those that show it."""
+    """The bits that a cause has got right: of a branch taken one a row, and which rows they are of
+    those that would show it."""
     taken, possible = int((explained & choices).sum()), int(choices.sum())
-    return float(bits[explained & ~choices].sum()) + math.log2(math.comb(possible, taken))
+    return float(bits[explained & ~choices].sum()) + taken + math.log2(math.comb(possible, taken))
 
 
 def _need(program: Program) -> float:
@@ -237,6 +240,13 @@ def _explanations(judge: Judge, off: Floats) -> Iterator[list[_Chosen]]:
         reduced = judge.of(_telling(judge))
         alone = singles(reduced, reduced.wrong)
         if alone and alone[0].whole(judge.wrong):
+            # what it leaves may be another mistake's: a branch that few rows take
+            found = []
+            if alone[0].explains(judge.wrong) < judge.wrong.sum():
+                found = [run(program, reduced) for program in _by_rows(reduced, alone)]
+                found = ranked(found, judge.wrong)
+            if found and found[0].explains(judge.wrong) == judge.wrong.sum():
+                yield [_best(found, judge)]
             yield [_best(alone, judge)]
         meter.update(1)
         if np.median(off[judge.wrong]) > _LARGE:
@@ -316,18 +326,12 @@ def _pairs(
 
 def _by_rows(judge: Judge, alone: Sequence[Found]) -> Iterator[Program]:
     """One mistake explains some rows alone; another, on top of it, the others."""
-    tried: list[Bools] = []
-    for one in alone:
-        if one.explains(judge.wrong) < _SHARE * judge.wrong.sum() or not one.stands(judge.wrong):
-            continue
-        if any(np.array_equal(one.rows, rows) for rows in tried):
-            continue
-        tried.append(one.rows)
-        if len(tried) > _FIRSTS:
-            return
+    enough = [one for one in alone if one.explains(judge.wrong) >= _SHARE * judge.wrong.sum()]
+    for one in [one for one in enough if one.stands(judge.wrong)][:_FIRSTS]:
         unexplained = judge.wrong & ~one.rows
-        for other in singles(judge, unexplained, one.program)[:2]:
-            yield other.program
+        if unexplained.any():
+            for other in singles(judge, unexplained, one.program)[:2]:
+                yield other.program
 
 
 def _several(alone: Sequence[Found], judge: Judge) -> list[_Chosen]:
@@ -386,9 +390,8 @@ class _Measure:
 _BRANCHES = (
     "MU's sign rule inverted",
     "the critical ratio used in place of MU",
-    "no pivot: MU = -10 taken as a coefficient",
 )
-"""What takes the other branch in every row."""
+"""What takes the other branch, of friction's sign or of the pivot, in every row."""
 
 
 # --- digits and rounding -------------------------------------------------------------------------

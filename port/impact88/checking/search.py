@@ -161,7 +161,8 @@ def _read(judge: Judge, base: Program) -> Iterator[Found]:
         name: np.broadcast_to(c, (len(reading), judge.wrong.size)) for name, c in names.items()
     }
     show = _shown(base, judge)
-    near = judge.near(show(names, start.names), start.names) if reading else np.ones((0, 0), bool)
+    near = judge.near(show(names, start.names), start.names)
+    near = np.broadcast_to(near, (len(reading), judge.wrong.size)) if reading else near
     for place, one in enumerate(others):
         program, rank = base._replace(readings=(*base.readings, one)), 100 + place
         if not one.scene:

@@ -36,15 +36,15 @@ class Edit(NamedTuple):
     rank: int = _LIKELY
     says: str = ""
 
-    def text(self) -> str:
-        """Place, what is written, what should be, and what it is about."""
+    def text(self, right: Spelling | None = None) -> str:
+        """Place, what is written, what should be (as ``right`` has it), and what it is about."""
         if self.says:
             return self.says
         parts = []
         for index, sides in self.sides.items():
-            one = self.spelling.statements[index]
-            now, right = written(one.target, sides), one.text.removeprefix(f"{one.target} = ")
-            parts.append(f"{one.place}: {now}, should be {right}; {one.subject}")
+            one = (right or self.spelling).statements[index]
+            now, should = written(one.target, sides), one.text.removeprefix(f"{one.target} = ")
+            parts.append(f"{one.place}: {now}, should be {should}; {one.subject}")
         return "; and ".join(parts)
 
 
@@ -238,6 +238,8 @@ def equation_edits(spelling: Spelling) -> Iterator[Edit]:
         subjects[f"{one.text}; {one.subject}"] = [index]
     for subject, places in subjects.items():
         names = Counter(n for i in places for n in _occurring(spelling.statements[i]))
+        if len(places) == 1 and subject == spelling.statements[places[0]].subject:
+            continue
         for what, often in names.items():
             if what in (*CONDITIONS, *spelling.unknown):
                 continue

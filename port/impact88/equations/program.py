@@ -50,9 +50,12 @@ class Program(NamedTuple):
     @property
     def says(self) -> str:
         """What is wrong with it."""
-        return "; and ".join(
-            [*(reading.says for reading in self.readings), *(edit.text() for edit in self.edits)]
-        )
+        said = [reading.says for reading in self.readings]
+        for place, edit in enumerate(self.edits):
+            later = {index for other in self.edits[place + 1 :] for index in other.sides}
+            if edit.says or not later.issuperset(edit.sides):
+                said.append(edit.text(spellings().get(edit.spelling.title)))
+        return "; and ".join(said)
 
     @property
     def spelling(self) -> Spelling:
