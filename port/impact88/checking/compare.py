@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..doubles import double
-from ..equations.program import Program
+from ..equations.otherprogram import Program
 from ..errors import UserError
 from ..files import called
 from ..mappings import texts

@@ -1,7 +1,7 @@
 """Why another program's results differ: one cause for a table where one explains it.
 
-What is looked for, in turn: right numbers written otherwise; one mistake (`search`); the velocities
-and the rest apart; two mistakes (`faults`); rows of several programs; coarser arithmetic. A cause
+What is looked for, in turn: right numbers written otherwise; one mistake (`trials`); the velocities
+and the rest apart; two mistakes (`twofaults`); rows of several programs; coarser arithmetic. A cause
 must earn its name: rows that agree must bear it out, and the bits that it gets right in rows that
 disagree must be many more than choosing among so many programs yields by chance.
 """
@@ -18,16 +18,16 @@ from numpy.typing import NDArray
 
 from ..accuracy import errorbound
 from ..equations.evaluation import Run
-from ..equations.program import Program, variants
+from ..equations.otherprogram import Program, variants
 from ..equations.spelling import LISTING, spellings
 from ..errors import UserError
 from ..fields import FIELDS
 from ..names import FINAL_VELOCITIES
 from ..progress import progress
 from ..replay import replay
-from . import faults, residuals
+from . import residuals, twofaults
 from .agreement import Slack, Theirs, given
-from .search import BORNE_OUT, Found, Judge, outputs, ranked, run, singles, spread
+from .trials import BORNE_OUT, Found, Judge, outputs, ranked, run, singles, spread
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -312,7 +312,7 @@ def _pairs(
         finals = finals.part(
             np.flatnonzero(np.all([np.isfinite(c) for c in finals.theirs.values()], axis=0))
         )
-        for look in (faults.pairs, faults.read_and_edited):
+        for look in (twofaults.pairs, twofaults.read_and_edited):
             found = [run(program, velocities) for program in look(finals)]
             good = [one for one in ranked(found, wrong) if one.whole(wrong)]
             yield [one.program for one in good]
@@ -321,7 +321,7 @@ def _pairs(
         done(1)
     yield list(_by_rows(reduced, alone))
     done(1)
-    yield list(faults.two_readings(few.part(few.few(few.wrong, _FEW // 2))))
+    yield list(twofaults.two_readings(few.part(few.few(few.wrong, _FEW // 2))))
 
 
 def _by_rows(judge: Judge, alone: Sequence[Found]) -> Iterator[Program]:

@@ -3,7 +3,7 @@
 All edits of all spellings are run over a few rows that disagree and a few that agree; those that
 explain any are run over more, and those that explain most over the whole table. Two mistakes are
 looked for in three ways: *by outputs* (the velocities first, then the rest), *by rows* (one
-explains some rows alone, another on top of it the others) and *by equations* (`faults`).
+explains some rows alone, another on top of it the others) and *by equations* (`twofaults`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..equations.edits import Edit, equation_edits, statement_edits
 from ..equations.evaluation import Run, chunks
-from ..equations.program import Program, Reading, readings, variants
+from ..equations.otherprogram import Program, Reading, readings, variants
 from ..equations.spelling import LISTING, spellings
 
 Floats = NDArray[np.float64]

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from ..equations.edits import Edit
 from ..equations.evaluation import Run
-from ..equations.program import Program, readings
+from ..equations.otherprogram import Program, readings
 from ..equations.spelling import LISTING, Spelling, spellings
 from ..names import FINAL_VELOCITIES
-from .search import BORNE_OUT, Judge, edits_of, every_edit, overlay
+from .trials import BORNE_OUT, Judge, edits_of, every_edit, overlay
 
 Bools = NDArray[np.bool_]
 Columns = Mapping[str, Any]
