@@ -7,6 +7,7 @@ import gzip
 import io
 import json
 import math
+import re
 import struct
 
 import numpy as np
@@ -220,6 +221,15 @@ ODD_TABLES = {
     "no end of line": csv_text([TEXTS, TEXTS]).rstrip("\r\n"),
     "unix": csv_text([TEXTS] * 3).replace("\r\n", "\n"),
     "quoted later": csv_text([TEXTS] * 3 + [{**TEXTS, "note": 'a "b", c\nd'}] + [TEXTS] * 2),
+    "all quoted, as pyarrow writes": re.sub(r"[^,\r\n]+", r'"\g<0>"', csv_text([TEXTS] * 3)),
+    "lines and quotes in quotes": csv_text(
+        [{**TEXTS, "note": note} for note in ('a "b", c\n\nd', '""', ",", "", '"', "x\r\ny")] * 9
+    ),
+    "a name over two lines": csv_text([TEXTS] * 2, (*SCENE, "no\nte")),
+    "an error behind lines in quotes": csv_text([{**TEXTS, "note": "a\nb"}, {**TEXTS, "MA": "x"}]),
+    "quotes that quote nothing": csv_text([TEXTS] * 3).replace("\r\n", 'a"b"\r\n'),
+    "more behind a quote": csv_text([TEXTS] * 3).replace("6,\r\n", '6,"a"b\r\n'),
+    "a quote never closed": csv_text([TEXTS] * 3) + '"',
     "short row": csv_text([TEXTS] * 3) + "1,2\r\n" + csv_text([TEXTS]).partition("\n")[2],
     "blank lines": "\n\n" + csv_text([TEXTS] * 2).replace("\r\n", "\n\n"),
     "old ends of lines": csv_text([TEXTS] * 2).replace("\r\n", "\r"),
@@ -247,7 +257,8 @@ def test_with_and_without_pyarrow_the_same_bytes(tmp_path, monkeypatch, capsys, 
         status = main(["solve", str(path)])
         said.append((status, *capsys.readouterr()))
     assert said[0] == said[1]
-    unusable = {"short row", "no numbers", "unnamed but filled"}
+    unusable = {"short row", "no numbers", "unnamed but filled", "a quote never closed"}
+    unusable |= {"an error behind lines in quotes", "more behind a quote"}
     names = {text: name for name, text in ODD_TABLES.items()}
     assert (said[0][0] == 0) == (names[text] not in unusable)
 

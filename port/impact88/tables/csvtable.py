@@ -89,12 +89,10 @@ class _CsvReader:
 
     def __iter__(self) -> Iterator[Rows]:
         first = 1
-        while self._blocks is not None and (table := self._blocks.next()) is not None:
-            last = self._blocks.number
-            lines = range(last - table.num_rows + 1, last + 1)
-            columns = [arrow.ArrowTexts(column.chunk(0)) for column in table.columns]
-            yield self._rows_of(first, columns, lines, [])
-            first += table.num_rows
+        while self._blocks is not None and (block := self._blocks.next()) is not None:
+            columns = [arrow.ArrowTexts(column.chunk(0)) for column in block.table.columns]
+            yield self._rows_of(first, columns, block.lines.tolist(), [])
+            first += len(block.lines)
         if self._blocks is not None:
             rest = self._file._replace(binary=self._blocks.rest(), encoding="utf-8")
             self._lines = rest.lines(self._blocks.number)
@@ -157,8 +155,8 @@ class _CsvReader:
 
 
 def _plain_header(file: TextFile) -> Any:
-    """The bytes up to the end of the header, taken off the file, when they can be told without
-    reading on: UTF-8 and nothing quoted. Else nothing is taken, and there is None."""
+    """The bytes up to the end of the header, taken off the file, when that can be seen without
+    reading on, in UTF-8. Else nothing is taken, and there is None."""
     if not file.encoding.startswith("utf-8"):
         return None
     start = file.binary.peek(1)
@@ -167,9 +165,9 @@ def _plain_header(file: TextFile) -> Any:
         end += len(line) + 1
         bare = line.strip(b"\xef\xbb\xbf \r\t;,")
         if bare and not bare.lower().startswith(b"sep="):
-            plain = b'"' not in start[:end] and start.count(b"\r", 0, end) == start.count(
-                b"\r\n", 0, end
-            )
+            if start.count(b'"', 0, end) % 2:  # a name goes on in the next line
+                continue
+            plain = start.count(b"\r", 0, end) == start.count(b"\r\n", 0, end)
             return io.BufferedReader(io.BytesIO(file.binary.read(end))) if plain else None
     return None
 
@@ -238,7 +236,7 @@ def _fields(column: Column) -> Sequence[str]:
 
 
 class _ArrowCsvWriter:
-    """Blocks that came as pyarrow's texts, none of them quoted, go out the same way."""
+    """Blocks that came as pyarrow's texts go out the same way."""
 
     def __init__(
         self,
@@ -270,9 +268,32 @@ class _ArrowCsvWriter:
             include_header=False, delimiter=self._delimiter, quoting_style="none"
         )
         out = pa.BufferOutputStream()
-        arrow_csv.write_csv(pa.table(arrays, list(map(str, range(len(arrays))))), out, options)
+        try:
+            arrow_csv.write_csv(pa.table(arrays, list(map(str, range(len(arrays))))), out, options)
+        except pa.ArrowInvalid:  # something has to be quoted
+            out = pa.BufferOutputStream()
+            out.write(_quoted_rows(arrays, self._delimiter))
         self._text.flush()
         self._text.buffer.write(out.getvalue())  # type: ignore[attr-defined]
+
+
+def _quoted_rows(arrays: Sequence[Any], delimiter: str) -> bytes:
+    """Rows of fields, those in quotes that hold what ends a field or a line."""
+    import pyarrow as pa
+    from pyarrow import compute
+
+    fields = []
+    for array in arrays:
+        ends = compute.match_substring_regex(array, f'[{re.escape(delimiter)}"\r\n]')
+        if compute.any(ends).as_py():
+            inner = compute.replace_substring(array, '"', '""')
+            quoted_ = compute.binary_join_element_wise('"', inner, '"', "")
+            array = compute.if_else(ends, quoted_, array)
+        fields.append(array)
+    rows = compute.binary_join_element_wise(*fields, delimiter)
+    if isinstance(rows, pa.ChunkedArray):
+        rows = rows.combine_chunks()
+    return b"".join(row.encode() + b"\n" for row in rows.to_pylist())
 
 
 @contextmanager
