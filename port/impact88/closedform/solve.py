@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from typing import Any
 
@@ -150,6 +149,8 @@ def _solved(
         def next_span() -> tuple[int, int] | None:
             with lock:
                 return next(remaining, None)
+
+        from concurrent.futures import ThreadPoolExecutor  # imports logging
 
         with ThreadPoolExecutor(workers) as pool:
             jobs = [

@@ -41,7 +41,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.columns import INERTIAS, UNUSED_BY_POINTS, refusals
+from ..closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
 from ..closedform.share import share_of, typed_friction
 from ..closedform.solve import solve
 from ..doubles import is_number
@@ -245,7 +245,8 @@ class _Float64:
         columns = numbers(rows, units)
         _read_shares(rows, columns)
         unread = {bad.row - rows.first for bad in rows.bad}
-        for refusal in refusals(columns):
+        refused = examine(columns).refused is not None
+        for refusal in refusals(columns) if refused else ():
             for index in np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist():
                 if index not in unread:
                     unread.add(index)

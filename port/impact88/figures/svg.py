@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from xml.sax.saxutils import escape, quoteattr
+from html import escape
 
 from .drawing import FONTS, MM_PER_POINT, Drawing, Path, Point, Text, dashes, text_runs
 
@@ -24,8 +24,8 @@ def svg(drawing: Drawing) -> Svg:
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{across}mm" height="{up}mm" '
         f'viewBox="0 0 {width} {height}" role="img" font-family="{FONTS}">',
-        f"<title>{escape(drawing.title)}</title>",
-        f"<desc>{escape(drawing.description)}</desc>",
+        f"<title>{escape(drawing.title, False)}</title>",
+        f"<desc>{escape(drawing.description, False)}</desc>",
         f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
     ]
     for item in drawing.items:
@@ -38,7 +38,7 @@ def _number(value: float) -> str:
 
 
 def _role(role: str) -> str:
-    return f" class={quoteattr(role)}" if role else ""
+    return f' class="{escape(role)}"' if role else ""
 
 
 def _path(path: Path, drawing: Drawing) -> str:
@@ -66,7 +66,7 @@ def _text(text: Text, drawing: Drawing) -> str:
     weight = ' font-weight="bold"' if text.bold else ""
     spans = "".join(
         f'<tspan x="{_number(run.x)}" y="{_number(drawing.height - run.y)}" '
-        f'font-size="{_number(run.size * MM_PER_POINT)}">{escape(run.text)}</tspan>'
+        f'font-size="{_number(run.size * MM_PER_POINT)}">{escape(run.text, False)}</tspan>'
         for run in text_runs(text)
     )
     space = 'xml:space="preserve"'

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
@@ -56,6 +55,8 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
         """Compute the scenes that are ``left``, block by block."""
         jobs = _blocks(left, six, pivot, block)
         if threads > 1 and len(jobs) > 1:
+            from concurrent.futures import ThreadPoolExecutor  # imports logging
+
             with ThreadPoolExecutor(threads) as pool:
                 for _ in pool.map(lambda job: one_block(scenes, *job, unit, values), jobs):
                     pass

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import platform
 from functools import lru_cache
-from importlib import metadata, resources
+from importlib import resources
 
 from .. import native
 from ..version import __version__
@@ -43,9 +43,9 @@ def capture_hashes() -> list[tuple[str, str]]:
 
 def versions() -> dict[str, str]:
     """Versions of this package, of Python and numpy, and the machine."""
-    try:
-        numpy = metadata.version("numpy")
-    except metadata.PackageNotFoundError:
+    try:  # importlib.metadata would import email and socket
+        from numpy.version import version as numpy
+    except ImportError:
         numpy = "not installed"
     return {
         "impact88": __version__,
