@@ -44,13 +44,15 @@ def capture_hashes() -> list[tuple[str, str]]:
 def versions() -> dict[str, str]:
     """Versions of this package, of Python and numpy, and the machine."""
     try:  # importlib.metadata would import email and socket
-        from numpy.version import version as numpy
+        import numpy
+
+        numpy_version = numpy.__version__
     except ImportError:
-        numpy = "not installed"
+        numpy_version = "not installed"
     return {
         "impact88": __version__,
         "python": f"{platform.python_implementation()} {platform.python_version()}",
-        "numpy": numpy,
+        "numpy": numpy_version,
         "solve": f"compiled, {native.accelerated}" if native.accelerated else "numpy",
         "machine": f"{platform.system()} {platform.release()} {platform.machine()}",
     }
