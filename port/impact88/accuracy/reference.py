@@ -1,4 +1,4 @@
-"""The reference: Equations 13 to 18 in 50-digit arithmetic: mpmath's, or `decimals` without it.
+"""The reference: Equations 13 to 18 in 50 digits, those of mpmath (extra ``oracle``).
 
 Two ways that share nothing with the closed form of `closedform.impact`: `equations` writes the
 six equations as lines 370 to 560 do and `exact` solves them, or, where a body is infinite, the
@@ -15,18 +15,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from ..errors import UserError
 from ..names import DEFAULT_M, PIVOT
 from .elimination import ORDER, eliminate, listing_rows
 
-if TYPE_CHECKING:
+try:
     import mpmath  # type: ignore[import-untyped]
-else:
-    try:
-        import mpmath
-    except ImportError:
-        from . import decimals as mpmath
+except ImportError:
+    raise UserError(
+        "more digits than a double's need mpmath; pip install 'impact88[oracle]', or leave them "
+        "out (oracle --no-reference)"
+    ) from None
 
 DIGITS = 50
 GUARD = 15

@@ -122,10 +122,12 @@ def look_up(
     if not scenes:
         return []
 
-    from ..accuracy.digits import thirty_digits
     from ..closedform.solve import solve
     from ..program.run import run
     from ..replay import replay
+
+    if reference:
+        from ..accuracy.digits import thirty_digits
 
     texts = {name: [scene[name] for scene in scenes] for name in SCENE}
     numbers = {name: doubles.doubles(column) for name, column in texts.items()}
