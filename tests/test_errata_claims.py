@@ -6,7 +6,12 @@ import re
 
 import pytest
 
+from impact88.chapter.staged import collisions, forward
+from impact88.closedform.solve import solve
+from impact88.errors import UserError
+from impact88.names import FINAL_STATE, VELOCITIES
 from impact88.program.run import Run, run
+from impact88.reconstruction.unknowns import solve_for
 from impact88.scene import sample
 
 
@@ -42,6 +47,37 @@ def test_without_sliding_the_typed_sign_stands() -> None:
     still = {"UY": "0", "VX": "0", "VY": "0", "GA": "0"}
     assert printed("MU", run1(MU=".5", **still).printout) == [0.5]
     assert printed("MU", run1(MU="-.5", **still).printout) == [-0.5]
+
+
+def test_a_straight_head_on_is_solved_with_either_sign() -> None:
+    straight = {"GA": "0", "PA": "20", "PB": "10", "TA": "0", "TB": "0", "E": ".1", "EM": "-.7"}
+    straight |= {"UX": "-30", "UY": "0", "VX": "30", "VY": "0"}
+    scene = sample(1).replaced({**straight, "MU": "0"}).numbers()
+    assert float(solve(scene, "MUC")["MUC"]) == pytest.approx(0.161, abs=5e-4)
+    for mu in (".3", "-.3"):
+        done = run1(**straight, MU=mu)
+        assert done.error is None
+        assert printed("MU", done.printout) == [float(mu)]
+
+
+def test_table_2_and_the_critical_friction() -> None:
+    beyond = {
+        collision.number: tuple(round(float(found[name]), 3) for name in ("MUP", "MUC"))
+        for collision in collisions()
+        if (found := forward(collision))["STATUS"]
+    }
+    assert set(beyond) == {3, 8, 9, 10, 11, 12}
+    assert beyond[3] == (-0.069, -0.060)
+    assert beyond[11] == (0.049, 0.029)
+    assert beyond[12] == (-0.009, 0.024)
+
+
+def test_spins_before_cannot_be_found_at_em_0() -> None:
+    scene = sample(3).replaced({"EM": "0"}).numbers()
+    after = {name: float(value) for name, value in solve(scene, (*FINAL_STATE, "MUP")).items()}
+    known = {n: v for n, v in {**scene, **after}.items() if n not in (*VELOCITIES, "MU")}
+    with pytest.raises(UserError):
+        solve_for(known)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,9 @@
 "Let all velocity components of one vehicle approach zero and its mass and moment of inertia become
 infinitely large": vehicle B is the barrier, at rest, with infinite MB and IB. Equations 13, 14 and
 17 then no longer hold (the ground takes the momentum); 15, 16 and 18 give the vehicle's three
-final velocities. In inverse masses that is `impact88.solve` with two zeros.
+final velocities, once B's impulse in them is A's reversed: as printed, Equation 16 has MB times B's
+change of velocity, infinity times 0, and 18 the quotient MB/IB. In inverse masses that is
+`impact88.solve` with two zeros.
 """
 
 from __future__ import annotations
