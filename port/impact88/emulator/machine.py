@@ -141,7 +141,9 @@ class Machine(Editing):
                 self.oldtext = pos
             byte = ram[pos]
             if not byte:
-                if not ram[pos + 2] and pos >= INPUT_BUFFER:  # page 0 holds no program
+                if not ram[pos + 2]:
+                    if pos < INPUT_BUFFER:  # after a bad reply to a direct GOTO's INPUT
+                        raise Fault("SYNTAX", self.sp)
                     raise Restart
                 self.curlin = ram[pos + 3] | ram[pos + 4] << 8
                 pos += 4

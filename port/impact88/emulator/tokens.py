@@ -44,7 +44,6 @@ _BY_LETTER: dict[str, list[tuple[str, int]]] = {}
 for _word, _token in TOKENS.items():
     _BY_LETTER.setdefault(_word[0], []).append((_word, _token))
 
-_COLON = ord(":")
 _QUOTE = '"'
 
 
