@@ -475,7 +475,7 @@ def test_formulas_never_computed_are_named(tmp_path) -> None:
 def test_the_javascript_program_of_readme(tmp_path) -> None:
     """README's program answers the vectors, and the comparison finds nothing; with one sign
     changed it finds that."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    readme = (ROOT / "port" / "GUIDE.md").read_text(encoding="utf-8")
     (script,) = re.findall(r"^```js\n(.*?)^```$", readme, re.M | re.S)
     vectors = tmp_path / "vectors.jsonl"
     made = impact88("oracle", "--vectors", "60", "--no-reference", "-o", str(vectors))
