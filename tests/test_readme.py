@@ -121,7 +121,10 @@ def test_links_work_wherever_readme_is_shown() -> None:
     assert [link for link in links if not link.startswith("#")] == []
 
 
-@pytest.mark.parametrize("page", ["README.md", "port/GUIDE.md", "port/README.md", "tests/README.md"])
+PAGES = ["README.md", "port/GUIDE.md", "port/README.md", "tests/README.md"]
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_files_and_rooms_named_are_there(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     named = re.findall(r"`([A-Za-z0-9_./-]+(?:\.py|\.md|/))`", text)
