@@ -446,8 +446,8 @@ def _syntax_error(
     """What TOML refuses, with the spelling it would take when the value is one INPUT takes."""
     if re.match(r"\s*\d+ *[A-Za-z?]", text):
         return UserError(
-            "is a BASIC program, not a scene; impact88 basic runs it, with a scene's values "
-            "in its own lines",
+            "is a BASIC program, not a scene; impact88 basic runs it, and run and verify take "
+            "another copy of the listing as --listing",
             source,
         )
     place = re.search(r"\(at line (\d+)", message)
