@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from . import reference
+from .elimination import ORDER
 from .reference import mpmath, total
 
 DIGITS = 30
@@ -52,7 +53,7 @@ def fifty_digits(scene: Mapping[str, str]) -> dict[str, Any]:
         if P is None:
             return {}
         after = reference.velocities(t, P)
-        f = dict(zip(reference.ORDER, after, strict=True))
+        f = dict(zip(ORDER, after, strict=True))
         f |= _contact_velocities(t, t.before(), "") | _contact_velocities(t, after, "F")
         f |= _energies(t, P, after)
         ma, mb, *_ = reference.inverses(t)

@@ -35,7 +35,7 @@ _SPINS = ("WA", "WB", "WAF", "WBF")
 def relative_bounds(condition: Any, unit: float = DOUBLE) -> Floats:
     """The bound for scenes of an array of conditions."""
     condition = np.asarray(condition, float)
-    return FACTOR * unit * np.maximum(np.nan_to_num(condition, nan=np.inf), 1.0)
+    return np.asarray(FACTOR * unit * np.maximum(np.nan_to_num(condition, nan=np.inf), 1.0))
 
 
 def oracle_bounds(

@@ -22,7 +22,7 @@ from ..names import DEFAULT_M, PIVOT
 from .elimination import ORDER, eliminate, listing_rows
 
 try:
-    import mpmath  # type: ignore[import-untyped]
+    import mpmath as mpmath  # type: ignore[import-untyped]
 except ImportError:
     raise UserError(
         "more digits than a double's need mpmath; pip install 'impact88[oracle]', or leave them "

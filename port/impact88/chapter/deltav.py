@@ -63,7 +63,7 @@ ERROR = "rms 3.8, largest 8.2 ft/s over the 22 velocity changes of Table 2"
 
 @np.errstate(all="ignore")
 def loss_of(known: Mapping[str, Any], factor: float = AS_USED) -> Array:
-    """Equation 19 the other way: LOSS in percent that a velocity change tells.
+    """Equation 19 the other way: LOSS in percent that a velocity change implies.
 
     ``known``: MA MB SA SB and DVA or DVB. Raises UserError for a name that is missing.
     """

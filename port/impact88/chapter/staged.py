@@ -13,7 +13,7 @@ The fit minimises  Σ(V - V_measured)² + 25 ft² Σ(Ω - Ω_measured)²  over t
 weight is not published; 25 ft² comes closest to Table 2 (with e_m held at the printed value: rms
 .006 in e and in μ). Bounds: 0 <= e <= 1, -1 <= e_m <= 0, μ free. For a given e_m the final
 velocities are linear in the impulse (P_n, P_t), so the minimum is found exactly, and e_m is then
-searched for alone. The profile in e_m tells why that number means little: the sum hardly changes.
+searched for alone. The profile in e_m shows why that number means little: the sum hardly changes.
 Units: ft, s, slug (Table 1).
 """
 
@@ -202,7 +202,7 @@ def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
     signed = np.asarray(signed, np.float64)
     # line 400 looks at the velocities alone: the other coefficients may be any
     used = solve({**scene, "E": 0.0, "EM": 0.0, "MU": signed}, ("MUP",))["MUP"]
-    return np.where(used == signed, signed, -signed)
+    return np.asarray(np.where(used == signed, signed, -signed))
 
 
 def forward(

@@ -18,11 +18,12 @@ from typing import Any
 
 import numpy as np
 
+from ..fields import ANGLES
 from ..names import DEFAULT_M, PIVOT, SCENE
 from ..native.formulas import Expression, ExpressionTable
 from ..native.program import in_order
 from . import degrees
-from .columns import ANGLES, INERTIAS, LARGE_ANGLE, UNUSED_BY_POINTS
+from .columns import INERTIAS, LARGE_ANGLE, UNUSED_BY_POINTS
 from .impact import Impact
 
 NAMES = tuple(SCENE)

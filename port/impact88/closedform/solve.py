@@ -89,7 +89,7 @@ def solve(
     A scene with a number that cannot be used (not finite, M neither 4 nor 6, a mass or inertia
     that is not positive, a barrier that moves, two barriers) is NaN in every result and has
     NOT_FINITE alone in STATUS; a scene without solution is NaN in what depends on it, and so are
-    ratios of zeros (LOSS and MUC where nothing moves) and what overflows; NOT_FINITE tells of all
+    ratios of zeros (LOSS and MUC where nothing moves) and what overflows; NOT_FINITE says so of all
     but MUC, which other results seldom need. None disturbs another scene: every scene gets the bits
     it would get alone, unless something overflows on the way (where numbers reach 1e±150): a term
     that is known to be 0 is left out, and beside scenes where it is not, 0 times infinity is NaN.
