@@ -1,0 +1,1 @@
+"""The paper itself: a scan or photograph read cell by cell, with the page's own glyphs."""

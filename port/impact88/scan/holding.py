@@ -1,0 +1,157 @@
+"""The page held against the grid: every cell against the character the program prints there.
+
+The mean glyphs are made under the *predicted* names, each cell left out of its own mean. A cell's
+margin is how far it is from its predicted mean beyond its distance from the nearest other,
+relative to how far those two means are apart: -1 is the predicted glyph itself, +1 the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .grid import Grid
+from .ink import Floats
+from .layout import LINES, Place, Sheet, parts
+from .naming import likeness
+from .scenes import Candidate, Read
+from .typeface import BLANK, NUMERIC, READABLE, distances, sample_of, typeface_of
+
+_BESIDE = 2
+"""Blank cells that are looked at after the last character of a line."""
+
+
+@dataclass
+class Cell:
+    """One cell held against the page. ``name``: the field it belongs to, "" for labels; ``margin``
+    as above; ``other``: the nearest other character; ``distance``: how far it is from the predicted
+    mean, 1 for what is usual on this page; ``count``, ``other_count``: on how many cells those means
+    rest; ``unlike``: whether the prototypes, asked because the predicted character occurs nowhere
+    else, take it for another."""
+
+    sheet: int
+    place: Place
+    name: str
+    predicted: str
+    margin: float
+    other: str
+    distance: float
+    count: int
+    other_count: int
+    unlike: bool = False
+
+
+def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[str, str, Place]]:
+    """The characters of the program's page for a scene: field, character, place."""
+    fields = candidate.outcome.fields
+    for line, row in sheet.rows.items():
+        column = 0
+        for name, text in parts(line):
+            if name.startswith("REPLY"):
+                shown = reply_of(read, name, candidate.scene)
+            else:
+                shown = fields.get(name, "") if name else text
+            for character in shown:
+                yield name, character, row.place(column)
+                column += 1
+        for _ in range(_BESIDE):
+            yield "", BLANK, row.place(column)
+            column += 1
+
+
+def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:
+    """What was typed at a prompt to give the scene's velocities: of the ways to write them as many
+    characters as stand there, the one that fits best."""
+    names = ("UX", "UY", "WA") if name == "REPLY_A" else ("VX", "VY", "WB")
+    costs = read.costs[name]
+    written = [_written(scene[one]) for one in names]
+    ways = [f"{a},{b},{c}" for a in written[0] for b in written[1] for c in written[2]]
+    return min(ways, key=lambda way: read.cost(name, way) + abs(len(way) - len(costs)))
+
+
+def _written(text: str) -> list[str]:
+    """A number as people type it: with or without the nought before the point, noughts after."""
+    sign, digits = ("-", text[1:]) if text.startswith("-") else ("", text)
+    whole, point, part = digits.partition(".")
+    wholes = {whole, whole.lstrip("0"), whole or "0"} if point else {whole}
+    parts_ = {part, part.rstrip("0"), part.rstrip("0") + "0"} if point else {""}
+    ways = [f"{sign}{w}.{p}" if point and p else f"{sign}{w or '0'}" for w in wholes for p in parts_]
+    return sorted({*ways, *([f"{sign}{whole}.0"] if not point else [])}, key=lambda way: way != text)
+
+
+def held(grid: Grid, sheets: Sequence[Sheet], reads: Sequence[Read], found: Sequence[Candidate]) -> list[Cell]:
+    """Every cell of the predicted pages, with its margin."""
+    rows = [
+        (which, *one)
+        for which, (sheet, read, candidate) in enumerate(zip(sheets, reads, found, strict=True))
+        for one in predicted(sheet, read, candidate)
+    ]
+    # blanks inside labels that stand away from every number say nothing
+    names = [character for _, _, character, _ in rows]
+    sample = sample_of(grid, [place for *_, place in rows])
+    typeface = typeface_of(sample, names)
+    apart, _ = distances(sample, typeface.means)
+    empty = sample.norms.min(axis=1).astype(float)
+    apart = np.column_stack([apart, empty])
+    energy = np.r_[np.einsum("mp,mp->m", typeface.means, typeface.means), 0.0]
+    between = _between(typeface.means)
+    characters = [*typeface.characters, BLANK]
+    index = {character: k for k, character in enumerate(characters)}
+    own = np.array([index[name] for name in names])
+    distance = apart[np.arange(len(rows)), own].copy()
+    alone = np.zeros(len(rows), bool)
+    for cell in range(len(rows)):
+        if names[cell] != BLANK:
+            mean = typeface.without(cell)
+            if mean is None:
+                alone[cell] = True
+            else:
+                distance[cell] = distances(sample.at(np.array([cell])), mean[None])[0][0, 0]
+    usual = np.sqrt(np.maximum(energy[own], 1.0))
+    inked = (np.array(names) != BLANK) & ~alone
+    relative = distance / usual
+    level = float(np.median(relative[inked])) or 1e-6
+    floor = float(np.percentile(relative[inked], 75))
+    distance[alone] = floor * usual[alone]
+    numeric = np.array([character in READABLE for character in characters])
+    of_number = np.array([bool(name) for _, name, _, _ in rows])
+    unlike = _unlike(sample, typeface, alone & of_number, names)
+    counts = [*typeface.counts.tolist(), 0]
+    cells = []
+    for cell, (which, name, character, place) in enumerate(rows):
+        allowed = numeric.copy() if name or character == BLANK else np.ones(len(characters), bool)
+        allowed[own[cell]] = False
+        step = np.maximum(between[own[cell]], 1e-6)
+        if alone[cell]:
+            step = np.maximum(step, apart[cell])
+        margins = np.where(allowed, (distance[cell] - apart[cell]) / step, -np.inf)
+        other = int(np.argmax(margins))
+        cells.append(
+            Cell(
+                which, place, name, character, float(margins[other]), characters[other],
+                float(relative[cell] / level), counts[own[cell]], counts[other], bool(unlike[cell]),
+            )
+        )
+    return cells
+
+
+def _between(means: Floats) -> Floats:
+    """Squared distances of the means from each other, and from blank paper."""
+    whole = np.vstack([means, np.zeros_like(means[:1])]).astype(float)
+    inner = whole @ whole.T
+    norms = np.diag(inner)
+    apart: Floats = norms[:, None] + norms[None] - 2 * inner
+    return apart
+
+
+def _unlike(sample, typeface, asked, names):  # type: ignore[no-untyped-def]
+    """Which of the cells asked about look like another digit in every known style."""
+    unlike = np.zeros(len(names), bool)
+    chosen = np.flatnonzero(asked & np.array([name in NUMERIC for name in names]))
+    if len(chosen):
+        apart = likeness(sample.at(chosen), typeface)
+        for cell, row in zip(chosen, apart, strict=True):
+            unlike[cell] = NUMERIC[int(row.argmin())] != names[cell]
+    return unlike

@@ -1,0 +1,183 @@
+"""From what was read in the cells to the scene: candidates of the text's recovery, and scenes that
+differ in a character or two, weighed by how well the program's page fits all cells.
+
+This is the one module that knows how text is recovered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..applesoft.decimaltext import is_number
+from ..errors import UserError
+from ..fields import INPUTS, REPLIES
+from ..reading.printout import read_printouts
+from ..recovery.recovered import recover
+from ..recovery.replays import Outcome, run_all
+from .ink import Floats
+from .layout import LINES, Sheet, parts
+from .typeface import READABLE
+
+_WORST = 6.0
+"""What a cell costs at most: a cell that contradicts says no more than that it does."""
+_SETTLED = 1.0
+"""A page whose cells cost less than this in all needs no search."""
+_ROUNDS, _KEPT = 2, 3
+
+
+@dataclass
+class Read:
+    """Numbers of a printout as cells: for each name the cost of each of `READABLE`
+    in each cell, shape (cells, characters), 0 for the likeliest."""
+
+    sheet: Sheet
+    costs: dict[str, Floats]
+    _known: dict[tuple[str, str], float] = field(default_factory=dict)
+
+    def text(self, name: str) -> str:
+        """The likeliest text of a number."""
+        return "".join((READABLE)[k] for k in self.costs[name].argmin(axis=1)).strip()
+
+    def cost(self, name: str, text: str | None) -> float:
+        """What it costs to take a number's cells for a text."""
+        if text is None:
+            return 2 * _WORST
+        key = (name, text)
+        if key not in self._known:
+            self._known[key] = self._cost(self.costs[name], text)
+        return self._known[key]
+
+    def _cost(self, costs: Floats, text: str) -> float:
+        total = _WORST * max(0, len(text) - len(costs))
+        for row, character in zip(costs, text.ljust(len(costs)), strict=False):
+            column = (READABLE).find(character)
+            total += _WORST if column < 0 else min(float(row[column]), _WORST)
+        return total
+
+    def page(self) -> str:
+        """The printout as text, as far as its lines were found."""
+        lines = []
+        for line in range(len(LINES)):
+            if line in self.sheet.pieces:
+                pieces = [self.text(name) if name else text for name, text in parts(line)]
+                lines.append("".join(pieces))
+        return "\n".join(lines)
+
+
+@dataclass
+class Candidate:
+    """A scene, what the program prints for it, and what that costs against the cells."""
+
+    scene: dict[str, str]
+    outcome: Outcome
+    cost: float
+
+
+def scene_of(read: Read) -> Candidate | None:
+    """The scene whose page fits the cells best, None where none can be run."""
+    known: dict[tuple[tuple[str, str], ...], Candidate] = {}
+    for scene in _first(read):
+        _weigh(read, [scene], known)
+    if not known:
+        return None
+    for _ in range(_ROUNDS):
+        best = sorted(known.values(), key=_cost)[:_KEPT]
+        if best[0].cost < _SETTLED:
+            break
+        before = best[0].cost
+        for one in best:
+            _weigh(read, list(_neighbours(read, one)), known)
+        if min(known.values(), key=_cost).cost > before - 0.5:
+            break
+    return min(known.values(), key=_cost)
+
+
+def _cost(candidate: Candidate) -> float:
+    return candidate.cost
+
+
+def _first(read: Read) -> Iterator[dict[str, str]]:
+    """The scene of the numbers as read, and that of the text's recovery."""
+    texts = {name: read.text(name) for name in read.costs}
+    if all(is_number(texts.get(name, "")) for name in INPUTS):
+        direct = {("MU" if name == "MUP" else name): texts[name] for name in INPUTS}
+        for spins in ("6", "4"):
+            yield {**direct, "M": spins}
+            mu = texts["MUP"]
+            yield {**direct, "M": spins, "MU": mu[1:] if mu.startswith("-") else f"-{mu}"}
+    try:
+        printouts = list(read_printouts(read.page()))
+    except UserError:
+        return
+    if len(printouts) == 1 and not printouts[0].fragment:
+        recovered = recover(printouts[0])
+        if not recovered.missing:
+            yield recovered.scene
+
+
+def _weigh(
+    read: Read,
+    scenes: list[dict[str, str]],
+    known: dict[tuple[tuple[str, str], ...], Candidate],
+) -> None:
+    keys = [tuple(sorted(scene.items())) for scene in scenes]
+    new = [(key, scene) for key, scene in zip(keys, scenes, strict=True) if key not in known]
+    try:
+        outcomes = run_all([scene for _, scene in new])
+    except (UserError, ValueError, OverflowError):
+        return
+    for (key, scene), outcome in zip(new, outcomes, strict=True):
+        known[key] = Candidate(scene, outcome, cost_of(read, outcome))
+
+
+def cost_of(read: Read, outcome: Outcome) -> float:
+    """What the program's page costs against the cells."""
+    fields = outcome.fields
+    total = 2 * _WORST * len(set(fields) - set(read.costs))
+    for name in read.costs:
+        if not name.startswith("REPLY"):
+            total += read.cost(name, fields.get(name))
+    return total
+
+
+def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
+    """Scenes that differ in one character of one input, and those of the reply's numbers."""
+    for name in INPUTS:
+        typed = "MU" if name == "MUP" else name
+        if name not in read.costs:
+            continue
+        text = one.outcome.fields.get(name) or read.text(name)
+        sign = -1 if typed == "MU" and _opposite(one.scene["MU"], text) else 1
+        for at, character in enumerate(text):
+            for other in "0123456789":
+                if character.isdigit() and other != character:
+                    changed = text[:at] + other + text[at + 1 :]
+                    yield {**one.scene, typed: _signed(changed, sign)}
+        yield {**one.scene, typed: _signed(read.text(name) or "0", sign)}
+        yield {**one.scene, typed: _signed(text, -1)}
+    yield {**one.scene, "M": "4" if one.scene["M"] == "6" else "6"}
+    for side, names in REPLIES.items():
+        typed_texts = reply_texts(read, side)
+        if len(typed_texts) == 3:
+            yield {**one.scene, **dict(zip(names, typed_texts, strict=True))}
+
+
+def _opposite(first: str, second: str) -> bool:
+    return first.startswith("-") != second.startswith("-")
+
+
+def _signed(text: str, sign: int) -> str:
+    if sign > 0:
+        return text
+    return text[1:] if text.startswith("-") else f"-{text}"
+
+
+def reply_texts(read: Read, side: str) -> list[str]:
+    """The three numbers of a reply as read, or fewer."""
+    name = f"REPLY_{side}"
+    if name not in read.costs:
+        return []
+    return read.text(name).split(",")
