@@ -2,6 +2,8 @@
 that damaged labels, borders and notes cost little, and every character ends up in a number, a label
 or left over. The scene is recovered, replayed in the Apple's arithmetic, and every digit compared.
 What exact arithmetic gives and physical warnings stand beside the verdict and do not change it.
+A scan or photograph (PNG, JPEG, TIFF, PDF; needs pip install 'impact88[scan]') is read cell by cell:
+each is held against the mean glyph that the page itself has for the character the program prints.
 
 verdicts:
   IDENTICAL                 every number was read, and is what the program prints
@@ -11,6 +13,7 @@ verdicts:
 
 examples:
   impact88 verify printout.txt                      verdict, fields, explanations
+  impact88 verify scan.png                          the same from the picture of a page
   impact88 verify --brief box7/*.txt                a few lines a printout
   impact88 verify --json printout.txt               one JSON object a printout
   impact88 verify results.txt --scene crash.toml    inputs from a file
@@ -48,7 +51,7 @@ _ON_REPORT = ("date", "case", "examiner")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 verify`."""
     parser.add_argument(
-        "printouts", nargs="+", type=InputFile, metavar="PRINTOUT", help="a text file (- is stdin)"
+        "printouts", nargs="+", type=InputFile, metavar="PRINTOUT", help="text, picture or PDF"
     )
     add_json_argument(parser, "one JSON object a printout")
     add_output_argument(parser)

@@ -31,6 +31,11 @@ from ..recovery.recovered import Recovered, recover, without_angles
 from . import provenance, wording
 from .verification import Examined, Verification
 
+PICTURE_STARTS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"%PDF-")
+"""How PNG, JPEG, TIFF (of either byte order) and PDF files begin."""
+LARGEST_PICTURE = 100_000_000
+"""Bytes of the largest picture or PDF that is read."""
+
 __all__ = [
     "Examined",
     "FieldCheck",
@@ -49,7 +54,7 @@ def examine(
     """A file (``-``: standard input), every printout in it judged; what cannot be read is told.
     ``copy``: the listing it is held against, in place of the restored one."""
     try:
-        data = files.read_bytes(path, LARGEST_FILE)
+        data = files.read_bytes(path, LARGEST_PICTURE)
     except UserError as error:
         return Examined(path, None, error=str(error))
     return examine_bytes(path, data, given, copy)
@@ -72,7 +77,7 @@ def examine_bytes(
 
 def verify_file(path: str, given: Mapping[str, str] | None = None) -> Iterator[Verification]:
     """Each printout in a file (``-``: standard input). Raises UserError if it cannot be read."""
-    data = files.read_bytes(path, LARGEST_FILE)
+    data = files.read_bytes(path, LARGEST_PICTURE)
     yield from _verified(path, data, provenance.sha256(data), given)
 
 
@@ -83,6 +88,20 @@ def _verified(
     given: Mapping[str, str] | None,
     copy: ListingCopy | None = None,
 ) -> Iterator[Verification]:
+    if data.startswith(PICTURE_STARTS):
+        try:
+            from .scanned import verified
+        except ImportError as error:
+            raise UserError(
+                f"{files.called(path)}: pictures need {error.name}, which is not installed; "
+                "pip install 'impact88[scan]'"
+            ) from None
+        for result in verified(path, data):
+            result.sha256 = digest
+            yield completed(result)
+        return
+    if len(data) > LARGEST_FILE:
+        raise UserError(f"{files.called(path)}: is larger than {LARGEST_FILE:,} bytes of text")
     where = files.called(path)
     text = decoded(data, where)
     text, lines = in_order(copy, text) if copy else (text, [])
@@ -152,6 +171,12 @@ def verify(
         ),
         *wording.given_otherwise(given or {}, result.scene, result.fields),
     ]
+    return completed(result)
+
+
+def completed(result: Verification) -> Verification:
+    """The same with what stands beside the verdict: what the page cannot show, exact values and
+    warnings."""
     result.unseen = unseen(result.scene, result.missing)
     if result.runnable:
         scene = {name: text or "" for name, text in result.scene.items()}

@@ -48,6 +48,7 @@ class Verification:
     remarks: list[str] = field(default_factory=list)
     left_over: list[Piece] = field(default_factory=list)
     labels: list[LabelCheck] = field(default_factory=list)
+    cells: list[dict[str, Any]] = field(default_factory=list)
     start: int = 0
     stop: int = 0
     sha256: str | None = None
@@ -127,6 +128,8 @@ class Verification:
             "remarks": self.remarks,
             **({"listing": self.copy} if self.copy else {}),
         }
+        if self.cells:
+            whole["cells"] = self.cells
         return stamped("verify", whole)
 
 

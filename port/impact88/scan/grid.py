@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from .ink import Floats, Image, Points, points_of, slopes
@@ -42,6 +41,18 @@ class Grid:
         width = CELL_WIDTH + 2 * SLACK
         starts = range(0, count * CELL_WIDTH, CELL_WIDTH)
         return np.stack([picture[:, start : start + width] for start in starts])
+
+    def odds(self) -> list[Floats]:
+        """The log odds that each cell of each line is inked, within 6 of even."""
+        return [self._odds(self.cells(line)) for line in range(len(self.pictures))]
+
+    @staticmethod
+    def _odds(cells: Image) -> Floats:
+        strokes = ndimage.uniform_filter(cells, (1, 3, 3))
+        edge = SLACK + 1
+        darkest = strokes[:, edge:-edge, edge + 1 : -edge - 1].max(axis=(1, 2)).astype(float)
+        odds: Floats = np.clip(14 * (darkest - 0.35), -6, 6)
+        return odds
 
 
 def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
@@ -125,7 +136,7 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
             sums.append(np.exp(2j * np.pi * inside / pitch).sum())
             places.append((inside.mean(), y[near].mean() if near.any() else y.mean()))
     total = np.array(sums)
-    terms = _terms(*np.array(places).T, span)
+    terms = _terms(np.array(places)[:, 0], np.array(places)[:, 1], span)
     turn = 2j * np.pi / pitch
     step = 0.12 * pitch
     wide = np.arange(-0.09 * span, 0.09 * span, step)
@@ -170,7 +181,9 @@ def grid_of(ink: Image) -> Grid | None:
     xs, ys = [x[inside] for inside in members], [y[inside] for inside in members]
     pitch = _pitch(xs, height)
     bend, clarity = _bend(xs, ys, pitch, span)
-    upright = [line + bend @ _terms(line, across, span) for line, across in zip(xs, ys, strict=True)]
+    upright = [
+        line + bend @ _terms(line, across, span) for line, across in zip(xs, ys, strict=True)
+    ]
     everything = np.concatenate(upright)
     first = np.floor(np.percentile(everything, 0.2) / pitch) - 1
     last = np.ceil(np.percentile(everything, 99.8) / pitch) + 1
@@ -180,12 +193,15 @@ def grid_of(ink: Image) -> Grid | None:
     small = _resized(ink, scale)
     tall = round(1.7 * height * scale)
 
+    rise = np.zeros(6)
+
     def place(u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Where in the picture the point ``u`` across and ``v`` down the levelled page is."""
         x, y = u, v
         for _ in range(5):
             x = u - np.tensordot(bend, _terms(x, y, span), 1)
             y = v + x * (slope + keystone * y / span)
+        y = y + np.tensordot(rise, _terms(u, v, span), 1)
         return x + ink.shape[1] / 2, y + ink.shape[0] / 2
 
     def sampled(middle: float) -> Image:
@@ -204,32 +220,60 @@ def grid_of(ink: Image) -> Grid | None:
 
     middles = np.array([(top + bottom) / 2 for top, bottom in lines])
     pictures = [sampled(middle) for middle in middles]
-    shifts = _risen([picture.sum(axis=1) for picture in pictures])
-    middles = middles + np.array(shifts) / scale
-    pictures = [sampled(middle) if shift else picture
-                for middle, shift, picture in zip(middles, shifts, pictures, strict=True)]
+    rise, shifts = _risen(pictures, left, middles, scale, span)
+    middles = middles + shifts
+    pictures = [sampled(middle) for middle in middles]
     corners = []
     for middle in middles:
-        u, v = np.meshgrid(left + np.arange(count + 1) * pitch, middle + np.array([-0.5, 0.5]) * 1.3 * height)
+        u, v = np.meshgrid(
+            left + np.arange(count + 1) * pitch, middle + np.array([-0.5, 0.5]) * 1.3 * height
+        )
         corners.append(np.stack(place(u, v), axis=-1).transpose(1, 0, 2))
     return Grid(pictures, middles / pitch, corners, pitch, clarity)
 
 
-def _risen(profiles: list[Floats]) -> list[int]:
-    """How many pixels down each line's profile is from the others'."""
-    reach = 9
-    shifts = [0] * len(profiles)
-    padded = [np.pad(profile / np.linalg.norm(profile), reach) for profile in profiles]
-    weights = [np.sqrt(profile.sum()) for profile in profiles]
-    size = len(profiles[0])
+def _risen(
+    pictures: list[Image], left: float, middles: Floats, scale: float, span: float
+) -> tuple[Floats, Floats]:
+    """What the lines still rise and fall: coefficients of `_terms`, and each line's own shift, in
+    pixels of the picture. Stretches of ten cells are laid on the mean of all."""
+    reach, width = 9, 10 * CELL_WIDTH
+    profiles, places, lines = [], [], []
+    for line, picture in enumerate(pictures):
+        for start in range(0, picture.shape[1] - width // 2, width):
+            profile = picture[:, start : start + width].sum(axis=1).astype(float)
+            if profile.sum() > 2 * CELL_WIDTH:
+                profiles.append(np.pad(profile / np.linalg.norm(profile), reach))
+                places.append((left + (start + width / 2) / scale, middles[line]))
+                lines.append(line)
+    size = len(profiles[0]) - 2 * reach
+    every = np.array(profiles)
+    moves = np.zeros(len(every), int)
+    steps = np.arange(2 * reach + 1)
     for _ in range(3):
-        moved = [one[reach + shift : reach + shift + size] for one, shift in zip(padded, shifts, strict=True)]
-        mean = np.average(moved, axis=0, weights=weights)
-        for line, one in enumerate(padded):
-            fits = [mean @ one[reach + s : reach + s + size] for s in range(-reach, reach + 1)]
-            shifts[line] = int(np.argmax(fits)) - reach
-    middle = round(float(np.average(shifts, weights=weights)))
-    return [shift - middle for shift in shifts]
+        mean = np.mean(
+            [one[reach + m : reach + m + size] for one, m in zip(every, moves, strict=True)], 0
+        )
+        fits = np.stack([every[:, step : step + size] @ mean for step in steps], axis=1)
+        moves = np.argmax(fits, axis=1) - reach
+    off = moves - np.median(moves)
+    terms = _terms(np.array(places)[:, 0], np.array(places)[:, 1], span)
+    sure = np.ones(len(off))
+    rise = np.zeros(6)
+    for _ in range(5):
+        ridge = np.diag([1e-6, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3]) * sure.sum()
+        rise = np.linalg.solve((terms * sure) @ terms.T + ridge, (terms * sure) @ off)
+        sure = 1 / (1 + ((off - rise @ terms) / 1.5) ** 2)
+    rest = off - rise @ terms
+    own = np.array(
+        [
+            np.average(rest[where], weights=sure[where])
+            if np.any(where := np.array(lines) == line)
+            else 0.0
+            for line in range(len(pictures))
+        ]
+    )
+    return rise / scale, own / scale
 
 
 def _resized(ink: Image, scale: float) -> Image:

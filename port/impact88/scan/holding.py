@@ -9,16 +9,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .grid import Grid
 from .ink import Floats
-from .layout import LINES, Place, Sheet, parts
+from .layout import ANGLES, Place, Sheet, parts
 from .naming import likeness
 from .scenes import Candidate, Read
-from .typeface import BLANK, NUMERIC, READABLE, distances, sample_of, typeface_of
+from .typeface import (
+    BLANK,
+    NUMERIC,
+    READABLE,
+    Sample,
+    Typeface,
+    Vectors,
+    distances,
+    sample_of,
+    typeface_of,
+)
 
+_NOISE = 3.0
 _BESIDE = 2
 """Blank cells that are looked at after the last character of a line."""
 
@@ -27,9 +40,9 @@ _BESIDE = 2
 class Cell:
     """One cell held against the page. ``name``: the field it belongs to, "" for labels; ``margin``
     as above; ``other``: the nearest other character; ``distance``: how far it is from the predicted
-    mean, 1 for what is usual on this page; ``count``, ``other_count``: on how many cells those means
-    rest; ``unlike``: whether the prototypes, asked because the predicted character occurs nowhere
-    else, take it for another."""
+    mean, 1 for what is usual on this page; ``count``, ``other_count``: on how many cells those
+    means rest; ``unlike``: whether the prototypes, asked because the predicted character occurs
+    nowhere else, take it for another."""
 
     sheet: int
     place: Place
@@ -48,11 +61,14 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
     fields = candidate.outcome.fields
     for line, row in sheet.rows.items():
         column = 0
-        for name, text in parts(line):
+        for piece, (name, text) in zip(sheet.pieces[line], parts(line), strict=True):
             if name.startswith("REPLY"):
                 shown = reply_of(read, name, candidate.scene)
             else:
                 shown = fields.get(name, "") if name else text
+            if line == ANGLES:  # its gaps are what they are
+                column = row.column(piece.places[0]) if piece.places else column
+                shown = shown if name else BLANK * len(piece.places)
             for character in shown:
                 yield name, character, row.place(column)
                 column += 1
@@ -67,7 +83,7 @@ def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:
     names = ("UX", "UY", "WA") if name == "REPLY_A" else ("VX", "VY", "WB")
     costs = read.costs[name]
     written = [_written(scene[one]) for one in names]
-    ways = [f"{a},{b},{c}" for a in written[0] for b in written[1] for c in written[2]]
+    ways = [comma.join(three) for three in product(*written) for comma in (",", ", ")]
     return min(ways, key=lambda way: read.cost(name, way) + abs(len(way) - len(costs)))
 
 
@@ -77,11 +93,17 @@ def _written(text: str) -> list[str]:
     whole, point, part = digits.partition(".")
     wholes = {whole, whole.lstrip("0"), whole or "0"} if point else {whole}
     parts_ = {part, part.rstrip("0"), part.rstrip("0") + "0"} if point else {""}
-    ways = [f"{sign}{w}.{p}" if point and p else f"{sign}{w or '0'}" for w in wholes for p in parts_]
-    return sorted({*ways, *([f"{sign}{whole}.0"] if not point else [])}, key=lambda way: way != text)
+    ways = [
+        f"{sign}{w}.{p}" if point and p else f"{sign}{w or '0'}" for w in wholes for p in parts_
+    ]
+    return sorted(
+        {*ways, *([f"{sign}{whole}.0"] if not point else [])}, key=lambda way: way != text
+    )
 
 
-def held(grid: Grid, sheets: Sequence[Sheet], reads: Sequence[Read], found: Sequence[Candidate]) -> list[Cell]:
+def held(
+    grid: Grid, sheets: Sequence[Sheet], reads: Sequence[Read], found: Sequence[Candidate]
+) -> list[Cell]:
     """Every cell of the predicted pages, with its margin."""
     rows = [
         (which, *one)
@@ -116,28 +138,38 @@ def held(grid: Grid, sheets: Sequence[Sheet], reads: Sequence[Read], found: Sequ
     floor = float(np.percentile(relative[inked], 75))
     distance[alone] = floor * usual[alone]
     numeric = np.array([character in READABLE for character in characters])
+    letters = np.array([character.isalpha() or character == BLANK for character in characters])
     of_number = np.array([bool(name) for _, name, _, _ in rows])
     unlike = _unlike(sample, typeface, alone & of_number, names)
     counts = [*typeface.counts.tolist(), 0]
     cells = []
     for cell, (which, name, character, place) in enumerate(rows):
-        allowed = numeric.copy() if name or character == BLANK else np.ones(len(characters), bool)
+        allowed = (numeric if name or character == BLANK else letters).copy()
         allowed[own[cell]] = False
-        step = np.maximum(between[own[cell]], 1e-6)
+        # means as near each other as the cells are to their own say nothing
+        step = np.maximum(between[own[cell]], _NOISE * level * usual[cell])
         if alone[cell]:
             step = np.maximum(step, apart[cell])
         margins = np.where(allowed, (distance[cell] - apart[cell]) / step, -np.inf)
         other = int(np.argmax(margins))
         cells.append(
             Cell(
-                which, place, name, character, float(margins[other]), characters[other],
-                float(relative[cell] / level), counts[own[cell]], counts[other], bool(unlike[cell]),
+                which,
+                place,
+                name,
+                character,
+                float(margins[other]),
+                characters[other],
+                float(relative[cell] / level),
+                counts[own[cell]],
+                counts[other],
+                bool(unlike[cell]),
             )
         )
     return cells
 
 
-def _between(means: Floats) -> Floats:
+def _between(means: Vectors) -> Floats:
     """Squared distances of the means from each other, and from blank paper."""
     whole = np.vstack([means, np.zeros_like(means[:1])]).astype(float)
     inner = whole @ whole.T
@@ -146,12 +178,14 @@ def _between(means: Floats) -> Floats:
     return apart
 
 
-def _unlike(sample, typeface, asked, names):  # type: ignore[no-untyped-def]
+def _unlike(
+    sample: Sample, typeface: Typeface, asked: NDArray[np.bool_], names: Sequence[str]
+) -> NDArray[np.bool_]:
     """Which of the cells asked about look like another digit in every known style."""
     unlike = np.zeros(len(names), bool)
     chosen = np.flatnonzero(asked & np.array([name in NUMERIC for name in names]))
     if len(chosen):
         apart = likeness(sample.at(chosen), typeface)
         for cell, row in zip(chosen, apart, strict=True):
-            unlike[cell] = NUMERIC[int(row.argmin())] != names[cell]
+            unlike[cell] = NUMERIC[int(row.argmin())] != names[int(cell)]
     return unlike

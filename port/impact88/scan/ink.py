@@ -33,7 +33,7 @@ def ink_of(grey: Image) -> Image:
         light = ndimage.gaussian_filter(light, 1.0, mode="nearest")
         at_rows = np.clip((np.arange(height) + 0.5) / _BLOCK - 0.5, 0, rows - 1)
         at_columns = np.clip((np.arange(width) + 0.5) / _BLOCK - 0.5, 0, columns - 1)
-        paper = _stretched(_stretched(light, at_rows).T, at_columns).T
+        paper = _stretched(_stretched(light, at_rows).T, at_columns).T.astype(np.float32)
     ink = np.clip(1 - grey / np.maximum(paper, 1), 0, 1).astype(np.float32)
     inked = ink[::3, ::3]
     inked = inked[inked > 0.08]
@@ -111,9 +111,9 @@ def slopes(points: Points) -> tuple[float, float]:
     )
     for width in fine:
         around = [
-            (best[0] + i * width, best[1] + j * width * 4) for i in (-1, 0, 1) for j in (-2, -1, 0, 1, 2)
+            (best[0] + i * width, best[1] + j * width * 4)
+            for i in (-1, 0, 1)
+            for j in (-2, -1, 0, 1, 2)
         ]
-        best = max(
-            around, key=lambda one: sharpness(y - x * (one[0] + one[1] * y / span), step)
-        )
+        best = max(around, key=lambda one: sharpness(y - x * (one[0] + one[1] * y / span), step))
     return float(best[0]), float(best[1])

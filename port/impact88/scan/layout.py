@@ -31,15 +31,21 @@ LINES = (
     "*****",
 )
 """Listing lines 200 to 770, as a person sees them."""
-OPTIONAL = (0, 1, 13)
-"""Lines that genuine pages lack: the prompts, and the final spins where M = 4."""
+OPTIONAL = (0, 1, 10, 13, 14)
+"""Lines that genuine pages lack: the prompts, the final spins where M = 4, rows of asterisks."""
+ANGLES = 5
+"""The line whose blanks people retype by eye."""
 REPLY_LENGTHS, NUMBER_LENGTHS = (5, 42), (1, 15)
 WRAP = 40
 """Columns of the Apple's screen, at which its lines break."""
 
 _ABSENT, _STRANGE, _WRAPPED = 30.0, 4.0, 2.0
 """What it costs, in units of log odds, to miss a line, to pass over a line of the paper, and to
-take two lines of it for one that was broken. A line that is there gains about 3 a cell."""
+take two lines of it for one that was broken. A line that is there gains about 3 an inked cell."""
+_FEWEST = 20
+"""Numbers of a printout; with fewer lines it is not verified from the picture."""
+_GAPS = (1, 14)
+_BLANK_IN_REPLY = -0.3
 
 
 class Place(NamedTuple):
@@ -72,6 +78,10 @@ class Row(NamedTuple):
             return Place(self.start + 1, column - WRAP + self.margin)
         return Place(self.start, column + self.margin)
 
+    def column(self, place: Place) -> int:
+        """The column of a place."""
+        return place.cell - self.margin + (WRAP if place.line > self.start else 0)
+
 
 @dataclass
 class Sheet:
@@ -101,20 +111,25 @@ class _Fit(NamedTuple):
 
 
 def _fit(line: int, inked: Floats, blank: Floats) -> _Fit:
-    """The best division of a row of cells into the parts of a line. ``inked``, ``blank``: what
-    each cell gains when taken for inked or blank, shape (cells,); ``ends``: where each part ends."""
+    """The best division of a row of cells into the parts of a line, and where each part ends.
+    ``inked``, ``blank``: what each cell gains when taken for inked or blank, shape (cells,)."""
     cells = len(inked)
-    filled = np.r_[0.0, np.cumsum(inked)]
+    filled, emptied = np.r_[0.0, np.cumsum(inked)], np.r_[0.0, np.cumsum(blank)]
+    typed = np.r_[0.0, np.cumsum(np.maximum(inked, _BLANK_IN_REPLY))]
     best = np.full(cells + 1, -np.inf)
     best[0] = 0.0
     back: list[np.ndarray] = []
     for name, text in parts(line):
         new = np.full(cells + 1, -np.inf)
         came = np.zeros(cells + 1, int)
-        if name:
-            least, most = REPLY_LENGTHS if name.startswith("REPLY") else NUMBER_LENGTHS
+        gap = not name and len(text) > 3 and not text.strip()
+        if name or gap:
+            least, most = _GAPS if gap else NUMBER_LENGTHS
+            run = emptied if gap else filled
+            if name.startswith("REPLY"):
+                (least, most), run = REPLY_LENGTHS, typed
             for length in range(least, min(most, cells) + 1):
-                value = best[: cells + 1 - length] + filled[length:] - filled[:-length]
+                value = best[: cells + 1 - length] + run[length:] - run[:-length]
                 better = value > new[length:]
                 new[length:][better] = value[better]
                 came[length:][better] = length
@@ -164,7 +179,7 @@ def _laid_at(odds: Sequence[Floats], tops: Floats, margin: int) -> tuple[float, 
     count = len(odds)
     rows = [row[margin:] if margin >= 0 else np.r_[np.zeros(-margin), row] for row in odds]
     before = [float(np.clip(row[: max(margin, 0)], 0, None).sum()) for row in odds]
-    alone = [float(np.abs(row).sum()) for row in odds]
+    alone = [float(np.clip(row, 0, 6).sum()) for row in odds]
     for start in range(count):
         for used in (1, 2):
             if start + used > count or (used == 2 and tops[start + 1] - tops[start] > 3.2):
@@ -174,7 +189,7 @@ def _laid_at(odds: Sequence[Floats], tops: Floats, margin: int) -> tuple[float, 
                 if len(row) < WRAP or np.any(row[WRAP:] > 2):
                     continue
                 row = np.r_[row[:WRAP], rows[start + 1]]
-            inked, blank = np.clip(row, -6, 6) / 2, -np.clip(row, -6, 6) / 2
+            inked, blank = np.clip(row, -6, 6) / 2, -np.clip(row, 0, 6) / 2
             for line in range(len(LINES)):
                 one = _fit(line, inked, blank)
                 lost = sum(before[start : start + used]) + (_WRAPPED if used == 2 else 0)
@@ -206,7 +221,8 @@ def _aligned(
             else:
                 steps.append((i, j + 1, now - (0.5 if j in OPTIONAL else _ABSENT), 0))
             if i < count:
-                steps.append((i + 1, j, now - _STRANGE - (alone[i] * 0.25 if 0 < j < last else 0), 0))
+                lost = alone[i] * 0.5 if 0 < j < last else 0.0
+                steps.append((i + 1, j, now - _STRANGE - lost, 0))
                 for used in (1, 2):
                     if j < last and (i, used, j) in gains:
                         steps.append((i + used, j + 1, now + gains[i, used, j][0], used))
@@ -229,7 +245,7 @@ def _aligned(
             sheets[-1].gain += gain
             _place(sheets[-1], j, Row(i, used, margin), ends_of)
         at = (i, j)
-    return total, [sheet for sheet in reversed(sheets) if len(sheet.numbers) >= 6]
+    return total, [sheet for sheet in reversed(sheets) if len(sheet.numbers) >= _FEWEST]
 
 
 def _place(sheet: Sheet, line: int, row: Row, ends: tuple[int, ...]) -> None:

@@ -13,7 +13,17 @@ from .grid import CELL_WIDTH, Grid
 from .ink import Floats
 from .layout import Place, Sheet
 from .scenes import Read
-from .typeface import NUMERIC, READABLE, Sample, Typeface, Vectors, distances, sample_of, typeface_of
+from .typeface import (
+    BLANK,
+    NUMERIC,
+    READABLE,
+    Sample,
+    Typeface,
+    Vectors,
+    distances,
+    sample_of,
+    typeface_of,
+)
 
 _ROWS, _TOP, _BOTTOM = 24, 4, 20
 """Prototypes stand on this many rows, a capital's top and foot at these."""
@@ -35,14 +45,16 @@ def prototypes() -> tuple[str, Vectors]:
 def capitals(typeface: Typeface) -> tuple[float, float]:
     """Top and foot of the page's capitals, in rows of a cell."""
     height, width = typeface.shape
-    chosen = [typeface.index(letter) for letter in "MABEIDTPUVXYKL" if letter in typeface.characters]
+    chosen = [
+        typeface.index(letter) for letter in "MABEIDTPUVXYKL" if letter in typeface.characters
+    ]
     profile = typeface.means[chosen].reshape(-1, height, width).sum(axis=(0, 2))
     inked = np.flatnonzero(profile > 0.25 * profile.max())
     return float(inked[0]), float(inked[-1] + 1)
 
 
 def _normal(sample: Sample, top: float, foot: float) -> Vectors:
-    """Cells with their capitals' height brought to the prototypes', shape (cells, rows, columns)."""
+    """Cells, the height of their capitals that of the prototypes': (cells, rows, columns)."""
     height, width = sample.shape
     middle = sample.vectors[:, sample.vectors.shape[1] // 2].reshape(-1, height, width)
     at = top + (np.arange(_ROWS) + 0.5 - _TOP) * (foot - top) / (_BOTTOM - _TOP) - 0.5
@@ -84,9 +96,12 @@ def read_numbers(grid: Grid, sheets: list[Sheet]) -> list[Read]:
         for pieces in sheet.pieces.values():
             for piece in pieces:
                 if piece.name:
-                    numbers.append((which, piece.name, slice(len(places), len(places) + len(piece.places))))
+                    numbers.append(
+                        (which, piece.name, slice(len(places), len(places) + len(piece.places)))
+                    )
                 places.extend(piece.places)
-                names.extend(" " * len(piece.places) if piece.name else piece.text)
+                known = len(piece.text) == len(piece.places)
+                names.extend(piece.text if known else BLANK * len(piece.places))
     sample = sample_of(grid, places)
     chosen = np.concatenate([np.arange(part.start, part.stop) for _, _, part in numbers])
     of_numbers = sample.at(chosen)
@@ -107,7 +122,9 @@ def read_numbers(grid: Grid, sheets: list[Sheet]) -> list[Read]:
             names[cell] = READABLE[int(costs[cell].argmin())]
     own = costs[chosen].min(axis=1)
     unit = max(float(np.median(own)) * 0.6, 1e-3)
-    costs = (costs - np.where(np.isfinite(costs).any(axis=1), costs.min(axis=1), 0.0)[:, None]) / unit
+    costs = (
+        costs - np.where(np.isfinite(costs).any(axis=1), costs.min(axis=1), 0.0)[:, None]
+    ) / unit
     return [
         Read(sheet, {name: costs[part] for index, name, part in numbers if index == which})
         for which, sheet in enumerate(sheets)

@@ -6,10 +6,8 @@ This is the one module that knows how text is recovered.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-
-import numpy as np
 
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
@@ -38,8 +36,9 @@ class Read:
     _known: dict[tuple[str, str], float] = field(default_factory=dict)
 
     def text(self, name: str) -> str:
-        """The likeliest text of a number."""
-        return "".join((READABLE)[k] for k in self.costs[name].argmin(axis=1)).strip()
+        """The likeliest text of a number; a blank within it is a digit that is missing."""
+        text = "".join(READABLE[k] for k in self.costs[name].argmin(axis=1)).strip()
+        return text if name.startswith("REPLY") else text.replace(" ", "0")
 
     def cost(self, name: str, text: str | None) -> float:
         """What it costs to take a number's cells for a text."""

@@ -1,0 +1,148 @@
+"""Scans and photographs of printouts, verified from their pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..errors import UserError
+from ..fields import FIELDS, REPLIES
+from ..files import called
+from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
+from ..names import SCENE
+from ..scan.evidence import state
+from ..scan.holding import Cell
+from ..scan.picture import pages_of
+from ..scan.sheets import Leaf, Looked, looked
+from ..scan.typeface import BLANK
+from .verification import Verification
+
+
+def verified(path: str, data: bytes) -> Iterator[Verification]:
+    """Each printout in a picture or PDF. Raises UserError when none is found."""
+    number = 0
+    for page in pages_of(data, path):
+        seen = looked(page.grey)
+        for leaf in seen.leaves:
+            number += 1
+            yield _verification(path, number, page.number, page.grey.shape, seen, leaf)
+    if not number:
+        raise UserError(
+            f"{called(path)}: no printout was found in the picture; expected lines of fixed pitch, "
+            "12 pixels or more a character"
+        )
+
+
+def _verification(
+    path: str, number: int, page: int, size: tuple[int, ...], seen: Looked, leaf: Leaf
+) -> Verification:
+    text = leaf.read.page()
+    scene: dict[str, str | None] = dict.fromkeys(SCENE)
+    if leaf.found and leaf.judged.verdict is not Verdict.INCOMPLETE:
+        scene = {name: leaf.found.scene[name] for name in SCENE}
+    result = Verification(
+        file=path,
+        number=number,
+        line=1,
+        verdict=leaf.judged.verdict,
+        scene=scene,
+        fields=[_check(leaf, name, name) for name in _names(leaf)],
+        replies=[
+            check for side, names in REPLIES.items() for check in _reply_checks(leaf, side, names)
+        ],
+        stop=len(text),
+        text=text,
+    )
+    result.cells = [_described(cell, page, size, seen) for cell in leaf.cells if _told(cell)]
+    if leaf.judged.reason:
+        result.remarks.append(f"page {page}: {leaf.judged.reason}")
+    return result
+
+
+def _names(leaf: Leaf) -> list[str]:
+    fields = leaf.found.outcome.fields if leaf.found else {}
+    return [name for name in FIELDS if name in fields or name in leaf.read.costs]
+
+
+def _told(cell: Cell) -> bool:
+    """Whether a cell is told of: blanks and labels that hold are not."""
+    return bool(cell.name and cell.predicted != BLANK) or state(cell) != "holds"
+
+
+def _check(leaf: Leaf, field: str, name: str) -> FieldCheck:
+    recomputed = leaf.found.outcome.fields.get(field) if leaf.found else None
+    return _of_cells(leaf, name, recomputed, leaf.by_name.get(field, []))
+
+
+def _of_cells(leaf: Leaf, name: str, recomputed: str | None, cells: list[Cell]) -> FieldCheck:
+    states = [state(cell) for cell in cells]
+    printed = "".join(
+        cell.other if one == "differs" else cell.predicted
+        for cell, one in zip(cells, states, strict=True)
+    )
+    if leaf.judged.verdict is Verdict.INCOMPLETE and "differs" in states:
+        status, same = Status.NOT_COMPARED, None
+    elif recomputed is None or not cells:
+        status, same = Status.NOT_READ, None
+    elif "differs" in states:
+        status, same = Status.CONTRADICTED, False
+    elif "doubtful" in states:
+        status, same = Status.DOUBTFUL, None
+    else:
+        status, same = Status.READ, True
+    doubts = [
+        Doubtful(cell.place.line + 1, cell.place.cell + 1, 0, cell.other, cell.predicted, "picture")
+        for cell, one in zip(cells, states, strict=True)
+        if one == "doubtful"
+    ]
+    check = FieldCheck(name, printed or None, recomputed, same, status=status, doubts=doubts)
+    if cells:
+        check.line, check.column = cells[0].place.line + 1, cells[0].place.cell + 1
+    return check
+
+
+def _reply_checks(leaf: Leaf, side: str, names: tuple[str, ...]) -> Iterator[FieldCheck]:
+    cells = leaf.by_name.get(f"REPLY_{side}", [])
+    if not cells or leaf.found is None:
+        return
+    parts: list[list[Cell]] = [[]]
+    for cell in cells:
+        if cell.predicted == ",":
+            parts.append([])
+        else:
+            parts[-1].append(cell)
+    for name, part in zip(names, parts, strict=False):
+        yield _of_cells(leaf, name, "".join(cell.predicted for cell in part), part)
+
+
+def _described(cell: Cell, page: int, size: tuple[int, ...], seen: Looked) -> dict[str, Any]:
+    """A cell as `impact88 verify --json` shows it."""
+    return {
+        "page": page,
+        "box": box(cell, size, seen),
+        "field": cell.name or None,
+        "predicted": cell.predicted,
+        "state": state(cell),
+        "margin": round(cell.margin, 3),
+        "runner_up": cell.other,
+        "distance": round(cell.distance, 2),
+        "cells_of_predicted": cell.count,
+        "cells_of_runner_up": cell.other_count,
+    }
+
+
+def box(cell: Cell, size: tuple[int, ...], seen: Looked) -> list[float]:
+    """Left, top, right, bottom of a cell in the picture as it lies, in pixels."""
+    assert seen.grid is not None
+    corners = seen.grid.corners[cell.place.line]
+    at = min(max(cell.place.cell, 0), len(corners) - 2)
+    x = corners[at : at + 2, :, 0].ravel()
+    y = corners[at : at + 2, :, 1].ravel()
+    height, width = size[:2]
+    if seen.turns == 1:
+        x, y = width - y, x
+    elif seen.turns == 2:
+        x, y = width - x, height - y
+    elif seen.turns == 3:
+        x, y = y, height - x
+    return [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())]

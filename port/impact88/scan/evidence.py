@@ -1,0 +1,101 @@
+"""The verdict on a printout in a picture: what the margins of its cells allow to be said.
+
+`THRESHOLDS` is the one table of thresholds, with what they were estimated on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from ..judging.judgement import Verdict
+from .holding import Cell
+from .layout import LINES, OPTIONAL, Sheet
+from .scenes import Candidate
+from .typeface import BLANK
+
+
+class Thresholds(NamedTuple):
+    """``holds``: a cell with a smaller margin is the character predicted; ``differs``: one with a
+    larger margin is another; ``blank``: blank paper with a larger margin is not blank; ``foreign``:
+    a cell this many times as far from its mean as is usual was not made by the same type."""
+
+    holds: float
+    differs: float
+    label: float
+    blank: float
+    foreign: float
+
+
+THRESHOLDS = Thresholds(holds=-0.12, differs=0.35, label=0.1, blank=-0.15, foreign=20.0)
+MOST_DOUBTFUL, MOST_DIFFERING = 4, 4
+"""Cells that may be doubtful on a page that is settled, or differ on one that is accused: with more
+it was the reading that went wrong."""
+_MARKS = frozenset(".,-")
+"""Characters of so little ink that a speck, or a faint pin, makes or unmakes them."""
+
+
+@dataclass
+class Judged:
+    """A verdict with its reasons: the cells that differ and those in doubt, and a sentence where
+    the page as a whole was not read."""
+
+    verdict: Verdict
+    differing: list[Cell] = field(default_factory=list)
+    doubtful: list[Cell] = field(default_factory=list)
+    reason: str = ""
+
+
+def judged(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
+    """The verdict on one printout of a page, whose cells were held against its scene."""
+    differing = [cell for cell in cells if state(cell) == "differs"]
+    doubtful = [cell for cell in cells if state(cell) == "doubtful"]
+    absent = [line for line in range(len(LINES)) if line not in sheet.rows and line not in OPTIONAL]
+    if absent:
+        return Judged(
+            Verdict.INCOMPLETE, differing, doubtful, "lines of the printout were not found"
+        )
+    if len(differing) + len(doubtful) > MOST_DIFFERING + MOST_DOUBTFUL:
+        return Judged(Verdict.INCOMPLETE, differing, doubtful, "too little was read for certain")
+    spins = "WAF" in candidate.outcome.fields
+    if candidate.outcome.ending is not None or spins is not (13 in sheet.rows):
+        return Judged(Verdict.INCOMPLETE, differing, doubtful, "the final spins were not found")
+    if not differing:
+        if not doubtful:
+            return Judged(Verdict.IDENTICAL)
+        slight = len(doubtful) <= MOST_DOUBTFUL and all(map(_slight, doubtful))
+        return Judged(Verdict.IDENTICAL_AS_READ if slight else Verdict.INCOMPLETE, [], doubtful)
+    sure = len(differing) <= MOST_DIFFERING and all(map(_slight, doubtful))
+    return Judged(Verdict.DIFFERS if sure else Verdict.INCOMPLETE, differing, doubtful)
+
+
+def state(cell: Cell) -> str:
+    """``holds``, ``doubtful`` or ``differs``."""
+    limits = THRESHOLDS
+    if cell.predicted == BLANK:
+        if cell.margin < limits.blank or cell.other in _MARKS:
+            return "holds" if cell.margin < limits.differs or not cell.name else "doubtful"
+        return "differs" if cell.margin > limits.differs else "doubtful"
+    if cell.unlike:
+        return "doubtful"
+    if not cell.name:
+        if cell.margin < limits.label:
+            return "holds"
+        sure = cell.margin > 2 * limits.differs and min(cell.count, cell.other_count) > 1
+        return (
+            "differs" if sure and cell.predicted.isalpha() and cell.other != BLANK else "doubtful"
+        )
+    if cell.margin < limits.holds:
+        return "holds" if cell.distance < limits.foreign else "doubtful"
+    if cell.margin < limits.differs or (cell.predicted in _MARKS and cell.other in f"{BLANK}.,-"):
+        return "doubtful"
+    return "differs"
+
+
+def _slight(cell: Cell) -> bool:
+    """Whether a doubt leaves every digit beyond doubt: it is about a mark, a speck or a label."""
+    if not cell.name or cell.predicted == BLANK:
+        return cell.margin < 0.5
+    marks = cell.predicted in _MARKS and cell.other in _MARKS
+    return (marks and cell.margin < 0.5) or (not cell.unlike and cell.margin < THRESHOLDS.holds)

@@ -1,0 +1,90 @@
+"""A page's picture from ink to verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..judging.judgement import Verdict
+from .evidence import Judged, judged
+from .grid import Grid, grid_of
+from .holding import Cell, held
+from .ink import Image, ink_of
+from .layout import Sheet, sheets_of
+from .naming import read_numbers
+from .scenes import Candidate, Read, scene_of
+
+
+@dataclass
+class Leaf:
+    """One printout of a page: where it stands, what was read, the scene found (None: none), its
+    cells held against the program's page, and the verdict."""
+
+    sheet: Sheet
+    read: Read
+    found: Candidate | None
+    cells: list[Cell]
+    judged: Judged
+
+    @cached_property
+    def by_name(self) -> dict[str, list[Cell]]:
+        """The cells of each number and reply, in order."""
+        cells: dict[str, list[Cell]] = {}
+        for cell in self.cells:
+            if cell.name:
+                cells.setdefault(cell.name, []).append(cell)
+        return cells
+
+
+@dataclass
+class Looked:
+    """A page that was looked at: its grid (None: none was found), how many quarter turns to the
+    left it was given first, and its printouts."""
+
+    grid: Grid | None
+    turns: int
+    leaves: list[Leaf]
+
+
+def looked(grey: Image) -> Looked:
+    """All printouts of a page, upright or turned by quarters."""
+    ink = ink_of(grey)
+    best: tuple[float, Looked] | None = None
+    for turns in _turns(ink):
+        grid = grid_of(np.ascontiguousarray(np.rot90(ink, turns)))
+        sheets = sheets_of(grid.odds(), grid.tops) if grid else []
+        gain = sum(sheet.gain for sheet in sheets)
+        if grid and sheets and (best is None or gain > best[0]):
+            best = (gain, Looked(grid, turns, _leaves(grid, sheets)))
+            if all(leaf.judged.verdict is not Verdict.INCOMPLETE for leaf in best[1].leaves):
+                break
+    return best[1] if best else Looked(None, 0, [])
+
+
+def _turns(ink: Image) -> list[int]:
+    """Quarter turns in the order in which they are tried: as the page lies, upside down, and on
+    its sides; lines of text make rows of ink and gaps, seen from the right side."""
+    small = ink[::4, ::4]
+    across, down = (float(np.var(np.diff(small.mean(axis=axis)))) for axis in (0, 1))
+    return [0, 2, 1, 3] if down * small.shape[1] >= across * small.shape[0] else [1, 3, 0, 2]
+
+
+def _leaves(grid: Grid, sheets: list[Sheet]) -> list[Leaf]:
+    reads = read_numbers(grid, sheets)
+    found = [scene_of(read) for read in reads]
+    known = [
+        (sheet, read, one) for sheet, read, one in zip(sheets, reads, found, strict=True) if one
+    ]
+    cells = held(grid, *zip(*known, strict=True)) if known else []
+    leaves, which = [], 0
+    for sheet, read, one in zip(sheets, reads, found, strict=True):
+        if one is None:
+            unread = Judged(Verdict.INCOMPLETE, reason="no scene was found")
+            leaves.append(Leaf(sheet, read, None, [], unread))
+            continue
+        own = [cell for cell in cells if cell.sheet == which]
+        which += 1
+        leaves.append(Leaf(sheet, read, one, own, judged(sheet, one, own)))
+    return leaves

@@ -1,0 +1,100 @@
+"""Pages as pictures: verdicts from their cells. IMPACT88_SWEEP tries all kept pages."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from captures import ROOT
+from impact88.reporting.examination import Examined, examine, examine_bytes
+
+pytest.importorskip("scipy", reason="the extra scan is not installed")
+Pillow = pytest.importorskip("PIL.Image", reason="the extra scan is not installed")
+
+PAGES = ROOT / "golden" / "scans"
+TRUTH = [json.loads(line) for line in (PAGES / "truth.jsonl").read_text().splitlines()]
+SWEEP = bool(os.environ.get("IMPACT88_SWEEP"))
+FEW = ("clean-001.png", "clean-002.png", "hard-003.png", "photo-001.jpg", "forged-003.png")
+SETTLED = {"identical", "identical_as_read"}
+
+
+@cache
+def verdicts(file: str) -> tuple[str, ...]:
+    return tuple(str(one.verdict) for one in examine(str(PAGES / file)).results)
+
+
+@pytest.mark.parametrize("row", [row for row in TRUTH if SWEEP or row["file"] in FEW], ids=str)
+def test_no_genuine_page_accused_no_altered_page_settled(row: dict[str, Any]) -> None:
+    found = verdicts(row["file"])
+    if row["altered"] is None:
+        assert "differs" not in found
+    else:
+        assert not found or set(found) - SETTLED
+    if not SWEEP:
+        assert found == ("differs" if row["altered"] else "identical",)
+
+
+@pytest.mark.skipif(not SWEEP, reason="a sweep: IMPACT88_SWEEP=1")
+@pytest.mark.parametrize(("kind", "least"), [("clean", 0.9), ("hard", 0.6), ("photo", 0.6)])
+def test_most_genuine_pages_are_settled(kind: str, least: float) -> None:
+    pages = [row for row in TRUTH if row["kind"] == kind and row["altered"] is None]
+    settled = sum(
+        len(found := verdicts(row["file"])) == row["prints"] and set(found) <= SETTLED
+        for row in pages
+    )
+    assert settled >= least * len(pages)
+
+
+def saved(picture: Any, form: str, **options: Any) -> bytes:
+    file = io.BytesIO()
+    picture.save(file, form, **options)
+    return file.getvalue()
+
+
+def test_cells_of_an_altered_digit() -> None:
+    row = next(row for row in TRUTH if row["file"] == "clean-002.png")
+    result = examine(str(PAGES / row["file"])).results[0]
+    before, after, _ = row["altered"]
+    (differing,) = result.differing
+    assert (differing.printed, differing.recomputed) == (after, before)
+    (cell,) = [cell for cell in result.as_json()["cells"] if cell["state"] == "differs"]
+    assert cell["runner_up"] in after
+    assert cell["predicted"] in before
+    left, top, right, bottom = cell["box"]
+    with Pillow.open(PAGES / row["file"]) as page:
+        assert 0 < left < right < page.width
+        assert 0 < top < bottom < page.height
+        assert page.convert("L").crop((left, top, right, bottom)).getextrema()[0] < 128
+
+
+def test_pdf_tiff_and_a_turned_page() -> None:
+    pytest.importorskip("pypdfium2", reason="the extra scan is not installed")
+    with Pillow.open(PAGES / "clean-001.png") as page:
+        grey = page.convert("L")
+    for name, data in (
+        ("page.pdf", saved(grey, "PDF", resolution=200)),
+        ("page.tif", saved(grey.transpose(Pillow.Transpose.ROTATE_90), "TIFF")),
+    ):
+        examined = examine_bytes(name, data)
+        assert [str(one.verdict) for one in examined.results] == ["identical"], examined
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"\x89PNG\r\n\x1a\nnothing", "is no picture that can be read"),
+        (b"%PDF-1.4 nothing", "is no PDF that can be read"),
+        (saved(Pillow.new("L", (400, 300), 255), "PNG"), "no printout was found in the picture"),
+    ],
+)
+def test_what_is_no_page(data: bytes, message: str, tmp_path: Path) -> None:
+    examined: Examined = examine_bytes("page", data)
+    assert examined.error is not None
+    assert message in examined.error
+    assert not examined.results
