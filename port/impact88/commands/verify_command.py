@@ -2,8 +2,8 @@
 that damaged labels, borders and notes cost little, and every character ends up in a number, a label
 or left over. The scene is recovered, replayed in the Apple's arithmetic, and every digit compared.
 What exact arithmetic gives and physical warnings stand beside the verdict and do not change it.
-A scan or photograph (PNG, JPEG, TIFF, PDF; needs pip install 'impact88[scan]') is read cell by cell:
-each is held against the mean glyph that the page itself has for the character the program prints.
+A scan or photograph (PNG, JPEG, TIFF, PDF; pip install 'impact88[scan]') is read cell by cell: each
+is held against the mean glyph that the page itself has for the character the program prints.
 
 verdicts:
   IDENTICAL                 every number was read, and is what the program prints

@@ -89,6 +89,9 @@ def _verified(
     copy: ListingCopy | None = None,
 ) -> Iterator[Verification]:
     if data.startswith(PICTURE_STARTS):
+        if given or copy:
+            other = "a scene apart" if given else "a copy of the listing"
+            raise UserError(f"{files.called(path)}: {other} goes with text, not with a picture")
         try:
             from .scanned import verified
         except ImportError as error:
