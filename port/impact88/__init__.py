@@ -161,7 +161,9 @@ if not TYPE_CHECKING:  # a checker that saw it would take any name for a public 
         if not place:
             return import_module(f".{name}", __name__)
         module, _, inner = place.partition(":")
-        return getattr(import_module(f".{module}", __name__), inner or name)
+        value = getattr(import_module(f".{module}", __name__), inner or name)
+        globals()[name] = value  # found at once from now on
+        return value
 
 
 def __dir__() -> list[str]:

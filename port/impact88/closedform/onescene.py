@@ -11,6 +11,7 @@ zero, a result that is not finite) is left to the arrays: `solve_one` then says 
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from operator import itemgetter
@@ -18,12 +19,14 @@ from typing import Any
 
 import numpy as np
 
+from .. import native
 from ..fields import ANGLES
 from ..names import DEFAULT_M, PIVOT, SCENE
 from ..native.formulas import Expression, ExpressionTable
-from ..native.program import in_order
+from ..native.program import Program, in_order
 from . import degrees
 from .columns import INERTIAS, LARGE_ANGLE, UNUSED_BY_POINTS
+from .fused import CIRCLE
 from .impact import Impact
 
 NAMES = tuple(SCENE)
@@ -53,7 +56,7 @@ def solve_one(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[st
         M, MU = numbers[_M], numbers[_MU]
         if M != 6 and M != 4:
             return None
-        results = _function(wanted, M == 4, MU == PIVOT)(*numbers)
+        results = _function(wanted, M == 4, MU == PIVOT, native.library)(*numbers)
     except (KeyError, LeftToArrays, ZeroDivisionError, OverflowError):
         return None
     if not math.isfinite(sum(results)):
@@ -78,12 +81,22 @@ def _plain(value: Any) -> float:
 
 
 @lru_cache(maxsize=256)
-def _function(wanted: tuple[str, ...], point: bool, pivot: bool) -> Callable[..., tuple[float]]:
+def _function(
+    wanted: tuple[str, ...], point: bool, pivot: bool, machine: object
+) -> Callable[..., tuple[float, ...]]:
     """The function of the scene's values, in the table's order, that gives the results."""
     table = ExpressionTable()
     scene = {name: table.column(name, varies=True) for name in NAMES}
     impact = Impact(table, scene, pivot, point, infinite=False)
-    source, constants = _written([getattr(impact, name) for name in wanted], point)
+    results = {name: getattr(impact, name) for name in wanted}
+    if native.library is not None and results:
+        return _Compiled(results, point)
+    source, constants = _written(list(results.values()), point)
+    return _defined(source, constants)
+
+
+def _defined(source: str, constants: Mapping[str, float]) -> Callable[..., tuple[float, ...]]:
+    """The function ``results`` of a source text."""
     names = {
         "fmod": math.fmod,
         "isfinite": math.isfinite,
@@ -93,8 +106,39 @@ def _function(wanted: tuple[str, ...], point: bool, pivot: bool) -> Callable[...
         **constants,
     }
     exec(compile(source, "<the formulas of one scene>", "exec"), names)
-    function: Callable[..., tuple[float]] = names["results"]  # type: ignore[assignment]
+    function: Callable[..., tuple[float, ...]] = names["results"]  # type: ignore[assignment]
     return function
+
+
+class _Compiled:
+    """The same function by the compiled machine, which has its own room in every thread."""
+
+    def __init__(self, results: Mapping[str, Expression], point: bool) -> None:
+        checks = [f"def results({', '.join(NAMES)}):", *_checks(point)]
+        self._checked = _defined("\n".join([*checks, f"    return {', '.join(NAMES)}"]), {})
+        shown = {n: e.operands[0] if e.operation == "bits" else e for n, e in results.items()}
+        self._program = Program(shown, ["RESULT"] * len(shown))
+        self._rows = [NAMES.index(name) for name in self._program.columns]
+        self._picked = itemgetter(*self._rows)
+        self._of_thread = threading.local()
+
+    def __call__(self, *numbers: float) -> tuple[float, ...]:
+        scene = self._checked(*numbers)
+        if not hasattr(self._of_thread, "ready"):
+            self._of_thread.ready = self._ready()
+        columns, results, run = self._of_thread.ready
+        columns[:] = self._picked(scene)
+        run()
+        return tuple(results.tolist())
+
+    def _ready(self) -> tuple[Any, Any, Callable[[], int]]:
+        """Room for the columns and the results of one scene, and the call that fills it."""
+        columns, results = np.empty(len(self._rows)), np.empty(len(self._program.results))
+        read, written = (
+            array.ctypes.data + 8 * np.arange(len(array)) for array in (columns, results)
+        )
+        run = self._program.prepared(read, written, 1, self._program.room(), CIRCLE)
+        return columns, results, run
 
 
 def _checks(point: bool) -> list[str]:

@@ -227,8 +227,7 @@ def solve_few(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[st
         into[wanted.index("STATUS")] = by_name["STATUS"].ctypes.data
     fixed = dict(zip(SCENE, least.tolist(), strict=True))
     rows = [_ROW[name] for name in program.columns]
-    room = program.room()
-    program.run(fixed, where[rows], into, where[:0], least[:0], count, room, CIRCLE)
+    program.prepared(where[rows], into, count, program.room(), CIRCLE, fixed)()
     return by_name
 
 
@@ -329,16 +328,16 @@ class _Worker:
         program = program_for(block.kinds, self.wanted, self.sign)
         if id(program) not in self.workspaces:
             self.workspaces[id(program)] = program.room()
-        return program.run(
-            {name: float(values[0]) for name, values in block.fixed.items()},
+        return program.prepared(
             addresses(columns[name] for name in program.columns),
             addresses(array[start:stop] for array in self.results.values()),
-            addresses(columns[name] for name in limits),
-            np.array(list(limits.values()), np.float64),
             stop - start,
             self.workspaces[id(program)],
             CIRCLE,
-        )
+            {name: float(values[0]) for name, values in block.fixed.items()},
+            addresses(columns[name] for name in limits),
+            np.array(list(limits.values()), np.float64),
+        )()
 
     def run_plan(self, block: Block, start: int, stop: int) -> None:
         """By numpy, a tile at a time."""

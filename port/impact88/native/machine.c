@@ -45,7 +45,10 @@
 /* Values a program may keep at a time. */
 #define PLACES 1024
 
-#define LOOP for (int i = 0; i < STRIP; i++)
+/* So few scenes do not go through whole strips. */
+#define FEW 8
+
+#define LOOP for (int i = 0; i < lanes; i++)
 #if defined(__GNUC__) && !defined(__clang__)
 #define EACH _Pragma("GCC ivdep") LOOP
 #elif defined(__clang__)
@@ -87,7 +90,7 @@ typedef struct {
 
 static inline __attribute__((always_inline)) void perform(
     const step *steps, int64_t count, double *const *place, const circle *circle,
-    char *const *next, int64_t ahead, int64_t columns, int64_t *odd)
+    char *const *next, int64_t ahead, int64_t columns, int64_t *odd, const int lanes)
 {
     int64_t pace = columns ? count / columns : 0, wait = pace;
     for (const step *s = steps; s < steps + count; s++) {
@@ -203,11 +206,21 @@ EXPORT CLONES int64_t run(
     double *place[PLACES];
     int64_t odd[STRIP] = {0};
     for (int64_t p = 0; p < places; p++) place[p] = room + p * STRIP;
+    if (count <= FEW && !checks) {
+        for (int64_t k = 0; k < scalar_count; k++)
+            for (int i = 0; i < FEW; i++) place[moving + k][i] = scalars[k];
+        for (int64_t p = 0; p < read; p++)
+            for (int i = 0; i < FEW; i++) place[p][i] = ((double *)given[p])[i < count ? i : 0];
+        perform(steps, length, place, circle, given, 0, 0, odd, FEW);
+        for (int64_t p = read; p < moving; p++) memcpy(given[p], place[p], (size_t)(count * width[p]));
+        return count;
+    }
     for (int64_t k = 0; k < scalar_count; k++)
-        LOOP place[moving + k][i] = scalars[k];
-    perform(steps, once, place, circle, given, 0, 0, odd);
+        for (int i = 0; i < STRIP; i++) place[moving + k][i] = scalars[k];
+    perform(steps, once, place, circle, given, 0, 0, odd, STRIP);
     int64_t always[STRIP]; /* what the scenes share makes all of them odd */
     memcpy(always, odd, sizeof odd);
+    const int lanes = STRIP;
     int64_t fetched = count * read > CACHED ? moving : 0;
     for (int64_t start = 0; start < count; start += STRIP) {
         int64_t many = count - start < STRIP ? count - start : STRIP;
@@ -225,7 +238,7 @@ EXPORT CLONES int64_t run(
             if (!whole && p < read)
                 LOOP place[p][i] = ((double *)here)[i < many ? i : 0];
         }
-        perform(steps + once, length - once, place, circle, given, (start + AHEAD * STRIP) * 8, whole ? fetched : 0, odd);
+        perform(steps + once, length - once, place, circle, given, (start + AHEAD * STRIP) * 8, whole ? fetched : 0, odd, STRIP);
         for (int64_t p = read; p < moving && !whole; p++)
             memcpy(given[p] + start * width[p], place[p], (size_t)(many * width[p]));
     }

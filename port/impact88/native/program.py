@@ -8,8 +8,8 @@ with that sum, each still rounded by itself.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,8 @@ Addresses = NDArray[np.int64]
 
 PROJECTIONS = ("sine", "cosine")
 """The two values that sine_and_cosine makes."""
+_NONE = np.empty(0, np.int64)
+_NO_LIMITS = np.empty(0)
 _APART = ("sine_and_cosine", "real_multiply")
 """Operations that must not write over an operand."""
 
@@ -166,47 +168,49 @@ class Program:
         start = -block.ctypes.data % 64 // 8  # at the start of a cache line
         return block[start : start + size].reshape(self._taken, native.STRIP)
 
-    def run(
+    def prepared(
         self,
-        fixed: Mapping[str, float],
         columns: Addresses,
         results: Addresses,
-        checked: Addresses,
-        limits: Array,
         count: int,
         room: Array,
         circle: int = 0,
-    ) -> int:
-        """Run it over ``count`` scenes. ``columns``, ``results``: of float64 columns (of uint16 for
-        bits), in the program's order; ``fixed``: the columns that do not vary.
+        fixed: Mapping[str, float] = {},
+        checked: Addresses = _NONE,
+        limits: Array = _NO_LIMITS,
+    ) -> Callable[[], int]:
+        """A call that runs it over ``count`` scenes. ``columns``, ``results``: of float64 columns
+        (of uint16 for bits), in the program's order; ``fixed``: the columns that do not vary;
+        ``circle``: where sines come from, see `closedform.fused`.
 
-        Returns how many scenes were done: all, or those before the strip in which one of the
-        columns ``checked`` leaves its ``limits`` (least and most). ``circle``: where sines come
-        from, see `closedform.fused`.
+        The call returns how many scenes were done: all, or those before the strip in which one of
+        the columns ``checked`` leaves its ``limits`` (least and most). `room` is kept with it, what
+        the addresses point at is not.
         """
         assert native.library is not None
         values = np.array([fixed[x] if isinstance(x, str) else x for x in self.scalars], float)
         moving = np.concatenate([columns, results])
-        return int(
-            native.library.run(
-                self._code.ctypes.data,
-                self._once,
-                len(self._code),
-                moving.ctypes.data,
-                self._width.ctypes.data,
-                len(columns),
-                self._moving,
-                values.ctypes.data,
-                len(values),
-                checked.ctypes.data,
-                limits.ctypes.data,
-                len(checked),
-                count,
-                circle,
-                room.ctypes.data,
-                self._taken,
-            )
+        call = partial(
+            native.library.run,
+            self._code.ctypes.data,
+            self._once,
+            len(self._code),
+            moving.ctypes.data,
+            self._width.ctypes.data,
+            len(columns),
+            self._moving,
+            values.ctypes.data,
+            len(values),
+            checked.ctypes.data,
+            limits.ctypes.data,
+            len(checked),
+            count,
+            circle,
+            room.ctypes.data,
+            self._taken,
         )
+        call.kept = self, moving, values, checked, limits, room  # type: ignore[attr-defined]
+        return call
 
 
 @cache

@@ -103,15 +103,13 @@ def _compute_compiled(
     own = {name: np.ascontiguousarray(v[rows]) for name, v in columns.items() if v.size > 1}
     program = compiled.program(kind, frozenset(own), tuple(values))
     found = np.empty((len(program.results), size))
-    program.run(
-        {name: float(v[0]) for name, v in columns.items() if v.size == 1},
+    program.prepared(
         addresses(own[name] for name in program.columns),
         addresses(found),
-        np.empty(0, np.int64),
-        np.empty(0),
         size,
         program.room(),
-    )
+        fixed={name: float(v[0]) for name, v in columns.items() if v.size == 1},
+    )()
     *results, odd = found
     for name, column in zip(program.results[:-1], results, strict=True):
         values[name][rows] = column
