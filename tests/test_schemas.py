@@ -180,3 +180,25 @@ def test_reconstruct(unknown: tuple[str, ...], known: dict[str, str]) -> None:
     values = {n: text for n, text in sample(3).items() if n not in unknown} | known
     options = [part for n, text in values.items() for part in ("--set", f"{n}={text}")]
     check("reconstruct", printed("reconstruct", "--json", *options))
+
+
+TWO = ["--set=MA=96", "--set=MB=145"]
+SPEEDS = [*TWO, "--set=SA=36.667", "--set=SB=58.667"]
+AFTER = [*TWO, *(f"--set={text}" for text in "VAX=-10 VAY=20 VBX=-20 VBY=45 DT=.374".split())]
+LINE = "MA=154.7 MB=99.1 E=.071 MUP=-.008 UN=-56.76 UT=0 VN=0 VT=0".split()
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        ("colinear", [*(f"--set={text}" for text in LINE), "--contact-time=.1"]),
+        ("delta-v", [*SPEEDS, "--set=LOSS=37.4"]),
+        ("delta-v", [*SPEEDS, "--like=90-side"]),
+        ("delta-v", [*SPEEDS, "--set=DVA=20"]),
+        ("delta-v", AFTER),
+        ("example", []),
+        ("staged", []),
+    ],
+)
+def test_the_chapter_s_problems(name: str, asked: list[str]) -> None:
+    check(name, printed("chapter", name, *asked, "--json"))

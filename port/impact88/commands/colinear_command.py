@@ -19,6 +19,7 @@ import math
 
 from ..errors import UserError
 from ..scene import known_template
+from ..schemas import stamped
 from ..units import System, system_of, written
 from .options import add_solution_arguments, known_values
 
@@ -85,7 +86,7 @@ def show(
             "units": units,
             "warnings": warnings,
         }
-        print(json.dumps(plain(whole), allow_nan=False))
+        print(json.dumps(stamped("colinear", plain(whole)), allow_nan=False))
         return
     decimals = decimals_for([values[name] for name in (*BEFORE, *AFTER)])
     rows = []

@@ -26,6 +26,7 @@ from typing import Any
 
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_VELOCITIES, SCENE
+from ..schemas import stamped
 from ..units import System, system_of, written
 from .options import add_json_argument, add_known_arguments, add_output_argument, known_values
 
@@ -87,7 +88,7 @@ def main(args: argparse.Namespace) -> int:
             "estimates": [written(row, units) for row in estimates],
             "units": _labels((*given, "DVA", "DVB", "LOSS"), units),
         }
-        print(json.dumps(plain(whole), allow_nan=False))
+        print(json.dumps(stamped("delta-v", plain(whole)), allow_nan=False))
         return 0
     _show(given, estimates, source, described(factor), units)
     return 0
@@ -119,7 +120,7 @@ def _speeds(known: dict[str, float], args: argparse.Namespace, factor: float, un
             "estimates": found,
             "units": labels,
         }
-        print(json.dumps(plain(whole), allow_nan=False))
+        print(json.dumps(stamped("delta-v", plain(whole)), allow_nan=False))
         return 0
     names = ("LOSS", "UX", "VY", "DVA", "DVB")
     heading = [f"{name} [{units.label(quantity(name).unit)}]" for name in names[1:]]
@@ -157,7 +158,7 @@ def _loss_found(
             "LOSS_from": found,
             "units": _labels(given, units),
         }
-        print(json.dumps(plain(whole), allow_nan=False))
+        print(json.dumps(stamped("delta-v", plain(whole)), allow_nan=False))
         return 0
     rows = [
         [name, number(known[name] * units.factor(name)), number(loss)]

@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import json
 
+from ..schemas import stamped
 from .options import add_json_argument, add_output_argument
 
 
@@ -35,7 +36,7 @@ def main(args: argparse.Namespace) -> int:
             {**asdict(step), "numbers": [asdict(n) | {"agrees": n.agrees} for n in step.numbers]}
             for step in steps()
         ]
-        print(json.dumps({"steps": whole}, allow_nan=False))
+        print(json.dumps(stamped("example", {"steps": whole}), allow_nan=False))
     else:
         print(_text())
     return 0 if agree else 1

@@ -33,6 +33,7 @@ from typing import Any
 
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_STATE, VELOCITIES, missing
+from ..schemas import stamped
 from .options import InputFile, add_json_argument, add_output_argument, known_values
 
 
@@ -68,7 +69,7 @@ def main(args: argparse.Namespace) -> int:
     if args.json:
         from ..plaintable import plain
 
-        print(json.dumps(plain(_everything()), allow_nan=False))
+        print(json.dumps(stamped("staged", plain(_everything())), allow_nan=False))
     elif args.fit:
         print(_fits())
     elif args.measured:
@@ -128,8 +129,14 @@ def _fitted(known: dict[str, float], weight: float | None, as_json: bool) -> int
     low_high = undetermined_range(own, spin_weight=weight)
     as_measured = closure(own)
     if as_json:
-        whole = {"fit": asdict(found), "closure": asdict(as_measured), "spin_weight": weight}
-        print(json.dumps(plain({**whole, "em_range": low_high}), allow_nan=False))
+        whole: dict[str, Any] = {
+            "fit": asdict(found),
+            "closure": asdict(as_measured),
+            "spin_weight": weight,
+        }
+        print(
+            json.dumps(stamped("staged", plain({**whole, "em_range": low_high})), allow_nan=False)
+        )
         return 0
     rows = [
         ["E", fixed(found.E, 4), "e" + (", at its bound" if "E" in found.at_bound else "")],

@@ -30,6 +30,7 @@ NUMBERS = {
     "witness": 1,
     "bounds": 2,
     "reconstruct": 2,
+    **dict.fromkeys(("colinear", "delta-v", "example", "staged"), 1),
 }
 """Name of a form -> its number. Names are those of the commands, and the oracle's ``vectors``."""
 CONVENTIONS = "conventions"
