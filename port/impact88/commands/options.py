@@ -191,6 +191,11 @@ def changes_in_base(
     """What an option changes, in base units, and the system of all: that of the file, or of the
     changes where the file has none, whose bare numbers are then base units, which is said."""
     given, own = in_base_units(changes, option, units)
+    if units or own:
+        from ..amounts import remarks
+
+        for line in remarks(changes, units or own or "").values():
+            note(None, line)
     if own and not units and path:
         from ..units import base_of, system_of
 
@@ -250,12 +255,23 @@ def add_known_arguments(parser: argparse.ArgumentParser) -> None:
     add_units_argument(parser)
 
 
+def _duration(text: str) -> float:
+    """An argument's type: a time, in seconds without unit."""
+    try:
+        given, _ = in_base_units({"TF": text}, "--contact-time")
+        return double(given["TF"])
+    except (UserError, ValueError):
+        raise argparse.ArgumentTypeError(
+            f"{quoted(text)} is not a duration; expected one such as 0.12 or '120 ms'"
+        ) from None
+
+
 def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the commands that solve for what is not known and print the solution."""
     add_known_arguments(parser)
     parser.add_argument(
         "--contact-time",
-        type=float,
+        type=_duration,
         metavar="T",
         help="duration of contact (usually .1 to .2 s): average and peak force",
     )

@@ -1,13 +1,17 @@
 """Axes, sides and signs:
 
 {signs}
-A value may have a unit ("-25 mph", "3091 lb", "3.5 ft"), and the file units = "us", "metric", "si"
-or "chapter" for those that have none. CAF CAL (forward and to the left of A's center of gravity)
-may stand for DA PA, CBF CBL for DB PB. IA = "estimate" has the yaw inertia estimated: from the
-vehicle's length and width where LA BA are given (LB BB for IB), else for a car from its weight.
+A value may have a unit ("-25 mph", "3,091 lb", "6 ft 6 in", "2000 slug ft2"), and the file units =
+"us", "metric", "si" or "chapter" for those that have none. It may be known within limits ("-31 ..
+-29 mph", "30 mph +- 5 %"); what takes one value takes the middle, and says so. UX_source = "..."
+says where a value comes from, title and case what it belongs to. CAF CAL (forward and to the left
+of A's center of gravity) may stand for DA PA, CBF CBL for DB PB. IA = "estimate" has the yaw
+inertia estimated: from the vehicle's length and width where LA BA are given (LB BB for IB), else
+for a car from its weight. Beside a known inertia LA BA are the outline that figures draw.
 
 examples:
   impact88 scene -o mine.toml       a template to fill in
+  impact88 scene --units us         the same, in mph, lb and ft
   impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
 
@@ -15,8 +19,8 @@ from __future__ import annotations
 
 import argparse
 
-from ..scene import SIGNS, sample, template
-from .options import add_output_argument, add_sample_argument
+from ..scene import SIGNS, Scene, sample, template
+from .options import add_output_argument, add_sample_argument, add_units_argument
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)
 
@@ -24,10 +28,24 @@ __doc__ = (__doc__ or "").format(signs=SIGNS)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `impact88 scene`."""
     add_sample_argument(parser)
+    add_units_argument(parser)
     add_output_argument(parser)
 
 
 def main(args: argparse.Namespace) -> int:
     """Print a scene file."""
-    print(sample(args.sample).to_toml() if args.sample else template(), end="")
+    if not args.units:
+        print(sample(args.sample).to_toml() if args.sample else template(), end="")
+        return 0
+    from ..units import SYSTEMS, system_named
+
+    system = system_named(args.units, "--units").name
+    if not args.sample:
+        print(template(units=system), end="")
+        return 0
+    # the chapter's samples are in ft, slug and s
+    unit = SYSTEMS["chapter"].unit
+    texts = {name: f"{text} {unit(name)}".strip() for name, text in sample(args.sample).items()}
+    scene = Scene.from_mapping({**texts, "units": system})
+    print(scene.to_toml(), end="")
     return 0

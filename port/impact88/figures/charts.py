@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 MOST_PANELS = 12
 MOST_BARS = 8
 BINS = 60
+_LABEL = 22
+"""Characters of a line of an axis label: what two panels side by side have room for."""
 SWEEP = 801
 WIDEST_SWEEP = 5.0
 """Friction coefficients beyond are not swept."""
@@ -46,7 +49,9 @@ def _axis_label(name: str, units: System) -> str:
     from ..names import quantity
 
     what = quantity(name)
-    return f"{symbol(what.symbol)}, {units.label(what.unit)}"
+    unit = {"percent": "%"}.get(what.unit, units.label(what.unit))
+    glued = f"{what.meaning},\x00{unit}"  # a unit stays with the word before it
+    return fill(glued, _LABEL).replace("\x00", " ")
 
 
 def _chosen(result: Bounds, outputs: Sequence[str] | None) -> list[str]:
@@ -165,7 +170,8 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Figure:
                 axes.plot([drive.lowest, drive.highest], [place] * 2, color=BLACK, linewidth=0.8)
                 low, high = result.limits[source]
                 what = symbol(quantity(source).symbol)
-                ticks.append(f"{what}  {short(low)} … {short(high)}")
+                unit = system_of(result.units).unit(source)
+                ticks.append(f"{what}  {short(low)} … {short(high)} {unit}".strip())
             axes.set_yticks(range(len(ticks)), ticks)
             axes.tick_params(axis="y", length=0)
             axes.invert_yaxis()
