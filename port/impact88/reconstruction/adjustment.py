@@ -31,19 +31,30 @@ from .doublerange import within_doubles
 from .geometry import NAMES as GEOMETRY
 from .geometry import Geometry
 from .knowable import OTHERS
-from .state import CHANGES, COURSES, ENERGIES, QUANTITIES, SPEEDS, State
+from .state import (
+    CHANGES,
+    CONTACT,
+    COURSES,
+    CRUSH,
+    DIRECTIONS,
+    ENERGIES,
+    FORCES,
+    QUANTITIES,
+    SPEEDS,
+    State,
+)
 from .unknowns import TIE, UnsolvableError, solve_for
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
 
-PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *COURSES)
+PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
 """Known values that enter the conditions; the others are quantities a state has."""
-MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES)
+MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES, *CONTACT)
 KNOWABLE = ("M", *PARAMETERS, "MU", *MEASURABLE)
 """What may be known."""
 _SPINS = ("WA", "WB", "WAF", "WBF")
-_CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES)
+_CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
 """Quantities that more than one impact may have."""
 _STARTS = 60
 _NEAR, _FAR = 0.3, 1.0
@@ -130,7 +141,7 @@ class System:
         exact = [
             n
             for n in known
-            if ((n in MEASURABLE and n not in loose) or n in SPEEDS or n in COURSES)
+            if ((n in MEASURABLE and n not in loose) or n in SPEEDS or n in DIRECTIONS or n == "ELA")
             and n not in VELOCITIES
             and not (
                 n in FINAL_STATE and VELOCITIES[FINAL_STATE.index(n)] in (*still, *self.from_after)
@@ -155,7 +166,7 @@ class System:
     def _typical_speed(self) -> float:
         sizes = [abs(v) for n, v in self.nominal.items() if n in _VELOCITY_LIKE]
         sizes += [abs(v) * self.gyration for n, v in self.nominal.items() if n in _SPINS]
-        energies = [abs(v) for n, v in self.nominal.items() if n in ("KI", "KF", "EL")]
+        energies = [abs(v) for n, v in self.nominal.items() if n in ("KI", "KF", "EL", *CRUSH)]
         sizes += [float(np.sqrt(2 * v / self.mass)) for v in energies]
         return max(sizes, default=1.0) or 1.0
 
@@ -166,11 +177,11 @@ class System:
             return speed / length
         if name in IMPULSES:
             return mass * speed * (length if name == "PM" else 1.0)
-        if name in COURSES or name in ("GA", "PA", "PB", "TA", "TB"):
+        if name in DIRECTIONS or name in ("GA", "PA", "PB", "TA", "TB"):
             return DEGREES
         if name in COEFFICIENTS or name == "DT":
             return 1.0
-        if name in ("KI", "KF", "EL"):
+        if name in ("KI", "KF", "EL", *CRUSH):
             return mass * speed**2
         if name in ("DA", "DB"):
             return length
@@ -213,8 +224,10 @@ class System:
         return self.speed / (self.gyration if coefficient == "EM" else 1.0)
 
     def _exact(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
-        if name in COURSES:
-            return state.across(name) / self.speed
+        if name in DIRECTIONS:
+            return state.across(name) / (self.speed * (self.mass if name in FORCES else 1.0))
+        if name == "ELA":
+            return (state["EL"] - state.values["ELA"] - state.values["ELB"]) / self.scale("EL")
         if name in SPEEDS:
             course = _COURSE_OF[name]
             size = state.along(course) if course in self.known else state[name]
@@ -426,7 +439,7 @@ class System:
         return step, bool(downward.sum() <= rows + size - null.shape[1])
 
 
-_VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES} - {*_SPINS}
+_VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES, *CONTACT} - {*_SPINS}
 _COURSE_OF = {speed: course for course, speed in COURSES.items()}
 
 
@@ -555,14 +568,15 @@ class Reconstruction:
 
     @cached_property
     def backwards(self) -> tuple[str, ...]:
-        """The known courses along which this impact drives backwards."""
+        """The known courses along which this impact drives backwards, and PDOFs from which it
+        pulls."""
         state, speed = self.system.state(self.x), self.system.speed
         return tuple(
             name
-            for name, size in COURSES.items()
+            for name in DIRECTIONS
             if name in self.system.known
-            and size in self.values
-            and state.along(name) < -_HOLDS * speed
+            and (COURSES.get(name) or "PN") in self.values
+            and state.along(name) < -_HOLDS * speed * (self.system.mass if name in FORCES else 1)
         )
 
     @cached_property
@@ -722,6 +736,8 @@ def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertai
             raise UserError(f"{name} is not positive")
     if "MU" in given and "MUP" in given:
         raise UserError("MU and MUP are both given; expected one")
+    if ("ELA" in given) != ("ELB" in given):
+        raise UserError("ELA and ELB sum to EL; expected both, or EL")
     for name, item in given.items():
         infinite = name in ("MA", "MB", "IA", "IB") and not item.varies
         if np.isnan(item.nominal) or (np.isinf(item.nominal) and not infinite):

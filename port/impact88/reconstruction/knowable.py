@@ -9,5 +9,6 @@ PLAIN = (*SCENE, "MUP", *FINAL_VELOCITIES)
 OTHERS = (
     *("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF"),
     *("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR", "KI", "KF", "EL", "LOSS", "DT"),
+    *("ELA", "ELB", "VC", "VS", "PDOFA", "PDOFB"),
 )
 KNOWABLE = (*PLAIN, *OTHERS)

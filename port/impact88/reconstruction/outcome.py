@@ -52,6 +52,9 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
                 vehicle, given[theta], given["GA"], pn, pt
             )
         result["P"] = np.hypot(pn, pt)
+    for name, sign, velocities in (("VC", -1.0, VELOCITIES), ("VS", 1.0, FINAL_STATE)):
+        if all(velocity in given for velocity in velocities):
+            result[name] = sign * geometry.relative([given[v] for v in velocities])[0]
     result |= _contact_velocities(geometry, given)
     result |= velocity_changes(given)
     result |= energies(geometry, given)

@@ -24,10 +24,16 @@ SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": 
 """Speeds, each with its velocity's components."""
 COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
 """The course that belongs to each speed, the direction of that velocity from the x axis."""
+FORCES = {"PDOFA": "A", "PDOFB": "B"}
+"""Where the force on a vehicle comes from, clockwise from its front."""
+DIRECTIONS = (*COURSES, *FORCES)
+CRUSH = ("ELA", "ELB")
+"""Energies that sum to EL: known both or not at all."""
+CONTACT = ("VC", "VS")
 CHANGES = ("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR")
 ENERGIES = ("KI", "KF", "EL", "LOSS", "DT")
 QUANTITIES = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS, *IMPULSES, *SPEEDS, *COURSES)
-QUANTITIES = (*QUANTITIES, *CHANGES, *ENERGIES)
+QUANTITIES = (*QUANTITIES, *CHANGES, *ENERGIES, *CONTACT, *FORCES)
 """What a state can be asked for."""
 
 
@@ -106,17 +112,36 @@ class State:
         x, y = SPEEDS[speed]
         return self[x], self[y]
 
-    def across(self, course: str) -> Any:
-        """The velocity's component across the course given, 0 where it runs along it."""
-        x, y = self._components(COURSES[course])
-        cosine, sine = _unit(self.values[course])
+    def across(self, direction: str) -> Any:
+        """Across the course given the velocity's component, across the PDOF given the impulse's: 0
+        where it runs along it."""
+        (x, y), (cosine, sine) = self._vector(direction), self._given(direction)
         return y * cosine - x * sine
 
-    def along(self, course: str) -> Any:
-        """The velocity's component along the course given."""
-        x, y = self._components(COURSES[course])
-        cosine, sine = _unit(self.values[course])
+    def along(self, direction: str) -> Any:
+        """The component along the course given, or along the push from the PDOF given."""
+        (x, y), (cosine, sine) = self._vector(direction), self._given(direction)
         return x * cosine + y * sine
+
+    def _vector(self, direction: str) -> tuple[Any, Any]:
+        if direction in COURSES:
+            return self._components(COURSES[direction])
+        pn, pt, _ = self.impulse
+        sign = 1.0 if direction == "PDOFA" else -1.0
+        cosine, sine = self.here.cosine, self.here.sine
+        return sign * (pn * cosine - pt * sine), sign * (pn * sine + pt * cosine)
+
+    def _given(self, direction: str) -> tuple[Any, Any]:
+        value = self.values[direction]
+        if direction in FORCES:
+            vehicle = FORCES[direction]
+            value = facing(vehicle, self.values["T" + vehicle]) + 180 - value
+        return _unit(value)
+
+    def _pdof(self, name: str) -> Any:
+        vehicle = FORCES[name]
+        clockwise = facing(vehicle, self.values["T" + vehicle]) + 180 - course(*self._vector(name))
+        return clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
 
     # -- quantities
 
@@ -187,6 +212,10 @@ _QUANTITIES: dict[str, Callable[[State], Any]] = {
     "EL": lambda state: state.energy_lost,
     "LOSS": lambda state: 100 * state.energy_lost / state.initial_energy,
     "DT": lambda state: state.energy_lost / state.initial_energy,
+    "VC": lambda state: -state.relative_before[0],
+    "VS": lambda state: state.relative_after[0],
+    "PDOFA": lambda state: state._pdof("PDOFA"),
+    "PDOFB": lambda state: state._pdof("PDOFB"),
 }
 
 

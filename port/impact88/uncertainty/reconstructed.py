@@ -33,7 +33,7 @@ from ..reconstruction.adjustment import (
 )
 from ..reconstruction.geometry import NAMES as GEOMETRY
 from ..reconstruction.geometry import Geometry
-from ..reconstruction.state import COURSES, State
+from ..reconstruction.state import CRUSH, DIRECTIONS, State
 from .ascent import OUTSIDE, climb
 from .uncertain import Uncertain
 
@@ -392,8 +392,8 @@ class _Box:
 
 
 def _near(name: str, value: Floats, nominal: float | None) -> Floats:
-    """A course by full turns so that it is near the nominal one; other quantities as they are."""
-    if name not in COURSES or nominal is None:
+    """A course or PDOF by full turns so that it is near the nominal one; other quantities as they are."""
+    if name not in DIRECTIONS or nominal is None:
         return value
     return np.asarray(value - 360 * np.round((np.real(value) - nominal) / 360))
 
@@ -665,7 +665,7 @@ def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
     order = sorted(
         range(len(system.observations)),
         key=lambda i: (
-            system.observations[i] not in GEOMETRY,
+            system.observations[i] not in (*GEOMETRY, *CRUSH),
             tolerance(system.known[system.observations[i]]) / system.scale(system.observations[i]),
         ),
     )
@@ -674,7 +674,7 @@ def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
     for i in order:
         row = jacobian[count + i]
         tried = np.vstack([basis, row / np.linalg.norm(row)])
-        if system.observations[i] in GEOMETRY:  # what is no quantity cannot be redundant
+        if system.observations[i] in (*GEOMETRY, *CRUSH):  # what is no quantity cannot be redundant
             kept.append(i)
             basis, rank = tried, _rank(tried)
         elif _rank(tried) > rank:

@@ -23,14 +23,15 @@ from ..reconstruction.solutiontable import (
     named_table,
     velocities_table,
 )
-from ..reconstruction.state import COURSES, SPEEDS
+from ..reconstruction.state import COURSES, FORCES, SPEEDS
 from ..status import sentences
 from ..units import RULES, System, written
 from .boundstable import unbounded
 from .reconstructed import Draws, Range, draws, ranges
 from .uncertain import Uncertain
 
-_RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB", "LOSS", *COEFFICIENTS)
+_RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB")
+_RESULTS = (*_RESULTS, "PDOFA", "PDOFB", "VC", "VS", "LOSS", *COEFFICIENTS)
 QUANTILES = (0.05, 0.5, 0.95)
 MOST_CORRELATED = 7
 DRIVERS = 3
@@ -113,8 +114,9 @@ def warnings(
     if solution.undetermined:
         lines.append(f"not determined by what is known: {' '.join(solution.undetermined)}")
     for name in solution.backwards:
+        what = "is pushed away from" if name in FORCES else "drives backwards along"
         lines.append(
-            f"{name[1]} drives backwards along its known course: {name} = "
+            f"{name[-1]} {what} its known {'PDOF' if name in FORCES else 'course'}: {name} = "
             f"{number(solution.system.nominal[name], 4)} was given, the only impact found has "
             f"{number(solution.values[name], 4)}"
         )
@@ -198,7 +200,7 @@ def as_text(
         named_table(("E", "MUP", "EM", "RR0"), known, values, units),
         named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
         named_table(("TF", "FA", "FM2", "FM3"), known, values, units),
-        named_table(CHANGES, known, values, units),
+        named_table((*CHANGES, "VC", "VS"), known, values, units),
         named_table(("KI", "KF", "EL", "LOSS"), known, values, units),
         _adjustments(solution, units),
         _spreads(spread, units),
