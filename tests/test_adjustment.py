@@ -15,11 +15,12 @@ from impact88.cli import main
 from impact88.closedform.solve import solve
 from impact88.errors import UserError
 from impact88.reconstruction.adjustment import System, reconstruct
+from impact88.reconstruction.state import State
 from impact88.reconstruction.unknowns import solve_for
 from impact88.scene import Scene, sample
 from impact88.uncertainty.reconstructed import draws, ranges
 from impact88.uncertainty.reconstructedtable import uncertainty
-from impact88.uncertainty.uncertain import Uncertain, fixed, read
+from impact88.uncertainty.uncertain import Uncertain, fixed, read, skid
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 INITIAL = ("UX", "UY", "WA", "VX", "VY", "WB")
@@ -669,3 +670,84 @@ class TestOneList:
             known[name] = math.degrees(math.atan2(after[y], after[x]))
         (solution,) = reconstruct(known)
         assert solution.values["UX"] == pytest.approx(TABLE_3["UX"], rel=1e-6)
+
+
+class TestWhatAnEngineerKnows:
+    def known(self, *names):
+        after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP", "PN", "PT", "PM")).items()}
+        state = State({**TABLE_3, **after})
+        fixed_ones = {n: TABLE_3[n] for n in (*GEOMETRY, "WA", "WB", "E", "EM")}
+        return {**fixed_ones, "HA": 180.0, "HB": 90.0, **{n: float(state[n]) for n in names}}
+
+    @pytest.mark.parametrize(
+        "names", [("SA", "PDOFA"), ("SA", "PDOFB"), ("PDOFA", "VC"), ("VC", "SA"), ("VS", "SB")]
+    )
+    def test_force_and_contact_speeds(self, names):
+        friction = {} if names[1].startswith("PDOF") else {"MU": TABLE_3["MU"]}
+        friction = {"MU": TABLE_3["MU"]} if names == ("PDOFA", "VC") else friction
+        solutions = reconstruct({**self.known(*names), **friction})
+        best = min(abs(one.values.get("UX", 0.0) - TABLE_3["UX"]) for one in solutions)
+        assert best < 1e-6
+        for solution in solutions:
+            for name in names:
+                assert solution.values[name] == pytest.approx(self.known(name)[name], abs=1e-6)
+
+    def test_pdof_within_limits_is_that_of_the_force(self):
+        known = self.known("SA", "PDOFA")
+        exact = known["PDOFA"]
+        (solution,) = reconstruct({**known, "PDOFA": read(f"{exact!r} +- 5", "PDOFA")})
+        low, high = exact - 5, exact + 5
+        bound = ranges(solution, ["PDOFA", "VY"])["PDOFA"]
+        assert (bound.lower, bound.upper) == pytest.approx((low, high), abs=1e-6)
+
+    def test_crush_energies_sum_to_the_energy_lost(self):
+        known = self.known("SA", "EL") | {"MU": TABLE_3["MU"]}
+        lost = known.pop("EL")
+        del known["E"]
+        parts = {"ELA": read(f"{0.4 * lost} +- 5%", "ELA"), "ELB": read(f"{0.6 * lost} +- 5%", "B")}
+        whole = reconstruct({**known, "EL": lost})[0]
+        both = reconstruct({**known, **parts})[0]
+        assert both.values["UX"] == pytest.approx(whole.values["UX"], rel=1e-6)
+        assert both.deviations(["EL"])["EL"] == pytest.approx(
+            0.05 * lost * math.hypot(0.4, 0.6) / math.sqrt(3), rel=1e-6
+        )
+        with pytest.raises(UserError, match="expected both"):
+            reconstruct({**known, "ELA": 100.0})
+
+    def test_skid(self):
+        item = skid("skid 62 at 0.7", "SAF", 32.174)
+        assert item.nominal == pytest.approx(math.sqrt(2 * 0.7 * 32.174 * 62))
+        item = skid("skid 62 +- 2 at 0.6 .. 0.8", "SAF", 32.174)
+        assert item.low == pytest.approx(math.sqrt(2 * 0.6 * 32.174 * 60))
+        assert item.high == pytest.approx(math.sqrt(2 * 0.8 * 32.174 * 64))
+        assert skid("41 +- 2", "SAF", None) is None
+        with pytest.raises(UserError, match="needs units"):
+            skid("skid 62 at 0.7", "SAF", None)
+
+
+def test_draws_keep_within_all_limits_as_rejection_has_them():
+    """Momentum along one line, one value more than needed: what is likely is the uniform density
+    over the plane's cut of the box, which rejection draws without any of this."""
+    limits = {"UX": (19.0, 21.0), "VX": (-6.0, -4.0), "VAX": (4.5, 7.5), "VBX": (11.8, 13.8)}
+    across = dict.fromkeys(("UY", "VY", "VAY", "VBY", "GA"), 0.0)
+    known = {"M": 4.0, "MA": 100.0, "MB": 80.0, **across}
+    known |= {name: read(f"{low} .. {high}", name) for name, (low, high) in limits.items()}
+    (solution,) = reconstruct(known)
+    found = draws(solution, ["UX", "VX", "DVA"], 8000)
+    bounds = ranges(solution, ["UX", "VX", "DVA"], drawn=found)
+    rng = np.random.default_rng(7)
+    ux, vx, vax = (rng.uniform(*limits[name], 400_000) for name in ("UX", "VX", "VAX"))
+    vbx = vx + (ux - vax) * 100 / 80
+    inside = (vbx >= limits["VBX"][0]) & (vbx <= limits["VBX"][1])
+    for name, expected in {"UX": ux, "VX": vx, "DVA": ux - vax}.items():
+        values, true = found.values[name], expected[inside]
+        assert bounds[name].lower <= values.min() <= values.max() <= bounds[name].upper
+        assert abs(values.mean() - true.mean()) < 0.1 * true.std()
+        assert 0.95 < values.std() / true.std() < 1.05
+
+
+def test_a_course_within_limits_across_180_degrees_does_not_jump():
+    known = {**SECTION_7, "UY": read("0 +- 3", "UY"), "WA": 0.0}
+    (solution,) = reconstruct(known)
+    bound = ranges(solution, ["HA"])["HA"]
+    assert 170 < bound.lower < 180 < bound.upper < 190

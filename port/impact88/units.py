@@ -220,6 +220,11 @@ def base_of(system: System) -> str:
     return "m, kg, s" if system.base == _METRES else "ft, slug, s"
 
 
+def gravity_in(system: System) -> float | None:
+    """Standard gravity in the system's base units; None where there are no units."""
+    return None if system is RULES else float(_GRAVITY / system.base[0])
+
+
 def system_of(name: str | None) -> System:
     """The system of that name, `RULES` for none."""
     return SYSTEMS[name] if name else RULES

@@ -169,17 +169,19 @@ def known_within_limits(
         entries = entries_in(path, units, single)
         note_remarks(entries)
         check_names(entries.values, allowed, "value here", called(path))
-        values = {
-            n: _within_limits(n, text, called(path)) for n, text in entries.values.items() if text
-        }
         named = entries.units
+        values = {
+            n: _within_limits(n, text, called(path), named)
+            for n, text in entries.values.items()
+            if text
+        }
     changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
     check_names(changes, allowed, "value here", "--set")
     given, named = changes_in_base(changes, "--set", named, path)
     for name, text in given.items():
         center = values[name].nominal if name in values else None
         if text:
-            values[name] = _within_limits(name, text, "--set", center)
+            values[name] = _within_limits(name, text, "--set", named, center)
         else:
             values.pop(name, None)
     return values, named
@@ -215,9 +217,17 @@ def note_remarks(entries: Entries, based: str = "") -> None:
         note(None, line)
 
 
-def _within_limits(name: str, text: str, source: str, center: float | None = None) -> Uncertain:
-    from ..uncertainty.uncertain import fixed, read
+def _within_limits(
+    name: str, text: str, source: str, units: str | None, center: float | None = None
+) -> Uncertain:
+    from ..uncertainty.uncertain import fixed, read, skid
 
+    if name in ("SAF", "SBF") and text.startswith("skid"):
+        from ..units import gravity_in, system_of
+
+        item = skid(text, f"{source}: {name}", gravity_in(system_of(units)))
+        if item is not None:
+            return item
     if any(mark in text for mark in RANGES) or is_share(text):
         return read(text, f"{source}: {name}", center)
     return fixed(_double(name, text, source))

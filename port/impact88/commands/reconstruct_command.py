@@ -6,7 +6,10 @@ GA PA PB TA TB MA MB IA IB) must be known; then any of
   after          VAX VAY WAF VBX VBY WBF, or SAF HAF SBF HBF
   coefficients   E, EM and MU or MUP
   changes        DVA DVB; along and across the vehicle DVAF DVAR DVBF DVBR
-  energies       KI KF, EL (lost, as in crush), LOSS (percent) or DT (fraction)
+  directions     PDOFA PDOFB
+  at C           VC VS: closing and separation speed along the normal
+  energies       KI KF, EL (lost, as in crush; or ELA and ELB, which sum to it), LOSS (percent) or
+                 DT (fraction)
 
 Each is a number, exact, or known within limits: "41 +- 2", "0.7 .. 0.9", "normal 41 1.5" (impact88
 bounds --help). Equations 13 to 18 always hold. With more known than needed the values with limits
@@ -22,6 +25,15 @@ or values with units, "-25 +- 2 mph", "3091 lb", "3.5 ft", or units = "us" (or m
 in the file, for bare numbers: results are then in the same. A yaw inertia nobody measured is
 IA = "estimate +- 20%" (impact88 scene --help says from what).
 PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
+A vehicle that skids to rest: SAF = "skid 62 ft at 0.7 +- .05" is the speed v = sqrt(2 MU g D).
+
+EM says how much of the relative spin the moment at C gives back: 0, the vehicles spin alike after
+the impact; -1, the moment is elastic; +1, there is none. Typical values, fitted to eleven staged
+collisions (Table 2, Section V; speed changes and energy lost depend little on EM):
+
+  E     0 to .26, half of them below .075
+  EM    near -.5 front to front and front to rear; -.43 to -.91 front to side
+  MU    .55 to .91 where the vehicles slide (front to side); .07 or less, nearly direct impacts
 
 examples:
   impact88 reconstruct --template -o after.toml         a file to fill in

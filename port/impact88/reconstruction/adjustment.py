@@ -103,6 +103,8 @@ _HOLDS = 1e-10
 """What scaled conditions may leave over."""
 _LIKELY = 4.0
 """Impacts with so many times the least sum of squares are told too."""
+_TOLD_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
+"""Of what is not known, what can be found out best."""
 DEGREES = float(np.degrees(1.0))
 
 
@@ -141,7 +143,9 @@ class System:
         exact = [
             n
             for n in known
-            if ((n in MEASURABLE and n not in loose) or n in SPEEDS or n in DIRECTIONS or n == "ELA")
+            if (
+                (n in MEASURABLE and n not in loose) or n in SPEEDS or n in DIRECTIONS or n == "ELA"
+            )
             and n not in VELOCITIES
             and not (
                 n in FINAL_STATE and VELOCITIES[FINAL_STATE.index(n)] in (*still, *self.from_after)
@@ -578,6 +582,23 @@ class Reconstruction:
             and (COURSES.get(name) or "PN") in self.values
             and state.along(name) < -_HOLDS * speed * (self.system.mass if name in FORCES else 1)
         )
+
+    @cached_property
+    def helpful(self) -> tuple[str, ...]:
+        """Further values that would determine all that is not; none where none would."""
+        jacobian = self.system.jacobian(self.x, self.system.left)[:, :, 0]
+        _, null = pseudo_inverse(jacobian)
+        rows = np.zeros((0, null.shape[1]))
+        names: list[str] = []
+        for name in (*_TOLD_FIRST, *self.undetermined):
+            gradient = self.system.gradient(self.x, name)
+            if name in names or name not in self.undetermined or not np.isfinite(gradient).all():
+                continue
+            tried = np.vstack([rows, gradient @ null / np.abs(gradient).max(initial=1e-300)])
+            if np.linalg.matrix_rank(tried, tol=_OPEN) > len(rows):
+                rows = tried
+                names.append(name)
+        return tuple(names) if len(rows) == null.shape[1] else ()
 
     @cached_property
     def _responses(self) -> Floats:

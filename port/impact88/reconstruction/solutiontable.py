@@ -8,11 +8,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import UserError
-from ..names import CHAPTER, PIVOT, RESULTS, SCENE, quantity
+from ..names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..schemas import stamped
 from ..status import sentences
 from ..units import RULES, System, written
+from .answertable import Open, answer
 from .doublerange import within_doubles
 from .impulse import clock, forces
 from .outcome import moment_ratio, outcome
@@ -81,18 +82,26 @@ def as_text(
     units: System = RULES,
 ) -> str:
     """The solution as tables: velocities, coefficients, impulse, consequences, warnings."""
+    remarks = warnings(solution, values, units)
+    velocities = (*VELOCITIES, *FINAL_STATE)
+    missing = [
+        n for n in velocities if n not in values and not (n in _TURNING and values["M"] == 4)
+    ]
+    if math.isinf(values.get("MB", 0.0)):
+        missing = [name for name in missing if name not in _BARRIERS]
     blocks: list[list[str]] = [
+        answer(values, {}, Open(missing), len(remarks), units),
         velocities_table(known, values, units),
         named_table(("E", "MUP", "EM", "RR0"), known, values, units),
         named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
         named_table(("TF", "FA", "FM2", "FM3"), known, values, units),
-        named_table(CHANGES, known, values, units),
+        named_table((*CHANGES, "VC", "VS"), known, values, units),
         named_table(("KI", "KF", "LOSS"), known, values, units),
         named_table(("CAX", "CAY", "CBX", "CBY"), known, values, units),
         _conditions(solution),
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
-    for warning in warnings(solution, values, units):
+    for warning in remarks:
         lines += paragraph(f"! {warning}")
     return "\n".join(lines).rstrip("\n")
 

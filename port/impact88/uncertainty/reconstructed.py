@@ -392,7 +392,7 @@ class _Box:
 
 
 def _near(name: str, value: Floats, nominal: float | None) -> Floats:
-    """A course or PDOF by full turns so that it is near the nominal one; other quantities as they are."""
+    """A course or PDOF by full turns so that it is near the nominal one; else as it is."""
     if name not in DIRECTIONS or nominal is None:
         return value
     return np.asarray(value - 360 * np.round((np.real(value) - nominal) / 360))

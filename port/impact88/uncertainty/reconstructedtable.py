@@ -16,6 +16,7 @@ from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..plaintable import number, paragraph, plain, table
 from ..reconstruction import adjustment
 from ..reconstruction.adjustment import Reconstruction, standard_deviation, typed_friction
+from ..reconstruction.answertable import Open, Spread, answer
 from ..reconstruction.doublerange import within_doubles
 from ..reconstruction.solutiontable import (
     CHANGES,
@@ -32,6 +33,8 @@ from .uncertain import Uncertain
 
 _RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB")
 _RESULTS = (*_RESULTS, "PDOFA", "PDOFB", "VC", "VS", "LOSS", *COEFFICIENTS)
+_ANSWERS = ("SA", "SB", "DVA", "DVB")
+"""What the answer holds, known within limits or not."""
 QUANTILES = (0.05, 0.5, 0.95)
 MOST_CORRELATED = 7
 DRIVERS = 3
@@ -65,7 +68,10 @@ def uncertainty(
 
     Draws and bounds only for ``samples`` above 0 and tolerances that were given.
     """
-    results = wanted or [n for n in _RESULTS if n not in solution.system.known]
+    known = solution.system.known
+    results = wanted or [
+        n for n in _RESULTS if n not in known or (n in _ANSWERS and known[n].varies)
+    ]
     names = [name for name in results if name in solution.values]
     if not wanted:
         names = [name for name in names if not _along_an_axis(solution, name)]
@@ -195,7 +201,15 @@ def as_text(
 ) -> str:
     """The reconstruction as tables."""
     known = solution.system.nominal
+    remarks = warnings(solution, values, spread, units)
     blocks = [
+        answer(
+            values,
+            {name: _answered(solution, spread, name) for name in _ANSWERS if name in spread.names},
+            Open(solution.undetermined, solution.helpful),
+            len(remarks) - bool(solution.undetermined),
+            units,
+        ),
         velocities_table(known, values, units),
         named_table(("E", "MUP", "EM", "RR0"), known, values, units),
         named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
@@ -208,9 +222,16 @@ def as_text(
         _driving(solution, spread),
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
-    for warning in warnings(solution, values, spread, units):
+    for warning in remarks:
         lines += paragraph(f"! {warning}")
     return "\n".join(lines).rstrip("\n")
+
+
+def _answered(solution: Reconstruction, spread: Uncertainty, name: str) -> Spread:
+    bound = spread.ranges.get(name)
+    lower, upper = (bound.lower, bound.upper) if bound else (math.nan, math.nan)
+    drivers = _drivers(solution, spread, spread.names.index(name))[:DRIVERS]
+    return Spread(spread.deviations[name], lower, upper, drivers)
 
 
 def in_turn(texts: Sequence[str]) -> str:

@@ -20,6 +20,7 @@ of the underlying normal variates, so between two normal inputs it is the linear
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -171,6 +172,36 @@ def read(text: str, name: str, center: float | None = None) -> Uncertain:
         return replace(fixed(numbers[0]), share=shares)
     value = replace(_of_kind(kind, numbers, center, share, text, name), share=shares)
     return value if center is None or shares else value.around(center)
+
+
+_SKID = re.compile(r"skid (.+) at (.+)")
+
+
+def skid(text: str, name: str, gravity: float | None) -> Uncertain | None:
+    """The speed v = √(2 μ g d) at the begin of a skid to rest, of a text "skid D at MU" whose
+    values may have limits; None for another text. ``gravity``: g in the units of D, None where no
+    units are known, which raises UserError, as does what is not positive."""
+    match = _SKID.fullmatch(" ".join(text.split()))
+    if match is None:
+        return None
+    if gravity is None:
+        raise UserError(f"{text!r} needs units; expected such as 'skid 62 ft at 0.7'", name)
+    parts = [read(part, name) for part in match.groups()]
+    if not all(min(part.nominal, part.limits(3.0)[0]) > 0 for part in parts):
+        raise UserError(f"{text!r}: distance and friction must be positive", name)
+
+    def speed(values: Sequence[float]) -> float:
+        return math.sqrt(2 * gravity * values[0] * values[1])
+
+    nominal = speed([part.nominal for part in parts])
+    kinds = {part.kind for part in parts} - {"fixed"}
+    if not kinds:
+        return fixed(nominal)
+    low, high = (speed([part.limits(3.0)[end] for part in parts]) for end in (0, 1))
+    if "normal" in kinds:
+        shares = [part.deviation / part.nominal for part in parts]
+        return Uncertain("normal", nominal, low, high, nominal / 2 * math.hypot(*shares))
+    return Uncertain(kinds.pop() if len(kinds) == 1 else "uniform", nominal, low, high)
 
 
 def _of_kind(
