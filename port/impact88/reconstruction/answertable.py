@@ -18,7 +18,7 @@ _SPINS = ("WA", "WB", "WAF", "WBF")
 _SHARE = 0.05
 """Of a speed's variance: less is not named."""
 _LEFT = 16
-_WIDTH = 100
+_WIDTH = 104
 
 
 @dataclass(frozen=True)
