@@ -12,8 +12,6 @@ import json
 import math
 import os
 import re
-import shutil
-import subprocess
 import warnings
 from collections.abc import Sequence
 from xml.etree import ElementTree
@@ -22,7 +20,6 @@ import numpy as np
 import pytest
 
 import heldout
-from captures import ROOT
 from impact88.accuracy import errorbound
 from impact88.checking.compare import (
     NO_RESULT,
@@ -466,28 +463,3 @@ def test_formulas_never_computed_are_named(tmp_path) -> None:
     done = impact88("compare", str(tmp_path / "theirs.xlsx"))
     assert done.returncode == 2
     assert "V2 has a formula that was never computed" in done.stderr
-
-
-# --- a program in another language -----------------------------------------------------------
-
-
-@pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
-def test_the_javascript_program_of_readme(tmp_path) -> None:
-    """README's program answers the vectors, and the comparison finds nothing; with one sign
-    changed it finds that."""
-    readme = (ROOT / "port" / "GUIDE.md").read_text(encoding="utf-8")
-    (script,) = re.findall(r"^```js\n(.*?)^```$", readme, re.M | re.S)
-    vectors = tmp_path / "vectors.jsonl"
-    made = impact88("oracle", "--vectors", "60", "--no-reference", "-o", str(vectors))
-    assert made.returncode == 0, made.stderr
-    for text, status in ((script, 0), (script.replace("-g.E", "g.E"), 1)):
-        assert (text == script) == (status == 0)
-        (tmp_path / "impact.js").write_text(text, encoding="utf-8")
-        with vectors.open("rb") as file:
-            out = subprocess.run(
-                ["node", "impact.js"], cwd=tmp_path, stdin=file, capture_output=True, check=True
-            )
-        (tmp_path / "theirs.jsonl").write_bytes(out.stdout)
-        done = impact88("compare", str(tmp_path / "theirs.jsonl"), "--strict")
-        assert done.returncode == status, done.stdout + done.stderr
-        assert ("e with its sign lost" in done.stdout) == (status == 1)

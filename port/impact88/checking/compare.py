@@ -43,7 +43,7 @@ DIAGNOSED = 4000
 """Rows that disagree, and as many that agree, that are looked into for the cause."""
 BEYOND = f"not looked into: after the first {DIAGNOSED:,} that disagree"
 NOT_COMPARED = ("STATUS", "COND")
-CARRIED = ("id", "class", "label")
+CARRIED = ("id", "class", "label", "expect", "flags", "comment")
 """Columns of test vectors that say which row it is."""
 
 NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"

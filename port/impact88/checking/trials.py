@@ -155,7 +155,7 @@ def _read(judge: Judge, base: Program) -> Iterator[Found]:
     seen = base.read(judge.scene)
     start = Run(base.spelling, seen)
     others = [one for one in readings() if one not in base.readings]
-    reading = [one for one in others if one.scene and not base.edits]
+    reading = [one for one in others if one.scene]
     names = start.followed({}, overlay(reading, seen)).names if reading else {}
     names = {
         name: np.broadcast_to(c, (len(reading), judge.wrong.size)) for name, c in names.items()

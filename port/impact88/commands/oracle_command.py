@@ -14,6 +14,8 @@ examples:
   echo '{"id": 1, "scene": {"E": 0.1, ...}}' | impact88 oracle
   impact88 oracle --vectors 1000 --seed 7 -o vectors.jsonl
   impact88 oracle --vectors 100 --class failure
+  impact88 oracle --vectors 1000 --csv | their-program | impact88 compare -
+  impact88 oracle --kit kit
 
 exit status: 0 every line was answered; 1 some lines could not be used; 2 no usable input at all
 """
@@ -46,6 +48,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the test vectors")
     parser.add_argument("--class", dest="only", choices=CLASSES, help="vectors of this class only")
+    parser.add_argument(
+        "--csv", action="store_true", help="the scenes of --vectors as a flat table, for a pipe"
+    )
+    parser.add_argument(
+        "--kit",
+        metavar="DIR",
+        help="write vectors, conventions and programs that answer them, in five languages",
+    )
     parser.add_argument("--published", action="store_true", help="write the published vectors")
 
 
@@ -57,6 +67,22 @@ def main(args: argparse.Namespace) -> int:
         raise UserError("--published are vectors already made; expected nothing beside it")
     if args.only and args.vectors is None:
         raise UserError("--class is of test vectors; expected --vectors N with it")
+    if args.csv and args.vectors is None:
+        raise UserError("--csv is of test vectors; expected --vectors N with it")
+    if args.kit is not None:
+        from ..checking.kit import write_kit
+        from ..checking.vectors import PUBLISHED
+
+        for name in write_kit(args.kit, args.vectors or PUBLISHED, args.seed):
+            print(name)
+        return 0
+    if args.csv:
+        from ..checking.kit import asked, flat
+        from ..checking.vectors import vectors
+
+        found = vectors(args.vectors, args.seed, False, args.only)
+        sys.stdout.writelines(flat(map(asked, found)))
+        return 0
     counts = {"answered": 0, "refused": 0}
     if args.published:
         from ..checking.vectors import published

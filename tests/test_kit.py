@@ -1,0 +1,113 @@
+"""The kit for other implementations: what it holds, and its programs, where their language is."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import importlib.util
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from impact88.checking.kit import ANSWER, EITHER, REFUSE
+from impact88.names import SCENE
+from installed import impact88
+
+
+@pytest.fixture(scope="module")
+def kit(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("kit") / "new"
+    done = impact88("oracle", "--kit", str(folder), "--vectors", "108", "--seed", "3")
+    assert done.returncode == 0, done.stderr
+    assert set(done.stdout.split()) == {path.name for path in folder.iterdir()}
+    return folder
+
+
+def test_the_kit_says_what_it_is(kit: Path) -> None:
+    about = json.loads((kit / "KIT.json").read_text(encoding="utf-8"))
+    assert (about["kit"], about["seed"], about["vectors"]) == ("vectors/2", 3, 112)
+    for name, digest in about["sha256"].items():
+        assert hashlib.sha256((kit / name).read_bytes()).hexdigest() == digest
+
+
+def test_both_forms_of_the_vectors_ask_the_same(kit: Path) -> None:
+    whole = list(map(json.loads, (kit / "vectors.jsonl").read_text(encoding="utf-8").splitlines()))
+    with (kit / "vectors.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(whole) == len(rows) == 112
+    for one, row in zip(whole, rows, strict=True):
+        assert one["scene"] == {name: row[name] for name in SCENE}
+        assert (one["id"], one["expect"]) == (row["id"], row["expect"])
+        finite = one["results"]["VAX"]["double"] is not None
+        assert one["expect"] in ((ANSWER, EITHER) if finite else (REFUSE, ANSWER))
+        assert '"' not in row["comment"]
+    assert {one["expect"] for one in whole} == {ANSWER, REFUSE, EITHER}
+    assert [one["label"] for one in whole[-4:]] == [
+        f"{n} negative" for n in ("MA", "MB", "IA", "IB")
+    ]
+
+
+def compiled(kit: Path) -> list[str]:
+    out = kit.parent / "impact"
+    subprocess.run(["gcc", "-O2", "-o", str(out), "impact.c", "-lm"], cwd=kit, check=True)
+    return [str(out)]
+
+
+RUNNERS = {
+    "node": lambda kit: ["node", "impact.js"],
+    "gcc": compiled,
+    "awk": lambda kit: ["awk", "-f", "impact.awk"],
+    "python": lambda kit: [sys.executable, "impact.py"],
+}
+
+
+@pytest.mark.parametrize("language", RUNNERS)
+def test_a_program_of_the_kit_answers_all(kit: Path, language: str) -> None:
+    """Its table has nothing that disagrees, nor anything not compared that is not a refusal."""
+    if language != "python" and shutil.which(language) is None:
+        pytest.skip(f"{language} is not installed")
+    command = RUNNERS[language](kit)
+    with (kit / "vectors.csv").open("rb") as file:
+        out = subprocess.run(command, cwd=kit, stdin=file, capture_output=True, check=True)
+    done = impact88("compare", "-", "--strict", input=out.stdout.decode())
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert ", 0 disagree" in done.stdout
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
+def test_a_mistake_in_a_program_of_the_kit_is_named(kit: Path) -> None:
+    script = (kit / "impact.js").read_text(encoding="utf-8").replace("-g.E", "g.E")
+    (kit.parent / "wrong.js").write_text(script, encoding="utf-8")
+    with (kit / "vectors.csv").open("rb") as file:
+        out = subprocess.run(
+            ["node", "wrong.js"], cwd=kit.parent, stdin=file, capture_output=True, check=True
+        )
+    done = impact88("compare", "-", input=out.stdout.decode())
+    assert done.returncode == 1
+    assert "e with its sign lost" in done.stdout
+
+
+@pytest.mark.skipif(importlib.util.find_spec("pycrash") is None, reason="pycrash is not installed")
+def test_pycrash_is_another_model_and_told_so(kit: Path) -> None:
+    with (kit / "vectors.csv").open("rb") as file:
+        out = subprocess.run(
+            [sys.executable, "pycrash_adapter.py"], cwd=kit, stdin=file, capture_output=True
+        )
+    done = impact88("compare", "-", "--json", input=out.stdout.decode())
+    found = json.loads(done.stdout)
+    (evidence,) = found["evidence"]
+    assert "as pycrash has it" in evidence["says"]
+    assert "point masses not known" in evidence["says"]
+    assert evidence["explains"] >= 0.9 * evidence["disagreeing"]
+
+
+def test_the_scenes_alone_for_a_pipe() -> None:
+    done = impact88("oracle", "--vectors", "6", "--csv")
+    assert done.returncode == 0
+    assert done.stdout.startswith("id,class,expect,flags,E,MU,EM")
+    assert done.stdout.count("\n") == 7
+    assert impact88("oracle", "--csv").returncode == 2
