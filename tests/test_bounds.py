@@ -24,7 +24,7 @@ from impact88.uncertainty.bounds import (
     input_names,
 )
 from impact88.uncertainty.boundstable import as_json, table
-from impact88.uncertainty.extremes import Piece, extremes
+from impact88.uncertainty.extremes import Piece, _Climbers, extremes
 from impact88.uncertainty.ranges import read_correlations, read_inputs
 from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
@@ -609,3 +609,19 @@ class TestInputs:
     @pytest.mark.parametrize("name", [*SCENE, *FINAL_VELOCITIES, "SA", "SB", "MUP"])
     def test_everything_has_a_unit(self, name):
         assert quantity(name).unit
+
+
+def test_a_point_on_a_face_is_put_back_along_the_face():
+    """The margin's slope leads out through x = 0; along the face one step reaches the surface."""
+
+    def margin(points):
+        return points[:, 1] - 3 * points[:, 0] - 0.5
+
+    climbers = _Climbers(
+        *(lambda points: points, 1, np.zeros(1, int), np.ones(1), np.zeros(1)),
+        margin=margin,
+        shallow=1e-9,
+    )
+    tried, inside = climbers.put_back(np.array([[[0.0, 0.2]]]), np.array([[-3.0, 1.0]]))
+    assert inside.all()
+    assert tried[0, 0] == pytest.approx([0.0, 0.5], abs=1e-8)

@@ -105,13 +105,9 @@ def extremes(
     coordinates: int,
     rng: np.random.Generator,
     known: Array | None = None,
-    scattered: int = SCATTERED,
-    least_gain: float = LEAST_GAIN,
 ) -> Extremes:
-    """Seek the extremes of a piece's functions. ``known``: further points to start from, n x k;
-    ``scattered`` and ``least_gain`` as `SCATTERED` and `LEAST_GAIN`, for functions that take
-    their time."""
-    groups = [_corners(coordinates, rng), interior := _spread_out(coordinates, scattered, rng)]
+    """Seek the extremes of a piece's functions. ``known``: further points to start from, n x k."""
+    groups = [_corners(coordinates, rng), interior := _spread_out(coordinates, SCATTERED, rng)]
     on_faces = rng.random(interior.shape) < 0.5
     groups.append(np.where(on_faces, np.round(rng.random(interior.shape)), interior))
     middle = np.full((1, coordinates), 0.5)
@@ -152,7 +148,7 @@ def extremes(
         len(number),
         np.tile(number, len(starts)),
         np.tile(sense, len(starts)),
-        _least_gain(values, least_gain),
+        _least_gain(values),
         piece.margin,
         0.0 if margins is None else SHALLOW * float(np.abs(margins).max()),
     )
@@ -357,12 +353,12 @@ def _finite(height: Array) -> Array:
     return np.where(np.isfinite(height), height, -np.inf)
 
 
-def _least_gain(values: Array, share: float) -> Array:
+def _least_gain(values: Array) -> Array:
     """Of each function: the gain not worth another round."""
     finite = np.isfinite(values)
     high = np.where(finite, values, -np.inf).max(axis=0)
     low = np.where(finite, values, np.inf).min(axis=0)
-    return share * np.where(high > low, high - low, 0.0)
+    return LEAST_GAIN * np.where(high > low, high - low, 0.0)
 
 
 @dataclass
