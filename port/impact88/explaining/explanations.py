@@ -9,7 +9,7 @@ for about as much and leave the same unexplained share a rank: the page cannot t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from dataclasses import field as default
 from decimal import Decimal
@@ -96,9 +96,11 @@ def explain(
     replies: Sequence[FieldCheck],
     ending: FieldCheck,
     rereads: Sequence[Reread] | None = None,
+    in_time: Callable[[], bool] = lambda: True,
 ) -> list[Explanation]:
     """Causes that make more of a differing printout agree, those that ask least first. ``rereads``:
-    slips that were tried already, where those are all there can be."""
+    slips that were tried already, where those are all there can be; ``in_time``: whether another
+    kind of cause may still be tried."""
     base = frozenset(
         [check.name for check in checks if check.status == Status.CONTRADICTED]
         + [f"reply {check.name}" for check in replies if check.status == Status.CONTRADICTED]
@@ -113,12 +115,12 @@ def explain(
         explanations += work.rereads(reread, replies)
         hypotheses = otherruns.hypotheses(shown, recovered)
         explanations += work.others(hypotheses, replies)
-        if not explanations or min(one.weight for one in explanations) > _GOOD:
+        if in_time() and (not explanations or min(one.weight for one in explanations) > _GOOD):
             doubles = work.rereading.double_slips()
             explanations += work.rereads(doubles, replies)
             reread += doubles
         explanations += work.twins(reread, replies)
-        if not explanations or min(one.weight for one in explanations) > _GOOD + 1:
+        if in_time() and (not explanations or min(one.weight for one in explanations) > _GOOD + 1):
             refined = list(refining.refined(recovered, hypotheses))
             explanations += work.others(refined, replies)
             explanations += work.exchanged_and_slipped(hypotheses, replies)

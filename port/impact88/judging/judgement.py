@@ -268,12 +268,12 @@ def verdict_of(
 ) -> Verdict:
     """The verdict that the numbers amount to."""
     every = [*fields, *replies, ending]
-    if any(check.status == Status.CONTRADICTED for check in every):
-        return Verdict.DIFFERS
     if shown.mislabelled:
         return Verdict.DIFFERS
+    if any(check.status == Status.CONTRADICTED for check in every):
+        return Verdict.INCOMPLETE if shown.badly_read else Verdict.DIFFERS
     unread = any(check.status in (Status.NOT_READ, Status.NOT_COMPARED) for check in fields)
-    if unread or ending.same is None or recovered.missing or shown.fragment_of_run:
+    if unread or ending.same is None or recovered.missing or shown.fragment_of_run or shown.unread:
         return Verdict.INCOMPLETE
     if any(check.status != Status.READ for check in [*fields, *replies]) or beside(shown):
         return Verdict.IDENTICAL_AS_READ

@@ -8,6 +8,7 @@ one trace back; memory is bounded by reading long texts in windows, so time grow
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -25,6 +26,31 @@ _FIGURES = frozenset("0123456789.")
 
 
 @dataclass
+class Budget:
+    """How much text is read: ``left`` glyphs more, as many again for every page found;
+    ``stopped``: the glyph at which it was spent, none where it was not."""
+
+    left: int = 25_000
+    stopped: int | None = None
+
+    @property
+    def spent(self) -> bool:
+        """Whether reading stopped."""
+        return self.stopped is not None
+
+    def spend(self, count: int, found: bool) -> None:
+        """Read so many glyphs more."""
+        self.left = Budget.left if found else self.left - count
+
+
+_PAGE = 150
+"""Glyphs that are a page; the shortest run has 320, and labels without end are none."""
+_LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
+_FEW_LABELS = 4
+"""Fewer labels and equals signs in a window than these, and no printout is in it."""
+
+
+@dataclass
 class Aligned:
     """One printout's part of the text: ``slots``, field -> glyphs ``(start, stop)`` in its place;
     ``states``, the template's state of every glyph from ``start`` on; ``lines``, the template's
@@ -37,14 +63,23 @@ class Aligned:
     lines: list[int] = field(default_factory=list)
 
 
-def align(glyphs: Sequence[Glyph]) -> Iterator[Aligned]:
-    """The printouts in a row of glyphs, in order, each with what its glyphs are taken for."""
+def align(glyphs: Sequence[Glyph], budget: Budget | None = None) -> Iterator[Aligned]:
+    """The printouts in a row of glyphs, in order, each with what its glyphs are taken for; as many
+    as the budget allows."""
     start = 0
+    budget = budget or Budget()
     while start < len(glyphs):
         window = glyphs[start : start + WINDOW]
         last = start + len(window) >= len(glyphs)
+        if len(_LABELS.findall("".join(glyph.char for glyph in window))) < _FEW_LABELS:
+            start += len(window)
+            continue
+        if budget.left <= 0:
+            budget.stopped = start
+            return
         parts = _merged(_parts(_states(window)))
         taken = parts if last else parts[:-1] or parts[:1]
+        budget.spend(len(window), any(stop - begin >= _PAGE for begin, stop, _ in taken))
         for part in taken:
             yield _Described(part, start).aligned
         if last:

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
 from enum import Flag, StrEnum, auto
 from functools import lru_cache
-from itertools import combinations
 from typing import NamedTuple
 
 from ..applesoft.decimaltext import lay_out
@@ -326,7 +325,6 @@ def _lost(
 
 _BEAM = 48
 _MOST_ILLEGIBLE = 4
-_MOST_ALIKE = 5
 
 
 @lru_cache(maxsize=20000)
@@ -400,31 +398,6 @@ def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[
     """The printable texts that glyphs may have been, with what each costs, cheapest first."""
     key = tuple((glyph.char, glyph.gap, glyph.joined) for glyph in region[:LONGEST])
     return list(_candidates(key, most, sign_free))
-
-
-class Habit(NamedTuple):
-    """What the reader of a page does again and again: a printed digit, and those it is read as."""
-
-    printed: str
-    read: frozenset[str]
-
-
-def unreadable(digit: str) -> Habit:
-    """The habit of a reader that takes a digit for any that is like it."""
-    others = frozenset(other for pair in SIMILAR if digit in pair for other in pair - {digit})
-    return Habit(digit, others)
-
-
-def without_habit(text: str, habit: Habit) -> list[tuple[str, int]]:
-    """The printable texts that a habit may have made this one of, with how many digits change."""
-    places = [at for at, char in enumerate(text) if char in habit.read]
-    texts = []
-    for count in range(1, len(places) + 1):
-        for some in combinations(places[:_MOST_ALIKE], count):
-            other = "".join(habit.printed if at in some else char for at, char in enumerate(text))
-            if printable(other):
-                texts.append((other, count))
-    return texts
 
 
 def as_printed(text: str) -> str | None:

@@ -7,12 +7,11 @@ What a clean number says is never doubted here; misreadings of clean digits are 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import product
 from typing import NamedTuple
 
 from ..doubles import double
 from ..fields import ANGLES, INPUTS
-from ..reading.numerals import Habit, candidates, unreadable, value_of, without_habit
+from ..reading.numerals import candidates, value_of
 from ..reading.printout import Printout, Reading
 from ..scene import VALUE_LIMIT
 from .misprints import opposite
@@ -26,12 +25,6 @@ _OTHER_BITS = 0.02
 _FLIPPED = 0.001
 _REPLY_DISAGREES = 1.0
 _NO_FIELD = 0.8
-_HABIT = 0.4
-"""What it costs that a digit was taken for one that the reader takes it for."""
-_NOUGHTS, _NOUGHTS_NEEDED = frozenset("@©®ØG€°"), 3
-_SIGN_LOST = 0.9
-_SIGNED = frozenset(("UX", "UY", "WA", "VX", "VY", "WB", "EM", "MUP"))
-_FIRST_WAYS, _FIRST_ROWS, _ROWS_EACH = 6, 6, 40
 _PROMPT_MARK = "7291?P"
 """What the prompt's question mark is read as."""
 
@@ -65,12 +58,11 @@ def mu_turned(typed: str, printed: str) -> bool:
 
 
 def choices_of(
-    shown: Printout, given: Mapping[str, str] | None = None, habit: Habit | None = None
+    shown: Printout, given: Mapping[str, str] | None = None
 ) -> tuple[Choices, list[str]]:
     """What each input may have been, cheapest first, and the inputs nothing tells of.
 
-    ``given``: texts of inputs known from elsewhere (a scene file). ``habit``: what the page's
-    reader takes a digit for."""
+    ``given``: texts of inputs known from elsewhere (a scene file)."""
     given = given or {}
     choices: Choices = []
     missing: list[str] = []
@@ -80,13 +72,12 @@ def choices_of(
         if name in ANGLES and joint:
             if name == ANGLES[0]:
                 rows = shown.angles[:_ROWS]
-                rows = [*rows, *_rows_with(rows[:_FIRST_ROWS], habit)] if habit else rows
                 choices.append([_row(texts, cost) for texts, cost in rows])
             continue
         if scene in given and name not in shown.fields:
             choices.append([Choice({scene: given[scene]}, {}, 0.0)])
             continue
-        options = input_choices(name, shown, habit)
+        options = input_choices(name, shown)
         if scene in given:
             options = _given_first(options, scene, given[scene])
         if not options:
@@ -149,53 +140,7 @@ def printed_ways(reading: Reading) -> dict[str, float]:
     return dict(candidates(reading.region, _MOST, reading.sign_free))
 
 
-def without(ways: Mapping[str, float], habit: Habit) -> dict[str, float]:
-    """The same ways, and those in which the reader's habit is put right."""
-    every = dict(ways)
-    for text, cost in sorted(ways.items(), key=lambda way: way[1])[:_FIRST_WAYS]:
-        for other, count in without_habit(text, habit):
-            price = cost + _HABIT * count
-            every[other] = min(price, every.get(other, price))
-    return every
-
-
-def _signs_lost(ways: Mapping[str, float], name: str) -> dict[str, float]:
-    """The same ways, and those in which a minus was not read."""
-    signed = name in ANGLES or name in _SIGNED
-    every = dict(ways)
-    for text, cost in ways.items() if signed else ():
-        if double(text) > 0:
-            every.setdefault(opposite(text), cost + _SIGN_LOST)
-    return every
-
-
-def _rows_with(
-    rows: Sequence[tuple[tuple[str, ...], float]], habit: Habit
-) -> Iterator[tuple[tuple[str, ...], float]]:
-    """The rows of angles with a reader's habit put right and a minus not read, the likeliest of
-    each."""
-    for texts, cost in rows:
-        ways = [
-            _signs_lost(without({text: 0.0}, habit), name).items()
-            for name, text in zip(ANGLES, texts, strict=True)
-        ]
-        some = [
-            (cost + sum(price for _, price in row), tuple(text for text, _ in row))
-            for row in product(*ways)
-        ]
-        for price, row in sorted(some)[1 : 1 + _ROWS_EACH]:
-            yield row, price
-
-
-def noughts_unreadable(shown: Printout) -> Habit | None:
-    """The habit of a reader that cannot read zeros, by the glyphs it puts where numbers stand: one
-    with a stroke through it comes out as @ here, as © there. None where it can."""
-    glyphs = [glyph.char for one in shown.fields.values() for glyph in one.region]
-    count = sum(glyph in _NOUGHTS for glyph in glyphs)
-    return unreadable("0") if count >= _NOUGHTS_NEEDED else None
-
-
-def input_choices(name: str, shown: Printout, habit: Habit | None = None) -> list[Choice]:
+def input_choices(name: str, shown: Printout) -> list[Choice]:
     """What one input may have been, cheapest first; empty when nothing tells."""
     angle = name in ANGLES
     scene = scene_name(name)
@@ -203,8 +148,6 @@ def input_choices(name: str, shown: Printout, habit: Habit | None = None) -> lis
     reply = shown.replies.get(name)
     answers = reply_ways(reply) if reply is not None else []
     ways = printed_ways(reading) if reading is not None else {}
-    if habit:
-        ways = _signs_lost(without(ways, habit), name)
     choices: list[Choice] = []
     for text, cost in ways.items():
         same = [(typed, price) for typed, printed, price in answers if printed == text]

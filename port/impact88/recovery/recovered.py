@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from ..fields import ANGLES, INPUTS
 from ..names import SCENE
 from ..reading.glyphs import ILLEGIBLE
-from ..reading.numerals import Habit
 from ..reading.printout import Printout
 from . import replays
 from .choices import STAND_IN, Choices, choices_of, scene_name
@@ -60,13 +59,10 @@ class Recovered:
         return {name: None if name in self.missing else self.scene[name] for name in SCENE}
 
 
-def recover(
-    shown: Printout, given: Mapping[str, str] | None = None, habit: Habit | None = None
-) -> Recovered:
-    """The scene whose page explains the printout best. ``given``: inputs known from elsewhere.
-    ``habit``: what the page's reader takes a digit for."""
-    choices, missing = choices_of(shown, given, habit)
-    search = Search(shown, habit)
+def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovered:
+    """The scene whose page explains the printout best. ``given``: inputs known from elsewhere."""
+    choices, missing = choices_of(shown, given)
+    search = Search(shown)
     best = search.best(choices)
     unconvincing = len(best.wrong) > _UNCONVINCING
     if unconvincing:

@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import combinations as pairs_of
-from itertools import product
-from math import comb
 from typing import NamedTuple
 
 import numpy as np
@@ -103,17 +101,6 @@ class Rereading:
         ranked = [reread for _, reread in self._tried(choices, changes, every, 320)]
         ranked.sort(key=lambda one: one.scored.cost)
         return ranked
-
-    def with_energy(self) -> Scored | None:
-        """The scene with a few masses and velocities put right, so that the printed kinetic energy
-        comes out; None where none is found. The rest stands as it was read."""
-        choices, _ = self._choices()
-        kinetic = self._kinetic()
-        first = self._by_energy(choices, kinetic, _three_digits)
-        picks = np.zeros((len(first), len(choices)), np.intp)
-        picks[:, kinetic] = first
-        tried = self._search.replayed(self._proper(choices, picks), picks)
-        return next((one for one in tried if "KI" not in one.wrong), None)
 
     def besides(
         self, exchanges: Sequence[Mapping[str, str]], most: int
@@ -422,25 +409,6 @@ def _two_changes(choices: Choices, most: int) -> Picks:
         block = np.zeros((len(kept[0]) * len(kept[1]), len(choices)), np.intp)
         block[:, one] = np.repeat(kept[0], len(kept[1]))
         block[:, two] = np.tile(kept[1], len(kept[0]))
-        parts.append(block)
-    return np.concatenate(parts)
-
-
-def _three_digits(choices: Choices) -> Picks:
-    """A digit taken for its look-alike in each of three columns; of too many the likeliest."""
-    likely = COSTS[misprints.DIGIT]
-    alike = likely + _ALIKE * _UNLIKE
-    most = int((_PAIRS / comb(len(choices), 3)) ** (1 / 3))
-    places = []
-    for options in choices:
-        costs = [one.cost for one in options]
-        digits = [index for index, cost in enumerate(costs) if likely <= cost <= alike]
-        places.append(sorted(digits, key=costs.__getitem__)[:most])
-    parts = [np.zeros((0, len(choices)), np.intp)]
-    for columns_changed in pairs_of(range(len(choices)), 3):
-        some = np.array(list(product(*(places[column] for column in columns_changed))), np.intp)
-        block = np.zeros((len(some), len(choices)), np.intp)
-        block[:, columns_changed] = some.reshape(len(some), 3)
         parts.append(block)
     return np.concatenate(parts)
 

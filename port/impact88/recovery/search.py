@@ -23,10 +23,10 @@ from ..closedform.solve import solve
 from ..doubles import double
 from ..fields import FIELDS, FINAL_SPINS, INPUTS
 from ..names import VELOCITIES
-from ..reading.numerals import Habit, candidates
+from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
 from . import replays
-from .choices import Choice, Choices, other_bits, without
+from .choices import Choice, Choices, other_bits
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
@@ -42,7 +42,7 @@ _ABSENT = 0.7
 """What it costs that the program prints a result the page does not have."""
 _SCREENED = 30_000
 _REPLAYED = 160
-_ENERGY_KEPT, _FEWER_ENERGIES = 60, 12
+_ENERGY_KEPT = 60
 _FEW, _AT_ONCE = 500, 1_000_000
 """Combinations up to which they are sought one by one, and that are laid out at once at most."""
 _VARIANTS = 3_000
@@ -81,13 +81,9 @@ class Expected:
         return self.texts.get(text, self.default)
 
 
-def expected_results(shown: Printout, habit: Habit | None = None) -> list[Expected]:
+def expected_results(shown: Printout) -> list[Expected]:
     """The results of a printout as read."""
-    results = [_expected(name, shown.fields[name]) for name in RESULTS if name in shown.fields]
-    if habit:
-        for one in results:
-            one.texts = without(one.texts, habit)
-    return results
+    return [_expected(name, shown.fields[name]) for name in RESULTS if name in shown.fields]
 
 
 def _expected(name: str, reading: Reading) -> Expected:
@@ -105,15 +101,11 @@ def _expected(name: str, reading: Reading) -> Expected:
 
 
 class Search:
-    """The search for one printout's scene. ``habit``: what its reader takes a digit for."""
+    """The search for one printout's scene."""
 
-    def __init__(self, shown: Printout, habit: Habit | None = None) -> None:
+    def __init__(self, shown: Printout) -> None:
         self.shown = shown
-        self.habit = habit
-        self.expected = expected_results(shown, habit)
-        self._energies, self._room = (
-            (_FEWER_ENERGIES, 8 * _SCREENED) if habit else (_ENERGY_KEPT, _SCREENED)
-        )
+        self.expected = expected_results(shown)
         self._lost_inputs = set(INPUTS) - set(shown.fields)
 
     def best(self, choices: Choices) -> Scored:
@@ -165,9 +157,9 @@ class Search:
         kinetic = [place for place in entering if not still & set(choices[place][0].typed)]
         others = [place for place in range(len(choices)) if place not in kinetic]
         own = [choices[place][: None if place in kinetic else 1] for place in entering]
-        first = self.by_energy(own, combinations(own, _SCREENED), self._energies)
+        first = self.by_energy(own, combinations(own, _SCREENED), _ENERGY_KEPT)
         first = first[:, [entering.index(place) for place in kinetic]]
-        room = max(2, self._room // len(first))
+        room = max(2, _SCREENED // len(first))
         second = combinations([choices[place] for place in others], room)
         picks = np.zeros((len(first) * len(second), len(choices)), np.intp)
         picks[:, kinetic] = np.repeat(first, len(second), axis=0)
@@ -213,12 +205,6 @@ class Search:
             joined.append((scene, assumed, cost))
         outcomes = replays.run_all([scene for scene, _, _ in joined])
         return [self._scored(*one, outcome) for one, outcome in zip(joined, outcomes, strict=True)]
-
-    def replayed_scenes(self, scenes: Sequence[dict[str, str]]) -> list[Scored]:
-        """Scenes, replayed, whatever was read of their inputs."""
-        outcomes = replays.run_all(scenes)
-        pairs = zip(scenes, outcomes, strict=True)
-        return [self._scored(scene, {}, 0.0, outcome) for scene, outcome in pairs]
 
     def results_cost(self, scored: Scored) -> float:
         """What the results of a scene that was replayed cost, its inputs apart."""

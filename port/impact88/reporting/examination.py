@@ -7,6 +7,7 @@ beside it and never change it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from time import process_time
 
 from .. import files
 from ..errors import UserError
@@ -24,6 +25,7 @@ from ..judging.judgement import (
 )
 from ..judging.lookingpast import LookingPast
 from ..judging.unseen import unseen
+from ..names import SCENE
 from ..program.listingcopy import ListingCopy
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
@@ -35,6 +37,8 @@ PICTURE_STARTS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*",
 """How PNG, JPEG, TIFF (of either byte order) and PDF files begin."""
 LARGEST_PICTURE = 100_000_000
 """Bytes of the largest picture or PDF that is read."""
+BUDGET = 2.0
+"""Seconds of processor time for a page; the slowest of 471 given scans takes 1.9."""
 
 __all__ = [
     "Examined",
@@ -108,11 +112,26 @@ def _verified(
     where = files.called(path)
     text = decoded(data, where)
     text, lines = in_order(copy, text) if copy else (text, [])
+    begun, pages = process_time(), 1
     for number, shown in enumerate(read_printouts(text, where), 1):
+        pages += not shown.fragment
+        if process_time() - begun > BUDGET * pages:
+            shown.unread = f"this and what follows was not judged: over {BUDGET:g} s a page"
+            yield unjudged(shown, path, number, digest)
+            return
         result = verify(shown, path, number, given, copy)
         result.renumber(lines)
         result.sha256 = digest
         yield result
+
+
+def unjudged(shown: Printout, file: str, number: int, digest: str) -> Verification:
+    """A printout for which no time was left."""
+    scene: dict[str, str | None] = dict.fromkeys(SCENE)
+    return Verification(
+        file, number, shown.line, Verdict.INCOMPLETE, scene, [], missing=list(SCENE),
+        remarks=[shown.unread], start=shown.start, stop=shown.stop, sha256=digest,
+    )  # fmt: skip
 
 
 def verify(
@@ -128,8 +147,9 @@ def verify(
     listing it is held against, in place of the restored one."""
     if copy is not None:
         return _against(copy, shown, recover(shown, given), file, number)
+    begun = process_time()
     recovered = recover(shown, given)
-    past = LookingPast(shown, recovered, bool(given))
+    past = LookingPast(shown, recovered)
     looked_past = None
     if recovered.row_in_doubt and not shown.mislabelled:
         looked_past = past.judged()
@@ -149,7 +169,7 @@ def verify(
         replies=replies,
         ending=ending,
         missing=recovered.missing,
-        remarks=[*map(str, shown.remarks), *shown.notes],
+        remarks=[*map(str, shown.remarks), *shown.notes, *filter(None, [shown.unread])],
         left_over=shown.left_over,
         labels=shown.labels,
         start=shown.start,
@@ -157,15 +177,32 @@ def verify(
         text=shown.page.text if shown.page else "",
     )
     if result.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE) and not tried:
-        looked_past = past.judged()
+        if process_time() - begun < BUDGET:
+            looked_past = past.judged()
+        elif shown.machine_read:
+            result.verdict = Verdict.INCOMPLETE
+            result.remarks.append(f"what its reader misread was not sought: over {BUDGET:g} s")
     if result.verdict is Verdict.DIFFERS and looked_past is None:
         rereads = None if recovered.apart else past.rereads  # those try the page's inputs alone
-        result.explanations = explain(shown, recovered, checks, replies, ending, rereads)
+        result.explanations = explain(
+            shown,
+            recovered,
+            checks,
+            replies,
+            ending,
+            rereads,
+            lambda: process_time() - begun < BUDGET,
+        )
     if looked_past is not None:
         result.verdict = Verdict.IDENTICAL_AS_READ
         result.scene, result.fields = looked_past.scene, looked_past.fields
         result.replies, result.explanations = looked_past.replies, []
     result.guessed = _guessed(result)
+    if result.verdict is Verdict.INCOMPLETE and shown.badly_read and result.differing:
+        result.remarks.append(
+            f"{len(result.differing)} numbers are read otherwise than the program prints them, and "
+            "the page is too badly read to tell what was altered on it from what was misread"
+        )
     result.findings = [
         *(wording.looked_past(result.fields, result.replies) if looked_past else ()),
         *wording.findings(shown, result.fields, recovered),
@@ -206,7 +243,7 @@ def _against(
         replies=replies,
         ending=ending,
         missing=held.recovered.missing,
-        remarks=[*map(str, shown.remarks), *shown.notes],
+        remarks=[*map(str, shown.remarks), *shown.notes, *filter(None, [shown.unread])],
         left_over=held.shown.left_over,
         labels=held.shown.labels,
         start=shown.start,
