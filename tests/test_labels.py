@@ -184,3 +184,27 @@ def test_a_reply_never_outranks_the_printed_number() -> None:
     assert one(text.replace("Wa ?", "W8 7")).verdict is Verdict.IDENTICAL_AS_READ
     assert one(text.replace("?-29.04", "?87-29.04")).verdict is not Verdict.IDENTICAL
     assert one(text.replace("?-29.04", "?-29.84")).verdict is Verdict.DIFFERS
+
+
+@pytest.mark.parametrize("number", ["{} {}", "{}: {}", "{:3}| {}", "[{}] {}", "{:04} {}"])
+@pytest.mark.parametrize("blank", [True, False])
+def test_line_numbers_of_a_pasted_page_are_no_numbers_of_it(number: str, blank: bool) -> None:
+    numbered = [
+        number.format(count, line) if blank or line.strip() else line
+        for count, line in enumerate(SAMPLE.split("\n"), 1)
+    ]
+    assert one("\n".join(numbered)).verdict is Verdict.IDENTICAL
+
+
+@pytest.mark.parametrize("text", ["5x10^-3", "5 x 10^-3", "5*10^-3", "5x10-3", "5×10⁻³"])
+def test_a_power_of_ten_written_out_is_retyped(text: str) -> None:
+    assert one(SAMPLE.replace("5E-03", text)).verdict is Verdict.IDENTICAL_AS_READ
+
+
+def test_a_point_in_a_reply_parts_no_thousands() -> None:
+    """On a page that ends before its first printed number."""
+    prompt = "ENTER THE INITIAL VELOCITY COMPONENTS OF M{} :V{}x,V{}y,W{} ?"
+    first, second = (prompt.format(side, *3 * side.lower()) for side in "AB")
+    result = one(f"{first}-86.903,0,1.204\n\n{second}12.345,7.881,0\n\n?OVERFLOW ERROR IN 320\n")
+    assert result.scene["UX"] == "-86.903"
+    assert result.scene["VY"] == "7.881"

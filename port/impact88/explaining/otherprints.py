@@ -42,9 +42,9 @@ _LINES = (("VAX", "VBX"), ("VAY", "VBY"), ("XAF", "XBF"), ("YAF", "YBF"), ("WAF"
 _AXES = (("VAX", "VAY"), ("VBX", "VBY"), ("XAF", "YAF"), ("XBF", "YBF"))
 _SINGLE, _SINGLE_ERROR = 7, 3e-6
 """Digits of single precision, and the relative error left to its results."""
-SOME_LINES = 0.9
-"""What it asks to believe that an office's copy rounds on some lines: less than one misread digit,
-which a rounded last place looks like (24 pages of copies that round on line 760)."""
+SOME_LINES = 1.42
+"""What it asks to believe that an office's copy rounds on some lines: more than other arithmetic
+(1.4), and less than a last place misread (1.8), which a rounded one looks like."""
 _MOST_PLACES = 22
 """Decimals of a program's number, at most; to here the powers of ten are exact."""
 _SAME_TO = 1e-6
@@ -119,8 +119,8 @@ class Prints:
         some = [
             line
             for line, names in lines.items()
-            if sum(self._text(name) == fields[name] for name in names)
-            > sum(self._text(name) == floored.get(name) for name in names)
+            if all(self._text(name) in (None, fields[name]) for name in names)
+            and any(self._text(name) not in (None, floored.get(name)) for name in names)
         ]
         if some and len(some) < len(lines):
             own = {name: fields[name] for line in some for name in lines[line]}

@@ -111,9 +111,9 @@ def unwrapped(text: str) -> str:
     return _POWER.sub(_exponent, _groups_joined(_table_parted(text)))
 
 
-_NUMBERED = re.compile(r"(?m)^[ \t]*([0-9]{1,5})[:.)]?(?=[ \t]|$)")
+_NUMBERED = re.compile(r"(?m)^[ \t]*[\[(]?([0-9]{1,5})[\])]?[:.|]?(?=[ \t]|$)")
 _NUMBERED_LINES = 6
-"""So many lines, and all of them, numbered in equal steps: an editor or a listing did it."""
+"""So many lines, and all of them, numbered upward: an editor or a listing did it."""
 
 
 def _unnumbered(text: str) -> str:
@@ -122,13 +122,13 @@ def _unnumbered(text: str) -> str:
     if len(lines) < _NUMBERED_LINES or not all(map(_NUMBERED.match, lines)):
         return text
     numbers = [int(number) for number in _NUMBERED.findall(text)]
-    steps = {after - before for before, after in pairwise(numbers)}
-    return _NUMBERED.sub(_blank, text) if len(steps) == 1 and min(steps) > 0 else text
+    upward = all(before < after for before, after in pairwise(numbers))
+    return _NUMBERED.sub(_blank, text) if upward else text
 
 
 _SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−–", "0123456789---")
 _POWER = re.compile(
-    r"(?<=[0-9])[ ]?[×xX·*][ ]?10(?:\^[{(]?([-−–]?[0-9])[)}]?|([⁻−–]?[⁰¹²³⁴⁵⁶⁷⁸⁹]))"
+    r"(?<=[0-9])[ ]?[×xX·*][ ]?10(?:\^[{(]?([-−–]?[0-9])[)}]?|([-⁻−–][0-9]|[⁻−–]?[⁰¹²³⁴⁵⁶⁷⁸⁹]))"
     r"(?![0-9⁰¹²³⁴⁵⁶⁷⁸⁹.])"
 )
 """A power of ten written out."""
@@ -172,10 +172,11 @@ _GROUPED = re.compile(r"(?<![0-9.,])[0-9]{1,3}(?:[.][0-9]{3})+(?=,[0-9]|(?![0-9.
 
 
 def _groups_joined(text: str) -> str:
-    """The points that part thousands where commas part decimals (``100.904,929``) as blanks."""
+    """The points that part thousands where commas part decimals (``100.904,929``) as blanks. Only a
+    labelled number says so: replies at a prompt are parted by commas (``-86.903,0,0``)."""
     grouped = len(_GROUPED.findall(text))
     points = len(re.findall(r"[0-9][.][0-9]|(?<![0-9])[.][0-9]", text))
-    both = re.search(r"[0-9][.][0-9]{3},[0-9]", text)
+    both = re.search(r"[=:]\s*-?[0-9]{1,3}(?:[.][0-9]{3})+,[0-9]", text)
     if not both or grouped < points - grouped:
         return text
     return _GROUPED.sub(lambda number: number.group().replace(".", "\u2009"), text)

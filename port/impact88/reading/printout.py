@@ -329,7 +329,9 @@ def _left_out(text: str, unwrapped: str) -> list[str]:
     """That lines were left out as markup or as lines of a program."""
     pairs = zip(text.splitlines(), unwrapped.splitlines(), strict=False)
     lines = [
-        number for number, (one, other) in enumerate(pairs, 1) if one.strip() and not other.strip()
+        number
+        for number, (one, other) in enumerate(pairs, 1)
+        if any(map(str.isalpha, one)) and not other.strip()
     ]
     if not lines:
         return []
