@@ -17,6 +17,8 @@ from .glyphs import Gap, Page
 from .template import INSERTED, LETTER_LOST, REPLY_A, REPLY_B, WRONG, Label, as_letter, template
 
 PROMPTS = (REPLY_A, REPLY_B)
+_LETTERS = 2
+"""One letter for one (E) is no word: on clean scans E is read L."""
 READERS = 3
 """So many other marks of an optical reader, and a label that contradicts is the reader's doing."""
 
@@ -161,7 +163,10 @@ def _heading(page: Page, found: Sequence[int]) -> Iterator[_Read]:
     if len(starts) != len(ANGLES):
         starts = [*range(first, last + 1, 2)]
     if len(starts) != len(ANGLES):
-        starts = [first, *[last + 1] * (len(ANGLES) - 1)]
+        whole = "".join(ANGLES) in _letters(page, range(first, last + 1))
+        for name in ANGLES:
+            yield _Read(name, name, name if whole else "", *page.span(first, last + 1))
+        return
     for name, begin, stop in zip(ANGLES, starts, [*starts[1:], last + 1], strict=True):
         yield _Read(name, name, _letters(page, range(begin, stop)), *page.span(begin, stop))
 
@@ -184,7 +189,7 @@ def _state(one: _Read) -> LabelState:
         return LabelState.CONTRADICTORY if other < own - WRONG else LabelState.DAMAGED
     if _only_lost(one.printed, one.read) and one.read not in others:
         return LabelState.DAMAGED
-    word = one.read.isascii() and one.read.isalpha()
+    word = one.read.isascii() and one.read.isalpha() and len(one.read + one.printed) > _LETTERS
     if other < own or (word and own >= WRONG):
         return LabelState.CONTRADICTORY
     return LabelState.DAMAGED
