@@ -19,16 +19,18 @@ from .typeface import BLANK
 class Thresholds(NamedTuple):
     """``holds``: a cell with a smaller margin is the character predicted; ``differs``: one with a
     larger margin is another; ``blank``: blank paper with a larger margin is not blank; ``foreign``:
-    a cell this many times as far from its mean as is usual was not made by the same type."""
+    a cell this many times as far from its mean as is usual was not made by the same type; ``kind``:
+    a label that is nearer than this to another letter's mean is that letter."""
 
     holds: float
     differs: float
     label: float
     blank: float
     foreign: float
+    kind: float
 
 
-THRESHOLDS = Thresholds(holds=-0.12, differs=0.35, label=0.1, blank=-0.15, foreign=20.0)
+THRESHOLDS = Thresholds(holds=-0.12, differs=0.35, label=0.1, blank=-0.15, foreign=20.0, kind=8.0)
 MOST_DOUBTFUL, MOST_DIFFERING = 4, 4
 """Cells that may be doubtful on a page that is settled, or differ on one that is accused: with more
 it was the reading that went wrong."""
@@ -82,10 +84,10 @@ def state(cell: Cell) -> str:
     if not cell.name:
         if cell.margin < limits.label:
             return "holds"
-        sure = cell.margin > 2 * limits.differs and min(cell.count, cell.other_count) > 1
-        return (
-            "differs" if sure and cell.predicted.isalpha() and cell.other != BLANK else "doubtful"
-        )
+        # another letter only where the page has it elsewhere and the cell is of its kind
+        known = min(cell.count, cell.other_count) > 2 and cell.other != BLANK
+        near = cell.other_distance < limits.kind and cell.distance > 2 * cell.other_distance
+        return "differs" if known and near and cell.margin > 2 * limits.differs else "doubtful"
     if cell.margin < limits.holds:
         return "holds" if cell.distance < limits.foreign else "doubtful"
     if cell.margin < limits.differs or (cell.predicted in _MARKS and cell.other in f"{BLANK}.,-"):

@@ -39,10 +39,10 @@ _BESIDE = 2
 @dataclass
 class Cell:
     """One cell held against the page. ``name``: the field it belongs to, "" for labels; ``margin``
-    as above; ``other``: the nearest other character; ``distance``: how far it is from the predicted
-    mean, 1 for what is usual on this page; ``count``, ``other_count``: on how many cells those
-    means rest; ``unlike``: whether the prototypes, asked because the predicted character occurs
-    nowhere else, take it for another."""
+    as above; ``other``: the nearest other character; ``distance``, ``other_distance``: how far it
+    is from the predicted mean and the other's, 1 for what is usual on this page; ``count``,
+    ``other_count``: on how many cells those means rest; ``unlike``: whether the prototypes, asked
+    because the predicted character occurs nowhere else, take it for another."""
 
     sheet: int
     place: Place
@@ -51,6 +51,7 @@ class Cell:
     margin: float
     other: str
     distance: float
+    other_distance: float
     count: int
     other_count: int
     unlike: bool = False
@@ -61,14 +62,15 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
     fields = candidate.outcome.fields
     for line, row in sheet.rows.items():
         column = 0
-        for piece, (name, text) in zip(sheet.pieces[line], parts(line), strict=True):
+        for piece, (name, text) in zip(sheet.pieces[line], parts(row.text), strict=True):
             if name.startswith("REPLY"):
                 shown = reply_of(read, name, candidate.scene)
             else:
                 shown = fields.get(name, "") if name else text
             if line == ANGLES:  # its gaps are what they are
                 column = row.column(piece.places[0]) if piece.places else column
-                shown = shown if name else BLANK * len(piece.places)
+            if not name and not text.strip():
+                shown = BLANK * len(piece.places)
             for character in shown:
                 yield name, character, row.place(column)
                 column += 1
@@ -161,6 +163,7 @@ def held(
                 float(margins[other]),
                 characters[other],
                 float(relative[cell] / level),
+                float(apart[cell, other] / max(usual[cell], 1e-6) / level),
                 counts[own[cell]],
                 counts[other],
                 bool(unlike[cell]),

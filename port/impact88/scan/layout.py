@@ -31,6 +31,11 @@ LINES = (
     "*****",
 )
 """Listing lines 200 to 770, as a person sees them."""
+VARIANTS = {
+    line: (LINES[line], LINES[line].replace(" :", ": ").replace(",V", ", V").replace(",W", ", W"))
+    for line in (0, 1)
+}
+"""Lines as the chapter has them, too."""
 OPTIONAL = (0, 1, 10, 13, 14)
 """Lines that genuine pages lack: the prompts, the final spins where M = 4, rows of asterisks."""
 ANGLES = 5
@@ -66,11 +71,12 @@ class Piece:
 
 class Row(NamedTuple):
     """Where a line of print begins: line of the grid, how many of its lines it takes, the cell of
-    its first column."""
+    its first column, and the line as it is written."""
 
     start: int
     used: int
     margin: int
+    text: str
 
     def place(self, column: int) -> Place:
         """Where a column of the printed line stands."""
@@ -99,18 +105,20 @@ class Sheet:
 
 
 @lru_cache
-def parts(line: int) -> tuple[tuple[str, str], ...]:
-    """A line of `LINES` as (name, text): one of the two is empty."""
-    found = re.findall(r"\{(\w+)\}|([^{}]+)", LINES[line])
+def parts(line: str) -> tuple[tuple[str, str], ...]:
+    """A line of `LINES` as (name, text): one of the two is empty. A blank that begins a line is a
+    part of its own, which the chapter leaves out."""
+    found = re.findall(r"\{(\w+)\}|(^ | {2,}|[^{}]+)", line)
     return tuple((name, text) for name, text in found)
 
 
 class _Fit(NamedTuple):
     gain: float
+    text: str
     ends: tuple[int, ...]
 
 
-def _fit(line: int, inked: Floats, blank: Floats) -> _Fit:
+def _fit(line: str, inked: Floats, blank: Floats) -> _Fit:
     """The best division of a row of cells into the parts of a line, and where each part ends.
     ``inked``, ``blank``: what each cell gains when taken for inked or blank, shape (cells,)."""
     cells = len(inked)
@@ -122,14 +130,14 @@ def _fit(line: int, inked: Floats, blank: Floats) -> _Fit:
     for name, text in parts(line):
         new = np.full(cells + 1, -np.inf)
         came = np.zeros(cells + 1, int)
-        gap = not name and len(text) > 3 and not text.strip()
+        gap = not name and not text.strip() and (len(text) > 1 or not back)
         if name or gap:
-            least, most = _GAPS if gap else NUMBER_LENGTHS
+            least, most = NUMBER_LENGTHS if name else _GAPS if len(text) > 1 else (0, 1)
             run = emptied if gap else filled
             if name.startswith("REPLY"):
                 (least, most), run = REPLY_LENGTHS, typed
             for length in range(least, min(most, cells) + 1):
-                value = best[: cells + 1 - length] + run[length:] - run[:-length]
+                value = best[: cells + 1 - length] + run[length:] - run[: cells + 1 - length]
                 better = value > new[length:]
                 new[length:][better] = value[better]
                 came[length:][better] = length
@@ -148,11 +156,11 @@ def _fit(line: int, inked: Floats, blank: Floats) -> _Fit:
     total = best + after
     at = int(np.argmax(total))
     if not np.isfinite(total[at]):
-        return _Fit(-np.inf, ())
+        return _Fit(-np.inf, line, ())
     ends = [at]
     for came in reversed(back):
         ends.append(ends[-1] - int(came[ends[-1]]))
-    return _Fit(float(total[at]), tuple(reversed(ends)))
+    return _Fit(float(total[at]), line, tuple(reversed(ends)))
 
 
 def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
@@ -175,7 +183,7 @@ def _margin(odds: Sequence[Floats]) -> int:
 
 
 def _laid_at(odds: Sequence[Floats], tops: Floats, margin: int) -> tuple[float, list[Sheet]]:
-    gains: dict[tuple[int, int, int], tuple[float, tuple[int, ...]]] = {}
+    gains: dict[tuple[int, int, int], _Fit] = {}
     count = len(odds)
     rows = [row[margin:] if margin >= 0 else np.r_[np.zeros(-margin), row] for row in odds]
     before = [float(np.clip(row[: max(margin, 0)], 0, None).sum()) for row in odds]
@@ -191,14 +199,15 @@ def _laid_at(odds: Sequence[Floats], tops: Floats, margin: int) -> tuple[float, 
                 row = np.r_[row[:WRAP], rows[start + 1]]
             inked, blank = np.clip(row, -6, 6) / 2, -np.clip(row, 0, 6) / 2
             for line in range(len(LINES)):
-                one = _fit(line, inked, blank)
+                texts = VARIANTS.get(line, (LINES[line],))
+                one = max((_fit(text, inked, blank) for text in texts), key=lambda fit: fit.gain)
                 lost = sum(before[start : start + used]) + (_WRAPPED if used == 2 else 0)
-                gains[start, used, line] = (one.gain - lost, one.ends)
+                gains[start, used, line] = one._replace(gain=one.gain - lost)
     return _aligned(gains, count, margin, alone)
 
 
 def _aligned(
-    gains: dict[tuple[int, int, int], tuple[float, tuple[int, ...]]],
+    gains: dict[tuple[int, int, int], _Fit],
     count: int,
     margin: int,
     alone: Sequence[float],
@@ -225,7 +234,7 @@ def _aligned(
                 steps.append((i + 1, j, now - _STRANGE - lost, 0))
                 for used in (1, 2):
                     if j < last and (i, used, j) in gains:
-                        steps.append((i + used, j + 1, now + gains[i, used, j][0], used))
+                        steps.append((i + used, j + 1, now + gains[i, used, j].gain, used))
             for to_i, to_j, value, used in steps:
                 if value > best[to_i, to_j]:
                     best[to_i, to_j] = value
@@ -241,16 +250,16 @@ def _aligned(
         if (j, at[1]) == (last, 0):
             sheets.append(Sheet())
         elif used:
-            gain, ends_of = gains[i, used, j]
-            sheets[-1].gain += gain
-            _place(sheets[-1], j, Row(i, used, margin), ends_of)
+            fit = gains[i, used, j]
+            sheets[-1].gain += fit.gain
+            _place(sheets[-1], j, Row(i, used, margin, fit.text), fit.ends)
         at = (i, j)
     return total, [sheet for sheet in reversed(sheets) if len(sheet.numbers) >= _FEWEST]
 
 
 def _place(sheet: Sheet, line: int, row: Row, ends: tuple[int, ...]) -> None:
     pieces = []
-    for (name, text), begin, end in zip(parts(line), ends, ends[1:], strict=False):
+    for (name, text), begin, end in zip(parts(row.text), ends, ends[1:], strict=False):
         pieces.append(Piece(name, text, [row.place(column) for column in range(begin, end)]))
     sheet.pieces[line] = pieces
     sheet.rows[line] = row

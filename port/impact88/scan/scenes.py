@@ -61,7 +61,8 @@ class Read:
         lines = []
         for line in range(len(LINES)):
             if line in self.sheet.pieces:
-                pieces = [self.text(name) if name else text for name, text in parts(line)]
+                row = self.sheet.rows[line]
+                pieces = [self.text(name) if name else text for name, text in parts(row.text)]
                 lines.append("".join(pieces))
         return "\n".join(lines)
 
