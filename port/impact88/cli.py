@@ -169,6 +169,12 @@ def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
         except UserError as error:
             note(called, str(error))
             status = UNUSABLE
+        except ModuleNotFoundError as error:
+            package = (error.name or "").partition(".")[0]
+            if package in ("", "impact88"):
+                raise
+            note(called, f"{package} is not installed; expected: pip install {package}")
+            status = UNUSABLE
         except RecursionError:
             note(called, "the input is nested too deeply; expected a plainer one")
             status = UNUSABLE
@@ -176,12 +182,6 @@ def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
             if not _lacks_memory(error):
                 raise
             note(called, "not enough memory; expected a smaller input, or more memory")
-            status = UNUSABLE
-        except ModuleNotFoundError as error:
-            package = (error.name or "").partition(".")[0]
-            if package in ("", "impact88"):
-                raise
-            note(called, f"{package} is not installed; expected: pip install {package}")
             status = UNUSABLE
         sys.stdout.flush()
     except KeyboardInterrupt:
