@@ -26,10 +26,9 @@ pytestmark = pytest.mark.skipif(native.library is None, reason="built without a 
 SIX = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 
 
-def both(monkeypatch, columns, outputs=None, **given):
+def both(columns, outputs=None, **given):
     compiled = impact88.solve(columns, outputs, **given)
-    with monkeypatch.context() as patch:
-        patch.setattr(native, "library", None)
+    with native.switched_off():
         alone = impact88.solve(columns, outputs, **given)
     return compiled, alone
 
@@ -44,9 +43,9 @@ def assert_same_bits(compiled, alone):
 
 @pytest.mark.parametrize("name", POPULATIONS)
 @pytest.mark.parametrize("count", [2, 127, FEW, FEW + 1, 2 * TILE + 5])
-def test_every_result_of_every_population(name, count, monkeypatch):
+def test_every_result_of_every_population(name, count):
     columns = enlarged(scenes(name, min(count, FEW), 11), count)
-    assert_same_bits(*both(monkeypatch, columns, threads=1))
+    assert_same_bits(*both(columns, threads=1))
 
 
 def odd(count: int, seed: int) -> dict[str, np.ndarray]:
@@ -75,11 +74,11 @@ def odd(count: int, seed: int) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("count", [60, 5000, 100_000])
-def test_scenes_of_all_kinds_among_each_other(count, monkeypatch):
-    assert_same_bits(*both(monkeypatch, odd(count, count)))
+def test_scenes_of_all_kinds_among_each_other(count):
+    assert_same_bits(*both(odd(count, count)))
 
 
-def test_kinds_that_change_far_behind_what_was_looked_at(monkeypatch):
+def test_kinds_that_change_far_behind_what_was_looked_at():
     """The machine goes on over all scenes of one kind, and must notice where another begins."""
     count = 5 * TILE
     for name, value in {"MU": -10.0, "GA": 1e6, "IA": np.inf, "UX": np.nan, "M": 4.0}.items():
@@ -88,47 +87,47 @@ def test_kinds_that_change_far_behind_what_was_looked_at(monkeypatch):
         columns["EM"] = np.full(count, -0.5)
         columns[name][-TILE - 3] = value
         columns["EM"][-7] = -0.25  # a column of one value but for a single scene
-        assert_same_bits(*both(monkeypatch, columns, threads=1))
+        assert_same_bits(*both(columns, threads=1))
 
 
-def test_slices_types_and_shapes(monkeypatch):
+def test_slices_types_and_shapes():
     columns = odd(6000, 3)
     thirds = {name: values[::3] for name, values in columns.items()}
-    assert_same_bits(*both(monkeypatch, thirds))
+    assert_same_bits(*both(thirds))
     grid = {name: values.reshape(60, 100) for name, values in columns.items()}
-    assert_same_bits(*both(monkeypatch, {**grid, "MU": np.linspace(-1, 1, 100)}))
+    assert_same_bits(*both({**grid, "MU": np.linspace(-1, 1, 100)}))
     columns["UX"][np.abs(columns["UX"]) > 1e30] = 0
     single = {name: values.astype(np.float32) for name, values in columns.items()}
-    assert_same_bits(*both(monkeypatch, single))
+    assert_same_bits(*both(single))
     scalar = {name: float(values[0]) for name, values in columns.items()} | {"M": 6}
     for name in ("MU", "GA", "IA", "E"):
-        assert_same_bits(*both(monkeypatch, {**scalar, name: columns[name][:50]}))
+        assert_same_bits(*both({**scalar, name: columns[name][:50]}))
     empty = {**scalar, "MU": np.empty(0)}
-    assert_same_bits(*both(monkeypatch, empty))
+    assert_same_bits(*both(empty))
 
 
-def test_selections(monkeypatch):
+def test_selections():
     columns = odd(3 * FEW, 9)
     for name in RESULTS:
-        assert_same_bits(*both(monkeypatch, columns, name))
+        assert_same_bits(*both(columns, name))
     few = {name: values[:100] for name, values in scenes("casework", 100, 4).items()}
     for names in (SIX, ("STATUS",), ("DVA", "STATUS", "MUC")):
-        assert_same_bits(*both(monkeypatch, few, names))
+        assert_same_bits(*both(few, names))
 
 
-def test_threads_and_room_of_the_callers(monkeypatch):
+def test_threads_and_room_of_the_callers():
     columns = odd(400_000, 2)
     room = {name: np.empty(400_000) for name in SIX}
-    alone = both(monkeypatch, columns, SIX, threads=2)[1]
+    alone = both(columns, SIX, threads=2)[1]
     assert_same_bits(impact88.solve(columns, out=room, threads=2), alone)
 
 
-def test_quantities_that_are_no_results(monkeypatch):
+def test_quantities_that_are_no_results():
     columns = odd(500, 8)
     names = ("gt", "determinant", "critical_denominator")
     compiled = quantities(columns, names, sign=-1.0)
-    monkeypatch.setattr(native, "library", None)
-    assert_same_bits(compiled, quantities(columns, names, sign=-1.0))
+    with native.switched_off():
+        assert_same_bits(compiled, quantities(columns, names, sign=-1.0))
 
 
 REPLAYED = (
@@ -145,7 +144,7 @@ SCENES = int(os.environ.get("IMPACT88_REPLAY_SCENES", "0")) or 4000
 
 
 @pytest.mark.parametrize("name", REPLAYED)
-def test_replay_of_every_population(name, monkeypatch):
+def test_replay_of_every_population(name):
     """Every stored real, code and line; scenes out of the ordinary go the way of the arrays."""
     columns = texts(scenes(name, SCENES, 17))
     few = {key: values[:8] for key, values in texts(scenes("extreme", 8, 1)).items()}
@@ -153,7 +152,7 @@ def test_replay_of_every_population(name, monkeypatch):
     columns["M"] = ["4" if i % 50 == 0 else "6" for i in range(SCENES + 8)]
     columns["MU"][::40] = ["-10"] * len(columns["MU"][::40])
     columns["IA"][7] = "0"
-    compare_replays(columns, monkeypatch)
+    compare_replays(columns)
 
 
 @pytest.mark.parametrize("shared", ["MU", "UX", "IA"])
@@ -161,13 +160,12 @@ def test_replay_of_scenes_that_share_all_but_one(shared, monkeypatch):
     columns = texts(scenes("casework", 5000, 6))
     one = {key: values[0] for key, values in columns.items()}
     monkeypatch.setattr(blocks, "WORTH_SHARING", 0)
-    compare_replays({**one, shared: columns[shared]}, monkeypatch)
+    compare_replays({**one, shared: columns[shared]})
 
 
-def compare_replays(columns, monkeypatch):
+def compare_replays(columns):
     compiled = impact88.replay(columns)
-    with monkeypatch.context() as patch:
-        patch.setattr(native, "library", None)
+    with native.switched_off():
         alone = impact88.replay(columns)
     assert np.array_equal(compiled.code, alone.code)
     assert np.array_equal(compiled.line, alone.line)

@@ -24,6 +24,8 @@ MARKS = {
     "lapack-fill": ("^", GREY, False),
     "closed-form": ("D", ORANGE, True),
     "closed-form-2": ("D", BLACK, False),
+    "closed-form-numpy": ("D", ORANGE, False),
+    "replay-numpy": ("P", VERMILION, False),
 }
 """Method -> mark, colour, whether filled: told apart in grey as well."""
 WIDTH = 174.0

@@ -7,18 +7,21 @@ import platform
 import statistics
 import time
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import native
 from ..accuracy.elimination import equilibrated_condition, fill
 from ..accuracy.sensitivity import sensitivity
 from ..processors import processors
 from ..progress import Meter
 from ..version import __version__
 from .methods import (
+    APPLESOFT,
     METHODS,
     Method,
     Prepared,
@@ -85,16 +88,18 @@ def enlarged(columns: Columns, count: int) -> Columns:
     return {name: np.resize(values, count) for name, values in columns.items()}
 
 
-def clock(work: Callable[[], object]) -> float:
-    start = time.perf_counter()
-    work()
-    return time.perf_counter() - start
+def _time(method: Method, work: Callable[[], object]) -> float:
+    """Processor time, which other programs do not lengthen; of several threads the clock's."""
+    now = time.process_time if method.threads == 1 else time.perf_counter
+    with nullcontext() if method.compiled else native.switched_off():
+        start = now()
+        work()
+        return now() - start
 
 
 def _work(method: Method, prepared: Prepared) -> Callable[[], object]:
     if method.key.startswith("closed-form"):
-        threads = 2 if method.key.endswith("2") else 1
-        return lambda: closed_form_columns(prepared, threads)
+        return lambda: closed_form_columns(prepared, method.threads)
     ready = method.ready(prepared)
     return lambda: method.solve(ready)
 
@@ -127,24 +132,25 @@ def _measure_population(
 ) -> list[Measured]:
     columns = scenes(name, count, seed)
     prepared = prepare(columns)
-    reference_seconds = time.perf_counter()
+    reference_seconds = time.process_time()
     hi, lo = reference(prepared)
-    reference_seconds = (time.perf_counter() - reference_seconds) / count
+    reference_seconds = (time.process_time() - reference_seconds) / count
     meter.update(1)
     condition, sensitive = equilibrated_condition(fill(columns)[0]), sensitivity(columns)
     errors: dict[str, Floats] = {}
     works: dict[str, Callable[[], object]] = {}
     timed = {method.key: max(10, round(effort * method.timed)) for method in METHODS}
     for method in METHODS:
-        if method.key in ("applesoft", "replay") and not POPULATIONS[name].listing:
+        if method.roundoff == APPLESOFT and not POPULATIONS[name].listing:
             continue
         errors[method.key] = relative_errors(method.solve(method.ready(prepared)), hi, lo)
         works[method.key] = _work(method, prepare_many(columns, method, timed[method.key]))
         meter.update(1)
     times: dict[str, list[float]] = {key: [] for key in works}
+    by_key = {method.key: method for method in METHODS}
     for _ in range(repeats):
         for key, work in works.items():
-            times[key].append(clock(work))
+            times[key].append(_time(by_key[key], work))
             meter.update(1)
     rows = []
     for method in METHODS:
@@ -182,7 +188,7 @@ def _measure_population(
 def prepare_many(columns: Columns, method: Method, count: int) -> Prepared:
     """``count`` scenes for a method; texts only where they are read."""
     many = enlarged(columns, count)
-    if method.key in ("applesoft", "replay", "float64"):
+    if method.roundoff == APPLESOFT or method.key == "float64":
         return prepare(many)
     return Prepared(count, many, {})
 

@@ -38,7 +38,8 @@ def prepare(columns: Columns) -> Prepared:
 class Method(NamedTuple):
     """``ready`` turns scenes into what ``solve`` takes, untimed; ``solve`` gives an (n, 6) array,
     NaN where there is no answer. ``timed``: how many scenes to time; ``roundoff``: the unit
-    roundoff of its numbers."""
+    roundoff of its numbers; ``threads``: how many it uses; ``compiled``: whether by the compiled
+    machine where it was built."""
 
     key: str
     name: str
@@ -46,6 +47,8 @@ class Method(NamedTuple):
     timed: int
     solve: Callable[[Any], Floats]
     ready: Callable[[Prepared], Any] = lambda prepared: prepared
+    threads: int = 1
+    compiled: bool = True
 
 
 def _port(arithmetic: str, read: Callable[[Any], float]) -> Callable[[list[Scene]], Floats]:
@@ -151,7 +154,17 @@ METHODS: Sequence[Method] = (
     ),
     Method("lapack-fill", "LAPACK, filled and solved", DOUBLE, 100_000, _lapack_filled),
     Method("closed-form", "closed form, one core", DOUBLE, 1_000_000, _closed_form(1)),
-    Method("closed-form-2", "closed form, two cores", DOUBLE, 1_000_000, _closed_form(2)),
+    Method(
+        "closed-form-2", "closed form, two cores", DOUBLE, 1_000_000, _closed_form(2), threads=2
+    ),
+    Method(
+        *("closed-form-numpy", "closed form, numpy alone", DOUBLE, 200_000, _closed_form(1)),
+        compiled=False,
+    ),
+    Method(
+        *("replay-numpy", "replay, numpy alone", APPLESOFT, 20_000, _replay, lambda p: p.texts),
+        compiled=False,
+    ),
 )
 """In the order of the table; the reference itself is measured beside them."""
 

@@ -71,6 +71,7 @@ def ratios(rows: Sequence[Measured]) -> str:
             ("lapack-fill", "times as fast as filling the matrices and solving"),
             ("float64", "times as fast as the port in float64"),
             ("applesoft", "times as fast as the Applesoft port"),
+            ("closed-form-numpy", "times as fast as by numpy alone"),
         ):
             ratio = by["casework", other].seconds / mine.seconds
             lines.append(f"closed form, one core: {ratio:,.0f} {what}")

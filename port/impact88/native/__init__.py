@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import ctypes
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
@@ -38,9 +40,21 @@ def _load() -> ctypes.CDLL | None:
 
 
 library = _load()
+"""What was loaded, or None: asked at every call, so that it may be switched off meanwhile."""
 STRIP: int = library.strip() if library else 0
 """Scenes the machine takes at a time."""
 
 
 accelerated: str | None = library.instructions().decode() if library else None
 """Which instructions of this processor the compiled machine uses; None where numpy does it all."""
+
+
+@contextmanager
+def switched_off() -> Iterator[None]:
+    """Everything by numpy, in all threads, as long as this lasts."""
+    global library
+    kept, library = library, None
+    try:
+        yield
+    finally:
+        library = kept
