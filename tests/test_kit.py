@@ -106,8 +106,8 @@ def test_pycrash_is_another_model_and_told_so(kit: Path) -> None:
 
 
 def test_the_scenes_alone_for_a_pipe() -> None:
-    done = impact88("oracle", "--vectors", "6", "--csv")
+    done = impact88("oracle", "--vectors", "6", "--to", "csv")
     assert done.returncode == 0
     assert done.stdout.startswith("id,class,expect,flags,E,MU,EM")
     assert done.stdout.count("\n") == 7
-    assert impact88("oracle", "--csv").returncode == 2
+    assert impact88("oracle", "--to", "csv").returncode == 2

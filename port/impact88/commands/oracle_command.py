@@ -14,7 +14,7 @@ examples:
   echo '{"id": 1, "scene": {"E": 0.1, ...}}' | impact88 oracle
   impact88 oracle --vectors 1000 --seed 7 -o vectors.jsonl
   impact88 oracle --vectors 100 --class failure
-  impact88 oracle --vectors 1000 --csv | their-program | impact88 compare -
+  impact88 oracle --vectors 1000 --to csv | their-program | impact88 compare -
   impact88 oracle --kit kit
 
 exit status: 0 every line was answered; 1 some lines could not be used; 2 no usable input at all
@@ -33,7 +33,7 @@ from ..checking.oracle import Request, answer
 from ..checking.vectors import CLASSES
 from ..errors import UserError
 from ..files import called, encoding_of, open_bytes
-from .options import InputFile, add_output_argument, whole_number
+from .options import InputFile, OutputFolder, add_output_argument, whole_number
 
 MOST_VECTORS = 10_000_000
 
@@ -49,10 +49,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the test vectors")
     parser.add_argument("--class", dest="only", choices=CLASSES, help="vectors of this class only")
     parser.add_argument(
-        "--csv", action="store_true", help="the scenes of --vectors as a flat table, for a pipe"
+        "--to", choices=("jsonl", "csv"), help="csv: the scenes of --vectors as a flat table"
     )
     parser.add_argument(
         "--kit",
+        type=OutputFolder,
         metavar="DIR",
         help="write vectors, conventions and programs that answer them, in five languages",
     )
@@ -67,8 +68,8 @@ def main(args: argparse.Namespace) -> int:
         raise UserError("--published are vectors already made; expected nothing beside it")
     if args.only and args.vectors is None:
         raise UserError("--class is of test vectors; expected --vectors N with it")
-    if args.csv and args.vectors is None:
-        raise UserError("--csv is of test vectors; expected --vectors N with it")
+    if args.to and args.vectors is None:
+        raise UserError("--to is of test vectors; expected --vectors N with it")
     if args.kit is not None:
         from ..checking.kit import write_kit
         from ..checking.vectors import PUBLISHED
@@ -76,7 +77,7 @@ def main(args: argparse.Namespace) -> int:
         for name in write_kit(args.kit, args.vectors or PUBLISHED, args.seed):
             print(name)
         return 0
-    if args.csv:
+    if args.to == "csv":
         from ..checking.kit import asked, flat
         from ..checking.vectors import vectors
 
