@@ -29,6 +29,7 @@ from ..program.arithmetics import ARITHMETICS
 from ..program.run import finished, page, start
 from ..scene import Scene, published_data, sample
 from .options import (
+    InputFile,
     OutputFile,
     add_json_argument,
     add_move_argument,
@@ -58,7 +59,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_output_argument(parser)
     add_machine_arguments(parser)
     parser.add_argument(
-        "--listing", metavar="THEIRS.bas", help="run another copy of the listing, in the emulator"
+        "--listing",
+        type=InputFile,
+        metavar="THEIRS.bas",
+        help="run another copy of the listing, in the emulator",
     )
     add_raw_argument(parser)
 

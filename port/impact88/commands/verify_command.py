@@ -63,7 +63,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="inputs apart, where the page has only results",
     )
     parser.add_argument(
-        "--listing", metavar="THEIRS.bas", help="hold the pages against another copy of the listing"
+        "--listing",
+        type=InputFile,
+        metavar="THEIRS.bas",
+        help="hold the pages against another copy of the listing",
     )
     parser.add_argument(
         "--report", type=OutputFile, metavar="FILE.html", help="write a page for the case file"
