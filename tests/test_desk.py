@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import json
 import re
 import signal
@@ -14,6 +15,7 @@ from collections.abc import Callable, Iterator, Mapping
 from http.client import HTTPConnection
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -31,7 +33,7 @@ from installed import impact88 as command
 pytest.importorskip("flask", reason="the desk's extra is not installed")
 pytest.importorskip("waitress", reason="the desk's extra is not installed")
 
-from impact88.desk import app, collision, guard, paper, reconstruction, serving, workers
+from impact88.desk import app, collision, guard, halfopen, paper, reconstruction, serving, workers
 
 PORT, TOKEN = 8088, "a-token"
 OWN = f"http://127.0.0.1:{PORT}"
@@ -168,6 +170,32 @@ def test_what_is_no_question_gets_a_sentence(client: Client, body: bytes) -> Non
     answer = client.post("collision", body)
     assert answer.status_code == 400
     assert "\n" not in answer.json["problem"]
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "problem"),
+    [
+        ("collision", {"values": {}, "units": {}}, "'units' is no text"),
+        ("collision", {"values": {}, "units": "furlongs"}, "'furlongs' is no system of units"),
+        ("bounds", {"values": {}, "units": ["us"]}, "'units' is no text"),
+        ("reconstruct", {"values": {}, "units": 7}, "'units' is no text"),
+        ("scene-file", {"values": {}, "title": []}, "'title' is no text"),
+        ("scene-file", {"values": {}, "title": "\ud800"}, "is no JSON"),
+        ("report", {}, "'papers' is no list"),
+        ("report", {"papers": 3, "words": {}}, "'papers' is no list"),
+        ("report", {"papers": [3], "words": {}}, "'papers' is no list"),
+        ("report", {"papers": [{"name": "a", "data": "?"}], "words": {}}, "is no base 64"),
+        ("report", {"papers": [{"name": "a"}], "words": {}}, "is no base 64"),
+        ("report", {"papers": [], "words": []}, "'words' is no object of texts"),
+        ("report", {"papers": [], "words": {"case": 5}}, "'words' is no object of texts"),
+    ],
+)
+def test_json_of_another_form_gets_a_reason(
+    client: Client, path: str, body: Any, problem: str
+) -> None:
+    answer = client.post(path, body)
+    assert answer.status_code == 400
+    assert problem in answer.json["problem"]
 
 
 # --- the collision -----------------------------------------------------------------------------
@@ -462,6 +490,31 @@ def test_what_is_no_file_is_refused_before_it_is_read() -> None:
         paper.report([{"name": "x", "data": coded(RUN1)}], {"case": "x" * 201})
 
 
+def hocr(text: str) -> bytes:
+    words = []
+    for row, line in enumerate(text.split("\n")):
+        for word in re.finditer(r"\S+", line):
+            left, right, top = 20 * word.start(), 20 * word.end(), 40 * row
+            place = f"bbox {left} {top} {right} {top + 30}"
+            words.append(f"<span class='ocrx_word' title='{place}'>{word[0]}</span>")
+    return f"<html><body><div class='ocr_page'>{chr(10).join(words)}</div></body></html>".encode()
+
+
+def test_words_with_their_places_are_read_as_the_page_they_make() -> None:
+    told = paper.judged("page.hocr", coded(hocr(RUN1.decode())))
+    assert told["printouts"][0]["title"].startswith("IDENTICAL")
+    assert "ocrx" not in told["text"]
+    for check in told["objects"][0]["fields"]:
+        assert check["start"] is None or told["text"][check["start"] : check["stop"]].strip()
+    assert "PDF" in paper.judged("page.pdf", coded(b"%PDF-"))["problem"]
+
+
+def test_a_megabyte_of_one_letter_is_answered_at_once() -> None:
+    before = time.process_time()
+    assert "no printout" in paper.judged("page.txt", coded(b"x" * 1_000_000))["problem"]
+    assert time.process_time() - before < 5
+
+
 # --- processes ---------------------------------------------------------------------------------
 
 
@@ -507,6 +560,19 @@ def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
             asking.ask("page", {"task": "bounds", "values": dict(sample(1))})
         with pytest.raises(workers.BrokenError, match="KeyError"):
             asking.ask("page", {"task": "nothing of the sort"})
+    finally:
+        asking.close()
+
+
+def test_what_takes_too_long_is_ended_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    asking = workers.Bench("collision")
+    question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
+    try:
+        monkeypatch.setattr(workers, "ANSWERED_WITHIN", 0.01)
+        with pytest.raises(UserError, match="not answered within"):
+            asking.ask("page", question)
+        monkeypatch.undo()
+        assert asking.ask("page", question)["inputs"]["MU"]["limits"] == [0.7, 0.9]
     finally:
         asking.close()
 
@@ -571,6 +637,41 @@ def test_it_prints_its_address_serves_only_there_and_ends_with_control_c(started
     assert process.returncode == 0
     assert out == ""
     assert err == "Control-C ends the desk\n"
+
+
+def test_half_open_connections_stall_nobody(started: Any) -> None:
+    """300 that send part of a header and wait: another is answered, and the oldest are closed."""
+    parts = urlsplit(started[1])
+    waiting = []
+    try:
+        for _ in range(300):
+            one = socket.create_connection(("127.0.0.1", parts.port or 0), timeout=60)
+            one.sendall(b"GET / HTTP/1.1\r\nHost: ")
+            waiting.append(one)
+        connection = HTTPConnection("127.0.0.1", parts.port, timeout=20)
+        connection.request("GET", parts.path)
+        assert connection.getresponse().status == 200
+        connection.close()
+        with contextlib.suppress(ConnectionResetError):
+            assert waiting[0].recv(1) == b""
+    finally:
+        for one in waiting:
+            one.close()
+
+
+def test_a_request_has_its_time() -> None:
+    channel = halfopen.Channel.__new__(halfopen.Channel)
+    channel.requests, channel.total_outbufs_len, channel.creation_time = [], 0, 100.0
+    assert not channel.overdue(100 + halfopen.HEADER_SECONDS)
+    assert channel.overdue(101 + halfopen.HEADER_SECONDS)  # nothing was sent
+    channel.served = True
+    assert not channel.overdue(101 + halfopen.HEADER_SECONDS)  # kept open by a browser
+    channel.request, channel.since = SimpleNamespace(headers_finished=False), 200.0
+    assert not channel.overdue(200 + halfopen.HEADER_SECONDS)
+    assert channel.overdue(201 + halfopen.HEADER_SECONDS)
+    channel.request.headers_finished = True
+    assert not channel.overdue(201 + halfopen.HEADER_SECONDS)
+    assert channel.overdue(201 + halfopen.BODY_SECONDS)
 
 
 def test_a_port_that_is_taken_is_said_in_one_line() -> None:

@@ -11,6 +11,7 @@ bodies and headers of its own.
 - `serving`: the socket, the address with its token, start and end
 - `guard`: who may ask: Host, token, Origin, and the headers that go with every answer
 - `app`: addresses and what answers them
+- `halfopen`: connections that send no whole request
 - `workers`: processes for what takes long, so that a newer question can end an older one;
   `worker` is what runs in them
 - `paper`, `collision`, `reconstruction`: what the views are answered

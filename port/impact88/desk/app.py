@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import json
 import threading
-from base64 import b64encode
-from typing import Any
+from base64 import b64decode, b64encode
+from typing import Any, TypeGuard
 
 from flask import Blueprint, Flask, Response, abort, render_template, request
 from werkzeug.exceptions import HTTPException
@@ -121,8 +121,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/report")
     def report() -> Response:
-        told = _object()
-        written = asked("edit", "report", papers=told.get("papers"), words=told.get("words"))
+        written = asked("edit", "report", papers=_papers(), words=_texts("words"))
         return _saved(written, "text/html", "report.html")
 
     @routes.post("/collision")
@@ -193,6 +192,7 @@ def _object() -> dict[str, Any]:
     """The JSON object that was sent. Raises UserError."""
     try:
         whole = json.loads(request.get_data())
+        json.dumps(whole, ensure_ascii=False).encode()  # half a pair of surrogates is no text
     except (ValueError, RecursionError):
         raise UserError("the request is no JSON; expected an object") from None
     if not isinstance(whole, dict):
@@ -206,17 +206,47 @@ def _name() -> str:
 
 
 def _title() -> str:
-    return str(_object().get("title") or "")
+    return _text("title")
 
 
 def _units() -> str:
-    """The system of units chosen; nothing for any consistent ones."""
-    return str(_object().get("units") or "")
+    """The system of units chosen; nothing for any consistent ones. Raises UserError."""
+    units = _text("units")
+    if units and units not in dict(page.SYSTEMS):
+        raise UserError(
+            f"{units!r} is no system of units; expected {', '.join(dict(page.SYSTEMS))}"
+        )
+    return units
+
+
+def _text(name: str) -> str:
+    """One entry of the object sent that may be missing: a text. Raises UserError."""
+    text = _object().get(name)
+    if not isinstance(text, str | None):
+        raise UserError(f"{name!r} is no text")
+    return text or ""
+
+
+def _is_texts(value: object) -> TypeGuard[dict[str, str]]:
+    return isinstance(value, dict) and all(isinstance(one, str) for one in value.values())
 
 
 def _texts(name: str) -> dict[str, str]:
     """One entry of the object sent: texts by name. Raises UserError."""
     values = _object().get(name)
-    if not isinstance(values, dict) or not all(isinstance(v, str) for v in values.values()):
+    if not _is_texts(values):
         raise UserError(f"{name!r} is no object of texts")
     return values
+
+
+def _papers() -> list[dict[str, str]]:
+    """The papers sent, each with a ``name`` and ``data`` in base 64. Raises UserError."""
+    papers = _object().get("papers")
+    if not isinstance(papers, list) or not all(map(_is_texts, papers)):
+        raise UserError("'papers' is no list of objects of texts")
+    for paper in papers:
+        try:
+            b64decode(paper.get("data", "?"), validate=True)
+        except ValueError:
+            raise UserError("'data' of a paper is no base 64") from None
+    return [{"name": "", **paper} for paper in papers]

@@ -14,6 +14,7 @@ from ..files import packaged_bytes
 from ..judging.judgement import Verdict
 from ..reading import plaintext as pasted
 from ..reading.printout import LARGEST_FILE
+from ..reading.wordplaces import laid_out
 from ..reporting import verification, wording
 from ..reporting.casefile import report as report_page
 from ..reporting.examination import examine_bytes
@@ -65,8 +66,10 @@ def base_name(name: str) -> str:
 
 
 def _text(examined: Examined, data: bytes) -> str | None:
+    """The text that places are counted in: of words with their places, those laid out."""
     try:
-        return pasted.decoded(data, examined.file)
+        text = pasted.decoded(data, examined.file)
+        return (laid_out(text, examined.file) if "<" in text[:1000] else None) or text
     except UserError:
         return None
 

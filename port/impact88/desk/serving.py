@@ -17,6 +17,9 @@ HOST = "127.0.0.1"
 THREADS = 8
 """Requests answered at a time: a browser keeps some connections open, and computing waits in one"""
 LARGEST_HEADER = 32_768
+CONNECTIONS = 256
+"""Connections at a time: four times those that may wait (`halfopen.WAITING`), and fewer than the
+512 sockets that `select` takes on Windows."""
 
 
 def listening(port: int) -> socket.socket:
@@ -73,6 +76,7 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
     from waitress.server import create_server  # type: ignore[import-untyped]
 
     from .app import Desk, application
+    from .halfopen import guarded
 
     # Windows lets any program change what a suffix means, and a browser runs no script that is
     # said to be plain text
@@ -88,8 +92,11 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
         ident=None,
         max_request_body_size=LARGEST_BODY,
         max_request_header_size=LARGEST_HEADER,
+        connection_limit=CONNECTIONS,
+        cleanup_interval=1,
         clear_untrusted_proxy_headers=True,
     )
+    guarded(server)
     try:
         server.run()
     finally:

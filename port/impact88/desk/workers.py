@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 import threading
+import time
 from typing import Any
 
 from ..errors import UserError
@@ -25,6 +26,11 @@ _START = (
 
 class SupersededError(Exception):
     """The question was ended: its page has asked a newer one, or wants to wait no longer."""
+
+
+ANSWERED_WITHIN = 60.0
+"""Seconds for an answer, after which its process is ended. The slowest pages and scans at hand take
+ten on an idle machine."""
 
 
 class BrokenError(Exception):
@@ -69,9 +75,17 @@ class Bench:
                 raise SupersededError
             self._asking = page
             process = self._ready()
+        began = time.monotonic()
+        budget = threading.Timer(ANSWERED_WITHIN, process.kill)
+        budget.daemon = True
+        budget.start()
         try:
             line = _exchanged(process, question)
+            if not line:  # it is ending; the next question starts another
+                process.wait()
         finally:
+            expired = time.monotonic() - began >= ANSWERED_WITHIN
+            budget.cancel()
             with self._turn:
                 ended = self._process is not process
                 if not ended and process.poll() is not None:
@@ -83,6 +97,8 @@ class Bench:
                 self._turn.notify_all()
         if superseded or (ended and not line):
             raise SupersededError
+        if not line and expired:
+            raise UserError(f"is not answered within {ANSWERED_WITHIN:.0f} seconds")
         if not line:
             raise BrokenError("the process that computes ended unexpectedly")
         reply = json.loads(line)

@@ -1,0 +1,67 @@
+"""Connections that send no whole request: closed after a time, the oldest when they are many.
+
+All peers are this machine, so a limit for each address would be one for all of them together; a
+newcomer closes the connection that has waited longest instead. A browser whose idle connection is
+closed opens another.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from waitress.channel import HTTPChannel  # type: ignore[import-untyped]
+
+HEADER_SECONDS = 10.0
+"""For a request's header; a page's own takes a millisecond."""
+BODY_SECONDS = 60.0
+"""For the whole request: 16 MB from the same machine take a second when it is busy."""
+WAITING = 64
+"""Connections without a whole request; a browser keeps six, and some pages may be open."""
+
+
+class Channel(HTTPChannel):
+    """A connection that knows since when it has been sending a request."""
+
+    since = 0.0
+    served = False
+
+    def received(self, data: bytes) -> bool:
+        """Take bytes that came in."""
+        if self.request is None:
+            self.since = time.time()
+        taken: bool = super().received(data)
+        self.served |= bool(self.requests)
+        return taken
+
+    def overdue(self, now: float) -> bool:
+        """Whether the request has been on its way for too long."""
+        if self.requests or self.total_outbufs_len:
+            return False
+        if self.request is None:  # nothing was sent, or nothing since the last answer
+            return not self.served and now - self.creation_time > HEADER_SECONDS
+        allowed = BODY_SECONDS if self.request.headers_finished else HEADER_SECONDS
+        return now - self.since > allowed
+
+
+def guarded(server: Any) -> None:
+    """Let a waitress ``server`` close connections that send no whole request."""
+    accept, maintain = server.handle_accept, server.maintenance
+
+    def handle_accept() -> None:
+        accept()
+        waiting = [
+            one
+            for one in server.active_channels.values()
+            if not (one.requests or one.total_outbufs_len)
+        ]
+        if len(waiting) > WAITING:
+            min(waiting, key=lambda one: (one.served, one.last_activity)).handle_close()
+
+    def maintenance(now: float) -> None:
+        maintain(now)
+        for channel in list(server.active_channels.values()):
+            channel.will_close |= channel.overdue(now)
+
+    server.channel_class = Channel
+    server.handle_accept, server.maintenance = handle_accept, maintenance
