@@ -12,7 +12,10 @@ from typing import Any
 import pytest
 
 from captures import ROOT
+from impact88.judging.judgement import Verdict
 from impact88.reporting.examination import Examined, examine, examine_bytes
+from impact88.scan import sheets
+from impact88.scan.evidence import Judged
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
 Pillow = pytest.importorskip("PIL.Image", reason="the extra scan is not installed")
@@ -98,3 +101,17 @@ def test_what_is_no_page(data: bytes, message: str, tmp_path: Path) -> None:
     assert examined.error is not None
     assert message in examined.error
     assert not examined.results
+
+
+@pytest.mark.parametrize("beside", [Verdict.IDENTICAL, Verdict.INCOMPLETE])
+def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, beside):
+    """Printouts on a page share their mean characters, and one misplaced spoils them for all."""
+    given = iter([Judged(Verdict.DIFFERS), Judged(beside)])
+    monkeypatch.setattr(sheets, "read_numbers", lambda grid, found: [None, None])
+    monkeypatch.setattr(sheets, "scene_of", lambda read: object())
+    monkeypatch.setattr(sheets, "held", lambda *given: [])
+    monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
+    leaves = sheets._leaves(None, [None, None])
+    expected = Verdict.DIFFERS if beside is Verdict.IDENTICAL else Verdict.INCOMPLETE
+    assert leaves[0].judged.verdict is expected
+    assert bool(leaves[0].judged.reason) is (beside is Verdict.INCOMPLETE)

@@ -87,4 +87,10 @@ def _leaves(grid: Grid, sheets: list[Sheet]) -> list[Leaf]:
         own = [cell for cell in cells if cell.sheet == which]
         which += 1
         leaves.append(Leaf(sheet, read, one, own, judged(sheet, one, own)))
+    # the printouts of a page share their mean characters: one misplaced spoils them for all
+    if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
+        for leaf in leaves:
+            if leaf.judged.verdict is Verdict.DIFFERS:
+                leaf.judged.verdict = Verdict.INCOMPLETE
+                leaf.judged.reason = "another printout on the page was not read"
     return leaves
