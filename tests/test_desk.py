@@ -25,6 +25,7 @@ from impact88 import schemas
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.names import SCENE, VELOCITIES
+from impact88.program.emulated import Emulated
 from impact88.program.run import run
 from impact88.scene import Scene, sample
 from installed import COMMAND
@@ -210,6 +211,60 @@ def test_a_published_run_is_answered_with_the_programs_own_printout(number: int,
     assert told["page"] == own("run", "--sample", str(number))
     printed = {row["name"]: row["printed"] for row in told["results"]}
     assert all(text in told["page"] for text in printed.values())
+
+
+def test_the_screen_is_the_emulators_memory() -> None:
+    for number in (1, 2, 3):
+        told = collision.answer(dict(sample(number)))["screen"]
+        emulated = Emulated(sample(number))
+        emulated.run()
+        machine = emulated.machine.machine
+        assert len(told) == 24
+        for row, runs in enumerate(told):
+            start = 0x400 + row % 8 * 0x80 + row // 8 * 40
+            memory = [machine.screen.byte_at(start + column) for column in range(40)]
+            assert [kind for kind, text in runs for _ in text] == ["normal"] * 40
+            assert "".join(text for _, text in runs) == "".join(chr(b & 0x7F) for b in memory)
+    codes = bytes([0x01, 0x20, 0x41, 0x60, 0xC1, 0xA0])
+    runs = [("inverse", "A "), ("flashing", "A "), ("normal", "A ")]
+    assert collision.screen_runs(codes) == runs
+
+
+@pytest.mark.parametrize("units", ["", "us", "chapter", "metric", "si"])
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_the_answer_is_what_reconstruct_says_of_the_same_impact(
+    number: int, units: str, tmp_path: Path, own: Own
+) -> None:
+    values = dict(sample(number))
+    told = collision.answer(values, units)
+    head = f'units = "{units}"\n' if units else ""
+    known = {name: text for name, text in values.items() if name not in ("MU",)}
+    found = {row["name"]: row["value"] for row in told["results"]}
+    known["MUP"] = told["oracle"]["results"]["MUP"]["printed"]
+    (tmp_path / "known.toml").write_text(head + toml(known), encoding="utf-8")
+    theirs = json.loads(own("reconstruct", "--json", "known.toml"))["solutions"][0]["values"]
+    shown = {one["name"]: one["text"] for row in told["answer"] for one in row["values"]}
+    assert set(shown) >= {"DVA", "DVB", "SAF", "SBF", "LOSS", "PDOFA", "VC"}
+    for name, text in shown.items():
+        if name not in ("MUP", "MUC", "LOSS"):
+            assert float(text) == pytest.approx(theirs[name], rel=6e-4, abs=1e-9), name
+        if name in found:
+            assert float(text) == pytest.approx(found[name], rel=6e-4, abs=1e-9), name
+
+
+@pytest.mark.parametrize("units", ["", "us"])
+def test_the_case_report_is_the_commands_own(
+    client: Client, units: str, tmp_path: Path, own: Own
+) -> None:
+    asked = {"values": dict(sample(1)), "title": "One", "units": units}
+    saved = client.post("case-report/collision", asked)
+    (tmp_path / "scene.toml").write_bytes(client.post("scene-file", asked).data)
+    own("report", "scene.toml", "-o", "case.html")
+    assert saved.data == (tmp_path / "case.html").read_bytes()
+    known = {"values": {**reconstruction.known_of_sample(1)["values"], "E": "0.1"}, "units": units}
+    assert b"reconstructed" in client.post("case-report/reconstruction", known).data
+    assert client.post("case-report/nothing", known).status_code == 404
+    assert client.post("case-report/collision", {"values": {"E": "1"}}).status_code == 400
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Iterator
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,8 @@ import pytest
 import desk_browser
 from captures import ROOT
 from desk_browser import Page, until
+from impact88.desk import collision as desk_collision
+from impact88.program.emulated import Emulated
 from impact88.program.run import run
 from impact88.scene import sample
 from installed import impact88 as command
@@ -73,12 +76,55 @@ def test_a_published_run_shows_its_printout_and_the_figure(page: Page, number: i
     assert "Vehicle A: speed" in picture.get_attribute("alt")
 
 
+def test_the_answer_stands_first_in_the_units_chosen(collision: Page) -> None:
+    collision.run(
+        "arguments[0].value = 'us'; arguments[0].dispatchEvent(new Event('change'))",
+        collision.at("collision-units"),
+    )
+    told = desk_collision.answer(dict(sample(1)), "us")["answer"]
+    wanted = {one["name"]: one["text"] for row in told for one in row["values"]}
+    look = (
+        "return Object.fromEntries([...document.querySelectorAll('#collision-first [data-name]')]"
+        ".map((one) => [one.dataset.name, one.textContent]))"
+    )
+    until(lambda: collision.run(look) == wanted, "the answer")
+    first = collision.driver.find_element("css selector", "#collision-first tbody tr")
+    assert first.is_displayed()
+    assert first.text == f"Velocity change ΔV {wanted['DVA']} {wanted['DVB']} mph"
+
+
+def test_the_screen_holds_what_the_apples_memory_holds(collision: Page) -> None:
+    emulated = Emulated(sample(1))
+    emulated.run()
+    rows = [bytes(b & 0x7F for b in row).decode() for row in emulated.machine.screen_rows()]
+    assert collision.text("collision-apple") == "".join(row + "\n" for row in rows)
+    assert not collision.at("collision-apple").is_displayed()
+    collision.at("collision-tab-printout").click()
+    assert collision.at("collision-apple").is_displayed()
+    assert not collision.at("collision-first").is_displayed()
+
+
+def test_tables_have_names_and_headings_their_order(collision: Page) -> None:
+    look = """
+        return [...document.querySelectorAll('table')].filter((table) => table.rows.length)
+          .flatMap((table) => [table.caption?.textContent, ...[...table.querySelectorAll('th')]
+          .map((head) => head.textContent.trim())]).filter((text) => !text).length"""
+    assert collision.run(look) == 0
+    assert collision.count("table caption") > 1
+    levels = collision.run(
+        "return [...document.querySelectorAll('h1, h2, h3')].filter((one) => one.offsetParent)"
+        ".map((one) => Number(one.tagName[1]))"
+    )
+    assert levels[0] == 1
+    assert all(after <= before + 1 for before, after in pairwise(levels))
+
+
 def test_typing_is_answered_and_a_bad_number_is_told_at_its_field(collision: Page) -> None:
     field = collision.at("collision-MU")
     before = collision.text("collision-screen")
     field.send_keys("x")
     problem = collision.at("collision-MU-problem")
-    until(lambda: "is not an amount" in problem.text, "the message")
+    until(lambda: "x is not a unit" in problem.text, "the message")
     assert field.get_attribute("aria-invalid") == "true"
     assert "collision-MU-problem" in field.get_attribute("aria-describedby")
     assert field.get_attribute("value") == "0.911x"
@@ -272,7 +318,7 @@ def test_every_field_has_a_label_and_every_view_is_reached_by_keys(page: Page) -
     assert page.run("return document.activeElement.id") == "main"
 
 
-@pytest.mark.parametrize("width", [390, 1280])
+@pytest.mark.parametrize("width", [320, 390, 1280])
 def test_nothing_is_wider_than_the_window(collision: Page, width: int) -> None:
     driver = collision.driver
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}

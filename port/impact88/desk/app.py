@@ -143,6 +143,18 @@ def _addresses(desk: Desk) -> Blueprint:
         text = collision.scene_file(_texts("values"), _title(), _units())
         return _saved(text, "application/toml", "scene.toml")
 
+    @routes.post("/case-report/<view>")
+    def case_report(view: str) -> Response:
+        if view == "collision":
+            text, name = collision.scene_file(_texts("values"), _title(), _units()), "scene.toml"
+        elif view == "reconstruction":
+            text, name = reconstruction.known_file(_texts("values"), _units()), "known.toml"
+        else:
+            abort(404)
+        return _saved(
+            asked("bounds", "case_report", text=text, name=name), "text/html", "case.html"
+        )
+
     @routes.post("/scene")
     def scene() -> Any:
         return collision.read_scene_file(request.get_data(), _name())

@@ -9,15 +9,18 @@ What computes is imported on first use: the page is shown before numpy is there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from itertools import groupby
 from typing import Any, NamedTuple
 
 from ..doubles import double, is_number
+from ..emulator.screen import shown_character
 from ..errors import UserError
 from ..files import decode
-from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names
+from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, quantity
 from ..plaintable import number
-from ..scene import Scene, check_value, sample, template
+from ..scene import Scene, check_value, entries_of, sample, template, toml_texts
 from ..schemas import stamped
 from ..uncertainty import uncertain
 from .entries import entries
@@ -37,6 +40,23 @@ _OWN_AXES = frozenset(("CAF", "CAL", "CBF", "CBL"))
 _WHOSE_BASE = {"us": "chapter", "metric": "si"}
 """The system whose bare numbers are another's base units."""
 _NOT_SHOWN = ("STATUS",)
+_ANSWER_DIGITS = 4
+"""Digits of the answer: more than the inputs of any collision are known to."""
+_ANSWER = (
+    ("Velocity change ΔV", "DVA", "DVB"),
+    ("forward, along the vehicle", "DVAF", "DVBF"),
+    ("to its right", "DVAR", "DVBR"),
+    ("Force from, clockwise from its front", "PDOFA", "PDOFB"),
+    ("Speed before", "SA", "SB"),
+    ("Speed after", "SAF", "SBF"),
+    ("Course after, from the x axis", "HAF", "HBF"),
+    ("Spin after", "WAF", "WBF"),
+    ("Closing speed along the normal", "VC"),
+    ("Kinetic energy lost", "LOSS"),
+    ("Friction coefficient", "MUP"),
+    ("critical", "MUC"),
+)
+"""What is asked of a collision: words, and a name for each vehicle or one for both."""
 
 
 class Form(NamedTuple):
@@ -97,8 +117,9 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     """What is known of the form's collision.
 
     ``problems``, ``missing``, ``ranges``: see `Form`; ``units``: see `entries.told`. Where there is
-    a scene, ``oracle`` is what `impact88 oracle` answers for it, ``page`` its printout as a screen
-    shows it, ``results`` the rows of a table and ``warnings`` sentences.
+    a scene, ``answer`` is what is asked of it first (see `_answer`), ``oracle`` what `impact88
+    oracle` answers for it, ``page`` its printout, ``screen`` the screen at its end (see `_screen`),
+    ``results`` the rows of a table and ``warnings`` sentences.
     """
     from ..checking.oracle import look_up
     from ..judging import beside
@@ -116,11 +137,62 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
         known = look_up([scene], reference=False)[0]
         told |= {
             "oracle": stamped("oracle", {"id": None, "scene": dict(scene), **known}),
+            "answer": _answer(scene, known["results"], form.units),
             "page": page(known["printout"]),
+            "screen": _screen(scene),
             "results": _rows(known["results"], form.units),
             "warnings": beside.warnings(scene),
         }
     return told
+
+
+def _answer(
+    scene: Scene, results: Mapping[str, Mapping[str, Any]], units: str | None
+) -> list[dict[str, Any]]:
+    """Rows of ``words``, a ``unit``, and ``values``: name and text, one or one for each vehicle."""
+    from ..reconstruction.solutiontable import completed
+    from ..units import system_of
+
+    system = system_of(units)
+    given = {name: double(text) for name, text in scene.items()}
+    found = {name: one["double"] for name, one in results.items() if one["double"] is not None}
+    values = completed(given | found, None)
+    rows = []
+    for words, *names in _ANSWER:
+        if not values.keys() >= set(names):
+            continue
+        rule = quantity(names[0]).unit
+        alike = [abs(one) for name, one in values.items() if quantity(name).unit == rule]
+        least = _ROUNDING * max(one for one in alike if math.isfinite(one))
+        shown = [values[name] if not abs(values[name]) <= least else 0.0 for name in names]
+        texts = [number(system.shown(rule, value), _ANSWER_DIGITS) for value in shown]
+        told = [{"name": name, "text": text} for name, text in zip(names, texts, strict=True)]
+        rows.append({"words": words, "unit": system.label(rule), "values": told})
+    return rows
+
+
+def _screen(scene: Scene) -> list[list[tuple[str, str]]] | None:
+    """The 24 rows of the Apple's screen when the listing has ended, from the emulator's memory: for
+    each stretch its kind (normal, inverse, flashing) and text. None for a scene with more digits
+    than its lines can be typed with."""
+    from ..program.emulated import Emulated
+
+    try:
+        emulated = Emulated(scene)
+    except UserError:
+        return None
+    emulated.run()
+    return [screen_runs(row) for row in emulated.machine.screen_rows()]
+
+
+def screen_runs(row: bytes) -> list[tuple[str, str]]:
+    """A row of screen memory as stretches of one kind, each with its text."""
+    kinds = groupby(row, lambda code: _KINDS[min(code >> 6, 2)])
+    return [(kind, "".join(map(shown_character, codes))) for kind, codes in kinds]
+
+
+_KINDS = ("inverse", "flashing", "normal")
+"""What the two high bits of a byte on the screen say."""
 
 
 def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[dict[str, Any]]:
@@ -218,3 +290,11 @@ def sample_scene(which: int) -> dict[str, Any]:
     """The same of a published run. Raises UserError."""
     scene = sample(which)
     return {"values": dict(scene), "title": scene.title or "", "units": ""}
+
+
+def case_report(text: str, name: str) -> str:
+    """The page that `impact88 report` writes for the text of a file. Raises UserError."""
+    from ..report.findings import report
+
+    entries = entries_of(toml_texts(text, name), name)
+    return report(entries, name, text.encode(), samples=DRAWS, seed=0).page

@@ -113,7 +113,7 @@ def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, 
             _adjusted(one, system) for one in values.get("adjusted", ()) if values["redundancy"]
         ],
         "warnings": values["warnings"],
-        "scene": None if given.units else _scene(given.texts, values["values"]),
+        "scene": _scene({} if given.units else given.texts, values["values"]),
     }
 
 

@@ -16,6 +16,7 @@ from typing import Any
 
 TASKS = {
     "bounds": ("collision", "bounds_answer"),
+    "case_report": ("collision", "case_report"),
     "judge": ("paper", "judged"),
     "report": ("paper", "report"),
     "reconstruct": ("reconstruction", "answer"),

@@ -192,7 +192,7 @@ class Screen(Editor):
     def text(self) -> str:
         """The 24 rows as text, blanks at the end of each cut; inverse and flashing characters as
         normal ones."""
-        return "".join("".join(map(_shown, row)).rstrip(" ") + "\n" for row in self.rows())
+        return "".join("".join(map(shown_character, row)).rstrip(" ") + "\n" for row in self.rows())
 
     def byte_at(self, address: int) -> int:
         """What screen memory holds."""
@@ -321,7 +321,8 @@ def _filled(text: str, gap: int) -> tuple[str, int]:
     return text, gap
 
 
-def _shown(code: int) -> str:
+def shown_character(code: int) -> str:
+    """The character a byte of the screen shows, inverse and flashing ones as normal ones."""
     if code < 0x20:
         code += 0x40
     elif 0x40 <= code < 0x60:

@@ -127,13 +127,14 @@ export function what(quantity) {
     element("small", {}, unit));
 }
 
-/** Fill a table: `heads` are texts, `rows` lists of texts or nodes; the first cell heads its row. */
-export function fill(table, heads, rows, classOf = () => "") {
+/** Fill a table named `name`: `heads` are texts, `rows` lists of texts or nodes; the first cell heads its row. */
+export function fill(table, name, heads, rows, classOf = () => "") {
   const head = element("tr", {}, ...heads.map((text) => element("th", { scope: "col" }, text)));
   const body = rows.map((row, place) =>
     element("tr", { className: classOf(place) }, ...row.map((cell, column) =>
       (column ? element("td", {}, cell) : element("th", { scope: "row" }, cell)))));
-  table.replaceChildren(element("thead", {}, head), element("tbody", {}, ...body));
+  const caption = element("caption", { className: "visually-hidden" }, name);
+  table.replaceChildren(caption, element("thead", {}, head), element("tbody", {}, ...body));
 }
 
 /** A number for a table, to so many significant digits; nothing for none. */
@@ -163,4 +164,44 @@ export async function attempt(work, trouble) {
   } catch (error) {
     trouble(error);
   }
+}
+
+/** Draw a scene into a picture; false where it cannot be drawn. */
+export async function drawInto(picture, question) {
+  let response = null;
+  try {
+    response = await ask("figure", question);
+  } catch {
+    // the answer has said what is wrong with the values
+  }
+  if (!response) return false;
+  const blob = await response.blob();
+  const drawing = new DOMParser().parseFromString(await blob.text(), "image/svg+xml");
+  picture.alt = drawing.querySelector("desc")?.textContent ?? "The scene from above";
+  const before = picture.src;
+  const address = URL.createObjectURL(blob);
+  picture.src = address;
+  await picture.decode().catch(() => {});
+  if (before.startsWith("blob:")) URL.revokeObjectURL(before);
+  return true;
+}
+
+/** Let the buttons of a list of tabs choose between their panels, with arrow keys too. */
+export function tabs(list) {
+  const buttons = [...list.querySelectorAll("[role=tab]")];
+  const choose = (chosen) => {
+    for (const button of buttons) {
+      button.setAttribute("aria-selected", String(button === chosen));
+      button.tabIndex = button === chosen ? 0 : -1;
+      page(button.getAttribute("aria-controls")).hidden = button !== chosen;
+    }
+  };
+  list.addEventListener("click", (event) => buttons.includes(event.target) && choose(event.target));
+  list.addEventListener("keydown", (event) => {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (!step) return;
+    const next = buttons[(buttons.indexOf(event.target) + step + buttons.length) % buttons.length];
+    choose(next);
+    next.focus();
+  });
 }

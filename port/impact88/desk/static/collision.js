@@ -1,5 +1,5 @@
 // The Collision view: 21 values, answered while one types.
-import { ask, asked, attempt, element, fill, newest, page, save, settled, showUnits, shown, stop, tell, what } from "./ask.js";
+import { ask, asked, attempt, drawInto, element, fill, newest, page, save, settled, showUnits, shown, stop, tabs, tell, what } from "./ask.js";
 
 const form = () => page("collision-form");
 const inputs = () => [...form().querySelectorAll("fieldset input")];
@@ -33,47 +33,57 @@ function waitingFor(answer) {
   return parts.join(" ");
 }
 
+/** What is asked of a collision, a column for each vehicle; what belongs to both spans them. */
+function showFirst(rows) {
+  const table = page("collision-first");
+  const cell = ({ name, text }) => element("span", { "data-name": name }, text);
+  fill(table, "Answer", ["what", "A", "B", "unit"], rows.map(({ words, unit, values: [one, other] }) =>
+    [words, cell(one), other ? cell(other) : "", element("small", {}, UNITS[unit] ?? unit)]));
+  for (const row of table.tBodies[0].rows) {
+    if (row.cells[2].textContent) continue;
+    row.cells[2].remove();
+    row.cells[1].colSpan = 2;
+  }
+}
+
+const UNITS = { 1: "", degree: "°", percent: "%" };
+
+/** The Apple's screen: 24 rows of 40 characters, inverse and flashing ones as such. */
+function showScreen(rows) {
+  const lines = rows?.map((runs) => element("span", { className: "row" },
+    ...runs.map(([kind, text]) => (kind === "normal" ? text : element("span", { className: kind }, text))), "\n"));
+  page("collision-apple").replaceChildren(...(lines ?? ["These values have more digits than their lines can be typed with."]));
+}
+
 function showAnswer(answer) {
   page("collision-answer").hidden = false;
+  page("collision-signs").hidden = true;
+  page("collision-more-signs").hidden = false;
+  showFirst(answer.answer);
   page("collision-screen").textContent = answer.page;
-  page("collision-nominal").hidden = !answer.ranges.length;
+  showScreen(answer.screen);
+  for (const note of document.querySelectorAll("#collision .nominal")) note.hidden = !answer.ranges.length;
   page("collision-warnings").querySelector("ul")
     .replaceChildren(...answer.warnings.map((text) => element("li", {}, text)));
   page("collision-warnings").hidden = !answer.warnings.length;
   const shownToo = answer.results.some((row) => row.shown);
-  fill(page("collision-results"), ["", "", "printed", "exact", ...(shownToo ? ["that is"] : [])],
+  fill(page("collision-results"), "All results", ["name", "what", "printed", "exact", ...(shownToo ? ["that is"] : [])],
     answer.results.map((row) => [row.name, what(row), row.printed, row.exact, ...(shownToo ? [row.shown] : [])]));
 }
 
 let latest = null;
 const announce = settled(() => {
-  const loss = latest.results.find((row) => row.name === "LOSS");
-  const said = loss ? `${loss.meaning}: ${loss.exact} ${loss.unit}. ` : "";
+  const [{ words, unit, values: [a, b] }] = latest.answer;
+  const said = `${words}: A ${a.text}, B ${b.text} ${unit}. `;
   page("collision-said").textContent = `${said}Warnings: ${latest.warnings.length}.`;
 }, 1200);
 
-let drawn = "";
 const draw = newest(async () => {
   const picture = page("collision-figure");
-  let response = null;
-  try {
-    response = await ask("figure", question());
-  } catch {
-    // the answer has said what is wrong with the values
-  }
-  picture.parentElement.classList.toggle("stale", !response);
-  if (!response) return;
-  const blob = await response.blob();
-  const drawing = new DOMParser().parseFromString(await blob.text(), "image/svg+xml");
-  picture.alt = drawing.querySelector("desc")?.textContent ?? "The scene from above";
-  const address = URL.createObjectURL(blob);
-  picture.src = address;
-  await picture.decode().catch(() => {});
-  if (drawn) URL.revokeObjectURL(drawn);
-  drawn = address;
+  picture.parentElement.classList.toggle("stale", !await drawInto(picture, question()));
 });
 
-const SHARES = ["0.05", "0.5", "0.95"]; // of the quantiles, those there is room for
+const SHARES = ["0.05", "0.95"]; // of the quantiles, those there is room for
 
 function boundsRow([name, bound]) {
   const width = Math.abs((bound.upper ?? 0) - (bound.lower ?? 0));
@@ -91,8 +101,8 @@ function boundsRow([name, bound]) {
 
 function showBounds(found) {
   const shares = SHARES.map((share) => `${shown(100 * share, 3)} %`);
-  fill(page("collision-bounds-table"),
-    ["", "", "lower", "nominal", "upper", ...shares, "driven by"],
+  fill(page("collision-bounds-table"), "Bounds",
+    ["name", "what", "lower", "nominal", "upper", ...shares, "driven by"],
     Object.entries(found.outputs).map(boundsRow));
   const warned = Object.entries(found.warnings).map(([name, share]) => `${shown(100 * share, 3)} % ${name}`);
   page("collision-bounds-note").textContent =
@@ -189,6 +199,11 @@ export function collision() {
   });
   page("collision-save").addEventListener("click", () => doing(async () =>
     save(await ask("scene-file", question()))));
+  page("collision-report").addEventListener("click", () => doing(async () => {
+    const response = await ask("case-report/collision", question());
+    if (response) await save(response);
+  }));
+  tabs(document.querySelector("#collision .tabs"));
   page("collision-print").addEventListener("click", () => print());
   addEventListener("desk-scene", (event) => load(event.detail));
   page("collision-bounds-stop").addEventListener("click", () => stop("bounds"));

@@ -237,7 +237,7 @@ function numbersTable({ verification }) {
   const table = element("table", { className: "checks" });
   const replies = verification.replies.filter((one) => one.same !== true);
   const checks = [...verification.fields, ...replies];
-  fill(table, ["", "", "printed", "recomputed", "exact", "printed − exact"], checks.map((check) => {
+  fill(table, "The page's numbers", ["name", "as read", "printed", "recomputed", "exact", "printed − exact"], checks.map((check) => {
     const name = check.start === null || check.start === undefined ? check.name
       : element("button", { type: "button", className: "to-place", title: "Show it in the text" }, check.name);
     if (name.addEventListener) {

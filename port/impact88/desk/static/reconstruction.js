@@ -1,5 +1,5 @@
 // The Reconstruction view: what is known is ticked, the rest is solved for while one types.
-import { ask, asked, attempt, element, fill, page, save, settled, showUnits, tell, what } from "./ask.js";
+import { ask, asked, attempt, drawInto, element, fill, page, save, settled, showUnits, tell, what } from "./ask.js";
 
 const form = () => page("reconstruction-form");
 const inputs = () => [...form().querySelectorAll("input[name]")];
@@ -56,7 +56,7 @@ function showAtFields(solutions) {
 
 function tableOf(name, heads, rows, classOf) {
   const table = element("table", {});
-  fill(table, heads, rows, classOf);
+  fill(table, name, heads, rows, classOf);
   return element("div", { className: "scroll", tabIndex: 0, role: "region", "aria-label": name }, table);
 }
 
@@ -64,23 +64,28 @@ function solutionPart(solution, at, count) {
   const parts = [];
   if (count > 1) parts.push(element("h2", {}, `Solution ${at + 1} of ${count}`));
   if (solution.warnings.length) {
-    parts.push(element("div", { className: "warnings" }, element("h3", {}, "Warnings"),
+    parts.push(element("div", { className: "warnings" }, element("h2", {}, "Warnings"),
       element("ul", {}, ...solution.warnings.map((text) => element("li", {}, text)))));
   }
   const columns = solution.columns;
   const rows = [...solution.rows.filter((row) => row.solved), ...solution.rows.filter((row) => !row.solved && !row.known)];
-  parts.push(tableOf("What follows", ["", "", "value", ...columns], rows.map((row) =>
+  parts.push(tableOf("What follows", ["name", "what", "value", ...columns], rows.map((row) =>
     [row.name, what(row), row.text, ...columns.map((column) => row.columns[column] ?? "")]),
   (place) => (rows[place].solved ? "solved" : "")));
   if (solution.adjusted.length) {
-    parts.push(element("h3", {}, "What was measured, and how it was adjusted"),
-      tableOf("Adjusted", ["", "", "measured", "±", "adjusted", "moved, tolerances"], solution.adjusted.map((row) =>
+    parts.push(element("h2", {}, "What was measured, and how it was adjusted"),
+      tableOf("Adjusted", ["name", "what", "measured", "±", "adjusted", "moved, tolerances"], solution.adjusted.map((row) =>
         [row.name, what(row), row.measured, row.tolerance, row.adjusted, row.moved])));
   }
   if (solution.scene) {
+    const picture = element("img", { alt: "" });
+    const figure = element("figure", { className: "sheet", hidden: true }, picture);
+    const scene = { values: solution.scene, title: "Reconstructed", units: solution.units };
+    drawInto(picture, scene).then((drawn) => { figure.hidden = !drawn; });
+    parts.push(figure);
     const button = element("button", { type: "button" }, "Open this collision");
     button.addEventListener("click", () => {
-      dispatchEvent(new CustomEvent("desk-scene", { detail: { values: solution.scene, title: "Reconstructed" } }));
+      dispatchEvent(new CustomEvent("desk-scene", { detail: scene }));
       location.hash = "#collision";
     });
     parts.push(element("p", { className: "over" }, button));
@@ -119,7 +124,7 @@ const solve = settled(async () => {
   if (!whole) return;
   page("reconstruction-answer").hidden = false;
   page("reconstruction-answer").replaceChildren(...told.solutions.map((solution, at) =>
-    solutionPart(solution, at, told.solutions.length)));
+    solutionPart({ ...solution, units: told.units.name }, at, told.solutions.length)));
   announce();
 }, 200);
 
@@ -168,6 +173,10 @@ export function reconstruction() {
   });
   page("reconstruction-save").addEventListener("click", () => doing(async () =>
     save(await ask("known-file", question()))));
+  page("reconstruction-report").addEventListener("click", () => doing(async () => {
+    const response = await ask("case-report/reconstruction", question());
+    if (response) await save(response);
+  }));
   page("reconstruction-print").addEventListener("click", () => print());
   showTicks();
 }
