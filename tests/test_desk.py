@@ -21,6 +21,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from captures import ROOT
 from impact88 import schemas
 from impact88.cli import main
 from impact88.errors import UserError
@@ -464,6 +465,16 @@ def test_a_reconstruction_answers_in_its_units(tmp_path: Path, own: Own) -> None
     assert rows["VX"]["columns"]["±"] == deviation[1]
 
 
+@pytest.mark.parametrize("units", ["us", "metric", "si", "chapter"])
+def test_what_was_reconstructed_opens_as_a_collision_in_its_units(units: str) -> None:
+    known = reconstruction.known_of_sample(3)["values"]
+    (solution,) = reconstruction.answer(known, units)["solutions"]
+    rows = collision.answer(solution["scene"], units)["results"]
+    found = {row["name"]: row["value"] for row in rows}
+    for name in ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF"):
+        assert found[name] == pytest.approx(float(known[name]), rel=1e-8)
+
+
 def test_what_is_known_is_saved_as_the_commands_file(
     client: Client, tmp_path: Path, own: Own
 ) -> None:
@@ -562,6 +573,14 @@ def test_words_with_their_places_are_read_as_the_page_they_make() -> None:
     for check in told["objects"][0]["fields"]:
         assert check["start"] is None or told["text"][check["start"] : check["stop"]].strip()
     assert "PDF" in paper.judged("page.pdf", coded(b"%PDF-"))["problem"]
+
+
+def test_a_scan_is_read_itself() -> None:
+    pytest.importorskip("PIL", reason="the scan extra is not installed")
+    scan = ROOT / "golden/scans/clean-001.png"
+    told = paper.judged(scan.name, coded(scan.read_bytes()))
+    assert [words["title"] for words in told["printouts"]] == ["IDENTICAL"]
+    assert "VAX=" in told["text"]
 
 
 def test_a_megabyte_of_one_letter_is_answered_at_once() -> None:

@@ -66,12 +66,13 @@ def base_name(name: str) -> str:
 
 
 def _text(examined: Examined, data: bytes) -> str | None:
-    """The text that places are counted in: of words with their places, those laid out."""
+    """The text that places are counted in: of words with their places, those laid out; of a
+    picture, what was read on its only page."""
     try:
         text = pasted.decoded(data, examined.file)
         return (laid_out(text, examined.file) if "<" in text[:1000] else None) or text
     except UserError:
-        return None
+        return examined.results[0].text if len(examined.results) == 1 else None
 
 
 def _words(result: Verification) -> dict[str, Any]:

@@ -349,7 +349,7 @@ function fresh(name = `pasted ${(pasted += 1)}.txt`) {
   return add(new Paper(name, null, ""));
 }
 
-/** Files, from wherever they came: texts become papers, pictures are laid beside theirs. */
+/** Files, from wherever they came: texts become papers, pictures are laid beside theirs or read themselves. */
 function bring(files) {
   const sorted = [...files].sort((one, other) => one.name.localeCompare(other.name, undefined, { numeric: true }));
   const texts = sorted.filter((file) => !isPicture(file));
@@ -359,8 +359,8 @@ function bring(files) {
   for (const file of texts.slice(1)) add(new Paper(file.name, file));
   for (const file of pictures) {
     const paper = papers.find((one) => !one.scan && stem(one.name) === stem(file.name))
-      ?? (pictures.length === 1 && !texts.length && current && !current.scan ? current : null)
-      ?? fresh(`${file.name.replace(/\.[^.]*$/, "")}.txt`);
+      ?? (pictures.length === 1 && !texts.length && current && !current.scan && !current.empty ? current : null)
+      ?? add(new Paper(file.name, file)); // it is read itself
     layScan(paper, file);
     first ??= paper;
   }

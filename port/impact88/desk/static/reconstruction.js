@@ -60,6 +60,8 @@ function tableOf(name, heads, rows, classOf) {
   return element("div", { className: "scroll", tabIndex: 0, role: "region", "aria-label": name }, table);
 }
 
+const ASKED = ["DVA", "DVB", "LOSS"]; // shown with what was solved for
+
 function solutionPart(solution, at, count) {
   const parts = [];
   if (count > 1) parts.push(element("h2", {}, `Solution ${at + 1} of ${count}`));
@@ -68,10 +70,10 @@ function solutionPart(solution, at, count) {
       element("ul", {}, ...solution.warnings.map((text) => element("li", {}, text)))));
   }
   const columns = solution.columns;
-  const rows = [...solution.rows.filter((row) => row.solved), ...solution.rows.filter((row) => !row.solved && !row.known)];
-  parts.push(tableOf("What follows", ["name", "what", "value", ...columns], rows.map((row) =>
+  const table = (name, rows) => tableOf(name, ["name", "what", "value", ...columns], rows.map((row) =>
     [row.name, what(row), row.text, ...columns.map((column) => row.columns[column] ?? "")]),
-  (place) => (rows[place].solved ? "solved" : "")));
+  (place) => (rows[place].solved ? "solved" : ""));
+  parts.push(table("What follows", solution.rows.filter((row) => row.solved || ASKED.includes(row.name))));
   if (solution.adjusted.length) {
     parts.push(element("h2", {}, "What was measured, and how it was adjusted"),
       tableOf("Adjusted", ["name", "what", "measured", "±", "adjusted", "moved, tolerances"], solution.adjusted.map((row) =>
@@ -90,8 +92,10 @@ function solutionPart(solution, at, count) {
     });
     parts.push(element("p", { className: "over" }, button));
   }
+  parts.push(element("details", {}, element("summary", {}, "All that follows"),
+    table("All that follows", solution.rows.filter((row) => !row.known))));
   parts.push(element("details", {}, element("summary", {}, "As impact88 reconstruct prints it"),
-    element("pre", { className: "plain", tabIndex: 0 }, solution.printed)));
+    element("pre", { className: "plain", tabIndex: 0, role: "region", "aria-label": "As printed" }, solution.printed)));
   return element("div", { className: "solution" }, ...parts);
 }
 
