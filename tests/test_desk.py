@@ -253,6 +253,16 @@ def test_the_answer_is_what_reconstruct_says_of_the_same_impact(
             assert float(text) == pytest.approx(found[name], rel=6e-4, abs=1e-9), name
 
 
+@pytest.mark.parametrize(
+    "changes", [dict.fromkeys(("UX", "UY", "WA", "VX", "VY", "WB"), "0"), {"MA": "0"}, {"M": "4"}]
+)
+def test_what_has_no_value_is_no_fault(changes: dict[str, str]) -> None:
+    told = collision.answer({**sample(1), **changes})
+    rows = {row["words"]: [one["text"] for one in row["values"]] for row in told["answer"]}
+    assert "nan" not in str(rows)
+    assert rows["Speed before"]
+
+
 @pytest.mark.parametrize("units", ["", "us"])
 def test_the_case_report_is_the_commands_own(
     client: Client, units: str, tmp_path: Path, own: Own

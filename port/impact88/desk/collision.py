@@ -53,8 +53,8 @@ _ANSWER = (
     ("Spin after", "WAF", "WBF"),
     ("Closing speed along the normal", "VC"),
     ("Kinetic energy lost", "LOSS"),
-    ("Friction coefficient", "MUP"),
-    ("critical", "MUC"),
+    ("Friction coefficient as printed (-10: pivot)", "MUP"),
+    ("critical friction coefficient", "MUC"),
 )
 """What is asked of a collision: words, and a name for each vehicle or one for both."""
 
@@ -163,7 +163,7 @@ def _answer(
             continue
         rule = quantity(names[0]).unit
         alike = [abs(one) for name, one in values.items() if quantity(name).unit == rule]
-        least = _ROUNDING * max(one for one in alike if math.isfinite(one))
+        least = _ROUNDING * max(filter(math.isfinite, alike), default=0.0)
         shown = [values[name] if not abs(values[name]) <= least else 0.0 for name in names]
         texts = [number(system.shown(rule, value), _ANSWER_DIGITS) for value in shown]
         told = [{"name": name, "text": text} for name, text in zip(names, texts, strict=True)]
@@ -171,16 +171,12 @@ def _answer(
     return rows
 
 
-def _screen(scene: Scene) -> list[list[tuple[str, str]]] | None:
+def _screen(scene: Scene) -> list[list[tuple[str, str]]]:
     """The 24 rows of the Apple's screen when the listing has ended, from the emulator's memory: for
-    each stretch its kind (normal, inverse, flashing) and text. None for a scene with more digits
-    than its lines can be typed with."""
+    each stretch its kind (normal, inverse, flashing) and text."""
     from ..program.emulated import Emulated
 
-    try:
-        emulated = Emulated(scene)
-    except UserError:
-        return None
+    emulated = Emulated(scene)
     emulated.run()
     return [screen_runs(row) for row in emulated.machine.screen_rows()]
 

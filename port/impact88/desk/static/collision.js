@@ -50,9 +50,8 @@ const UNITS = { 1: "", degree: "°", percent: "%" };
 
 /** The Apple's screen: 24 rows of 40 characters, inverse and flashing ones as such. */
 function showScreen(rows) {
-  const lines = rows?.map((runs) => element("span", { className: "row" },
-    ...runs.map(([kind, text]) => (kind === "normal" ? text : element("span", { className: kind }, text))), "\n"));
-  page("collision-apple").replaceChildren(...(lines ?? ["These values have more digits than their lines can be typed with."]));
+  page("collision-apple").replaceChildren(...rows.map((runs) => element("span", { className: "row" },
+    ...runs.map(([kind, text]) => (kind === "normal" ? text : element("span", { className: kind }, text))), "\n")));
 }
 
 function showAnswer(answer) {
