@@ -84,13 +84,13 @@ function solutionPart(solution, at, count) {
     const figure = element("figure", { className: "sheet", hidden: true }, picture);
     const scene = { values: solution.scene, title: "Reconstructed", units: solution.units };
     drawInto(picture, scene).then((drawn) => { figure.hidden = !drawn; });
-    parts.push(figure);
     const button = element("button", { type: "button" }, "Open this collision");
     button.addEventListener("click", () => {
       dispatchEvent(new CustomEvent("desk-scene", { detail: scene }));
       location.hash = "#collision";
     });
-    parts.push(element("p", { className: "over" }, button));
+    // the drawing comes later: what stands above it does not move
+    parts.push(element("p", { className: "over" }, button), figure);
   }
   parts.push(element("details", {}, element("summary", {}, "All that follows"),
     table("All that follows", solution.rows.filter((row) => !row.known))));
