@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from ..errors import printable
 from ..explaining.explanations import Explanation
 from ..fields import ANGLES, INPUTS
 from ..judging.copies import HeldAgainst
@@ -235,13 +236,13 @@ def left_over(pieces: Sequence[Piece]) -> list[str]:
     ]
     lines = [piece for piece in pieces if piece.whole]
     bearing = [piece for piece in lines if piece.beside]
-    shown = (bearing + [one for one in lines if not one.beside])[:_MOST_LINES]
+    listed = (bearing + [one for one in lines if not one.beside])[:_MOST_LINES]
     whole = [
-        f"line {piece.line} is none of the program's: {piece.text}"
-        for piece in sorted(shown, key=lambda piece: piece.line)
+        f"line {piece.line} is none of the program's: {printable(piece.text)}"
+        for piece in sorted(listed, key=lambda piece: piece.line)
     ]
-    if len(lines) > len(shown):
-        whole.append(f"and {len(lines) - len(shown)} more lines that are none of the program's")
+    if len(lines) > len(listed):
+        whole.append(f"and {len(lines) - len(listed)} more lines that are none of the program's")
     return beside + whole
 
 
@@ -253,7 +254,7 @@ def labels(checks: Sequence[LabelCheck]) -> list[str]:
         LabelState.MISSING: "no label before the number where the program prints {printed}",
     }
     return [
-        f"line {one.line}: " + text.format(read=one.read, printed=one.printed)
+        f"line {one.line}: " + text.format(read=printable(one.read), printed=one.printed)
         for state, text in words.items()
         for one in checks
         if one.state is state and (state is LabelState.CONTRADICTORY or one.doubt)
