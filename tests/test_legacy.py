@@ -165,7 +165,7 @@ def test_what_a_line_as_printed_does(line: int, shown: str, errata: Errata, tmp_
         restore(text("listing-as-printed.txt"), errata._replace(characters=without)),
         encoding="ascii",
     )
-    printout = impact88("basic", str(program), input="-29.04,0,0\n14.52,25.15,0\n").stdout
+    printout = impact88("basic", str(program), "--raw", input="-29.04,0,0\n14.52,25.15,0\n").stdout
     assert shown in printout
     assert shown not in run(sample(1)).printout
 

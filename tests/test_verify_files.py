@@ -70,9 +70,9 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
 }  # fmt: skip
 """What people type and paste -> the verdict: exact where every number stands as it is printed."""
 NO_TEXT = {
-    "scan.pdf": (b"%PDF-1.4\n" + b"x" * 900, "pdftotext"),
-    "scan.png": (b"\x89PNG\r\n\x1a\n" + b"\0" * 900, "tesseract"),
-    "scan.jpg": (b"\xff\xd8\xff\xe0" + b"\0" * 900, "tesseract"),
+    "scan.pdf": (b"%PDF-1.4\n" + b"x" * 900, "is no PDF that can be read"),
+    "scan.png": (b"\x89PNG\r\n\x1a\n" + b"\0" * 900, "picture"),
+    "scan.jpg": (b"\xff\xd8\xff\xe0" + b"\0" * 900, "picture"),
     "page.docx": (b"PK\x03\x04" + b"\0" * 900, "plain text"),
     "page.doc": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + b"\0" * 900, "antiword"),
 }

@@ -7,6 +7,7 @@ computes in double precision reads its values here, so that one text means one t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -75,6 +76,9 @@ def in_doubles(name: str, values: Any) -> Array:
 
 
 def _double(name: str, value: Any) -> float:
+    """A cell as a number; one that is missing (None) is NaN."""
+    if value is None:
+        return math.nan
     try:
         if isinstance(value, bytes):
             value = value.decode("ascii")

@@ -85,7 +85,7 @@ def as_text(
     remarks = warnings(solution, values, units)
     velocities = (*VELOCITIES, *FINAL_STATE)
     missing = [
-        n for n in velocities if n not in values and not (n in _TURNING and values["M"] == 4)
+        n for n in velocities if n not in values and not (n in _TURNING and values.get("M") == 4)
     ]
     if math.isinf(values.get("MB", 0.0)):
         missing = [name for name in missing if name not in _BARRIERS]

@@ -116,12 +116,13 @@ def draws(
     rng = np.random.default_rng([seed, 1])
     box = _Box(solution, names)
     size = len(names)
-    if box.rest:
+    if box.rest and box.kept:  # else nothing varies
         points, functions = _walked(box, count, rng, progress)
         if not len(points):
             _, functions = _walked(_Box(solution, names, walls=False), count, rng, progress)
         values = np.full((count, size), np.nan)
-        values[: len(functions)] = functions[:, :size]
+        if len(functions):
+            values[: len(functions)] = functions[:, :size]
     else:
         points, values = np.empty((count, len(box.kept))), np.empty((count, size))
         for first in range(0, count, CHUNK):
@@ -303,11 +304,11 @@ class _Box:
                 moved[name][i * n : (i + 1) * n] += 1j * _TINY * (item.high - item.low)
             still = np.tile(x.astype(complex), k)
             left = np.imag(system.left(system.state(still, moved), moved)) / _TINY
-            right = np.broadcast_to(left, (len(left), k * n)).reshape(-1, k, n).transpose(2, 0, 1)
-            turns = -_solutions_of(jacobian, right)
+            right = np.broadcast_to(left, (len(left), k * n)).reshape(len(left), k, n)
+            turns = -_solutions_of(jacobian, right.transpose(2, 0, 1))
             still += 1j * _TINY * turns.transpose(1, 2, 0).reshape(len(x), -1)
             functions, walls = (
-                (np.imag(part) / _TINY).reshape(k, n, -1).transpose(1, 2, 0)
+                (np.imag(part) / _TINY).reshape(k, n, part.shape[1]).transpose(1, 2, 0)
                 for part in self._told(system.state(still, moved), k * n)
             )
         return np.nan_to_num(functions), np.nan_to_num(walls), turns
