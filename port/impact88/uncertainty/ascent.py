@@ -116,7 +116,7 @@ def best(uphill: Array, low: Array, high: Array, rows: Array, below: Array, abov
     x k) times the step stays from ``below`` to ``above``: c linear programs of one size, by a
     primal-dual interior-point method. Where a program has no solution, anything."""
     k, r = rows.shape[2], rows.shape[1]
-    if not r:
+    if not r or not k:
         return np.where(uphill > 0, high, np.where(uphill < 0, low, 0.0))
     size = np.abs(uphill).max(axis=1, keepdims=True)
     unit = np.maximum(high, -low).max(axis=1)[:, None]
