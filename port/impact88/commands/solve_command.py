@@ -247,7 +247,7 @@ class _Float64:
         columns = numbers(rows, units)
         _read_shares(rows, columns)
         unread = {bad.row - rows.first for bad in rows.bad}
-        refused = examine(columns).refused is not None
+        refused = rows.count > 0 and examine(columns).refused is not None
         for refusal in refusals(columns) if refused else ():
             for index in np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist():
                 if index not in unread:
