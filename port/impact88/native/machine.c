@@ -61,7 +61,7 @@
 
 /* Each operation, by the name that expressions have for it. */
 #define OPERATIONS(X) \
-    X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(NEGATIVE) X(ABSOLUTE) X(SQRT) X(HYPOT) \
+    X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(NEGATIVE) X(ABSOLUTE) X(SQRT) \
     X(PRODUCT_PLUS) X(PRODUCT_MINUS) X(MINUS_PRODUCT) X(PRODUCTS_PLUS) X(PRODUCTS_MINUS) \
     X(SINE_AND_COSINE) X(AGAINST) X(CHOOSE) \
     X(EQUAL) X(LESS) X(LESS_OR_EQUAL) X(EITHER) X(BOTH) X(NOT) \
@@ -131,7 +131,6 @@ static inline __attribute__((always_inline)) void perform(
         BINARY(EITHER, a[i] + b[i] != 0.0 ? 1.0 : 0.0)
         BINARY(BOTH, a[i] * b[i])
         UNARY(NOT, 1.0 - a[i])
-        BINARY(HYPOT, hypot(a[i], b[i]))
         /* the Apple's reals: see reals.h */
         UNARY(REAL_ROUNDED, real_rounded(a[i]))
         BINARY(REAL_ADD, ordinary(real_add(a[i], b[i]), odd + i))
