@@ -71,14 +71,15 @@ def in_doubles(name: str, values: Any) -> Array:
         return array
     if array.dtype.kind not in "USO":
         raise UserError(f"holds {array.dtype} values; expected numbers", f"column {name}")
-    cells = [_double(name, cell) for cell in array.reshape(-1).tolist()]
+    # a cell that is missing is no number; what its row needs of it is another's to say
+    cells = [
+        math.nan if cell is None and array.ndim else _double(name, cell)
+        for cell in array.reshape(-1).tolist()
+    ]
     return np.array(cells, np.float64).reshape(array.shape)
 
 
 def _double(name: str, value: Any) -> float:
-    """A cell as a number; one that is missing (None) is NaN."""
-    if value is None:
-        return math.nan
     try:
         if isinstance(value, bytes):
             value = value.decode("ascii")
