@@ -171,12 +171,3 @@ def squeeze(text: str) -> str:
     return "".join(
         plain for character in text if not character.isspace() for plain in plain_glyphs(character)
     )
-
-
-def canonical(number: str) -> str:
-    """A number without what Applesoft never prints and typists add: ``+`` and a leading zero."""
-    sign = "-" if number.startswith("-") else ""
-    size = number.lstrip("+-")
-    if size.startswith("0.") and len(size) > 2 and size[2].isdigit():
-        size = size[1:]
-    return sign + size

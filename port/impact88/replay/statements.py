@@ -31,9 +31,8 @@ C_1E3 = from_number(scalar.read("1E3")[0])
 C_1E4 = from_number(scalar.read("1E4")[0])
 AG = (from_number(scalar.read("3.14159265")[0]) / 180).rounded()
 """Line 300's radians per degree."""
-C_1, C_2, C_100, C_10000, MINUS_10 = (
+C_1, C_100, C_10000, MINUS_10 = (
     constant(1),
-    constant(2),
     constant(100),
     constant(10000),
     constant(-10),
