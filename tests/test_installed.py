@@ -16,8 +16,8 @@ from captures import ROOT
 
 pytest.importorskip("setuptools", "70.1", reason="older ones build no wheel by themselves")
 
-DOCUMENTS = {".md", ".typed", ".c"}
-"""Kinds of files that are there to be read, by people or by type checkers, too."""
+DOCUMENTS = {".md", ".typed", ".c", ".h"}
+"""Kinds of files for people, type checkers and compilers; the program itself need not open them."""
 
 BUILD = "import sys; sys.path.insert(0, '.ci'); import backend; backend.build_wheel(sys.argv[1])"
 USE = """
