@@ -106,6 +106,9 @@ class State:
             return np.sqrt(x * x + y * y)
         if name in COURSES:
             return course(*self._components(COURSES[name]))
+        if name in COEFFICIENTS:
+            above, below = self.quotient(name)
+            return above / below
         return _QUANTITIES[name](self)
 
     def _components(self, speed: str) -> tuple[Any, Any]:
@@ -145,22 +148,15 @@ class State:
 
     # -- quantities
 
-    def divisor(self, coefficient: str) -> Any:
-        """What E, MUP or EM is divided by: where it is 0 the coefficient has no bound."""
+    def quotient(self, coefficient: str) -> tuple[Any, Any]:
+        """What E, MUP or EM is, above and below the line: where the second is 0 it has no value."""
+        pn, pt, moment = self.impulse
         if coefficient == "E":
-            return self.relative_before[0]
+            return -self.relative_after[0], self.relative_before[0]
         if coefficient == "MUP":
-            return self.impulse[0]
-        return self.relative_after[2] + self.impulse[2] * self.here.inverse_spin_inertia
-
-    def _restitution(self) -> Any:
-        return -self.relative_after[0] / self.divisor("E")
-
-    def _friction(self) -> Any:
-        return self.impulse[1] / self.divisor("MUP")
-
-    def _moment_coefficient(self) -> Any:
-        return self.relative_after[2] / self.divisor("EM")
+            return pt, pn
+        spin = self.relative_after[2]
+        return spin, spin + moment * self.here.inverse_spin_inertia
 
     def _size_of_change(self, inverse_mass: Any) -> Any:
         pn, pt, _ = self.impulse
@@ -198,9 +194,6 @@ class State:
 
 
 _QUANTITIES: dict[str, Callable[[State], Any]] = {
-    "E": State._restitution,
-    "MUP": State._friction,
-    "EM": State._moment_coefficient,
     "DVA": lambda state: state._size_of_change(state.here.inverse_ma),
     "DVB": lambda state: state._size_of_change(state.here.inverse_mb),
     "DVAF": lambda state: state._change("A")[0],

@@ -48,7 +48,7 @@ tenfold, or worse, in some unknown."""
 ORDINARY = {"E": 0.37, "EM": -0.61, "MUP": 0.43}
 """Coefficients at which nothing special happens."""
 IMPULSES_AND_SPINS = (*IMPULSES, *SPINS)
-CHUNK = 1 << 14
+CHUNK = 1 << 12
 """Scenes whose equations are made and solved at a time."""
 TIE = 1e-14
 """Sliding below this share of the largest speed is rounding, and counts as line 400's tie."""
@@ -275,7 +275,7 @@ class _Problem:
 
     def _equations(self, block: Mapping[str, Array]) -> Found:
         with np.errstate(all="ignore"):
-            return Equations(block, point=self.point, pivot=self.pivot).solve(self.wanted)
+            return Equations(block, point=self.point).solve(self.wanted)
 
     # -- why a set is refused
 

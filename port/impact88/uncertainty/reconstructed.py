@@ -263,7 +263,7 @@ class _Box:
         for name in self.names:
             value = state.values[name] if name in known and name in PARAMETERS else state[name]
             columns.append(_near(name, value, self.nominal.get(name)))
-        columns += [state.divisor(name) for name in self.ratios]
+        columns += [state.quotient(name)[1] for name in self.ratios]
         walls = [
             self._share(name, _near(name, state[name], self.items[name].nominal))
             for name in self.rest
@@ -331,7 +331,7 @@ class _Box:
         for name in laws:
             if name not in system.known:
                 values[name] = state[name]
-                divided += np.log(np.abs(state.divisor(name)))
+                divided += np.log(np.abs(state.quotient(name)[1]))
         rows = []
         for name in IMPULSES[: len(laws)]:
             pushed = State({**values, name: values[name] + 1j * _TINY}, state.here)
