@@ -1,18 +1,13 @@
-"""The work-precision figure: error against time per scene, both on log axes (needs matplotlib)."""
+"""The work-precision figure: error against time per scene, both on log axes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from ..figures.canvas import new_figure, style
-from ..figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
+from ..figures.axes import Panel, key, powers
+from ..figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION, Box, Drawing, Text, wrapped
 from .measure import Measured
 from .populations import POPULATIONS
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 MARKS = {
     "applesoft": ("s", VERMILION, False),
@@ -30,75 +25,59 @@ MARKS = {
 """Method -> mark, colour, whether filled: told apart in grey as well."""
 WIDTH = 174.0
 """Millimetres: two columns."""
+_ACROSS = 3
+_TIMES, _ERRORS = (1e-8, 2e-2), (1e-17, 1e4)
 
 
-def work_precision(rows: Sequence[Measured]) -> Figure:
+def work_precision(rows: Sequence[Measured]) -> Drawing:
     """A panel for each population: every method's median error (mark) and largest error (end of the
     line) against its time per scene. Down and left is better."""
     names = list(dict.fromkeys(row.population for row in rows))
-    across = 3
-    down = -(-(len(names) + 1) // across)
-    with style():
-        figure = new_figure(WIDTH, 10 + 52 * down)
-        panels = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel()
-        for axes, name in zip(panels, names, strict=False):
-            _panel(axes, name, [row for row in rows if row.population == name])
-        for axes in panels[len(names) :]:
-            axes.axis("off")
-        # the bottom panel of each column names the axis; a shared one may be switched off
-        for i, axes in enumerate(panels[: len(names)]):
-            if i + across >= len(names):
-                axes.set_xlabel("time per scene, s")
-                axes.tick_params(labelbottom=True)
-            if i % across == 0:
-                axes.set_ylabel("relative error of the final velocities")
-        handles, labels = panels[0].get_legend_handles_labels()
-        panels[-1].legend(
-            handles,
-            labels,
-            loc="center left",
-            title="mark: median; end of line: largest",
-            title_fontsize=6.5,
-            labelspacing=0.7,
+    told = [
+        f"{row.name} on {row.population}: {row.seconds:.2g} s, {row.median:.2g}" for row in rows
+    ]
+    description = "Time per scene and median relative error. " + "; ".join(told) + "."
+    drawing = Drawing(WIDTH, "Error against time", description)
+    top = drawing.heading() - 11
+    for place, name in enumerate(names):
+        row, column = divmod(place, _ACROSS)
+        left, upper = 12 + 56.0 * column, top - 56 * row
+        box = Box(left, upper - 38, left + 44, upper)
+        what = POPULATIONS[name].meaning
+        for count, line in enumerate([name, *wrapped(what, 52, 6)][::-1]):
+            at = complex(left, upper + 5 + 2.8 * count)
+            drawing.items.append(Text(at, line, 6, bold=line == name, role="panel title"))
+        label = "relative error of the final velocities" if column == 0 else ""
+        panel = Panel(
+            *(drawing, box, _TIMES, _ERRORS, "time per scene, s", label),
+            x_ticks=powers(1e-8, 1e-2, 2),
+            y_ticks=powers(1e-15, 1e3, 3)[::3],
+            log=True,
+            grid=True,
         )
-        figure.tight_layout(pad=0.6)
-    return figure
+        _draw(panel, [row for row in rows if row.population == name])
+    entries = {row.name: row for row in rows if row.method in MARKS or row.method == "mpmath"}
+    samples = []
+    for name, one in entries.items():
+        shape, colour, filled = MARKS.get(one.method, ("", GREY, True))
+        look = (shape if filled else f"{shape} ") if shape else (0.4, 0.6)
+        samples.append((name, colour, look))
+    bottom = top - 56 * -(-len(names) // _ACROSS) + 8
+    drawing.height = 2 - key(drawing, bottom, *samples, note="mark: median; end of line: largest")
+    return drawing
 
 
-def _panel(axes: Axes, name: str, rows: Sequence[Measured]) -> None:
-    from matplotlib.ticker import LogLocator, NullFormatter
+def _draw(panel: Panel, rows: Sequence[Measured]) -> None:
+    def shown(error: float) -> float:
+        return min(max(error, _ERRORS[0]), _ERRORS[1])  # an error of 0 stands on the axis
 
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlim(1e-8, 2e-2)
-    axes.set_ylim(1e-17, 1e4)
-    axes.xaxis.set_major_locator(LogLocator(numticks=20))
-    axes.yaxis.set_major_locator(LogLocator(base=1000, numticks=20))
-    axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.tick_params(which="minor", length=0)
-    axes.grid(which="major", color="#dddddd", linewidth=0.4)
-    axes.set_axisbelow(True)
-    axes.set_title(f"{name}\n{POPULATIONS[name].meaning}", fontsize=6, linespacing=1.4)
-    reference = next((row for row in rows if row.method == "mpmath"), None)
     for row in rows:
+        if row.method == "mpmath":
+            panel.rule(row.seconds, GREY, (0.4, 0.6))
         if row.method not in MARKS:
             continue
-        mark, colour, filled = MARKS[row.method]
-        axes.plot([row.seconds] * 2, [row.median, row.largest], color=colour, linewidth=0.9)
-        axes.plot(
-            row.seconds,
-            row.median,
-            marker=mark,
-            markersize=4.5,
-            linestyle="none",
-            color=colour,
-            markerfacecolor=colour if filled else "white",
-            markeredgewidth=0.9,
-            label=row.name,
-            zorder=5,
-        )
-        axes.plot(row.seconds, row.largest, marker="_", markersize=4, color=colour)
-    if reference is not None:
-        axes.axvline(
-            reference.seconds, color=GREY, linewidth=0.8, linestyle=":", label=reference.name
-        )
+        shape, colour, filled = MARKS[row.method]
+        median, largest = shown(row.median), shown(row.largest)
+        panel.line([row.seconds] * 2, [median, largest], colour, 0.3)
+        panel.mark(row.seconds, largest, "_", colour)
+        panel.mark(row.seconds, median, shape, colour, filled, row.method)

@@ -13,8 +13,8 @@
   configurations   Figure 4: the staged collisions' configurations
 
 The ending of FILE says how it is written: .svg, .png or .pdf; all but strip are one column (85 mm)
-wide, or --width. It takes pip install 'impact88[plot]', but for scene, strip, planar, colinear and
-configurations as .svg. Vehicles are drawn as measured where the file gives LA BA, LB BB.
+wide, or --width. .png and .pdf take pip install 'impact88[plot]'. Vehicles are drawn as measured
+where the file gives LA BA, LB BB.
 
 examples:
   impact88 figure scene --sample 1 -o scene.svg
@@ -49,8 +49,6 @@ from .options import (
 from .rangeoptions import add_range_arguments, explored
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from ..figures.drawing import Drawing
 
 OF_A_SCENE = ("scene", "strip", "friction", "sweep")
@@ -84,19 +82,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Draw one figure."""
-    from ..figures.canvas import check_ending, enlarged, save
-    from ..figures.drawing import COLUMN, Drawing
+    from ..figures.canvas import check_ending, save
 
     check_ending(args.output)
-    with enlarged(args.width / COLUMN if args.width else 1.0):
-        drawn = _drawn(args)
-    if isinstance(drawn, Drawing) and args.width:
+    drawn = _drawn(args)
+    if args.width:
         drawn.enlarged = args.width / drawn.width
     save(drawn, args.output)
     return 0
 
 
-def _drawn(args: argparse.Namespace) -> Figure | Drawing:
+def _drawn(args: argparse.Namespace) -> Drawing:
     kind = args.kind
     given = bool(args.scene or args.sample)
     if kind in OF_NOTHING and (given or args.set or args.ranges):
@@ -172,7 +168,7 @@ def _barrier(args: argparse.Namespace) -> Drawing:
     return drawing
 
 
-def _swept(args: argparse.Namespace) -> Figure:
+def _swept(args: argparse.Namespace) -> Drawing:
     """One result a panel, along the one value swept."""
     from ..figures import charts
     from ..tables.sweep import read_ranges

@@ -1,22 +1,22 @@
-"""Drawings as lists of paths and texts, in millimetres on paper, y upwards.
+"""Drawings as lists of paths and texts on paper.
 
-What a drawing shows is decided once, here and above; writing it as SVG (`figures.svg`, no library
-needed) or with matplotlib (`figures.canvas`) only copies it. Sizes of texts are reckoned with the
-widths of DejaVu Sans, matplotlib's own font and as wide as any likely to stand in for it, so texts
-that do not overlap here overlap nowhere.
+Points are complex numbers, x + iy in millimetres, y upwards; a page reaches from 0 at its top left
+corner down to -height, so that it is laid out from the top. What a drawing shows is decided once,
+here and above; writing it as SVG (`figures.svg`) or with matplotlib (`figures.canvas`) only copies
+it. Texts are measured with the widths of DejaVu Sans, matplotlib's font and as wide as any likely
+to stand in for it, so texts that do not overlap here overlap nowhere.
 """
 
 from __future__ import annotations
 
+import cmath
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple
 
 from ..errors import UserError
-
-Point = tuple[float, float]
 
 DRAWABLE = 1e100
 """The largest number that is drawn: products of some must be doubles too."""
@@ -24,53 +24,23 @@ COLUMN = 85.0
 """Width in millimetres of a column in print."""
 MM_PER_POINT = 25.4 / 72
 FONTS = "'DejaVu Sans', Verdana, Arial, sans-serif"
+TEXT = 6.5
+"""Size of most texts, in points."""
+ROW = 3.4
+"""Distance in mm of lines of such texts."""
 
 # Okabe and Ito's colours, which stay apart for every common kind of colour blindness
 BLACK, GREY, WHITE = "#000000", "#666666", "#ffffff"
-BLUE, VERMILION, PURPLE, GREEN, ORANGE, SKY = (
-    "#0072b2",
-    "#d55e00",
-    "#cc79a7",
-    "#009e73",
-    "#e69f00",
-    "#56b4e9",
-)
+BLUE, VERMILION, ORANGE = "#0072b2", "#d55e00", "#e69f00"
 
-_WIDTHS = {
-    character: width
-    for width, characters in (
-        (0.275, "'"),
-        (0.278, "ijl"),
-        (0.295, "IJ"),
-        (0.318, " ,.·"),
-        (0.337, "/:;\\|"),
-        (0.352, "f"),
-        (0.361, "-"),
-        (0.39, "()[]"),
-        (0.392, "t"),
-        (0.401, "!²"),
-        (0.411, "r"),
-        (0.5, "*_°–"),
-        (0.521, "s"),
-        (0.525, "z"),
-        (0.55, "c"),
-        (0.557, "LΓ"),
-        (0.579, "kF"),
-        (0.592, "vxyκ"),
-        (0.613, "PTYaoeθ"),
-        (0.636, "Ehnubdgpqμ$0123456789{}S"),
-        (0.66, "Kφ"),
-        (0.686, "AVΔXZB"),
-        (0.698, "RC"),
-        (0.752, "UNH"),
-        (0.787, "ΩDGOQ&"),
-        (0.838, "wω#+<=>^~−×→±"),
-        (0.863, "M"),
-        (0.974, "m%"),
-        (1.0, "W@…"),
-    )
-    for character in characters
-}
+_ASCII = """318 401 460 838 637 951 780 275 391 391 500 838 318 361 318 337 637 637 637 637 637 637
+637 637 637 637 337 337 838 838 838 531 1000 685 687 699 771 632 576 775 752 295 295 656 558 863
+749 788 604 788 695 635 611 732 685 989 686 611 686 391 337 391 838 500 500 613 635 550 635 616 353
+635 634 278 278 580 278 975 634 612 635 635 412 521 393 634 592 818 592 592 525 637 337 637 838"""
+_OTHERS = {"·": 318, "²": 401, "°": 500, "–": 500, "Γ": 558, "κ": 590, "θ": 612, "μ": 637, "φ": 660}
+_WIDTHS = dict(zip(map(chr, range(32, 127)), map(int, _ASCII.split()), strict=True))
+_WIDTHS |= {"Δ": 685, "Ω": 765, "…": 1000, **_OTHERS, **dict.fromkeys("ω×→±−", 838)}
+"""Advances in thousandths of the size."""
 BOLD = 1.15
 """A bold character is at most about so much wider."""
 ASCENT, DESCENT = 0.78, 0.24
@@ -81,7 +51,7 @@ SUBSCRIPT_SIZE, SUBSCRIPT_DROP = 0.7, 0.2
 class Path(NamedTuple):
     """Straight pieces through ``points``; closed and filled when ``fill`` is given."""
 
-    points: tuple[Point, ...]
+    points: tuple[complex, ...]
     stroke: str | None = BLACK
     width: float = 0.25
     dash: tuple[float, ...] = ()
@@ -93,10 +63,9 @@ class Text(NamedTuple):
     """One line at its baseline. ``_x`` and ``_{xy}`` in ``text`` are subscripts; ``anchor`` is
     start, middle or end; ``size`` in points."""
 
-    x: float
-    y: float
+    at: complex
     text: str
-    size: float = 7.0
+    size: float = TEXT
     anchor: str = "start"
     colour: str = BLACK
     bold: bool = False
@@ -106,8 +75,7 @@ class Text(NamedTuple):
 class Run(NamedTuple):
     """A piece of a text in one size, placed."""
 
-    x: float
-    y: float
+    at: complex
     text: str
     size: float
 
@@ -120,13 +88,23 @@ class Box(NamedTuple):
     right: float
     top: float
 
-    def overlaps(self, other: Box, gap: float = 0.0) -> bool:
-        """Whether the two share area, or come nearer than ``gap``."""
+    @property
+    def width(self) -> float:
+        """From left to right."""
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        """From bottom to top."""
+        return self.top - self.bottom
+
+    def overlaps(self, other: Box) -> bool:
+        """Whether the two share area."""
         return (
-            self.left < other.right + gap
-            and other.left < self.right + gap
-            and self.bottom < other.top + gap
-            and other.bottom < self.top + gap
+            self.left < other.right
+            and other.left < self.right
+            and self.bottom < other.top
+            and other.bottom < self.top
         )
 
     def contains(self, other: Box) -> bool:
@@ -138,21 +116,30 @@ class Box(NamedTuple):
             and other.top <= self.top
         )
 
-    def crosses(self, start: Point, end: Point) -> bool:
-        """Whether the straight line from ``start`` to ``end`` enters the rectangle."""
-        low, high = 0.0, 1.0
-        for origin, target, near, far in (
-            (start[0], end[0], self.left, self.right),
-            (start[1], end[1], self.bottom, self.top),
-        ):
-            run = target - origin
-            if run == 0:
-                if not near <= origin <= far:
-                    return False
-                continue
-            first, second = sorted(((near - origin) / run, (far - origin) / run))
-            low, high = max(low, first), min(high, second)
-        return low <= high
+
+class View(NamedTuple):
+    """Where points of a plan are on paper."""
+
+    origin: complex
+    scale: float
+
+    def __call__(self, point: complex) -> complex:
+        return self.origin + self.scale * point
+
+    def all(self, points: Iterable[complex]) -> tuple[complex, ...]:
+        """Several points on paper."""
+        return tuple(self.origin + self.scale * point for point in points)
+
+
+def fitted(points: Sequence[complex], frame: Box) -> View:
+    """The view that shows ``points`` as large as ``frame`` allows, in its middle."""
+    box = extent(points)
+    scale = min(frame.width / box.width, frame.height / box.height)
+    return View(_middle(frame) - scale * _middle(box), scale)
+
+
+def _middle(box: Box) -> complex:
+    return complex(box.left + box.right, box.bottom + box.top) / 2
 
 
 def check_drawable(values: Iterable[float], name: str) -> None:
@@ -164,14 +151,13 @@ def check_drawable(values: Iterable[float], name: str) -> None:
 
 @dataclass
 class Drawing:
-    """``width`` x ``height`` mm with what is drawn on it, lowest first, all of it written
-    ``enlarged`` times as large. ``description`` tells in
-    words what a reader who cannot see it misses."""
+    """A page ``width`` x ``height`` mm with what is drawn on it, lowest first, written ``enlarged``
+    times as large. ``description`` says in words what a reader who cannot see it misses."""
 
     width: float
-    height: float
     title: str
     description: str = ""
+    height: float = 0.0
     items: list[Path | Text] = field(default_factory=list)
     enlarged: float = 1.0
 
@@ -179,12 +165,16 @@ class Drawing:
         """The texts only."""
         return [item for item in self.items if isinstance(item, Text)]
 
-    def segments(self) -> Iterator[tuple[Point, Point]]:
-        """Every straight piece drawn with a stroke."""
-        for item in self.items:
-            if isinstance(item, Path) and item.stroke:
-                points = (*item.points, item.points[0]) if item.fill else item.points
-                yield from pairwise(points)
+    def paths(self) -> list[Path]:
+        """The paths only."""
+        return [item for item in self.items if isinstance(item, Path)]
+
+    def heading(self) -> float:
+        """Write the title in bold at the top; returns where what follows goes on."""
+        lines = wrapped(self.title, (self.width - 4) / BOLD, 7)
+        for count, line in enumerate(lines, 1):
+            self.items.append(Text(complex(2, -ROW * count), line, 7, bold=True, role="title"))
+        return -ROW * len(lines)
 
 
 def pieces(text: str) -> list[tuple[str, bool]]:
@@ -205,40 +195,63 @@ def pieces(text: str) -> list[tuple[str, bool]]:
 
 def text_width(text: str, size: float, bold: bool = False) -> float:
     """Width in millimetres of a line with subscripts, ``size`` points high."""
-    ems = sum(
-        (SUBSCRIPT_SIZE if below else 1.0)
-        * sum(_WIDTHS.get(character, 0.75) for character in piece)
+    thousandths = sum(
+        (SUBSCRIPT_SIZE if below else 1.0) * sum(_WIDTHS.get(letter, 1000) for letter in piece)
         for piece, below in pieces(text)
     )
-    return ems * size * MM_PER_POINT * (BOLD if bold else 1.0)
+    return thousandths / 1000 * size * MM_PER_POINT * (BOLD if bold else 1.0)
+
+
+def wrapped(text: str, room: float, size: float = TEXT) -> list[str]:
+    """The words of a text in lines at most ``room`` mm wide, where a word is not wider itself."""
+    lines = [""]
+    for word in text.split(" "):
+        longer = f"{lines[-1]} {word}".strip()
+        if text_width(longer, size) > room and lines[-1]:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines
+
+
+def _start(text: Text) -> complex:
+    share = {"start": 0.0, "middle": 0.5, "end": 1.0}[text.anchor]
+    return text.at - share * text_width(text.text, text.size, text.bold)
 
 
 def text_runs(text: Text) -> list[Run]:
     """The pieces of a text and where each starts."""
-    x = text.x - _SHIFT[text.anchor] * text_width(text.text, text.size, text.bold)
-    runs = []
+    at, runs = _start(text), []
     for piece, below in pieces(text.text):
         size = text.size * (SUBSCRIPT_SIZE if below else 1.0)
         drop = SUBSCRIPT_DROP * text.size * MM_PER_POINT if below else 0.0
-        runs.append(Run(x, text.y - drop, piece, size))
-        x += text_width(piece.replace("_", " "), size, text.bold)
+        runs.append(Run(at - 1j * drop, piece, size))
+        at += text_width(piece, size, text.bold)
     return runs
-
-
-_SHIFT = {"start": 0.0, "middle": 0.5, "end": 1.0}
 
 
 def text_box(text: Text) -> Box:
     """The rectangle a text takes up."""
-    width, height = text_width(text.text, text.size, text.bold), text.size * MM_PER_POINT
-    left = text.x - _SHIFT[text.anchor] * width
+    start, height = _start(text), text.size * MM_PER_POINT
     below = DESCENT + (SUBSCRIPT_DROP if "_" in text.text else 0.0) / 2
-    return Box(left, text.y - below * height, left + width, text.y + ASCENT * height)
+    width = text_width(text.text, text.size, text.bold)
+    bottom, top = start.imag - below * height, start.imag + ASCENT * height
+    return Box(start.real, bottom, start.real + width, top)
+
+
+def unit(degrees: float) -> complex:
+    """The direction ``degrees`` from the x axis."""
+    return cmath.rect(1.0, math.radians(degrees))
+
+
+def degrees(direction: complex) -> float:
+    """The angle of a direction from the x axis."""
+    return math.degrees(cmath.phase(direction))
 
 
 def arrow(
-    start: Point,
-    end: Point,
+    start: complex,
+    end: complex,
     colour: str = BLACK,
     width: float = 0.35,
     dash: tuple[float, ...] = (),
@@ -246,30 +259,23 @@ def arrow(
     role: str = "",
 ) -> list[Path]:
     """A shaft and a filled head of length ``head``, shorter where the arrow itself is short."""
-    length = math.dist(start, end)
+    length = abs(end - start)
     if length == 0:
         return []
     head = min(head, 0.6 * length)
-    along = ((end[0] - start[0]) / length, (end[1] - start[1]) / length)
-    neck = (end[0] - 0.85 * head * along[0], end[1] - 0.85 * head * along[1])
+    along = head * (end - start) / length
     return [
-        Path((start, neck), colour, width, dash, role=role),
-        Path(_head(end, along, head), None, fill=colour, role=role and f"{role} head"),
+        Path((start, end - 0.85 * along), colour, width, dash, role=role),
+        Path(_head(end, along), None, fill=colour, role=role and f"{role} head"),
     ]
 
 
-def _head(tip: Point, along: Point, head: float) -> tuple[Point, ...]:
-    back = (tip[0] - head * along[0], tip[1] - head * along[1])
-    half = 0.36 * head
-    return (
-        tip,
-        (back[0] - half * along[1], back[1] + half * along[0]),
-        (back[0] + half * along[1], back[1] - half * along[0]),
-    )
+def _head(tip: complex, along: complex) -> tuple[complex, ...]:
+    return (tip, tip - along * (1 - 0.36j), tip - along * (1 + 0.36j))
 
 
 def turning_arrow(
-    center: Point,
+    center: complex,
     radius: float,
     counterclockwise: bool,
     colour: str = BLACK,
@@ -282,58 +288,54 @@ def turning_arrow(
     """An arc around ``center`` with a head showing the sense; ``opening`` is the direction in
     degrees the gap between its ends looks to."""
     sense = 1 if counterclockwise else -1
-    first = math.radians(opening + sense * (360 - span) / 2)
-    turn = math.radians(sense * span)
-    head = min(1.7, radius)
-    steps = 24
-    arc = tuple(
-        (center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle))
-        for angle in (first + turn * step / steps for step in range(steps + 1))
-    )
-    last = first + turn
+    points = arc(center, opening + sense * (360 - span) / 2, sense * span, radius)
     # the head's tip goes on a little along the tangent, its back sits on the arc
-    along = (-sense * math.sin(last), sense * math.cos(last))
-    tip = (arc[-1][0] + 0.6 * head * along[0], arc[-1][1] + 0.6 * head * along[1])
+    along = min(1.7, radius) * sense * 1j * (points[-1] - center) / radius
     return [
-        Path(arc, colour, width, dash, role=role),
-        Path(_head(tip, along, head), None, fill=colour, role=role and f"{role} head"),
+        Path(points, colour, width, dash, role=role),
+        Path(_head(points[-1] + 0.6 * along, along), None, fill=colour, role=f"{role} head"),
     ]
 
 
-def dashes(points: Sequence[Point], pattern: Sequence[float]) -> list[tuple[Point, ...]]:
+def arc(center: complex, first: float, turn: float, radius: float) -> tuple[complex, ...]:
+    """An arc of ``turn`` degrees from the direction ``first``, a point every ten degrees or so."""
+    steps = max(6, round(abs(turn) / 10))
+    return tuple(center + radius * unit(first + turn * i / steps) for i in range(steps + 1))
+
+
+def circle(center: complex, radius: float) -> tuple[complex, ...]:
+    """A circle as a polygon."""
+    return arc(center, 0, 360, radius)[1:]
+
+
+def dashes(points: Sequence[complex], pattern: Sequence[float]) -> list[tuple[complex, ...]]:
     """The drawn pieces of a line dashed by ``pattern`` (drawn, left out, drawn ... in mm)."""
-    pieces: list[tuple[Point, ...]] = []
-    piece: list[Point] = [points[0]]
+    drawn, piece = [], [points[0]]
     count, left = 0, pattern[0]
     for start, end in pairwise(points):
-        length, done = math.dist(start, end), 0.0
+        length, done = abs(end - start), 0.0
         while length - done > left:
             done += left
-            share = done / length
-            place = (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+            place = start + done / length * (end - start)
             if count % 2 == 0:
-                pieces.append((*piece, place))
+                drawn.append((*piece, place))
             count += 1
             piece, left = [place], pattern[count % len(pattern)]
         left -= length - done
         piece.append(end)
-    if count % 2 == 0 and len(piece) > 1:
-        pieces.append(tuple(piece))
-    return pieces
+    if count % 2 == 0:
+        drawn.append(tuple(piece))
+    return drawn
 
 
-def circle(center: Point, radius: float) -> tuple[Point, ...]:
-    """A circle as a polygon of 32 corners."""
-    return tuple(
-        (
-            center[0] + radius * math.cos(math.tau * step / 32),
-            center[1] + radius * math.sin(math.tau * step / 32),
-        )
-        for step in range(32)
-    )
-
-
-def extent(points: Sequence[Point]) -> Box:
+def extent(points: Iterable[complex]) -> Box:
     """The rectangle around points."""
-    xs, ys = [point[0] for point in points], [point[1] for point in points]
+    xs, ys = zip(*((point.real, point.imag) for point in points), strict=True)
     return Box(min(xs), min(ys), max(xs), max(ys))
+
+
+def short(value: float) -> str:
+    """A number to four digits (three and an exponent where very large or small), with a true minus
+    sign."""
+    text = f"{value:.4g}"
+    return (f"{value:.3g}" if "e" in text else text).replace("-", "−")

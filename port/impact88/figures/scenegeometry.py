@@ -22,11 +22,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from ..scene import numbers_of
 from ..status import sentences
-from .drawing import Point, check_drawable
+from .drawing import check_drawable, degrees, unit
 
 PROPORTION = 2.6
 """Length over width."""
@@ -37,17 +38,17 @@ WALL = 1e4
 class Motion(NamedTuple):
     """Velocity of the center of gravity and spin."""
 
-    velocity: Point
+    velocity: complex
     spin: float
 
     @property
     def speed(self) -> float:
         """The velocity's size."""
-        return math.hypot(*self.velocity)
+        return abs(self.velocity)
 
 
 class Vehicle(NamedTuple):
-    """One vehicle in plan, in the scene's units around the contact point.
+    """One vehicle in plan, in the scene's units around the contact point; points are x + iy.
 
     ``center``: center of gravity as drawn; ``front``: unit vector; ``outline``: four corners, the
     front's two first; ``kept``: the outline on its own side of the contact plane; ``wall``: too
@@ -55,15 +56,25 @@ class Vehicle(NamedTuple):
     """
 
     name: str
-    center: Point
-    front: Point
+    center: complex
+    front: complex
     length: float
     width: float
-    outline: tuple[Point, ...]
-    kept: tuple[Point, ...]
+    outline: tuple[complex, ...]
+    kept: tuple[complex, ...]
     wall: bool
     before: Motion
     after: Motion | None
+
+    @property
+    def change(self) -> complex | None:
+        """The change of velocity."""
+        return self.after.velocity - self.before.velocity if self.after else None
+
+    def pdof(self, impulse: complex) -> float:
+        """Where the force comes from, in degrees clockwise from the front, of the impulse on A."""
+        source = -impulse if self.name == "A" else impulse
+        return -degrees(self.front.conjugate() * source)
 
 
 class Plan(NamedTuple):
@@ -72,9 +83,9 @@ class Plan(NamedTuple):
     length and width are known."""
 
     vehicles: tuple[Vehicle, Vehicle]
-    normal: Point
-    tangent: Point
-    impulse: Point | None
+    normal: complex
+    tangent: complex
+    impulse: complex | None
     apart: bool
     remarks: tuple[str, ...]
     numbers: dict[str, float]
@@ -83,8 +94,13 @@ class Plan(NamedTuple):
     @property
     def closing(self) -> float:
         """How fast the centers of gravity move relative to each other before the impact."""
-        a, b = (vehicle.before.velocity for vehicle in self.vehicles)
-        return math.dist(a, b)
+        a, b = self.vehicles
+        return abs(a.before.velocity - b.before.velocity)
+
+    @property
+    def bodies(self) -> list[Vehicle]:
+        """The vehicles that are no wall."""
+        return [vehicle for vehicle in self.vehicles if not vehicle.wall]
 
 
 def plan(
@@ -98,39 +114,36 @@ def plan(
     Without a result, or where it is not finite, there is nothing after the impact to show.
     Raises UserError for a value that is no finite number, or too large to draw.
     """
-    values = numbers_of(scene)
+    values, outlines = numbers_of(scene), outlines or {}
     for name, value in values.items():
         check_drawable([value], name)
-    normal = direction(values["GA"])
-    tangent = (-normal[1], normal[0])
-    final = _finals(result)
+    normal = unit(values["GA"])
     before = {
-        "A": Motion((values["UX"], values["UY"]), values["WA"]),
-        "B": Motion((values["VX"], values["VY"]), values["WB"]),
+        "A": Motion(complex(values["UX"], values["UY"]), values["WA"]),
+        "B": Motion(complex(values["VX"], values["VY"]), values["WB"]),
     }
+    after = _finals(result or {})
     # the contact point is at -D4, -D3 from A and at D2, D1 from B
     reach = {
-        "A": scaled(direction(values["TA"] + values["PA"]), -values["DA"]),
-        "B": scaled(direction(values["TB"] + values["PB"]), values["DB"]),
+        "A": -values["DA"] * unit(values["TA"] + values["PA"]),
+        "B": values["DB"] * unit(values["TB"] + values["PB"]),
     }
-    front = {"A": scaled(direction(values["TA"]), -1.0), "B": direction(values["TB"])}
+    front = {"A": -unit(values["TA"]), "B": unit(values["TB"])}
     apart = values["DA"] == 0 == values["DB"]
-    sizes = _sizes(values, reach, front, outlines or {})
+    sizes = _sizes(values, reach, front, outlines)
     vehicles = []
-    for name, side in (("A", 1.0), ("B", -1.0)):
+    for name, inward in (("A", normal), ("B", -normal)):
         length, width = sizes[name]
-        center = scaled(reach[name], -1.0)
+        center = -reach[name]
         if apart:
-            along, across = dot(front[name], normal), dot(front[name], tangent)
-            half = (abs(along) * length + abs(across) * width) / 2
-            center = scaled(normal, side * half)
-        outline = _rectangle(center, front[name], length, width)
-        inward = scaled(normal, side)
-        kept = outline
-        if dot(center, inward) > 0.15 * width:
-            kept = _clipped(outline, inward)
-        other = "B" if name == "A" else "A"
-        heavy, light = abs(values["M" + name]), abs(values["M" + other])
+            turned = front[name] * normal.conjugate()
+            center = inward * (abs(turned.real) * length + abs(turned.imag) * width) / 2
+        outline = tuple(
+            center + front[name] * complex(i * length, j * width) / 2
+            for i, j in ((1, -1), (1, 1), (-1, 1), (-1, -1))
+        )
+        cut = _depth(center, inward) > 0.15 * width
+        heavy, light = (abs(values[f"M{which}"]) for which in (name, "B" if name == "A" else "A"))
         vehicles.append(
             Vehicle(
                 name,
@@ -139,66 +152,48 @@ def plan(
                 length,
                 width,
                 outline,
-                kept,
-                heavy >= WALL * light and before[name] == ((0.0, 0.0), 0.0),
+                _clipped(outline, inward) if cut else outline,
+                heavy >= WALL * light and before[name] == (0, 0),
                 before[name],
-                final.get(name),
+                after.get(name),
             )
         )
-    impulse = None
-    if "A" in final:
-        # momentum of the lighter vehicle: a wall's change of velocity has no digits left
-        moved, sense = ("B", -1.0) if vehicles[0].wall else ("A", 1.0)
-        change = minus(final[moved].velocity, before[moved].velocity)
-        impulse = scaled(change, sense * values["M" + moved])
-    remarks = _remarks(result, values)
-    measured = tuple(name for name in "AB" if outlines and f"L{name}" in outlines)
-    pair = (vehicles[0], vehicles[1])
-    return Plan(pair, normal, tangent, impulse, apart, remarks, values, measured)
+    # momentum of the lighter vehicle: a wall's change of velocity has no digits left
+    moved, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
+    impulse = None if moved.change is None else sense * values[f"M{moved.name}"] * moved.change
+    whole = {**values, **(result or {})}
+    return Plan(
+        (vehicles[0], vehicles[1]),
+        normal,
+        1j * normal,
+        impulse,
+        apart,
+        tuple(sentences(int(whole.get("STATUS") or 0), whole)),
+        values,
+        tuple(name for name in "AB" if f"L{name}" in outlines),
+    )
 
 
-def _finals(result: Mapping[str, Any] | None) -> dict[str, Motion]:
+def _finals(result: Mapping[str, Any]) -> dict[str, Motion]:
     def number(name: str, default: float = math.nan) -> float:
-        value = default if result is None else result.get(name, default)
+        value = result.get(name, default)
         return default if value is None else float(value)
 
     finals = {
-        "A": Motion((number("VAX"), number("VAY")), number("WAF", 0.0)),
-        "B": Motion((number("VBX"), number("VBY")), number("WBF", 0.0)),
+        v: Motion(complex(number(f"V{v}X"), number(f"V{v}Y")), number(f"W{v}F", 0.0)) for v in "AB"
     }
-    finite = all(map(math.isfinite, (x for m in finals.values() for x in m.velocity)))
-    return finals if finite else {}
+    return finals if all(math.isfinite(motion.speed) for motion in finals.values()) else {}
 
 
-def _remarks(result: Mapping[str, Any] | None, values: Mapping[str, Any]) -> tuple[str, ...]:
-    whole = {**values, **(result or {})}
-    return tuple(sentences(int(whole.get("STATUS") or 0), whole))
-
-
-def direction(degrees: float) -> Point:
-    return (math.cos(math.radians(degrees)), math.sin(math.radians(degrees)))
-
-
-def scaled(vector: Point, factor: float) -> Point:
-    return (factor * vector[0], factor * vector[1])
-
-
-def plus(first: Point, second: Point) -> Point:
-    return (first[0] + second[0], first[1] + second[1])
-
-
-def minus(first: Point, second: Point) -> Point:
-    return (first[0] - second[0], first[1] - second[1])
-
-
-def dot(first: Point, second: Point) -> float:
-    return first[0] * second[0] + first[1] * second[1]
+def _depth(point: complex, inward: complex) -> float:
+    """How far a point lies to the ``inward`` side of the contact plane."""
+    return (point * inward.conjugate()).real
 
 
 def _sizes(
     values: Mapping[str, float],
-    reach: Mapping[str, Point],
-    front: Mapping[str, Point],
+    reach: Mapping[str, complex],
+    front: Mapping[str, complex],
     outlines: Mapping[str, float],
 ) -> dict[str, tuple[float, float]]:
     """Length and width of both vehicles, see the module's text."""
@@ -213,31 +208,24 @@ def _sizes(
     usual = max(lengths.values(), default=1.0)
     sizes = {}
     for name in "AB":
+        length = lengths.get(name, usual)
+        contact = reach[name] * front[name].conjugate()
+        sizes[name] = (
+            max(length, 2 * abs(contact.real)),
+            max(length / PROPORTION, 2 * abs(contact.imag)),
+        )
         if f"L{name}" in outlines:
             sizes[name] = (outlines[f"L{name}"], outlines[f"B{name}"])
-            continue
-        length = lengths.get(name, usual)
-        x = dot(reach[name], front[name])
-        y = dot(reach[name], (-front[name][1], front[name][0]))
-        sizes[name] = (max(length, 2 * abs(x)), max(length / PROPORTION, 2 * abs(y)))
     return sizes
 
 
-def _rectangle(center: Point, front: Point, length: float, width: float) -> tuple[Point, ...]:
-    left = (-front[1], front[0])
-    return tuple(
-        plus(center, plus(scaled(front, i * length / 2), scaled(left, j * width / 2)))
-        for i, j in ((1, -1), (1, 1), (-1, 1), (-1, -1))
-    )
-
-
-def _clipped(outline: Sequence[Point], inward: Point) -> tuple[Point, ...]:
+def _clipped(outline: Sequence[complex], inward: complex) -> tuple[complex, ...]:
     """What of a convex outline lies on the ``inward`` side of the line through the origin."""
-    result: list[Point] = []
-    for start, end in zip(outline, (*outline[1:], outline[0]), strict=True):
-        first, second = dot(start, inward), dot(end, inward)
+    result: list[complex] = []
+    for start, end in pairwise((*outline, outline[0])):
+        first, second = _depth(start, inward), _depth(end, inward)
         if first >= 0:
             result.append(start)
         if first * second < 0:
-            result.append(plus(start, scaled(minus(end, start), first / (first - second))))
+            result.append(start + (end - start) * first / (first - second))
     return tuple(result)

@@ -9,23 +9,30 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..reconstruction.impulse import clock
 from ..units import RULES, System, system_of
 from . import drawing as d
-from .drawing import Box, Drawing, Path, Point, Text
+from .drawing import ROW, Box, Drawing, Path, Text, View, short
 from .labels import Label, place
-from .scenegeometry import Plan, Vehicle, dot, minus, plan, plus, scaled
+from .scenegeometry import Plan, Vehicle, plan
 from .svg import Svg, svg
 
 COLOURS = {"A": d.BLUE, "B": d.VERMILION}
 TINTS = {"A": "#d6e8f3", "B": "#fbe6d8"}
 IMPULSE = "#a03c78"
 """A darker reddish purple than Okabe and Ito's: thin lines need it on white."""
-
-_MARGIN = 6.0
-TEXT = 6.5
-ROW = 3.4
+PLANE = (2.4, 0.8, 0.4, 0.8)
+"""Dashes of the contact plane."""
+ARROWS: dict[str, tuple[str, float, tuple[float, ...], float]] = {
+    "before": ("v", 0.45, (1.3, 0.7), 2.2),
+    "after": ("V", 0.65, (), 2.5),
+    "change": ("ΔV", 0.3, (0.4, 0.5), 1.8),
+}
+"""Velocities of a vehicle: symbol, width, dashes and head of the arrow."""
 FIELD = 70.0
 """Largest height in mm of the drawing proper."""
+_MARGIN = 6.0
+_SPEED, _LENGTH, _SPIN, _IMPULSE = "length/time", "length", "rad/time", "mass·length/time"
 
 
 def scene_drawing(
@@ -41,22 +48,27 @@ def scene_drawing(
     Velocities before the impact end at the center of gravity, those after it start there, in one
     scale; both vehicles' spins turn around their centers.
     """
+    shapes, units = planned(scene, result, units, outlines)
+    drawing = Drawing(width, title, description(shapes, units))
+    y = drawing.heading()
+    field = _Field(shapes, width, y)
+    field.draw(drawing)
+    y = _key(drawing, field, field.frame.bottom - ROW, units) - 2.4
+    drawing.items.append(Path((2 + 1j * y, width - 2 + 1j * y), d.GREY, 0.2))
+    y = table_and_notes(drawing, shapes, y, units)
+    return drawing
+
+
+def planned(
+    scene: Any,
+    result: Mapping[str, Any] | None,
+    units: System | None,
+    outlines: Mapping[str, float] | None,
+) -> tuple[Plan, System]:
+    """A scene in plan, with outlines and units as it carries them unless they are given."""
     if outlines is None and hasattr(scene, "entries"):
         outlines = scene.entries.outlines
-    shapes = plan(scene, result, outlines)
-    if units is None:
-        units = system_of(getattr(scene, "units", None))
-    field = _Field(shapes, width)
-    notes = notes_of(shapes, units, width - 4)
-    footer = ROW * (4 + 3 + len(notes)) + 5.5
-    head = _wrapped(title, (width - 4) / d.BOLD)
-    height = field.height + footer + ROW * len(head)
-    drawing = Drawing(width, height, title, description(shapes, units))
-    for line, text in enumerate(head, 1):
-        drawing.items.append(Text(2.0, height - ROW * line, text, 7, bold=True, role="title"))
-    field.draw(drawing, footer)
-    _legend(drawing, shapes, field, footer, notes, units)
-    return drawing
+    return plan(scene, result, outlines), units or system_of(getattr(scene, "units", None))
 
 
 def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
@@ -76,343 +88,204 @@ def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
 
 
 class _Field:
-    """The drawing proper: where a point of the plan is on paper."""
+    """The drawing proper: vehicles and arrows, and where they are on paper below ``top``."""
 
-    def __init__(self, shapes: Plan, width: float, margin: float = _MARGIN) -> None:
+    def __init__(self, shapes: Plan, width: float, top: float) -> None:
         self.shapes = shapes
-        self.speed = max(
-            [v.before.speed for v in shapes.vehicles]
-            + [v.after.speed for v in shapes.vehicles if v.after]
-        )
-        vehicles = [vehicle for vehicle in shapes.vehicles if not vehicle.wall]
-        self.size = max(vehicle.length for vehicle in vehicles or shapes.vehicles)
+        motions = [m for v in shapes.vehicles for m in (v.before, v.after) if m]
+        self.speed = max(motion.speed for motion in motions)
+        self.size = max(vehicle.length for vehicle in shapes.bodies or shapes.vehicles)
         self.per_speed = 0.95 * self.size / self.speed if self.speed else 0.0
+        self.half = 0.62 * self.size * shapes.tangent
+        """From the contact point to the end of the contact plane."""
+        self.force = None
+        if shapes.impulse:
+            self.force = 0.5 * self.size * shapes.impulse / abs(shapes.impulse)
         box = d.extent(self._points())
-        room = width - 2 * margin
-        self.scale = min(
-            room / (box.right - box.left),
-            (FIELD + 0.3 * (width - d.COLUMN) - 2 * margin) / (box.top - box.bottom),
-        )
-        self.height = self.scale * (box.top - box.bottom) + 2 * margin
-        self.origin = (
-            (width - self.scale * (box.left + box.right)) / 2,
-            margin - self.scale * box.bottom,
-        )
+        tallest = FIELD + 0.3 * (width - d.COLUMN) - 2 * _MARGIN
+        scale = min((width - 2 * _MARGIN) / box.width, tallest / box.height)
+        bottom = top - scale * box.height - 2 * _MARGIN
+        self.frame = Box(0.8, bottom, width - 0.8, top - 0.4)
+        left = (width - scale * (box.left + box.right)) / 2
+        self.at = View(complex(left, bottom + _MARGIN - scale * box.bottom), scale)
 
-    def _points(self) -> list[Point]:
-        points: list[Point] = [(0.0, 0.0)]
+    def _points(self) -> list[complex]:
+        # the n axis stands at the plane's end
+        points = [0j, self.half, -self.half, self.half + 0.3 * self.size * self.shapes.normal]
         for vehicle in self.shapes.vehicles:
             if vehicle.wall:
-                points += self.wall_face(vehicle)
+                points += self._face(vehicle)
             else:
                 points += vehicle.outline
-                for start, end in self.arrows(vehicle).values():
-                    points += [start, end]
-        half = self.plane_half()
-        points += [scaled(self.shapes.tangent, half), scaled(self.shapes.tangent, -half)]
-        # the n axis stands at the plane's end
-        points.append(
-            plus(scaled(self.shapes.tangent, half), scaled(self.shapes.normal, 0.3 * self.size))
-        )
-        if tip := self.impulse_end():
-            points += [tip, scaled(tip, -1.0)]
-        return points
+                points += [end for ends in self._arrows(vehicle).values() for end in ends]
+        return [*points, self.force, -self.force] if self.force else points
 
-    def plane_half(self) -> float:
-        """How far the contact plane is drawn to either side."""
-        return 0.62 * self.size
-
-    def wall_face(self, vehicle: Vehicle) -> list[Point]:
+    def _face(self, vehicle: Vehicle) -> list[complex]:
         """Four corners of the strip a wall is drawn as."""
-        inward = scaled(self.shapes.normal, 1.0 if vehicle.name == "A" else -1.0)
-        half = scaled(self.shapes.tangent, self.plane_half())
-        depth = scaled(inward, 0.12 * self.size)
-        return [
-            scaled(half, -1.0),
-            half,
-            plus(half, depth),
-            minus(depth, half),
-        ]
+        depth = (0.12 if vehicle.name == "A" else -0.12) * self.size * self.shapes.normal
+        return [-self.half, self.half, self.half + depth, depth - self.half]
 
-    def arrows(self, vehicle: Vehicle) -> dict[str, tuple[Point, Point]]:
+    def _arrows(self, vehicle: Vehicle) -> dict[str, tuple[complex, complex]]:
         """Start and end of the velocities of a vehicle that moves, in the plan's units."""
         result = {}
-        least = 1e-3 * self.speed
+        least, center = 1e-3 * self.speed, vehicle.center
+        coming = self.per_speed * vehicle.before.velocity
         if vehicle.before.speed > least:
-            run = scaled(vehicle.before.velocity, self.per_speed)
-            result["before"] = (minus(vehicle.center, run), vehicle.center)
-        if vehicle.after and vehicle.after.speed > least:
-            run = scaled(vehicle.after.velocity, self.per_speed)
-            start = vehicle.center
-            if "before" in result:
+            result["before"] = (center - coming, center)
+        if vehicle.after is None or vehicle.change is None:
+            return result
+        if vehicle.after.speed > least:
+            run = self.per_speed * vehicle.after.velocity
+            start = center
+            turned = run * coming.conjugate()
+            if "before" in result and turned.real < -0.97 * abs(turned):
                 # coming and going on one line: the way back is drawn beside the way in
-                back = vehicle.before.velocity
-                cosine = dot(back, run) / (math.hypot(*back) * math.hypot(*run))
-                if cosine < -0.97:
-                    unit = scaled(back, 1 / math.hypot(*back))
-                    start = plus(start, scaled((-unit[1], unit[0]), 0.06 * self.size))
-            result["after"] = (start, plus(start, run))
-        if vehicle.after:
-            change = minus(vehicle.after.velocity, vehicle.before.velocity)
-            # where one of the two is zero, the change lies on the other
-            if min(vehicle.before.speed, vehicle.after.speed, math.hypot(*change)) > least:
-                end = plus(vehicle.center, scaled(change, self.per_speed))
-                result["change"] = (vehicle.center, end)
+                start += 0.06j * self.size * coming / abs(coming)
+            result["after"] = (start, start + run)
+        # where one of the two is zero, the change lies on the other
+        if min(vehicle.before.speed, vehicle.after.speed, abs(vehicle.change)) > least:
+            result["change"] = (center, center + self.per_speed * vehicle.change)
         return result
 
-    def impulse_end(self) -> Point | None:
-        """Where the impulse's arrow from the contact point ends; None when there is none."""
-        impulse = self.shapes.impulse
-        if impulse is None or math.hypot(*impulse) == 0:
-            return None
-        return scaled(impulse, 0.5 * self.size / math.hypot(*impulse))
-
-    def _draw_impulse(self, items: list[Path | Text], labels: list[Label], at: Any) -> None:
-        """The force on each vehicle, and from where on its clock it comes."""
-        if not (end := self.impulse_end()):
-            return
-        for vehicle, sense, sign in zip(self.shapes.vehicles, (1.0, -1.0), "P−", strict=True):
-            if vehicle.wall:
-                continue
-            tip = scaled(end, sense)
-            role = "impulse" if sign == "P" else "opposite impulse"
-            width, head = (0.9, 2.8) if sign == "P" else (0.45, 2.2)
-            items += d.arrow(at((0.0, 0.0)), at(tip), IMPULSE, width, head=head, role=role)
-            text = f"{sign.strip('P')}P, {clock_of(vehicle, self.shapes.impulse)}"
-            labels.append(Label(at(tip), tip, text, 7.5, IMPULSE, sign == "P", f"{role} label"))
-
-    def paper(self, point: Point, footer: float = 0.0) -> Point:
-        """A point of the plan on paper."""
-        return (
-            self.origin[0] + self.scale * point[0],
-            footer + self.origin[1] + self.scale * point[1],
-        )
-
-    def draw(self, drawing: Drawing, footer: float) -> None:
-        """Everything above the legend, then the labels."""
-
-        def at(point: Point) -> Point:
-            return self.paper(point, footer)
-
-        def ats(points: Sequence[Point]) -> tuple[Point, ...]:
-            return tuple(at(point) for point in points)
-
-        items = drawing.items
+    def draw(self, drawing: Drawing) -> None:
+        """Everything, then the labels."""
+        at, items = self.at, drawing.items
         labels: list[Label] = []
-        bodies = [vehicle for vehicle in self.shapes.vehicles if not vehicle.wall]
         for vehicle in self.shapes.vehicles:
             if vehicle.wall:
-                self._draw_wall(items, vehicle, ats)
-        draw_bodies(items, bodies, ats)
-        self._draw_plane(items, labels, at)
-        for vehicle in self.shapes.vehicles:
-            if not vehicle.wall:
-                self._draw_motion(items, labels, vehicle, at)
-        self._draw_impulse(items, labels, at)
-        contact = at((0.0, 0.0))
-        items.append(Path(d.circle(contact, 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
-        items.append(Path(d.circle(contact, 0.2), None, fill=d.BLACK))
-        away = scaled(self.shapes.tangent, -1.0)
-        labels.append(Label(contact, away, "C", 8.0, d.BLACK, False, "contact label"))
-        for vehicle in self.shapes.vehicles:
-            colour = COLOURS[vehicle.name]
-            where, towards = at(vehicle.center), scaled(vehicle.front, -1.0)
-            if vehicle.wall:
-                face = self.wall_face(vehicle)
-                where = at(scaled(plus(face[2], face[3]), 0.5))
-                towards = minus(face[3], face[0])
-            labels.insert(
-                0, Label(where, towards, vehicle.name, 10, colour, True, f"{vehicle.name} label")
-            )
-        draw_axes(drawing, footer, footer + self.height)
-        frame = Box(0.8, footer, drawing.width - 0.8, footer + self.height - 0.4)
-        place(drawing, labels, frame)
+                self._draw_wall(items, labels, vehicle)
+            else:
+                towards = -vehicle.front
+                labels.append(name_label(vehicle, at(vehicle.center), towards))
+        draw_bodies(items, self.shapes.bodies, at)
+        self._draw_plane(items, labels)
+        for vehicle in self.shapes.bodies:
+            self._draw_motion(items, labels, vehicle)
+        self._draw_impulse(items, labels)
+        items.append(Path(d.circle(at(0), 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
+        items.append(Path(d.circle(at(0), 0.2), None, fill=d.BLACK))
+        labels.append(Label(at(0), -self.shapes.tangent, "C", role="contact label"))
+        draw_axes(drawing, self.frame)
+        place(drawing, labels, self.frame)
 
-    def _draw_wall(self, items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
-        face = self.wall_face(vehicle)
-        role = f"{vehicle.name} wall"
-        items.append(Path(ats(face), None, fill=TINTS[vehicle.name], role=role))
-        items.append(Path(ats(face[:2]), COLOURS[vehicle.name], 0.7, role=role))
+    def _draw_wall(self, items: list[Path | Text], labels: list[Label], vehicle: Vehicle) -> None:
+        first, second, third, fourth = self.at.all(self._face(vehicle))
+        colour, role = COLOURS[vehicle.name], f"{vehicle.name} wall"
+        items.append(
+            Path((first, second, third, fourth), None, fill=TINTS[vehicle.name], role=role)
+        )
+        items.append(Path((first, second), colour, 0.7, role=role))
         for step in range(12):
-            low = plus(face[0], scaled(minus(face[1], face[0]), (step + 0.5) / 12))
-            high = plus(face[3], scaled(minus(face[2], face[3]), (step + 1) / 12))
-            items.append(Path(ats([low, high]), COLOURS[vehicle.name], 0.2, role=role))
+            low = first + (second - first) * (step + 0.5) / 12
+            high = fourth + (third - fourth) * (step + 1) / 12
+            items.append(Path((low, high), colour, 0.2, role=role))
+        labels.append(name_label(vehicle, (third + fourth) / 2, fourth - first))
 
-    def _draw_plane(self, items: list[Path | Text], labels: list[Label], project: Any) -> None:
-        half = scaled(self.shapes.tangent, self.plane_half())
-        plane = (project(scaled(half, -1.0)), project(half))
-        items.append(Path(plane, d.BLACK, 0.3, (2.4, 0.8, 0.4, 0.8), role="contact plane"))
-        corner = scaled(half, 0.72)
-        for unit, name in ((self.shapes.normal, "n"), (self.shapes.tangent, "t")):
-            end = plus(corner, scaled(unit, 0.28 * self.size))
-            if name == "t":
-                end = scaled(half, 1.0)
-            items += d.arrow(
-                project(corner), project(end), d.BLACK, 0.35, head=1.8, role=f"{name} axis"
-            )
-            labels.append(Label(project(end), unit, name, 8, d.BLACK, False, f"{name} label"))
+    def _draw_plane(self, items: list[Path | Text], labels: list[Label]) -> None:
+        items.append(
+            Path(self.at.all([-self.half, self.half]), d.BLACK, 0.3, PLANE, role="contact plane")
+        )
+        corner = 0.72 * self.half
+        normal = corner + 0.28 * self.size * self.shapes.normal
+        for name, end in (("n", normal), ("t", self.half)):
+            start, tip = self.at.all([corner, end])
+            items += d.arrow(start, tip, d.BLACK, 0.35, head=1.8, role=f"{name} axis")
+            labels.append(Label(tip, tip - start, name, role=f"{name} label"))
 
-    def _draw_motion(
-        self, items: list[Path | Text], labels: list[Label], vehicle: Vehicle, project: Any
-    ) -> None:
+    def _draw_motion(self, items: list[Path | Text], labels: list[Label], vehicle: Vehicle) -> None:
         colour, name = COLOURS[vehicle.name], vehicle.name.lower()
-        center = project(vehicle.center)
-        for kind, (start, end) in self.arrows(vehicle).items():
+        center = self.at(vehicle.center)
+        for kind, ends in self._arrows(vehicle).items():
             symbol, width, dash, head = ARROWS[kind]
+            start, end = self.at.all(ends)
             role = f"{vehicle.name} {kind}"
-            items += d.arrow(project(start), project(end), colour, width, dash, head, role)
-            at, back = (start, end) if kind == "before" else (end, start)
-            text = f"{symbol}_{name}"
-            labels.append(
-                Label(project(at), minus(at, back), text, 8, colour, False, f"{text} label")
-            )
-        least = 1e-4 * self.speed / self.size
-        turns: list[tuple[str, float, float, tuple[float, ...]]]
-        turns = [("ω", vehicle.before.spin, 2.9, (0.9, 0.6))]
-        if vehicle.after:
-            turns.append(("Ω", vehicle.after.spin, 3.9, ()))
-        opening = math.degrees(math.atan2(vehicle.front[1], vehicle.front[0])) + 180
-        for symbol, spin, radius, dash in turns:
-            if not abs(spin) > least:
+            items += d.arrow(start, end, colour, width, dash, head, role)
+            text, at = f"{symbol}_{name}", start if kind == "before" else end
+            towards = 2 * at - start - end
+            labels.append(Label(at, towards, text, colour=colour, role=f"{text} label"))
+        turns = [("ω", vehicle.before, 2.9, (0.9, 0.6)), ("Ω", vehicle.after, 3.9, ())]
+        for symbol, motion, radius, dash in turns:
+            if motion is None or not abs(motion.spin) > 1e-4 * self.speed / self.size:
                 continue
-            role = f"{vehicle.name} spin"
             items += d.turning_arrow(
-                center, radius, spin > 0, colour, 0.4, dash, opening, role=role
+                *(center, radius, motion.spin > 0, colour, 0.4, dash),
+                opening=d.degrees(-vehicle.front),
+                role=f"{vehicle.name} spin",
             )
-            edge = plus(center, scaled(vehicle.front, radius))
-            text = f"{symbol}_{name}"
-            labels.append(Label(edge, minus(edge, center), text, 8, colour, False, f"{text} label"))
-        items.append(
-            Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=f"{vehicle.name} center")
-        )
+            edge, text = center + radius * vehicle.front, f"{symbol}_{name}"
+            labels.append(Label(edge, vehicle.front, text, colour=colour, role=f"{text} label"))
+        role = f"{vehicle.name} center"
+        items.append(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=role))
+
+    def _draw_impulse(self, items: list[Path | Text], labels: list[Label]) -> None:
+        """The force on each vehicle, and from where on its clock it comes."""
+        if not self.force or not self.shapes.impulse:
+            return
+        for vehicle in self.shapes.bodies:
+            acted = vehicle.name == "A"
+            force = self.force if acted else -self.force
+            role = "impulse" if acted else "opposite impulse"
+            width, head = (0.9, 2.8) if acted else (0.45, 2.2)
+            tip = self.at(force)
+            items += d.arrow(self.at(0), tip, IMPULSE, width, head=head, role=role)
+            text = f"{'P' if acted else '−P'}, {clock(vehicle.pdof(self.shapes.impulse))}"
+            labels.append(Label(tip, force, text, 7.5, IMPULSE, acted, f"{role} label"))
 
 
-ARROWS: dict[str, tuple[str, float, tuple[float, ...], float]] = {
-    "before": ("v", 0.45, (1.3, 0.7), 2.2),
-    "after": ("V", 0.65, (), 2.5),
-    "change": ("ΔV", 0.3, (0.4, 0.5), 1.8),
-}
-"""Velocities of a vehicle: symbol, width, dashes and head of the arrow."""
-
-
-def draw_axes(drawing: Drawing, bottom: float, top: float) -> None:
-    """The x and y axes, in the corner between ``bottom`` and ``top`` with the fewest lines."""
-    segments = list(drawing.segments())
-    side = 9.0
-    boxes = [
-        Box(left, low, left + side, low + side)
-        for left in (1.0, drawing.width - side - 1.0)
-        for low in (bottom + 0.5, top - side - 0.5)
-    ]
-    box = min(boxes, key=lambda box: sum(box.crosses(*segment) for segment in segments))
-    origin = (box.left + 1.0, box.bottom + 1.0)
-    for unit, name in (((1.0, 0.0), "x"), ((0.0, 1.0), "y")):
-        end = plus(origin, scaled(unit, 5.5))
-        drawing.items += d.arrow(origin, end, d.GREY, 0.25, head=1.5, role=f"{name} axis")
-        shift = (0.7, -0.7) if name == "x" else (0.6, -0.2)
-        drawing.items.append(
-            Text(
-                *plus(end, shift),
-                name,
-                7,
-                colour=d.GREY,
-                role=f"{name} label",
-            )
-        )
-
-
-def draw_bodies(items: list[Path | Text], vehicles: Sequence[Vehicle], ats: Any) -> None:
-    """Vehicles' outlines, what of them is crushed, and marks that show their fronts; ``ats`` maps
-    points of the plan to paper. All lines lie over all grounds: what of one vehicle is crushed lies
-    in the other."""
-    for vehicle in vehicles:
-        items.append(Path(ats(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
-    for vehicle in vehicles:
-        _draw_lines(items, vehicle, ats)
-
-
-def _draw_lines(items: list[Path | Text], vehicle: Vehicle, ats: Any) -> None:
+def name_label(vehicle: Vehicle, at: complex, towards: complex, size: float = 10) -> Label:
+    """A vehicle's name beside ``at``."""
     colour = COLOURS[vehicle.name]
-    outline = (*vehicle.outline, vehicle.outline[0])
-    if vehicle.kept != vehicle.outline:
-        items.append(Path(ats(outline), colour, 0.25, (0.7, 0.5), role=f"{vehicle.name} whole"))
-    items.append(
-        Path(
-            ats((*vehicle.kept, vehicle.kept[0])),
-            colour,
-            0.45,
-            role=f"{vehicle.name} outline",
-        )
-    )
-    # the front: a windscreen's line and an arrowhead, as on a police sketch
-    left = (-vehicle.front[1], vehicle.front[0])
-    for along, across in ((0.22, 0.38), (-0.3, 0.36)):
-        middle = plus(vehicle.center, scaled(vehicle.front, along * vehicle.length))
-        half = scaled(left, across * vehicle.width)
-        items.append(
-            Path(ats([minus(middle, half), plus(middle, half)]), colour, 0.2, role="glass")
-        )
-    nose = plus(vehicle.center, scaled(vehicle.front, 0.36 * vehicle.length))
-    back = plus(vehicle.center, scaled(vehicle.front, 0.25 * vehicle.length))
-    half = scaled(left, 0.16 * vehicle.width)
-    tip = [plus(back, half), nose, minus(back, half)]
-    items.append(Path(ats(tip), colour, 0.3, role="heading"))
+    return Label(at, towards, vehicle.name, size, colour, True, f"{vehicle.name} label")
 
 
-def short(value: float) -> str:
-    """A number to four digits (three and an exponent where very large or small), with a true minus
-    sign."""
-    text = f"{value:.4g}"
-    return (f"{value:.3g}" if "e" in text else text).replace("-", "−")
+def draw_axes(drawing: Drawing, frame: Box) -> None:
+    """The x and y axes, in the corner of ``frame`` with the fewest lines."""
+    side = 9.0
+    corners = [
+        complex(x, y)
+        for x in (frame.left, frame.right - side)
+        for y in (frame.bottom + 0.5, frame.top - side)
+    ]
+    boxes = [d.extent((corner, corner + side * (1 + 1j))) for corner in corners]
+    ends = [path.points for path in drawing.paths() if path.stroke]
+    crowd = [sum(box.overlaps(d.extent(points)) for points in ends) for box in boxes]
+    origin = corners[crowd.index(min(crowd))] + 1 + 1j
+    for along, name, shift in ((1, "x", 0.7 - 0.7j), (1j, "y", 0.6 - 0.2j)):
+        end = origin + 5.5 * along
+        drawing.items += d.arrow(origin, end, d.GREY, 0.25, head=1.5, role=f"{name} axis")
+        drawing.items.append(Text(end + shift, name, 7, colour=d.GREY, role=f"{name} label"))
 
 
-def notes_of(shapes: Plan, units: System, room: float) -> list[str]:
-    """What a reader must know of a drawing, in lines of that many mm."""
-    notes = []
-    for vehicle in shapes.vehicles:
-        if vehicle.name in shapes.measured:
-            size = (short(units.shown(_LENGTH, x)) for x in (vehicle.length, vehicle.width))
-            unit = "" if units is RULES else " " + units.label(_LENGTH)
-            notes.append(f"{vehicle.name} drawn as measured, {' by '.join(size)}{unit}.")
-    assumed = [v.name for v in shapes.vehicles if v.name not in shapes.measured]
-    if assumed:
-        whose = "Outlines" if len(assumed) == 2 else f"Outline of {assumed[0]}"
-        notes.append(f"{whose} from I/m, L/W = 2.6: not measured.")
-    if not any(vehicle.wall for vehicle in shapes.vehicles):
-        speed = short(units.shown(_SPEED, shapes.closing))
-        notes.append(f"Closing speed {speed}{'' if units is RULES else ' ' + units.label(_SPEED)}.")
-    if units is not RULES:
-        notes.append(f"Speeds in {units.label(_SPEED)}, spins in {units.label(_SPIN)}.")
-    notes = [" ".join(notes)]
-    if shapes.apart:
-        notes.append("Point masses: drawn moved apart along n.")
-    if any(vehicle.wall for vehicle in shapes.vehicles):
-        notes.append("The hatched vehicle's mass makes it a rigid barrier.")
-    notes += [f"Remark: {remark}." for remark in shapes.remarks]
-    return [line for note in notes for line in _wrapped(note, room)]
+def draw_bodies(items: list[Path | Text], vehicles: Sequence[Vehicle], at: View) -> None:
+    """Vehicles' outlines, what of them is crushed, and marks that show their fronts. All lines lie
+    over all grounds: what of one vehicle is crushed lies in the other."""
+    for vehicle in vehicles:
+        items.append(Path(at.all(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
+    for vehicle in vehicles:
+        colour, name = COLOURS[vehicle.name], vehicle.name
+
+        def line(
+            points: Sequence[complex],
+            width: float,
+            role: str,
+            dash: tuple[float, ...] = (),
+            colour: str = colour,
+        ) -> None:
+            items.append(Path(at.all(points), colour, width, dash, role=role))
+
+        if vehicle.kept != vehicle.outline:
+            line((*vehicle.outline, vehicle.outline[0]), 0.25, f"{name} whole", (0.7, 0.5))
+        line((*vehicle.kept, vehicle.kept[0]), 0.45, f"{name} outline")
+        # the front: windscreen, rear window and an arrowhead, as on a police sketch
+        along, across = vehicle.front * vehicle.length, 1j * vehicle.front * vehicle.width
+        for place_, half in ((0.22, 0.38), (-0.3, 0.36)):
+            middle = vehicle.center + place_ * along
+            line((middle - half * across, middle + half * across), 0.2, "glass")
+        nose, back = vehicle.center + 0.36 * along, vehicle.center + 0.25 * along
+        line((back + 0.16 * across, nose, back - 0.16 * across), 0.3, "heading")
 
 
-def clock_of(vehicle: Vehicle, impulse: Point | None) -> str:
-    """The hour from which the force on a vehicle comes; ``impulse`` acts on A."""
-    return f"{round(pdof(vehicle, impulse) / 30) % 12 or 12} o'clock" if impulse else ""
-
-
-def pdof(vehicle: Vehicle, impulse: Point) -> float:
-    """Where the force on a vehicle comes from, in degrees clockwise from its front."""
-    source = scaled(impulse, -1.0 if vehicle.name == "A" else 1.0)
-    across = vehicle.front[0] * source[1] - vehicle.front[1] * source[0]
-    return -math.degrees(math.atan2(across, dot(vehicle.front, source)))
-
-
-def _wrapped(text: str, room: float) -> list[str]:
-    lines = [""]
-    for word in text.split():
-        longer = f"{lines[-1]} {word}".strip()
-        if d.text_width(longer, TEXT) > room and lines[-1]:
-            lines.append(word)
-        else:
-            lines[-1] = longer
-    return lines
+# --- below the drawing ---------------------------------------------------------------------------
 
 
 def _round_below(value: float) -> float:
@@ -423,84 +296,56 @@ def _round_below(value: float) -> float:
     return max(step * power for step in (1, 2, 5) if step * power <= value * (1 + 1e-12))
 
 
-def _legend(
-    drawing: Drawing,
-    shapes: Plan,
-    field: _Field,
-    footer: float,
-    notes: Sequence[str],
-    units: System,
-) -> None:
-    """Key, scales, table and notes below the drawing."""
-    items = drawing.items
-    left, middle = 2.0, 44.0
-    y = footer - ROW
-    sample = 8.0
+def with_unit(value: float, rule: str, units: System) -> str:
+    """An amount in the units shown, named where they have names."""
+    return (
+        f"{short(units.shown(rule, value))} {'' if units is RULES else units.label(rule)}".strip()
+    )
 
-    def entry(x: float, y: float, paths: list[Path], text: str) -> None:
-        items.extend(paths)
-        items.append(Text(x + sample + 1.5, y - 0.8, text, TEXT, role="legend"))
 
-    def velocity(y: float, kind: str, text: str) -> None:
-        _, width, dash, head = ARROWS[kind]
-        entry(left, y, d.arrow((left, y), (left + sample, y), d.BLACK, width, dash, head), text)
+def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
+    """What the lines mean, and their scales; returns the last line's place."""
+    shapes, sample = field.shapes, 8.0
+    left, middle = [], []
 
-    velocity(y, "before", "velocity before")
-    plane = [Path(((middle, y), (middle + sample, y)), d.BLACK, 0.3, (2.4, 0.8, 0.4, 0.8))]
-    entry(middle, y, plane, "contact plane, Γ = " + short(shapes.numbers["GA"]) + "°")
-    y -= ROW
-    velocity(y, "after", "velocity after")
+    def velocity(kind: str) -> list[Path]:
+        return d.arrow(0, sample, d.BLACK, *ARROWS[kind][1:])
+
+    def line(dash: tuple[float, ...], colour: str = d.BLACK) -> list[Path]:
+        return [Path((0, sample), colour, 0.3, dash)]
+
+    def scale(word: str, size: float, per_unit: float, rule: str) -> tuple[list[Path], str]:
+        """A bar of a round amount, about half of ``size``, and what it stands for."""
+        per_unit /= units.shown(rule, 1.0)
+        amount = _round_below(units.shown(rule, size) * 0.5)
+        end = per_unit * amount
+        bar = [Path((0, end), d.BLACK, 0.4, role=f"{word} scale")]
+        bar += [Path((x - 0.7j, x + 0.7j), d.BLACK, 0.4) for x in (0, end)]
+        unit = f" {units.label(rule)}"
+        return bar, f"{word} {short(amount)}" if units is RULES else short(amount) + unit
+
+    left.append((velocity("before"), "velocity before"))
+    left.append((velocity("after"), "velocity after"))
+    middle.append((line(PLANE), f"contact plane, Γ = {short(shapes.numbers['GA'])}°"))
     if field.speed:
-        per_unit = field.scale * field.per_speed / units.shown(_SPEED, 1.0)
-        _scale(items, middle, y, units.shown(_SPEED, field.speed), per_unit, _SPEED, units)
-    y -= ROW
+        per_speed = field.at.scale * field.per_speed
+        middle.append(scale("speed", field.speed, per_speed, _SPEED))
+    middle.append(scale("length", field.size, field.at.scale, _LENGTH))
     if shapes.impulse is not None:
-        velocity(y, "change", "velocity change ΔV")
-    per_unit = field.scale / units.shown(_LENGTH, 1.0)
-    _scale(items, middle, y, units.shown(_LENGTH, field.size), per_unit, _LENGTH, units)
-    y -= ROW
-    if shapes.impulse is not None:
-        size = short(math.hypot(*shapes.impulse) * units.shown("mass·length/time", 1.0))
-        unit = "" if units is RULES else " " + units.label("mass·length/time")
-        force = d.arrow((left, y), (left + sample, y), IMPULSE, 0.9, (), 2.8)
-        entry(left, y, force, f"impulse P on A, {size}{unit}")
-    if any(v.kept != v.outline and not v.wall for v in shapes.vehicles):
-        entry(
-            middle,
-            y,
-            [Path(((middle, y), (middle + sample, y)), d.GREY, 0.25, (0.7, 0.5))],
-            "crushed",
-        )
-    y -= 2.4
-    items.append(Path(((left, y), (drawing.width - left, y)), d.GREY, 0.2))
-    y = draw_table(drawing, shapes, y, units)
-    items.append(Path(((left, y + 2.0), (drawing.width - left, y + 2.0)), d.GREY, 0.2))
-    for note in notes:
-        items.append(Text(left, y - 0.9, note, TEXT, colour=d.GREY, role="note"))
-        y -= ROW
-
-
-_SPEED, _LENGTH, _SPIN = "length/time", "length", "rad/time"
-
-
-def _scale(
-    items: list[Path | Text],
-    x: float,
-    y: float,
-    size: float,
-    per_unit: float,
-    rule: str,
-    units: System,
-) -> None:
-    """A bar of a round amount, about half of ``size``, and what it stands for."""
-    amount = _round_below(size * 0.5)
-    end = x + per_unit * amount
-    word = {_SPEED: "speed", _LENGTH: "length"}[rule]
-    items.append(Path(((x, y), (end, y)), d.BLACK, 0.4, role=f"{word} scale"))
-    for tick in (x, end):
-        items.append(Path(((tick, y - 0.7), (tick, y + 0.7)), d.BLACK, 0.4))
-    text = f"{word} {short(amount)}" if units is RULES else f"{short(amount)} {units.label(rule)}"
-    items.append(Text(end + 1.5, y - 0.8, text, TEXT, role="legend"))
+        left.append((velocity("change"), "velocity change ΔV"))
+        force = d.arrow(0, sample, IMPULSE, 0.9, (), 2.8)
+        size = with_unit(abs(shapes.impulse), _IMPULSE, units)
+        left.append((force, f"impulse P on A, {size}"))
+    if any(v.kept != v.outline for v in shapes.bodies):
+        middle.append((line((0.7, 0.5), d.GREY), "crushed"))
+    for x, column in ((2.0, left), (44.0, middle)):
+        for row, (paths, text) in enumerate(column):
+            start = complex(x, y - ROW * row)
+            moved = [p._replace(points=tuple(start + point for point in p.points)) for p in paths]
+            drawing.items += moved
+            end = max(sample, d.extent(paths[0].points).right) + 1.5 - 0.8j
+            drawing.items.append(Text(start + end, text, role="legend"))
+    return y - ROW * (max(len(left), len(middle)) - 1)
 
 
 _COLUMNS = {
@@ -510,56 +355,85 @@ _COLUMNS = {
 """The table's headings and where its columns end, in mm of a drawing one column wide."""
 
 
-def draw_table(drawing: Drawing, shapes: Plan, y: float, units: System) -> float:
-    """Speeds, changes, directions and spins below ``y``; returns where what follows goes on."""
+def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> float:
+    """Speeds, changes, directions and spins below ``y``, then the notes; ends the page there."""
     y -= ROW - 0.3
     columns = [end * drawing.width / d.COLUMN for end in _COLUMNS.values()]
-    drawing.items += [
-        Text(x, y, head.replace("spin after", "after"), TEXT, "end", role="table")
-        for x, head in zip(columns, _COLUMNS, strict=True)
-    ]
+    rows = [("", d.BLACK, [head.replace("spin after", "after") for head in _COLUMNS])]
     for vehicle in shapes.vehicles:
-        y -= ROW
-        before, after = vehicle.before, vehicle.after
-        point, wall = shapes.numbers["M"] == 4, vehicle.wall
-        force = shapes.impulse if after and not wall else None
-        cells = [
-            short(units.shown(_SPEED, before.speed)),
-            short(units.shown(_SPEED, after.speed)) if after and not wall else "–",
-            short(units.shown(_SPEED, _change(vehicle))) if after and not wall else "–",
-            f"{pdof(vehicle, force):.0f}°".replace("-", "−") if force and any(force) else "–",
-            short(before.spin) if not point else "–",
-            short(after.spin) if after and not wall and not point else "–",
-        ]
-        colour = COLOURS[vehicle.name]
-        drawing.items.append(Text(2.0, y, vehicle.name, TEXT, "start", colour, True, "table"))
+        cells = _cells(vehicle, shapes, units)
+        rows.append((vehicle.name, COLOURS[vehicle.name], cells))
+    for name, colour, cells in rows:
+        if name:
+            drawing.items.append(Text(complex(2, y), name, colour=colour, bold=True, role="table"))
         drawing.items += [
-            Text(x, y, cell, TEXT, "end", role="table")
+            Text(complex(x, y), cell, anchor="end", role="table")
             for x, cell in zip(columns, cells, strict=True)
         ]
-    return y - ROW
+        y -= ROW
+    line = y + 2.0
+    drawing.items.append(Path((complex(2, line), complex(drawing.width - 2, line)), d.GREY, 0.2))
+    for note in _notes(shapes, units):
+        for text in d.wrapped(note, drawing.width - 4):
+            drawing.items.append(Text(complex(2, y - 0.9), text, colour=d.GREY, role="note"))
+            y -= ROW
+    drawing.height = 0.9 - y
+    return y
 
 
-def _change(vehicle: Vehicle) -> float:
-    """The size of a vehicle's change of velocity."""
-    assert vehicle.after is not None
-    return math.dist(vehicle.after.velocity, vehicle.before.velocity)
+def _cells(vehicle: Vehicle, shapes: Plan, units: System) -> list[str]:
+    point, after = shapes.numbers["M"] == 4, None if vehicle.wall else vehicle.after
+    impulse = shapes.impulse if after else None
+    change = abs(vehicle.change) if after and vehicle.change is not None else None
+
+    def speed(value: float | None) -> str:
+        return "–" if value is None else short(units.shown(_SPEED, value))
+
+    return [
+        speed(vehicle.before.speed),
+        speed(after and after.speed),
+        speed(change),
+        f"{vehicle.pdof(impulse):.0f}°".replace("-", "−") if impulse else "–",
+        "–" if point else short(vehicle.before.spin),
+        "–" if point or not after else short(after.spin),
+    ]
+
+
+def _notes(shapes: Plan, units: System) -> list[str]:
+    """What a reader must know of a drawing."""
+    first = []
+    for vehicle in shapes.vehicles:
+        if vehicle.name in shapes.measured:
+            length = short(units.shown(_LENGTH, vehicle.length))
+            width = with_unit(vehicle.width, _LENGTH, units)
+            first.append(f"{vehicle.name} drawn as measured, {length} by {width}.")
+    assumed = [v.name for v in shapes.vehicles if v.name not in shapes.measured]
+    if assumed:
+        whose = "Outlines" if len(assumed) == 2 else f"Outline of {assumed[0]}"
+        first.append(f"{whose} from I/m, L/W = 2.6: not measured.")
+    barrier = len(shapes.bodies) < 2
+    if not barrier:
+        first.append(f"Closing speed {with_unit(shapes.closing, _SPEED, units)}.")
+    if units is not RULES:
+        first.append(f"Speeds in {units.label(_SPEED)}, spins in {units.label(_SPIN)}.")
+    notes = [" ".join(first)]
+    if shapes.apart:
+        notes.append("Point masses: drawn moved apart along n.")
+    if barrier:
+        notes.append("The hatched vehicle's mass makes it a rigid barrier.")
+    return notes + [f"Remark: {remark}." for remark in shapes.remarks]
 
 
 def description(shapes: Plan, units: System) -> str:
     """What a drawing shows, in words."""
-
-    def speed(value: float) -> str:
-        unit = "" if units is RULES else " " + units.label(_SPEED)
-        return short(units.shown(_SPEED, value)) + unit
-
     parts = []
     for vehicle in shapes.vehicles:
-        text = f"Vehicle {vehicle.name}: speed {speed(vehicle.before.speed)} before"
-        if vehicle.after:
-            change = speed(_change(vehicle))
-            text += f", {speed(vehicle.after.speed)} after, change of velocity {change}"
-        if vehicle.after and shapes.impulse and any(shapes.impulse) and not vehicle.wall:
-            text += f", force from {clock_of(vehicle, shapes.impulse)}"
+        speed = with_unit(vehicle.before.speed, _SPEED, units)
+        text = f"Vehicle {vehicle.name}: speed {speed} before"
+        if vehicle.after and vehicle.change is not None:
+            text += f", {with_unit(vehicle.after.speed, _SPEED, units)} after, change of velocity "
+            text += with_unit(abs(vehicle.change), _SPEED, units)
+            if shapes.impulse and not vehicle.wall:
+                text += f", force from {clock(vehicle.pdof(shapes.impulse))}"
         parts.append(text + ".")
     return " ".join(parts)

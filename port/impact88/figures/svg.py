@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from .drawing import FONTS, MM_PER_POINT, Drawing, Path, Point, Text, dashes, text_runs
+from .drawing import FONTS, MM_PER_POINT, Drawing, Path, Text, dashes, text_runs
 
 
 class Svg(str):
@@ -28,23 +28,26 @@ def svg(drawing: Drawing) -> Svg:
         f"<desc>{escape(drawing.description, False)}</desc>",
         f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
     ]
-    for item in drawing.items:
-        lines.append(_path(item, drawing) if isinstance(item, Path) else _text(item, drawing))
+    lines += [_path(item) if isinstance(item, Path) else _text(item) for item in drawing.items]
     return Svg("\n".join([*lines, "</svg>", ""]))
 
 
 def _number(value: float) -> str:
-    return f"{value:.3f}".rstrip("0").rstrip(".")
+    text = f"{value:.3f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
 
 
 def _role(role: str) -> str:
     return f' class="{escape(role)}"' if role else ""
 
 
-def _path(path: Path, drawing: Drawing) -> str:
+def _path(path: Path) -> str:
     # dashes as pieces of their own: some renderers know no stroke-dasharray
     pieces = dashes(path.points, path.dash) if path.dash and not path.fill else [path.points]
-    steps = " ".join("M" + " L".join(_place(point, drawing) for point in piece) for piece in pieces)
+    steps = " ".join(
+        "M" + " L".join(f"{_number(point.real)} {_number(-point.imag)}" for point in piece)
+        for piece in pieces
+    )
     close = "Z" if path.fill else ""
     look = f'fill="{path.fill or "none"}"'
     if path.stroke:
@@ -53,19 +56,15 @@ def _path(path: Path, drawing: Drawing) -> str:
     return f'<path{_role(path.role)} d="{steps}{close}" {look}/>'
 
 
-def _place(point: Point, drawing: Drawing) -> str:
-    return f"{_number(point[0])} {_number(drawing.height - point[1])}"
-
-
 HALO = "halo"
 """The class of the white text behind each text. It is a text of its own, because not every renderer
 paints a stroke before the fill (``paint-order``)."""
 
 
-def _text(text: Text, drawing: Drawing) -> str:
+def _text(text: Text) -> str:
     weight = ' font-weight="bold"' if text.bold else ""
     spans = "".join(
-        f'<tspan x="{_number(run.x)}" y="{_number(drawing.height - run.y)}" '
+        f'<tspan x="{_number(run.at.real)}" y="{_number(-run.at.imag)}" '
         f'font-size="{_number(run.size * MM_PER_POINT)}">{escape(run.text, False)}</tspan>'
         for run in text_runs(text)
     )

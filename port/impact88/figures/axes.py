@@ -1,0 +1,221 @@
+"""Panels of a chart: two axes with round numbers, what is drawn between them, and a key.
+
+Nothing is told by colour alone: marks, dashes and lightness differ as well, so a grey copy reads
+the same. Nothing is hatched: some renderers of SVG paint patterns black.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import drawing as d
+from .drawing import BLACK, GREY, ROW, TEXT, Box, Drawing, Path, Text
+
+MARKS = {"o": (24, 0), "s": (4, 45), "D": (4, 0), "^": (3, 90), "v": (3, -90), ">": (3, 0)}
+MARKS |= {"P": (5, 90), "_": (2, 0)}
+"""Corners of each mark, and where the first of them stands in degrees."""
+BELOW = 3.3
+"""From the axis down to the numbers' baseline, in mm."""
+
+
+class Axis(NamedTuple):
+    """Numbers from ``low`` to ``high`` on paper from ``start`` to ``end``."""
+
+    low: float
+    high: float
+    start: float
+    end: float
+    log: bool = False
+
+    def __call__(self, value: Any) -> Any:
+        """Where a number, or an array of them, is."""
+        low, high = self.low, self.high
+        if self.log:
+            low, high, value = math.log10(low), math.log10(high), np.log10(value)
+        return self.start + (value - low) / (high - low) * (self.end - self.start)
+
+
+def span(values: Any, margin: float = 0.05) -> tuple[float, float]:
+    """From the smallest to the largest finite value, and a share of that beyond both."""
+    values = np.asarray(values, float).ravel()
+    values = values[np.isfinite(values)]
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    more = margin * (high - low) or 0.05 * abs(low) or 1.0
+    return low - more, high + more
+
+
+def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
+    """At most so many round numbers from ``low`` to ``high``, each with its text."""
+    power = math.floor(math.log10((high - low) / most))
+    for power_, step in ((power, 1), (power, 2), (power, 5), (power + 1, 1), (power + 1, 2)):
+        size = step * 10.0**power_
+        numbers = range(math.ceil(low / size - 1e-9), math.floor(high / size + 1e-9) + 1)
+        if len(numbers) <= most:
+            break
+    decimals = max(0, -power_)
+    largest = max(abs(low), abs(high))
+    if largest < 1e6 and decimals <= 4:
+        texts = [f"{number * size:.{decimals}f}" for number in numbers]
+    else:
+        digits = max(0, math.floor(math.log10(largest)) - power_)
+        texts = [f"{number * size:.{digits}e}" for number in numbers]
+    return [(n * size, t.replace("-", "−")) for n, t in zip(numbers, texts, strict=True)]
+
+
+def powers(low: float, high: float, step: int) -> list[tuple[float, str]]:
+    """Powers of ten, every ``step``-th with a text."""
+    first, last = round(math.log10(low)), round(math.log10(high))
+    return [
+        (10.0**n, "1" if n == 0 else f"1e{n}".replace("-", "−") if n % step == 0 else "")
+        for n in range(first, last + 1)
+    ]
+
+
+class Panel:
+    """Two axes around ``box``; the numbers stand below and left of it, the upper axis's name above
+    it, the lower one's below. ``x`` and ``y`` are (lowest, highest)."""
+
+    def __init__(
+        self,
+        drawing: Drawing,
+        box: Box,
+        x: tuple[float, float],
+        y: tuple[float, float],
+        x_label: str = "",
+        y_label: str = "",
+        *,
+        x_ticks: Sequence[tuple[float, str]] | int = 6,
+        y_ticks: Sequence[tuple[float, str]] | int = 4,
+        log: bool = False,
+        grid: bool = False,
+    ) -> None:
+        self.drawing, self.box = drawing, box
+        self.x = Axis(*x, box.left, box.right, log)
+        self.y = Axis(*y, box.bottom, box.top, log)
+        items = drawing.items
+        self._ground = len(items)
+        corner = complex(box.left, box.bottom)
+        ends = (complex(box.right, box.bottom), complex(box.left, box.top))
+        items += [Path((corner, end), BLACK, 0.2, role="axis") for end in ends]
+        across = ticks(*x, x_ticks) if isinstance(x_ticks, int) else x_ticks
+        up = ticks(*y, y_ticks) if isinstance(y_ticks, int) else y_ticks
+        for value, text in across:
+            at = complex(self.x(value), box.bottom)
+            self._tick(at, 1j * box.height if grid else 0, -0.9j)
+            items.append(Text(at - 1j * BELOW, text, anchor="middle", role="x tick"))
+        for value, text in up:
+            at = complex(box.left, self.y(value))
+            self._tick(at, box.width if grid else 0, -0.9)
+            items.append(Text(at - 1.5 - 0.8j, text, anchor="end", role="y tick"))
+        room = box.width + 8
+        middle = complex((box.left + box.right) / 2, box.bottom - BELOW - ROW + 0.2)
+        for row, line in enumerate(d.wrapped(x_label, room) if x_label else []):
+            at = middle - 1j * ROW * row
+            items.append(Text(at, line, anchor="middle", role="x label"))
+        if y_label:
+            items.append(Text(complex(box.left - 1, box.top + 1.8), y_label, role="y label"))
+
+    def _tick(self, at: complex, inward: complex, outward: complex) -> None:
+        if inward:
+            self.drawing.items.append(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
+        self.drawing.items.append(Path((at, at + outward), BLACK, 0.2, role="tick"))
+
+    def at(self, x: float, y: float) -> complex:
+        """Where a pair of numbers is on paper."""
+        return complex(self.x(x), self.y(y))
+
+    def line(
+        self,
+        xs: Any,
+        ys: Any,
+        colour: str = BLACK,
+        width: float = 0.4,
+        dash: tuple[float, ...] = (),
+        fill: str | None = None,
+        role: str = "",
+    ) -> None:
+        """A line through pairs of numbers; pieces with one that is not finite are left out."""
+        points = self.x(np.asarray(xs, float)) + 1j * self.y(np.asarray(ys, float))
+        finite = np.isfinite(points)
+        for piece in np.split(points, np.flatnonzero(np.diff(finite)) + 1):
+            if len(piece) > 1 and np.isfinite(piece[0]):
+                path = Path(tuple(map(complex, piece)), colour, width, dash, fill, role)
+                self.drawing.items.append(path)
+
+    def rule(
+        self, x: float, colour: str = BLACK, dash: tuple[float, ...] = (), role: str = ""
+    ) -> None:
+        """A line over the whole height."""
+        self.line([x, x], [self.y.low, self.y.high], colour, 0.35, dash, role=role)
+
+    def shade(self, low: float, high: float, colour: str) -> None:
+        """A stretch of the horizontal axis, behind everything."""
+        left, right = self.x(low), self.x(high)
+        box = Box(left, self.box.bottom, right, self.box.top)
+        corners = (complex(x, y) for x, y in _corners(box))
+        path = Path(tuple(corners), None, fill=colour, role="shade")
+        self.drawing.items.insert(self._ground, path)
+
+    def bar(self, low: float, high: float, y: float, half: float, fill: str, role: str) -> None:
+        """A bar from ``low`` to ``high`` at ``y``, ``half`` a mm to either side."""
+        middle = self.y(y)
+        left, right = sorted((self.x(low), self.x(high)))
+        box = Box(left, middle - half, right, middle + half)
+        corners = tuple(complex(x, y) for x, y in _corners(box))
+        self.drawing.items.append(Path(corners, d.BLUE, 0.2, fill=fill, role=role))
+
+    def mark(
+        self,
+        x: float,
+        y: float,
+        shape: str = "o",
+        colour: str = BLACK,
+        filled: bool = True,
+        role: str = "mark",
+    ) -> None:
+        """A mark at a pair of numbers."""
+        at = self.at(x, y)
+        if math.isfinite(abs(at)):
+            self.drawing.items.append(mark(at, shape, colour, filled, role))
+
+
+def _corners(box: Box) -> tuple[tuple[float, float], ...]:
+    left, bottom, right, top = box
+    return ((left, bottom), (right, bottom), (right, top), (left, top))
+
+
+def mark(at: complex, shape: str, colour: str, filled: bool = True, role: str = "mark") -> Path:
+    """A mark on paper."""
+    corners, turn = MARKS[shape]
+    points = tuple(at + 0.9 * d.unit(turn + 360 * i / corners) for i in range(corners))
+    return Path(points, colour, 0.3, (), colour if filled else d.WHITE, role)
+
+
+def key(drawing: Drawing, y: float, *entries: tuple[str, str, Any], note: str = "") -> float:
+    """Samples of what is drawn and what they mean, from left to right in as many rows as it takes,
+    the first at ``y``; returns where what follows goes on. An entry is (text, colour, look): a mark
+    (``o``, or ``o `` for an open one), dashes of a line, or None for an area."""
+    x, sample = 2.0, 6.0
+    for text, colour, look in entries:
+        width = sample + 1.2 + d.text_width(text, TEXT)
+        if x > 2.0 and x + width > drawing.width - 2:
+            x, y = 2.0, y - ROW
+        start = complex(x, y + 0.8)
+        if isinstance(look, str):
+            drawing.items.append(mark(start + sample / 2, look[0], colour, look[-1] != " ", "key"))
+        elif look is None:
+            half = 1j * 0.9
+            ends = (start + half, start + sample + half, start + sample - half, start - half)
+            drawing.items.append(Path(ends, GREY, 0.15, fill=colour, role="key"))
+        else:
+            drawing.items.append(Path((start, start + sample), colour, 0.4, look, role="key"))
+        drawing.items.append(Text(complex(x + sample + 1.2, y), text, role="legend"))
+        x += width + 3.0
+    if note:
+        y -= ROW
+        drawing.items.append(Text(complex(2, y), note, colour=GREY, role="note"))
+    return y - ROW
