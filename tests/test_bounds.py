@@ -24,7 +24,7 @@ from impact88.uncertainty.bounds import (
     input_names,
 )
 from impact88.uncertainty.boundstable import as_json, table
-from impact88.uncertainty.extremes import Piece, _Climbers, extremes
+from impact88.uncertainty.extremes import Piece, extremes
 from impact88.uncertainty.ranges import read_correlations, read_inputs
 from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
@@ -312,7 +312,7 @@ class TestExtremes:
         found = self.found(
             lambda u: -(500 * (u[:, 1] - u[:, 0] ** 2) ** 2) - (u[:, 0] - 0.8) ** 2, 2
         )
-        assert found.upper[0] == pytest.approx(0, abs=1e-6)
+        assert found.upper[0] == pytest.approx(0, abs=5e-5)  # 1e-7 of its range
 
     def test_jump_across_the_box(self):
         # the height falls off at an oblique edge: the best lies on it, at its upper end
@@ -611,17 +611,3 @@ class TestInputs:
         assert quantity(name).unit
 
 
-def test_a_point_on_a_face_is_put_back_along_the_face():
-    """The margin's slope leads out through x = 0; along the face one step reaches the surface."""
-
-    def margin(points):
-        return points[:, 1] - 3 * points[:, 0] - 0.5
-
-    climbers = _Climbers(
-        *(lambda points: points, 1, np.zeros(1, int), np.ones(1), np.zeros(1)),
-        margin=margin,
-        shallow=1e-9,
-    )
-    tried, inside = climbers.put_back(np.array([[[0.0, 0.2]]]), np.array([[-3.0, 1.0]]))
-    assert inside.all()
-    assert tried[0, 0] == pytest.approx([0.0, 0.5], abs=1e-8)

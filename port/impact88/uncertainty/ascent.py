@@ -64,7 +64,7 @@ def climb(
     u, reach = u.copy(), np.where(usable, REACH, 0.0)
     for _ in range(ROUNDS):
         who = np.flatnonzero(reach >= LAST_REACH)
-        if not len(who) or not taken(len(who) * (u.shape[1] + CORRECTIONS)):
+        if not u[who].size or not taken(len(who) * (u.shape[1] + CORRECTIONS)):
             break
         slopes, bends, turns = ground.slopes(u[who], x[:, who])
         here, inside = u[who], walls[who]
@@ -115,9 +115,20 @@ def best(uphill: Array, low: Array, high: Array, rows: Array, below: Array, abov
     """The steps, c x k, that go farthest ``uphill`` from ``low`` to ``high`` while ``rows`` (c x r
     x k) times the step stays from ``below`` to ``above``: c linear programs of one size, by a
     primal-dual interior-point method. Where a program has no solution, anything."""
+    free = np.where(uphill > 0, high, np.where(uphill < 0, low, 0.0))
+    met = np.einsum("crk,ck->cr", rows, free)
+    walled = ((met < below) | (met > above)).any(axis=1)
+    if walled.any():
+        parts = (uphill, low, high, rows, below, above)
+        free[walled] = _best_between_walls(*(part[walled] for part in parts))
+    return free
+
+
+def _best_between_walls(
+    uphill: Array, low: Array, high: Array, rows: Array, below: Array, above: Array
+) -> Array:
+    """`best` where a wall stands in the way of the step that goes farthest without any."""
     k, r = rows.shape[2], rows.shape[1]
-    if not r or not k:
-        return np.where(uphill > 0, high, np.where(uphill < 0, low, 0.0))
     size = np.abs(uphill).max(axis=1, keepdims=True)
     unit = np.maximum(high, -low).max(axis=1)[:, None]
     goal = uphill / np.where(size > 0, size, 1.0)
