@@ -609,5 +609,3 @@ class TestInputs:
     @pytest.mark.parametrize("name", [*SCENE, *FINAL_VELOCITIES, "SA", "SB", "MUP"])
     def test_everything_has_a_unit(self, name):
         assert quantity(name).unit
-
-
