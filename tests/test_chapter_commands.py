@@ -349,7 +349,7 @@ def test_the_error_told_of_equation_19_is_table_2_s() -> None:
         (f"{SPEEDS} LOSS=.4", "the chapter writes the fraction, DT = 0.4"),
         (f"{SPEEDS} LOSS=.999", "less than one percent"),
         (f"{SPEEDS} DT=1.2", "DT is outside 0 ... 1"),
-        (f"{SPEEDS} DT=.4 LOSS=40", "LOSS and DT are both given"),
+        (f"{SPEEDS} DT=.4 LOSS=40", "DT and LOSS are both given"),
         ("MA=96 MB=145 SA=-1 SB=1 LOSS=4", "SA is negative"),
     ],
 )

@@ -19,7 +19,7 @@ def arguments(command: str) -> list[argparse.Action]:
     """What a command takes."""
     parser = argparse.ArgumentParser()
     module = importlib.import_module(f"impact88.commands.{command.replace('-', '_')}_command")
-    module.add_arguments(parser)
+    options.declare(parser, module.ARGUMENTS)
     return parser._actions
 
 

@@ -103,13 +103,13 @@ def _run(name: str, arguments: Sequence[str]) -> int:
         epilog=module.__doc__,
         formatter_class=Formatter,
     )
-    module.add_arguments(parser)
+    options.declare(parser, module.ARGUMENTS)
     try:
         args = parser.parse_args(arguments)
     except SystemExit:  # --help has been printed
         return 0
     options.check_files(parser, args)
-    with suppress(_NothingToKeep), options.output_of(args):
+    with suppress(_NothingToKeep), options.output_of(args, module.ARGUMENTS):
         status = int(module.main(args))
         if status == UNUSABLE:
             raise _NothingToKeep

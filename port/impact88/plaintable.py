@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from textwrap import wrap
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .units import System
 
 WIDTH = 96
 
@@ -53,6 +56,22 @@ def table(
     if heading:
         laid.insert(1, "-" * max(map(len, laid)))
     return laid
+
+
+def quantities(
+    values: Mapping[str, float], system: System, meanings: Mapping[str, str] | None = None
+) -> list[str]:
+    """Values of any table of names as lines: name, number, unit, meaning (of the table, unless
+    ``meanings`` has another). ``values``: in the units of ``system``."""
+    from .names import quantity
+
+    special = meanings or {}
+    rows = [(name, number(value), quantity(name)) for name, value in values.items()]
+    cells = [
+        [name, text, system.label(what.unit), special.get(name, what.meaning)]
+        for name, text, what in rows
+    ]
+    return table(cells, left=(0, 2, 3))
 
 
 def paragraph(text: str, indent: str = "") -> list[str]:

@@ -1,4 +1,4 @@
-"""The commands, a module each: ``add_arguments`` declares what it takes, ``main`` does it, and the
+"""The commands, a module each: ``ARGUMENTS`` declares what it takes, ``main`` does it, and the
 module's docstring is the end of its help."""
 
 from __future__ import annotations

@@ -30,18 +30,14 @@ import argparse
 from ..errors import UserError
 from ..scene import known_template
 from ..stderr import note
-from .options import add_solution_arguments, known_within_limits
-from .reconstruct_command import source_of
+from .options import SOLUTION, known_within_limits, sample_option, source_of
 
 KNOWABLE = (
     *("E", "MU", "MUP", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "M"),
     *("UX", "UY", "WA", "VAX", "VAY", "WAF"),
 )
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 barrier`."""
-    add_solution_arguments(parser)
+ARGUMENTS = (*SOLUTION, sample_option("vehicle A of a published run"))
 
 
 def main(args: argparse.Namespace) -> int:
@@ -54,16 +50,16 @@ def main(args: argparse.Namespace) -> int:
     if args.template:
         print(known_template(KNOWABLE))
         return 0
-    if args.file is None and not args.set:
+    if source_of(args) is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..units import system_of
 
-    given, named = known_within_limits(args.file, args.set, KNOWABLE, args.units, single=True)
+    given, named = known_within_limits(args, KNOWABLE, single=True)
     wall = {name: fixed(value) for name, value in BARRIER.items()}
     resting = {} if "UX" in given else {n: fixed(value) for n, value in BARRIER_AFTER.items()}
     known, found = share_resolved(given | wall | resting)
     if found:
         note(None, found)
     everything = {name: item.nominal for name, item in known.items()} | BARRIER_AFTER
-    show(everything, None, source_of(args.file), args.contact_time, args.json, system_of(named))
+    show(everything, None, source_of(args), args.contact_time, args.json, system_of(named))
     return 0

@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
 
-from ..applesoft.console import PRINTER_SLOT, EndOfInput
+from ..applesoft.console import EndOfInput
 from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
 from ..emulator.machine import TooManyStatements
@@ -31,8 +31,8 @@ from ..files import called, packaged_text, read_text, replacing, typed_line
 from ..program.run import page
 from ..signals import INTERRUPTED
 from ..stderr import note
-from .options import InputFile
-from .run_command import add_machine_arguments, add_raw_argument
+from .options import InputFile, argument, flag, whole_number
+from .run_command import MACHINE, check_slot
 
 LISTING = "impact.bas"
 SLOT_LINE = '190 P$ = "PR# " + "{}"'
@@ -42,23 +42,17 @@ BANNER = f"impact88 basic: an Apple II Plus. LIST shows the program, {{}}; {LEAV
 _SHOWN_CONTROLS = "\n\a\b"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 basic`."""
-    parser.add_argument(
-        "program", nargs="?", type=InputFile, metavar="FILE.bas", help="a program to run"
-    )
-    parser.add_argument("--prompt", action="store_true", help="stay at the prompt after FILE.bas")
-    parser.add_argument(
-        "--max-statements", type=_count, metavar="N", help="stop a program after so many statements"
-    )
-    add_machine_arguments(parser)
-    add_raw_argument(parser)
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number of statements; expected 1 or more")
-    return int(text)
+ARGUMENTS = (
+    argument("program", nargs="?", type=InputFile, metavar="FILE.bas", help="a program to run"),
+    flag("--prompt", "stay at the prompt after FILE.bas"),
+    argument(
+        "--max-statements",
+        type=whole_number(1, 10**12),
+        metavar="N",
+        help="stop a program after N statements",
+    ),
+    *MACHINE,
+)
 
 
 class Terminal:
@@ -138,11 +132,7 @@ def main(args: argparse.Namespace) -> int:
     """Run a program, or talk at the prompt."""
     if args.prompt and not args.program:
         raise UserError("--prompt needs a FILE.bas; without one the prompt comes anyway")
-    if args.slot not in (0, PRINTER_SLOT) and not args.no_dos:
-        raise UserError(
-            f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
-            "or --no-dos"
-        )
+    check_slot(args)
     terminal = Terminal(raw=args.raw)
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
@@ -167,10 +157,7 @@ def main(args: argparse.Namespace) -> int:
                 return status
             except TooManyStatements:
                 _end_row(terminal)
-                print(
-                    f"impact88 basic: stopped after {args.max_statements} statements",
-                    file=sys.stderr,
-                )
+                note("basic", f"stopped after {args.max_statements} statements")
                 return 1
 
 

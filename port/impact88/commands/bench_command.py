@@ -30,11 +30,14 @@ from ..bench.populations import BENCHMARK, POPULATIONS
 from ..errors import UserError
 from ..plaintable import plain
 from .options import (
+    OUTPUT,
     OutputFile,
-    add_json_argument,
-    add_names_argument,
-    add_output_argument,
+    argument,
+    flag,
+    json_option,
     names_given,
+    names_option,
+    seed,
     whole_number,
 )
 
@@ -49,39 +52,35 @@ MOST_SCENES = 10_000_000
 SIZES = (1_000, 10_000, 100_000, 1_000_000, 10_000_000)
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 bench`."""
-    add_names_argument(parser, "--populations", "NAMES", f"default: {','.join(BENCHMARK)}")
-    parser.add_argument(
+ARGUMENTS = (
+    names_option("--populations", f"default: {','.join(BENCHMARK)}"),
+    argument(
         "--scenes",
         type=whole_number(1, MOST_SCENES),
         default=2000,
         help="of each population (%(default)s)",
-    )
-    parser.add_argument("--seed", type=int, default=1988, help="of the populations (%(default)s)")
-    parser.add_argument(
+    ),
+    seed("of the populations", 1988),
+    argument(
         "--repeats",
         type=whole_number(1, 1000),
         default=5,
         help="times are medians of so many (%(default)s)",
-    )
-    parser.add_argument(
-        "--quick", action="store_true", help="time a twentieth of the scenes: rougher, sooner"
-    )
-    parser.add_argument("--paths", action="store_true", help="what skipping saves, instead")
-    parser.add_argument("--sizes", action="store_true", help="growth with the scenes, instead")
-    parser.add_argument("--files", action="store_true", help="tables from file to file, instead")
-    add_json_argument(parser, "JSON instead of tables")
-    add_output_argument(parser)
-    parser.add_argument(
+    ),
+    flag("--quick", "time a twentieth of the scenes: rougher, sooner"),
+    flag("--paths", "what skipping saves, instead"),
+    flag("--sizes", "growth with the scenes, instead"),
+    flag("--files", "tables from file to file, instead"),
+    json_option("JSON instead of tables"),
+    OUTPUT,
+    argument(
         "--figure", type=OutputFile, metavar="FILE", help="draw error against time: .svg .png .pdf"
-    )
+    ),
+)
 
 
 def main(arguments: argparse.Namespace) -> int:
     """Measure, and print tables or JSON."""
-    if arguments.seed < 0:
-        raise UserError(f"--seed {arguments.seed}: expected 0 or more")
     if arguments.figure:
         from ..figures.canvas import check_ending
 

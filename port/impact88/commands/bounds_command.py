@@ -32,19 +32,11 @@ examples:
 from __future__ import annotations
 
 import argparse
-import json
 
-from ..schemas import stamped
-from .options import add_json_argument, add_names_argument, add_output_argument
-from .rangeoptions import add_range_arguments, explored
+from .options import JSON, OUTPUT, names_option, print_json
+from .rangeoptions import RANGES, explored
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 bounds`."""
-    add_range_arguments(parser)
-    add_names_argument(parser, "--outputs", "NAMES", "the results wanted")
-    add_json_argument(parser, "everything as one JSON object")
-    add_output_argument(parser)
+ARGUMENTS = (*RANGES, names_option("--outputs", "the results wanted"), JSON, OUTPUT)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -52,6 +44,8 @@ def main(args: argparse.Namespace) -> int:
     from ..uncertainty.boundstable import as_json, table
 
     found = explored(args, args.outputs)
-    whole = stamped("bounds", as_json(found)) if args.json else None
-    print(json.dumps(whole, allow_nan=False) if whole else table(found))
+    if args.json:
+        print_json("bounds", as_json(found))
+    else:
+        print(table(found))
     return 0

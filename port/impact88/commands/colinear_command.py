@@ -14,23 +14,18 @@ exit status: 0 solved; 2 bad input, or E = 0 in the inverse problem
 from __future__ import annotations
 
 import argparse
-import json
 import math
 
 from ..errors import UserError
 from ..scene import known_template
-from ..schemas import stamped
 from ..units import System, system_of, written
-from .options import add_solution_arguments, known_values
+from .options import SOLUTION, known_values, print_json
 
 COMMON = ("MA", "MB", "E", "MUP")
 BEFORE = ("UN", "UT", "VN", "VT")
 AFTER = ("VAN", "VAT", "VBN", "VBT")
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 colinear`."""
-    add_solution_arguments(parser)
+ARGUMENTS = SOLUTION
 
 
 def main(args: argparse.Namespace) -> int:
@@ -40,21 +35,20 @@ def main(args: argparse.Namespace) -> int:
     if args.template:
         print(known_template((*COMMON, *BEFORE, *AFTER)))
         return 0
-    known, named = known_values(args.file, args.set, (*COMMON, *BEFORE, *AFTER), args.units)
+    known, named = known_values(args, (*COMMON, *BEFORE, *AFTER))
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
-    missing = [name for name in COMMON if name not in known]
     if before and after:
         raise UserError(
             f"velocities before ({' '.join(before)}) and after ({' '.join(after)}) are both given; "
             "expected the four before or the four after",
-            args.file,
+            args.scene,
         )
-    missing += [name for name in (AFTER if after else BEFORE) if name not in known]
+    missing = [name for name in (*COMMON, *(AFTER if after else BEFORE)) if name not in known]
     if missing:
-        raise UserError(f"missing {' '.join(missing)}", args.file)
+        raise UserError(f"missing {' '.join(missing)}", args.scene)
     for name in ("MA", "MB"):
         if not known[name] > 0:
-            raise UserError(f"{name} is not positive; expected a mass", args.file)
+            raise UserError(f"{name} is not positive; expected a mass", args.scene)
     solve = colinear_inverse if after else colinear
     values = {name: float(value) for name, value in solve(known).items()}
     values = {"MA": known["MA"], "MB": known["MB"], "E": known["E"], **values}
@@ -73,20 +67,15 @@ def show(
 ) -> None:
     """Print the table or the JSON object."""
     from ..names import quantity
-    from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
+    from ..plaintable import decimals_for, fixed, paragraph, quantities, table
     from ..status import sentences
 
     warnings = sentences(int(values.pop("STATUS")), values)
     values = written(values, system)
     if as_json:
         units = {name: system.label(quantity(name).unit) for name in values}
-        whole = {
-            "solved_for": list(solved_for),
-            "values": values,
-            "units": units,
-            "warnings": warnings,
-        }
-        print(json.dumps(stamped("colinear", plain(whole)), allow_nan=False))
+        whole = {"solved_for": solved_for, "values": values, "units": units, "warnings": warnings}
+        print_json("colinear", whole)
         return
     decimals = decimals_for([values[name] for name in (*BEFORE, *AFTER)])
     rows = []
@@ -95,13 +84,7 @@ def show(
         rows.append([label, *cells, system.label("length/time")])
     heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
     print("\n".join([*table(rows, heading, left=(0, 5)), "* solved for", ""]))
-    shown = [n for n in values if n not in (*BEFORE, *AFTER) and math.isfinite(values[n])]
-    lines = [
-        [n, number(values[n]), system.label(quantity(n).unit), quantity(n).meaning] for n in shown
-    ]
-    lines = [
-        [*line[:3], "signed P_t/P_n, as given"] if line[0] == "MUP" else line for line in lines
-    ]
-    print("\n".join(table(lines, left=(0, 2, 3))))
+    others = {n: v for n, v in values.items() if n not in (*BEFORE, *AFTER) and math.isfinite(v)}
+    print("\n".join(quantities(others, system, {"MUP": "signed P_t/P_n, as given"})))
     for warning in warnings:
         print("\n".join(paragraph(f"! {warning}")))

@@ -22,7 +22,6 @@ or was not compared); 2 bad input
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Iterator
 
@@ -30,59 +29,49 @@ from ..accuracy.errorbound import DOUBLE
 from ..checking.compare import HARMLESS, Comparison, compare_file
 from ..checking.residuals import EQUATIONS
 from ..errors import UserError, shown
-from ..schemas import stamped
 from ..stderr import note
 from ..tables.table import format_of
 from .options import (
+    ENCODING,
     FORMATS,
+    JSON,
+    OUTPUT,
+    UNITS,
     InputFile,
     OutputFile,
-    add_encoding_argument,
-    add_json_argument,
-    add_output_argument,
-    add_set_argument,
-    add_units_argument,
+    argument,
+    flag,
+    print_json,
+    setting,
     settings,
 )
 
 SHOWN = 20
-"""Unreadable rows told on stderr."""
+"""Unreadable rows listed on stderr."""
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 compare`."""
-    parser.add_argument(
+ARGUMENTS = (
+    argument(
         "theirs", type=InputFile, metavar="THEIRS", help="the table (- is standard input, CSV)"
-    )
-    parser.add_argument(
-        "--from",
-        dest="form",
-        choices=FORMATS,
-        help="the format, if its name does not tell",
-    )
-    add_set_argument(
-        parser, "a value of the scene for all rows, where the table has no such column"
-    )
-    parser.add_argument(
+    ),
+    argument(
+        "--from", dest="form", choices=FORMATS, help="the format, if its name does not show it"
+    ),
+    setting("a value of the scene for all rows, where the table has no such column"),
+    argument(
         "--rtol",
         type=float,
         metavar="SHARE",
         help="the difference that agrees, as a share of the scene's largest velocity, spin or "
         "energy; default: what rounding in double precision allows in that scene",
-    )
-    parser.add_argument(
-        "--strict",
-        action="store_true",
-        help="rows, cells and columns that were not compared are failures",
-    )
-    parser.add_argument("--no-causes", action="store_true", help="judge only; look for no causes")
-    parser.add_argument(
-        "--junit", type=OutputFile, metavar="FILE", help="write a JUnit report, a test a row"
-    )
-    add_units_argument(parser)
-    add_encoding_argument(parser)
-    add_json_argument(parser)
-    add_output_argument(parser)
+    ),
+    flag("--strict", "rows, cells and columns that were not compared are failures"),
+    flag("--no-causes", "judge only; look for no causes"),
+    argument("--junit", type=OutputFile, metavar="FILE", help="write a JUnit report, a test a row"),
+    UNITS,
+    ENCODING,
+    JSON,
+    OUTPUT,
+)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -104,11 +93,7 @@ def main(args: argparse.Namespace) -> int:
 
         write_junit(args.junit, args.theirs, comparison, args.strict)
     if args.json:
-        print(
-            json.dumps(
-                stamped("compare", comparison.as_json()), ensure_ascii=False, allow_nan=False
-            )
-        )
+        print_json("compare", comparison.as_json())
     else:
         print("\n".join(_lines(comparison)))
     for line in _talk(comparison):

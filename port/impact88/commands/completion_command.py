@@ -15,15 +15,12 @@ from importlib import import_module
 
 from ..errors import UserError
 from . import CHAPTER, CHAPTER_MEANING, COMMANDS, module_of
-from .options import InputFile, OutputFile, OutputFolder, add_output_argument
+from .options import OUTPUT, InputFile, InputFolder, OutputFile, OutputFolder, argument, declare
 
-SHELLS = ("bash", "zsh", "tcsh")
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 completion`."""
-    parser.add_argument("shell", choices=SHELLS, metavar="SHELL", help="bash, zsh or tcsh")
-    add_output_argument(parser)
+ARGUMENTS = (
+    argument("shell", choices=("bash", "zsh", "tcsh"), metavar="SHELL", help="bash, zsh or tcsh"),
+    OUTPUT,
+)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -52,9 +49,9 @@ def _add(
 
     for name in names:
         parser = commands.add_parser(name, help=COMMANDS[name])
-        import_module(module_of(name)).add_arguments(parser)
+        declare(parser, import_module(module_of(name)).ARGUMENTS)
         for action in parser._actions:
             if action.type in (InputFile, OutputFile):
                 action.complete = shtab.FILE  # type: ignore[attr-defined]
-            elif action.type is OutputFolder:
+            elif action.type in (InputFolder, OutputFolder):
                 action.complete = shtab.DIRECTORY  # type: ignore[attr-defined]

@@ -16,27 +16,24 @@ from __future__ import annotations
 import argparse
 import sys
 
-from ..errors import UserError
+from .options import argument, flag, whole_number
 
-HIGHEST_PORT = 65535
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 desk`."""
-    parser.add_argument(
-        "--port", type=int, default=0, metavar="N", help="the port (default: any that is free)"
-    )
-    parser.add_argument(
-        "--no-browser", action="store_true", help="print the address and open no browser"
-    )
+ARGUMENTS = (
+    argument(
+        "--port",
+        type=whole_number(0, 65535),
+        default=0,
+        metavar="N",
+        help="the port (default: any free port)",
+    ),
+    flag("--no-browser", "print the address and open no browser"),
+)
 
 
 def main(args: argparse.Namespace) -> int:
     """Serve the page until it is interrupted."""
     from ..desk.serving import serve
 
-    if not 0 <= args.port <= HIGHEST_PORT:
-        raise UserError(f"--port {args.port}: expected 0 (any that is free) to {HIGHEST_PORT}")
     serve(args.port, not args.no_browser, _tell)
     return 0
 

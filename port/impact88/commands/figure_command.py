@@ -36,17 +36,18 @@ from ..errors import UserError
 from ..names import RESULTS
 from ..scene import Scene, numbers_of
 from .options import (
+    MOVE,
+    SWEEP,
     OutputFile,
-    add_move_argument,
-    add_names_argument,
-    add_sweep_argument,
+    argument,
     known_values,
     names_given,
+    names_option,
     one_scene,
     sweeps,
     whole_number,
 )
-from .rangeoptions import add_range_arguments, explored
+from .rangeoptions import RANGES, explored
 
 if TYPE_CHECKING:
     from ..figures.drawing import Drawing
@@ -56,28 +57,27 @@ OF_RANGES = ("histogram", "tornado")
 OF_NOTHING = ("staged", "force", "colinear", "configurations")
 KINDS = (*OF_A_SCENE, "barrier", *OF_RANGES, "planar", *OF_NOTHING)
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 figure`."""
-    parser.add_argument("kind", choices=KINDS, metavar="KIND", help="see kinds below")
-    parser.add_argument(
+ARGUMENTS = (
+    argument("kind", choices=KINDS, metavar="KIND", help="see kinds below"),
+    argument(
         "-o",
         "--output",
         type=OutputFile,
         required=True,
         metavar="FILE",
         help="where to write: .svg, .png or .pdf",
-    )
-    add_range_arguments(parser)
-    add_move_argument(parser)
-    add_sweep_argument(parser)
-    add_names_argument(parser, "--outputs", "NAMES", "the results wanted")
-    parser.add_argument(
+    ),
+    *RANGES,
+    MOVE,
+    SWEEP,
+    names_option("--outputs", "the results wanted"),
+    argument(
         "--width",
         type=whole_number(40, 3000),
         metavar="MM",
         help="how wide it is written, such as 900 for an exhibit board (default: 85, strip 170)",
-    )
+    ),
+)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -152,9 +152,7 @@ def _barrier(args: argparse.Namespace) -> Drawing:
     from ..names import missing
     from ..units import system_of
 
-    if args.sample:
-        raise UserError("a sample has two vehicles; expected FILE.toml or --set of one")
-    known, units = known_values(args.scene, args.set, (*VEHICLE, "M"))
+    known, units = known_values(args, (*VEHICLE, "M"))
     absent = [name for name in VEHICLE if name not in known]
     if absent:
         raise UserError(missing(absent), args.scene)

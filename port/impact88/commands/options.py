@@ -1,7 +1,8 @@
-"""The options that several commands have, each declared and read in one place.
+"""The arguments that several commands take, and what they print as JSON, each in one place.
 
-``--set NAME=VALUE``, a scene by file or ``--sample``, names of results, ``-o FILE`` and ``--json``
-mean the same everywhere, and what is refused is refused in the same words.
+A command declares ``ARGUMENTS``, which `declare` adds to its parser. ``--set NAME=VALUE``, a scene
+by file or ``--sample``, names of results, ``-o FILE`` and ``--json`` mean the same everywhere, and
+errors have the same words.
 """
 
 from __future__ import annotations
@@ -31,14 +32,23 @@ from ..stderr import note
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from ..uncertainty.uncertain import Uncertain
 
 FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
 """What ``--from`` and ``--to`` take."""
+MOST_DRAWS = 100_000_000
 
 
 class InputFile(str):
     """The type of an argument that names a file to read; ``-`` is standard input."""
+
+    __slots__ = ()
+
+
+class InputFolder(str):
+    """The type of an argument that names a folder whose files are read."""
 
     __slots__ = ()
 
@@ -55,6 +65,170 @@ class OutputFolder(str):
     __slots__ = ()
 
 
+# --- declarations --------------------------------------------------------------------------------
+
+Argument = tuple[tuple[str, ...], dict[str, "Any"]]
+"""What argparse's ``add_argument`` takes: names and keywords."""
+
+
+def argument(*names: str, **keywords: Any) -> Argument:
+    """An argument, as argparse's ``add_argument`` takes it."""
+    return names, keywords
+
+
+def flag(name: str, meaning: str) -> Argument:
+    """An option without a value."""
+    return argument(name, action="store_true", help=meaning)
+
+
+def repeatable(name: str, metavar: str, meaning: str, **keywords: Any) -> Argument:
+    """An option whose values are collected."""
+    return argument(
+        name,
+        action="append",
+        default=[],
+        metavar=metavar,
+        help=f"{meaning}; repeatable",
+        **keywords,
+    )
+
+
+def names_option(name: str, meaning: str, metavar: str = "NAMES") -> Argument:
+    """An option that takes names, see `names_given`."""
+    text = f"{meaning}; separated by commas, or repeated"
+    return argument(name, action="append", default=[], metavar=metavar, help=text)
+
+
+def setting(meaning: str) -> Argument:
+    """The option ``--set NAME=VALUE``; ``meaning`` says what it does for this command."""
+    return repeatable("--set", "NAME=VALUE", meaning)
+
+
+def sample_option(meaning: str = "the scene of a published run") -> Argument:
+    """The option ``--sample``."""
+    return argument("--sample", type=int, choices=SAMPLES, help=meaning)
+
+
+def draws(default: int, least: int = 0, meaning: str = "random draws") -> tuple[Argument, Argument]:
+    """The options ``--samples`` and ``--seed``."""
+    read = whole_number(least, MOST_DRAWS)
+    text = f"{meaning} (default: %(default)s)"
+    return argument("--samples", type=read, default=default, metavar="N", help=text), seed()
+
+
+def seed(meaning: str = "which random draws", default: int = 0) -> Argument:
+    """The option ``--seed``."""
+    text = f"{meaning} (default: %(default)s)"
+    return argument("--seed", type=whole_number(0, 2**63), default=default, metavar="S", help=text)
+
+
+def renamed(old: str, new: str) -> Argument:
+    """An option that has another name now: refused, with that name."""
+
+    class Renamed(argparse.Action):
+        def __call__(self, *ignored: object) -> None:
+            raise UserError(f"{old} is not an option here; expected {new}")
+
+    return argument(old, action=Renamed, dest=argparse.SUPPRESS, help=argparse.SUPPRESS)
+
+
+def json_option(meaning: str = "one JSON object") -> Argument:
+    """The option ``--json``."""
+    return flag("--json", f"print {meaning}")
+
+
+def whole_number(low: int, high: int) -> Callable[[str], int]:
+    """An argument's type: a whole number within limits, which the message says."""
+
+    def read(text: str) -> int:
+        try:
+            number = int(text)
+        except ValueError:
+            number = low - 1
+        if not low <= number <= high:
+            raise argparse.ArgumentTypeError(
+                f"{quoted(text)} is not a whole number from {low:,} to {high:,}"
+            )
+        return number
+
+    return read
+
+
+def _duration(text: str) -> float:
+    """An argument's type: a time, in seconds without unit."""
+    try:
+        given, _ = in_base_units({"TF": text}, "--contact-time")
+        return double(given["TF"])
+    except (UserError, ValueError):
+        raise argparse.ArgumentTypeError(
+            f"{quoted(text)} is not a duration; expected one such as 0.12 or '120 ms'"
+        ) from None
+
+
+JSON = json_option()
+OUTPUT = argument(
+    "-o", "--output", type=OutputFile, metavar="FILE", help="write here (default: stdout)"
+)
+"""Of a command whose result is what it prints; others write files of their own."""
+UNITS = argument(
+    "--units",
+    metavar="SYSTEM",
+    help="units of bare numbers: us (lb, mph, ft), chapter (slug, ft/s, ft), metric (kg, km/h, m) "
+    "or si (kg, m/s, m), unless the file names its own",
+)
+ENCODING = argument(
+    "--encoding", metavar="NAME", help="encoding of a text that is not UTF-8, such as cp1252"
+)
+SWEEP = repeatable(
+    "--sweep", "NAME=LOW:HIGH:COUNT", "run a value of a scene file through COUNT values"
+)
+MOVE = argument(
+    "--move-contact",
+    metavar="DX,DY",
+    help="move the contact point along the scene's x and y, in both vehicles (write "
+    "--move-contact=-1,0 where DX is negative)",
+)
+ONE_SCENE = (
+    argument(
+        "scene", nargs="?", type=InputFile, metavar="FILE.toml", help="a scene file (- is stdin)"
+    ),
+    sample_option(),
+    UNITS,
+)
+"""A scene: a file, or ``--sample``."""
+KNOWN = (
+    argument(
+        "scene", nargs="?", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"
+    ),
+    setting("give or change a value; an empty one makes it unknown"),
+    UNITS,
+)
+"""What is known of a problem."""
+SOLUTION = (
+    *KNOWN,
+    argument(
+        "--contact-time",
+        type=_duration,
+        metavar="T",
+        help="duration of contact (usually .1 to .2 s): average and peak force",
+    ),
+    flag("--template", "print a file to fill in"),
+    JSON,
+    OUTPUT,
+)
+"""Of the commands that solve for what is not known and print the solution."""
+
+
+def declare(
+    parser: argparse.ArgumentParser, arguments: Sequence[Argument | list[Argument]]
+) -> None:
+    """Add a command's arguments to a parser; those in a list exclude each other."""
+    for item in arguments:
+        group = parser.add_mutually_exclusive_group() if isinstance(item, list) else parser
+        for names, keywords in item if isinstance(item, list) else [item]:
+            group.add_argument(*names, **keywords)
+
+
 def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> None:
     """Expand the patterns among the files to read, and raise UserError when a file to write is also
     read or written twice.
@@ -68,7 +242,7 @@ def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> No
         if action.type is InputFile and isinstance(value, list):
             value[:] = [path for pattern in value for path in _matching(pattern)]
             inputs += value
-        elif action.type is InputFile and value is not None:
+        elif action.type in (InputFile, InputFolder) and value is not None:
             inputs.append(value)
         elif action.type in (OutputFile, OutputFolder):
             outputs[action.option_strings[0]] = value
@@ -85,21 +259,35 @@ def _matching(pattern: str) -> list[str]:
     return sorted(map(InputFile, glob(pattern))) or [pattern]
 
 
-def refuse_renamed(parser: argparse.ArgumentParser, old: str, new: str) -> None:
-    """Refuse an option that has another name now, and say which."""
+@contextmanager
+def output_of(args: argparse.Namespace, arguments: Sequence[object]) -> Iterator[None]:
+    """Send what is printed in the block to the file ``-o`` names, whole or not at all.
 
-    class Renamed(argparse.Action):
-        def __call__(self, *ignored: object) -> None:
-            raise UserError(f"{old} is not an option here; expected {new}")
+    For the commands that declare `OUTPUT`. Raises UserError when the place cannot be written to.
+    """
+    if OUTPUT not in arguments or args.output in (None, "-"):
+        yield
+        return
+    from contextlib import redirect_stdout
 
-    parser.add_argument(old, action=Renamed, help=argparse.SUPPRESS)
+    from ..files import replacing
+
+    with replacing(args.output) as file, redirect_stdout(file):
+        yield
 
 
-def add_set_argument(parser: argparse.ArgumentParser, meaning: str) -> None:
-    """The option ``--set NAME=VALUE``; ``meaning`` says what it does for this command."""
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help=f"{meaning}; repeatable"
-    )
+def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -> None:
+    """Print an object of a published form on one line; what is not finite is null."""
+    import json
+
+    from ..plaintable import plain
+    from ..schemas import stamped
+
+    whole = stamped(form, plain(found))
+    print(json.dumps(whole, ensure_ascii=False, allow_nan=False, indent=indent), flush=True)
+
+
+# --- NAME=VALUE ----------------------------------------------------------------------------------
 
 
 def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
@@ -119,65 +307,108 @@ def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
     return given
 
 
-def settings(
-    texts: Sequence[str],
-    allowed: Collection[str] = tuple(SCENE),
-    others: Collection[str] = (),
-    units: str | None = None,
-) -> dict[str, str]:
-    """What ``--set`` gives: names that are ``allowed``, and the text of a number for each, in base
-    units (``units``: the system of bare numbers).
-
-    ``others``: texts that are no numbers and are taken all the same. Raises UserError.
-    """
+def _set_pairs(texts: Sequence[str], allowed: Collection[str]) -> dict[str, str]:
     given = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
     check_names(given, allowed, "value here", "--set")
-    given, _ = in_base_units(given, "--set", units)
+    return given
+
+
+def settings(
+    texts: Sequence[str], others: Collection[str] = (), units: str | None = None
+) -> dict[str, str]:
+    """What ``--set`` gives of a scene: the text of a number for each name, in base units.
+
+    ``others``: texts taken although they are not numbers; ``units``: the system of bare numbers.
+    Raises UserError.
+    """
+    given, _ = in_base_units(_set_pairs(texts, tuple(SCENE)), "--set", units)
     for name, text in given.items():
         if text not in others and not (name == "MU" and is_share(text)):
             check_value(name, text, "--set")
     return given
 
 
-def known_values(
-    path: str | None, texts: Sequence[str], allowed: Collection[str], units: str | None = None
-) -> tuple[dict[str, float], str | None]:
-    """What is known of a problem: the values of a flat TOML file, changed by what ``--set`` gives,
-    in base units, and the name of the system they were written in; ``units``: of bare numbers where
-    the file names none.
+def sweeps(texts: Sequence[str]) -> dict[str, str]:
+    """Name -> text of ``--sweep`` (see `tables.sweep`). Raises UserError."""
+    return pairs(texts, "--sweep", "NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
 
-    What is not known is left out of the file, or left empty as in a `template`; an empty setting
+
+def names_given(
+    texts: Sequence[str], known: Collection[str], option: str, what: str = "result"
+) -> list[str]:
+    """The names an option lists, in either case, each once; empty where the option is not given.
+
+    Raises UserError for a name that is not ``known`` and for an option without a name.
+    """
+    in_any_case = {name.lower(): name for name in known}
+    words = [word for text in texts for word in text.replace(",", " ").split()]
+    names = [in_any_case.get(word.lower(), word) for word in words]
+    if texts and not names:
+        raise UserError(f"{option}: no name given; expected some of {' '.join(known)}")
+    check_names(names, known, what, option)
+    return list(dict.fromkeys(names))
+
+
+# --- scenes and what is known --------------------------------------------------------------------
+
+
+def source_of(args: argparse.Namespace) -> str | None:
+    """What messages call the scene or the file given; None where there is none."""
+    if args.scene:
+        return called(args.scene)
+    number = getattr(args, "sample", None)
+    return f"sample {number}" if number else None
+
+
+def entries_given(args: argparse.Namespace, single: bool = False) -> Entries | None:
+    """The entries of the file or of ``--sample``, with their remarks on stderr; None where neither
+    is given. Raises UserError where both are."""
+    number = getattr(args, "sample", None)
+    if args.scene and number:
+        raise UserError(f"a file and --sample {number} are both given; expected one")
+    if args.scene:
+        entries = entries_in(args.scene, args.units, single)
+        note_remarks(entries)
+        return entries
+    if not number:
+        return None
+    entries = sample(number).entries
+    entries.units = args.units
+    return entries
+
+
+def known_values(
+    args: argparse.Namespace, allowed: Collection[str]
+) -> tuple[dict[str, float], str | None]:
+    """What is known of a problem: the values of a flat TOML file or a sample, changed by ``--set``,
+    in base units, and the name of the system they were written in.
+
+    What is not known is left out of the file, or left empty as in a template; an empty setting
     makes a value unknown; of a value within limits the middle is taken. Raises UserError, naming
     file and name, for names not ``allowed`` and texts that are no amounts.
     """
-    values, named = known_within_limits(path, texts, allowed, units, single=True)
+    values, named = known_within_limits(args, allowed, single=True)
     return {name: item.nominal for name, item in values.items()}, named
 
 
 def known_within_limits(
-    path: str | None,
-    texts: Sequence[str],
-    allowed: Collection[str],
-    units: str | None = None,
-    single: bool = False,
+    args: argparse.Namespace, allowed: Collection[str], single: bool = False
 ) -> tuple[dict[str, Uncertain], str | None]:
     """The same, but each value a number or known within limits (`uncertainty.uncertain`) unless
-    ``single``; a setting's ``+- D`` is around the file's value."""
+    ``single``; a setting's ``+- D`` is around the file's value. Of a sample the names ``allowed``
+    are taken."""
     values: dict[str, Uncertain] = {}
-    named = units
-    if path is not None:
-        entries = entries_in(path, units, single)
-        note_remarks(entries)
-        check_names(entries.values, allowed, "value here", called(path))
+    named = args.units
+    source = source_of(args) or ""
+    if (entries := entries_given(args, single)) is not None:
         named = entries.units
-        values = {
-            n: _within_limits(n, text, called(path), named)
-            for n, text in entries.values.items()
-            if text
-        }
-    changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
-    check_names(changes, allowed, "value here", "--set")
-    given, named = changes_in_base(changes, "--set", named, path)
+        texts = {name: text for name, text in entries.values.items() if text}
+        if args.scene:
+            check_names(entries.values, allowed, "value here", source)
+        else:
+            texts = {name: text for name, text in texts.items() if name in allowed}
+        values = {n: _within_limits(n, text, source, named) for n, text in texts.items()}
+    given, named = changes_in_base(_set_pairs(args.set, allowed), "--set", named, args.scene)
     for name, text in given.items():
         center = values[name].nominal if name in values else None
         if text:
@@ -240,106 +471,31 @@ def _double(name: str, text: str, source: str) -> float:
     return value
 
 
-def add_sweep_argument(parser: argparse.ArgumentParser) -> None:
-    """The option ``--sweep NAME=LOW:HIGH:COUNT``."""
-    parser.add_argument(
-        "--sweep",
-        action="append",
-        default=[],
-        metavar="NAME=LOW:HIGH:COUNT",
-        help="let a value of a scene file run through COUNT values; repeatable",
-    )
-
-
-def sweeps(texts: Sequence[str]) -> dict[str, str]:
-    """Name -> text of ``--sweep`` (see `tables.sweep`). Raises UserError."""
-    return pairs(texts, "--sweep", "NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
-
-
-def add_known_arguments(parser: argparse.ArgumentParser) -> None:
-    """What is known of a problem: a file, and ``--set``."""
-    parser.add_argument(
-        "file", nargs="?", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"
-    )
-    add_set_argument(parser, "give or change a value; an empty one makes it unknown")
-    add_units_argument(parser)
-
-
-def _duration(text: str) -> float:
-    """An argument's type: a time, in seconds without unit."""
-    try:
-        given, _ = in_base_units({"TF": text}, "--contact-time")
-        return double(given["TF"])
-    except (UserError, ValueError):
-        raise argparse.ArgumentTypeError(
-            f"{quoted(text)} is not a duration; expected one such as 0.12 or '120 ms'"
-        ) from None
-
-
-def add_solution_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of the commands that solve for what is not known and print the solution."""
-    add_known_arguments(parser)
-    parser.add_argument(
-        "--contact-time",
-        type=_duration,
-        metavar="T",
-        help="duration of contact (usually .1 to .2 s): average and peak force",
-    )
-    parser.add_argument("--template", action="store_true", help="print a file to fill in")
-    add_json_argument(parser)
-    add_output_argument(parser)
-
-
-def add_encoding_argument(parser: argparse.ArgumentParser) -> None:
-    """The option ``--encoding``."""
-    parser.add_argument(
-        "--encoding", metavar="NAME", help="of a text that is not UTF-8, such as cp1252"
-    )
-
-
-def add_sample_argument(
-    parser: argparse.ArgumentParser, meaning: str = "a published run's scene"
-) -> None:
-    """The option ``--sample``."""
-    parser.add_argument("--sample", type=int, choices=SAMPLES, help=meaning)
-
-
-def add_scene_argument(parser: argparse.ArgumentParser) -> None:
-    """A scene: a file, or ``--sample``."""
-    parser.add_argument(
-        "scene", nargs="?", type=InputFile, metavar="FILE.toml", help="a scene file (- is stdin)"
-    )
-    add_sample_argument(parser)
-    add_units_argument(parser)
-
-
 def one_scene(args: argparse.Namespace) -> Scene:
     """The scene that file or sample name, with what ``--set`` changes. Raises UserError unless
     there is exactly one."""
-    if bool(args.scene) == bool(args.sample):
-        raise UserError("expected one scene: a file, or --sample 1, 2 or 3")
+    if (scene := scene_given(args)) is None:
+        raise UserError(ONE_EXPECTED)
+    return scene
+
+
+ONE_EXPECTED = "expected one scene: a file, or --sample 1, 2 or 3"
+
+
+def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
+    """The scene that file or sample name, with what ``--set`` and ``--move-contact`` change; None
+    where neither is given. How its entries were understood is said on stderr, and what of the
+    answer is ``based`` on other units than the scene's. Raises UserError."""
+    if args.scene and args.sample:
+        raise UserError(f"a scene file and --sample {args.sample} are both given; expected one")
+    if not args.scene and not args.sample:
+        return None
     units = getattr(args, "units", None)
     scene = Scene.from_toml(args.scene, units) if args.scene else sample(args.sample)
-    return changed(scene, args.set, getattr(args, "move_contact", None))
-
-
-def changed(scene: Scene, texts: Sequence[str], move: str | None, based: str = "") -> Scene:
-    """A scene as ``--set`` and ``--move-contact`` change it; how its entries were understood is
-    said on stderr, and what of the answer is ``based`` on other units than the scene's."""
-    changes = settings(texts, units=scene.units)
+    changes = settings(args.set, units=scene.units)
     scene = scene.replaced(changes) if changes else scene
     note_remarks(scene.entries, based)
-    return with_contact_moved(scene, move)
-
-
-def add_move_argument(parser: argparse.ArgumentParser) -> None:
-    """The option ``--move-contact DX,DY``."""
-    parser.add_argument(
-        "--move-contact",
-        metavar="DX,DY",
-        help="move the contact point along the scene's x and y, in both vehicles (write "
-        "--move-contact=-1,0 where DX is negative)",
-    )
+    return with_contact_moved(scene, getattr(args, "move_contact", None))
 
 
 def with_contact_moved(scene: Scene, move: str | None) -> Scene:
@@ -355,92 +511,3 @@ def with_contact_moved(scene: Scene, move: str | None) -> Scene:
     texts, _ = in_base_units(given, "--move-contact", scene.units)
     dx, dy = (_double(name, texts[name], "--move-contact") for name in ("CX", "CY"))
     return scene.replaced(moved_texts(scene, dx, dy))
-
-
-def add_names_argument(
-    parser: argparse.ArgumentParser, option: str, metavar: str, meaning: str, old: str = ""
-) -> None:
-    """An option that takes names: separated by commas, or the option repeated; ``old``: what
-    version 0.2 called it."""
-    meanings = {option: f"{meaning}; separated by commas, or repeated"}
-    if old:
-        meanings[old] = argparse.SUPPRESS
-    for spelling, text in meanings.items():
-        parser.add_argument(
-            spelling, action="append", default=[], dest=option[2:], metavar=metavar, help=text
-        )
-
-
-def names_given(
-    texts: Sequence[str], known: Collection[str], option: str, what: str = "result"
-) -> list[str]:
-    """The names an option lists, in either case, each once; empty where the option is not given.
-
-    Raises UserError for a name that is not ``known`` and for an option without a name.
-    """
-    in_any_case = {name.lower(): name for name in known}
-    words = [word for text in texts for word in text.replace(",", " ").split()]
-    names = [in_any_case.get(word.lower(), word) for word in words]
-    if texts and not names:
-        raise UserError(f"{option}: no name given; expected some of {' '.join(known)}")
-    check_names(names, known, what, option)
-    return list(dict.fromkeys(names))
-
-
-def add_units_argument(parser: argparse.ArgumentParser) -> None:
-    """The option ``--units``."""
-    parser.add_argument(
-        "--units",
-        metavar="SYSTEM",
-        help="what bare numbers are in: us (lb, mph, ft), chapter (slug, ft/s, ft), metric (kg, "
-        "km/h, m) or si (kg, m/s, m), where the file does not say",
-    )
-
-
-def add_json_argument(parser: argparse.ArgumentParser, what: str = "one JSON object") -> None:
-    """The option ``--json``."""
-    parser.add_argument("--json", action="store_true", help=f"print {what}")
-
-
-def add_output_argument(parser: argparse.ArgumentParser) -> None:
-    """The option ``-o FILE`` of a command whose result is what it prints."""
-    parser.add_argument(
-        "-o", "--output", type=OutputFile, metavar="FILE", help="write here (default: stdout)"
-    )
-    parser.set_defaults(printed_to_output=True)
-
-
-@contextmanager
-def output_of(args: argparse.Namespace) -> Iterator[None]:
-    """Send what is printed in the block to the file ``-o`` names, whole or not at all.
-
-    For the commands of `add_output_argument`; others write their own files. Raises UserError when
-    the place cannot be written to.
-    """
-    path = getattr(args, "output", None)
-    if path in (None, "-") or not getattr(args, "printed_to_output", False):
-        yield
-        return
-    from contextlib import redirect_stdout
-
-    from ..files import replacing
-
-    with replacing(path) as file, redirect_stdout(file):
-        yield
-
-
-def whole_number(low: int, high: int) -> Callable[[str], int]:
-    """An argument's type: a whole number within limits, which the message says."""
-
-    def read(text: str) -> int:
-        try:
-            number = int(text)
-        except ValueError:
-            number = low - 1
-        if not low <= number <= high:
-            raise argparse.ArgumentTypeError(
-                f"{quoted(text)} is no whole number from {low:,} to {high:,}"
-            )
-        return number
-
-    return read

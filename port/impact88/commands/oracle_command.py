@@ -33,31 +33,28 @@ from ..checking.oracle import Request, answer
 from ..checking.vectors import CLASSES
 from ..errors import UserError
 from ..files import called, encoding_of, open_bytes
-from .options import InputFile, OutputFolder, add_output_argument, whole_number
+from .options import OUTPUT, InputFile, OutputFolder, argument, flag, seed, whole_number
 
 MOST_VECTORS = 10_000_000
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 oracle`."""
-    parser.add_argument("scenes", nargs="?", type=InputFile, default="-", metavar="SCENES.jsonl")
-    add_output_argument(parser)
-    parser.add_argument("--no-reference", action="store_true", help="leave out the 30 digits")
-    parser.add_argument(
+ARGUMENTS = (
+    argument("scenes", nargs="?", type=InputFile, default="-", metavar="SCENES.jsonl"),
+    OUTPUT,
+    flag("--no-reference", "leave out the 30 digits"),
+    argument(
         "--vectors", type=whole_number(1, MOST_VECTORS), metavar="N", help="write N test vectors"
-    )
-    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the test vectors")
-    parser.add_argument("--class", dest="only", choices=CLASSES, help="vectors of this class only")
-    parser.add_argument(
-        "--to", choices=("jsonl", "csv"), help="csv: the scenes of --vectors as a flat table"
-    )
-    parser.add_argument(
+    ),
+    seed("of the test vectors"),
+    argument("--class", dest="only", choices=CLASSES, help="vectors of this class only"),
+    argument("--to", choices=("jsonl", "csv"), help="csv: the scenes of --vectors as a flat table"),
+    argument(
         "--kit",
         type=OutputFolder,
         metavar="DIR",
         help="write vectors, conventions and programs that answer them, in five languages",
-    )
-    parser.add_argument("--published", action="store_true", help="write the published vectors")
+    ),
+    flag("--published", "write the published vectors"),
+)
 
 
 def main(args: argparse.Namespace) -> int:

@@ -51,25 +51,27 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from typing import TYPE_CHECKING
 
 from ..errors import UserError
-from ..files import called, replacing
+from ..files import replacing
 from ..reconstruction.knowable import KNOWABLE
 from ..scene import known_template, shown_texts
 from ..scene import template as scene_template
-from ..schemas import stamped
 from ..stderr import note
 from .options import (
+    SOLUTION,
     OutputFile,
-    add_names_argument,
-    add_solution_arguments,
+    argument,
+    draws,
     known_within_limits,
     names_given,
-    refuse_renamed,
-    whole_number,
+    names_option,
+    print_json,
+    renamed,
+    sample_option,
+    source_of,
 )
 
 if TYPE_CHECKING:
@@ -77,33 +79,23 @@ if TYPE_CHECKING:
     from ..uncertainty.uncertain import Uncertain
     from ..units import System
 
-SAMPLES = 20_000
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 reconstruct`."""
-    add_names_argument(
-        parser, "--outputs", "NAMES", "solve for these only; others may stay unknown", old="--for"
-    )
-    parser.add_argument(
-        "--samples",
-        type=whole_number(0, 100_000_000),
-        default=SAMPLES,
-        metavar="N",
-        help="random draws of values known within limits; 0: neither draws nor bounds "
-        "(default: %(default)s)",
-    )
-    parser.add_argument(
-        "--seed", type=whole_number(0, 2**63), default=0, help="which draws (default: 0)"
-    )
-    parser.add_argument(
+ARGUMENTS = (
+    names_option("--outputs", "solve for these only; others may stay unknown"),
+    argument("--for", dest="outputs", action="append", help=argparse.SUPPRESS),
+    *draws(
+        20_000,
+        meaning="random draws of values known within limits; 0: neither draws nor bounds",
+    ),
+    argument(
         "--write-scene",
         type=OutputFile,
         metavar="FILE",
         help="write the impact found as a scene file",
-    )
-    refuse_renamed(parser, "--scene", "--write-scene FILE")
-    add_solution_arguments(parser)
+    ),
+    renamed("--scene", "--write-scene FILE"),
+    *SOLUTION,
+    sample_option("start from the scene of a published run"),
+)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -111,7 +103,7 @@ def main(args: argparse.Namespace) -> int:
     if args.template:
         print(known_template(KNOWABLE))
         return 0
-    if args.file is None and not args.set:
+    if source_of(args) is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..reconstruction.adjustment import needs_adjustment
     from ..reconstruction.frictionshare import share_resolved
@@ -119,7 +111,7 @@ def main(args: argparse.Namespace) -> int:
     from ..units import system_of
 
     wanted = names_given(args.outputs, QUANTITIES, "--outputs") or None
-    known, named = known_within_limits(args.file, args.set, KNOWABLE, args.units)
+    known, named = known_within_limits(args, KNOWABLE)
     known, found = share_resolved(known)
     if found:
         note(None, found)
@@ -128,15 +120,10 @@ def main(args: argparse.Namespace) -> int:
         from ..reconstruction.solutiontable import show
 
         numbers = {name: item.nominal for name, item in known.items()}
-        show(numbers, wanted, source_of(args.file), args.contact_time, args.json, units)
+        show(numbers, wanted, source_of(args), args.contact_time, args.json, units)
         return 0
     _reconstruct(known, wanted, args, units)
     return 0
-
-
-def source_of(path: str | None) -> str | None:
-    """What errors call the file given."""
-    return None if path is None else called(path)
 
 
 def _reconstruct(
@@ -155,22 +142,21 @@ def _reconstruct(
     try:
         solutions = reconstruct(known)
     except UserError as error:
-        raise UserError(str(error), source_of(args.file)) from None
+        raise UserError(str(error), source_of(args)) from None
     for name in wanted or ():
         if any(name not in solution.values for solution in solutions):
-            raise UserError(f"{name} is not determined by what is known", source_of(args.file))
+            raise UserError(f"{name} is not determined by what is known", source_of(args))
     if args.write_scene:
         _write_scene(solutions, args, units)
-    tables = []
+    found = []
     for solution in solutions:
         with progress(None, "reconstruct", "impacts") as meter:
             spread = uncertainty(solution, args.samples, args.seed, wanted, meter.update)
-        tables.append((solution, completed_values(solution, args.contact_time), spread))
+        found.append((solution, completed_values(solution, args.contact_time), spread, units))
     if args.json:
-        whole = stamped("reconstruct", {"solutions": [as_json(*one, units) for one in tables]})
-        print(json.dumps(whole, allow_nan=False))
-        return
-    print(in_turn([as_text(*one, units) for one in tables]))
+        print_json("reconstruct", {"solutions": [as_json(*solution) for solution in found]})
+    else:
+        print(in_turn([as_text(*solution) for solution in found]))
 
 
 def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace, units: System) -> None:
@@ -179,6 +165,6 @@ def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace, unit
     texts = {name: repr(value).upper() for name, value in solutions[0].scene().items()}
     texts["M"] = "4" if texts["M"] == "4.0" else "6"
     with replacing(args.write_scene) as file:
-        title = f"Reconstructed from {called(args.file or '--set')}"
+        title = f"Reconstructed from {source_of(args) or '--set'}"
         file.write(scene_template(shown_texts(texts, units.name or None), title, units.name))
     print(f"scene written to {args.write_scene}", file=sys.stderr)

@@ -24,40 +24,26 @@ import csv
 
 from ..files import called, decode, read_bytes, replacing
 from ..scene import TOML_LIMIT, entries_of, toml_texts
-from .options import InputFile, OutputFile, add_units_argument, note_remarks, whole_number
+from .options import UNITS, InputFile, OutputFile, argument, draws, note_remarks
 
-SAMPLES = 20_000
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 report`."""
-    parser.add_argument(
-        "file", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"
-    )
-    parser.add_argument(
+ARGUMENTS = (
+    argument("file", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"),
+    argument(
         "-o", "--output", type=OutputFile, required=True, metavar="FILE.html", help="the page"
-    )
-    parser.add_argument("--case", default="", metavar="NUMBER", help="the case's number")
-    parser.add_argument("--title", default="", metavar="TEXT", help="what stands on top")
-    parser.add_argument(
+    ),
+    argument("--case", default="", metavar="NUMBER", help="the case number"),
+    argument("--title", default="", metavar="TEXT", help="the title of the page"),
+    argument(
         "--paper",
         choices=("letter", "a4"),
         default="",
-        help="what it is printed on (default: letter for us units, else a4)",
-    )
-    parser.add_argument(
-        "--samples",
-        type=whole_number(0, 100_000_000),
-        default=SAMPLES,
-        metavar="N",
-        help="random draws (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--seed", type=whole_number(0, 2**63), default=0, help="which draws (default: 0)"
-    )
-    parser.add_argument("--csv", type=OutputFile, metavar="FILE", help="write the tables as CSV")
-    parser.add_argument("--xlsx", type=OutputFile, metavar="FILE", help="and as a workbook")
-    add_units_argument(parser)
+        help="paper size (default: letter for us units, else a4)",
+    ),
+    *draws(20_000),
+    argument("--csv", type=OutputFile, metavar="FILE", help="write the tables as CSV"),
+    argument("--xlsx", type=OutputFile, metavar="FILE", help="write the tables as a workbook"),
+    UNITS,
+)
 
 
 def main(args: argparse.Namespace) -> int:

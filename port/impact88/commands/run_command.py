@@ -19,93 +19,81 @@ import argparse
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
-from math import isfinite
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
 from ..errors import UserError
 from ..files import replacing, typed_line
 from ..names import VELOCITIES
 from ..program.arithmetics import ARITHMETICS
-from ..program.run import finished, page, start
-from ..scene import Scene, published_data, sample
+from ..program.run import Run, finished, page, start
+from ..scene import Scene, published_data
 from .options import (
+    MOVE,
+    ONE_SCENE,
+    OUTPUT,
     InputFile,
     OutputFile,
-    add_json_argument,
-    add_move_argument,
-    add_output_argument,
-    add_scene_argument,
-    add_set_argument,
-    changed,
+    argument,
+    flag,
+    json_option,
+    print_json,
+    scene_given,
+    setting,
     settings,
 )
 
 MOST_REPLIES = 10_000
 """Replies that are read: the program asks twice, and once more for each it refuses."""
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 run`."""
-    add_scene_argument(parser)
-    add_set_argument(parser, "change a value of the scene")
-    add_move_argument(parser)
-    parser.add_argument(
-        "--arithmetic",
-        choices=tuple(ARITHMETICS),
-        default="applesoft",
-        help="the numbers to compute with (default: %(default)s)",
-    )
-    add_json_argument(parser, "the run as one JSON object")
-    add_output_argument(parser)
-    add_machine_arguments(parser)
-    parser.add_argument(
-        "--listing",
-        type=InputFile,
-        metavar="THEIRS.bas",
-        help="run another copy of the listing, in the emulator",
-    )
-    add_raw_argument(parser)
-
-
-def add_machine_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options that say what is plugged into the machine."""
-    parser.add_argument(
-        "--no-dos",
-        action="store_true",
-        help="no disk operating system: lines that start with control-D are shown",
-    )
-    parser.add_argument(
+MACHINE = (
+    flag("--no-dos", "no disk operating system: lines that start with control-D are shown"),
+    argument(
         "--slot",
         type=int,
         choices=range(8),
         default=0,
         metavar="N",
         help="the output slot in line 190: 0 the screen, 1 the printer",
-    )
-    parser.add_argument(
+    ),
+    argument(
         "--printer",
         type=OutputFile,
         metavar="FILE",
         help="where the printer's output goes (default: stdout)",
-    )
-
-
-def add_raw_argument(parser: argparse.ArgumentParser) -> None:
-    """The option --raw."""
-    parser.add_argument(
+    ),
+    flag(
         "--raw",
-        action="store_true",
-        help="every character as the Apple sends it: form feed, bells, NULs and control-D too",
-    )
+        "every character as the Apple sends it: form feed, bells, NULs and control-D too",
+    ),
+)
+"""What is plugged into the machine."""
+
+ARGUMENTS = (
+    *ONE_SCENE,
+    setting("change a value of the scene"),
+    MOVE,
+    argument(
+        "--arithmetic",
+        choices=tuple(ARITHMETICS),
+        default="applesoft",
+        help="the numbers to compute with (default: %(default)s)",
+    ),
+    json_option("the run as one JSON object"),
+    OUTPUT,
+    *MACHINE,
+    argument(
+        "--listing",
+        type=InputFile,
+        metavar="THEIRS.bas",
+        help="run another copy of the listing, in the emulator",
+    ),
+)
 
 
 def chosen_scene(args: argparse.Namespace) -> Scene | None:
     """The scene the options name, changed; None for the listing's own data with prompts."""
-    if args.scene and args.sample:
-        raise UserError(f"a scene file and --sample {args.sample} are both given; expected one")
-    if args.scene or args.sample:
-        scene = Scene.from_toml(args.scene, args.units) if args.scene else sample(args.sample)
-        return changed(scene, args.set, args.move_contact, "the program's page")
+    if (scene := scene_given(args, "the program's page")) is not None:
+        return scene
     changes = settings(args.set, units=args.units)
     given = [name for name in VELOCITIES if name in changes]
     if not given:
@@ -119,23 +107,28 @@ def chosen_scene(args: argparse.Namespace) -> Scene | None:
     return Scene(published_data() | changes, source="--set")
 
 
-def main(args: argparse.Namespace) -> int:
-    """Run the program on the terminal, or on a scene."""
+def check_slot(args: argparse.Namespace) -> None:
+    """Raises UserError for a slot with nothing in it."""
     if args.slot not in (0, PRINTER_SLOT) and not args.no_dos:
         raise UserError(
             f"slot {args.slot} is empty; expected 0 (the screen) or {PRINTER_SLOT} (the printer), "
             "or --no-dos"
         )
+
+
+def main(args: argparse.Namespace) -> int:
+    """Run the program on the terminal, or on a scene."""
+    check_slot(args)
     scene = chosen_scene(args)
     if args.listing:
         return _run_copy(args, scene)
     data: dict[str, str] | Scene = scene or published_data() | settings(args.set, units=args.units)
     replied = scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")
     replied.check_typed()
-    shown: list[str] = []
-    show = shown.append if args.json else sys.stdout.write if args.raw else _show_page
+    output: list[str] = []
+    show = output.append if args.json else sys.stdout.write if args.raw else _show_page
     if args.json and scene is None and sys.stdin.isatty():
-        show = _prompting(shown)
+        show = _prompting(output)
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
         if scene is not None:
@@ -160,13 +153,7 @@ def main(args: argparse.Namespace) -> int:
                 + ",".join(VELOCITIES[3:])
             ) from None
     if args.json:
-        import json
-
-        from ..schemas import stamped
-
-        run = finished("".join(shown), error, zero_determinant, variables)
-        floats = {name: x if isfinite(x) else None for name, x in run.floats.items()}
-        print(json.dumps(stamped("run", {**run._asdict(), "floats": floats})))
+        _print_run(finished("".join(output), error, zero_determinant, variables))
     elif error is not None and sys.stdout.isatty():
         print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
     return 1 if error else 0
@@ -183,15 +170,14 @@ def _run_copy(args: argparse.Namespace, scene: Scene | None) -> int:
     copy = ListingCopy(args.listing)
     run = copy.run(scene, dos=not args.no_dos)
     if args.json:
-        import json
-
-        from ..schemas import stamped
-
-        floats = {name: x if isfinite(x) else None for name, x in run.floats.items()}
-        print(json.dumps(stamped("run", {**run._asdict(), "floats": floats})))
+        _print_run(run)
     else:
         sys.stdout.write(run.printout if args.raw else run.page)
     return 1 if run.error else 0
+
+
+def _print_run(run: Run) -> None:
+    print_json("run", run._asdict())
 
 
 def _show_page(text: str) -> None:
@@ -202,14 +188,14 @@ def _typed_lines() -> Iterator[str | None]:
     """Lines of standard input. Raises UserError when a program that never stops writes them."""
     for _ in range(MOST_REPLIES):
         yield typed_line()
-    raise UserError(f"{MOST_REPLIES:,} replies, and none that the program takes; expected numbers")
+    raise UserError(f"the program refused {MOST_REPLIES:,} replies; expected numbers")
 
 
-def _prompting(shown: list[str]) -> Callable[[str], object]:
+def _prompting(output: list[str]) -> Callable[[str], object]:
     """Keep the output, and let the person at the terminal see the prompts on stderr."""
 
     def show(text: str) -> None:
-        shown.append(text)
+        output.append(text)
         sys.stderr.write(text)
         sys.stderr.flush()
 

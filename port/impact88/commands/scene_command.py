@@ -20,16 +20,11 @@ from __future__ import annotations
 import argparse
 
 from ..scene import SIGNS, Scene, sample, template
-from .options import add_output_argument, add_sample_argument, add_units_argument
+from .options import OUTPUT, UNITS, sample_option
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 scene`."""
-    add_sample_argument(parser)
-    add_units_argument(parser)
-    add_output_argument(parser)
+ARGUMENTS = (sample_option(), UNITS, OUTPUT)
 
 
 def main(args: argparse.Namespace) -> int:

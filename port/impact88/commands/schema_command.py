@@ -18,13 +18,9 @@ import argparse
 import json
 
 from ..schemas import CONVENTIONS, NUMBERS, text
-from .options import add_output_argument
+from .options import OUTPUT, argument
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 schema`."""
-    parser.add_argument("name", nargs="?", metavar="NAME", help="a form, or conventions")
-    add_output_argument(parser)
+ARGUMENTS = (argument("name", nargs="?", metavar="NAME", help="a form, or conventions"), OUTPUT)
 
 
 def main(args: argparse.Namespace) -> int:

@@ -11,18 +11,12 @@ exit status: 0 everything came out as captured; 1 something did not
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 
 from ..checking.selfcheck import CHECKS, Check, checks, record
-from ..schemas import stamped
-from .options import add_json_argument, add_output_argument
+from .options import OUTPUT, json_option, print_json
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 selfcheck`."""
-    add_json_argument(parser, "the record as one JSON object")
-    add_output_argument(parser)
+ARGUMENTS = (json_option("the record as one JSON object"), OUTPUT)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -38,7 +32,7 @@ def main(args: argparse.Namespace) -> int:
             print(_line(check), flush=True)
     whole = record(results)
     if args.json:
-        print(json.dumps(stamped("selfcheck", whole), indent=2))
+        print_json("selfcheck", whole, indent=2)
     else:
         print()
         for group in ("versions", "hashes"):

@@ -68,17 +68,19 @@ from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from ..tables.tableunits import TableUnits
 from .options import (
+    ENCODING,
     FORMATS,
+    SWEEP,
+    UNITS,
     InputFile,
     OutputFile,
-    add_encoding_argument,
-    add_names_argument,
-    add_sample_argument,
-    add_set_argument,
-    add_sweep_argument,
-    add_units_argument,
+    argument,
+    flag,
     names_given,
+    names_option,
     note_remarks,
+    sample_option,
+    setting,
     settings,
     sweeps,
 )
@@ -97,47 +99,41 @@ def _list_of_results() -> str:
 __doc__ = (__doc__ or "").format(results=_list_of_results())
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 solve`."""
-    parser.add_argument(
+ARGUMENTS = (
+    argument(
         "cases", nargs="?", type=InputFile, metavar="CASES", help="the table of scenes (- is stdin)"
-    )
-    parser.add_argument(
+    ),
+    argument(
         "-o",
         "--output",
         type=OutputFile,
         metavar="RESULTS",
         default="-",
         help="the table to write (default: stdout)",
-    )
-    add_names_argument(parser, "--outputs", "NAMES", "the results wanted (default: all)")
-    parser.add_argument(
+    ),
+    names_option("--outputs", "the results wanted (default: all)"),
+    argument(
         "--arithmetic",
         choices=("float64", "applesoft"),
         default="float64",
         help="the numbers to compute with (default: %(default)s)",
-    )
-    add_sample_argument(parser, "a published run's scene in place of CASES")
-    add_set_argument(parser, "a value for all rows, in place of a column")
-    add_sweep_argument(parser)
-    add_units_argument(parser)
-    parser.add_argument(
-        "--results-only",
-        action="store_true",
-        help="leave the scene's own columns out of the results; others are passed through",
-    )
-    parser.add_argument(
+    ),
+    sample_option("the scene of a published run in place of CASES"),
+    setting("a value for all rows, in place of a column"),
+    SWEEP,
+    UNITS,
+    flag("--results-only", "leave out the scene's own columns; others are passed through"),
+    argument(
         "--scene",
         type=InputFile,
         metavar="FILE.toml",
         help="a scene file for the columns the table lacks",
-    )
-    add_encoding_argument(parser)
-    parser.add_argument(
-        "--errors", type=OutputFile, metavar="FILE", help="write the bad rows here (CSV)"
-    )
-    parser.add_argument("--from", dest="form", choices=FORMATS, help="the format of CASES")
-    parser.add_argument("--to", choices=FORMATS, help="the format of RESULTS")
+    ),
+    ENCODING,
+    argument("--errors", type=OutputFile, metavar="FILE", help="write the bad rows here (CSV)"),
+    argument("--from", dest="form", choices=FORMATS, help="the format of CASES"),
+    argument("--to", choices=FORMATS, help="the format of RESULTS"),
+)
 
 
 def _sweep(

@@ -27,55 +27,53 @@ exit status: 0 identical; 1 any other verdict; 2 unreadable; of several files th
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 
 from ..errors import UserError
 from ..reporting.examination import Examined, Verdict, examine
 from ..reporting.verification import lines
-from ..schemas import stamped
 from ..stderr import note
 from .options import (
+    OUTPUT,
     InputFile,
     OutputFile,
-    add_json_argument,
-    add_output_argument,
-    add_sample_argument,
-    add_set_argument,
+    argument,
+    flag,
+    json_option,
     one_scene,
+    print_json,
+    sample_option,
+    setting,
 )
 
 _ON_REPORT = ("date", "case", "examiner")
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 verify`."""
-    parser.add_argument(
+ARGUMENTS = (
+    argument(
         "printouts", nargs="+", type=InputFile, metavar="PRINTOUT", help="text, picture or PDF"
-    )
-    add_json_argument(parser, "one JSON object a printout")
-    add_output_argument(parser)
-    parser.add_argument("--brief", action="store_true", help="only verdicts and what differs")
-    parser.add_argument(
+    ),
+    json_option("one JSON object a printout"),
+    OUTPUT,
+    flag("--brief", "only verdicts and what differs"),
+    argument(
         "--scene",
         type=InputFile,
         metavar="FILE.toml",
-        help="inputs apart, where the page has only results",
-    )
-    parser.add_argument(
+        help="the inputs, for a page that has only results",
+    ),
+    argument(
         "--listing",
         type=InputFile,
         metavar="THEIRS.bas",
-        help="hold the pages against another copy of the listing",
-    )
-    parser.add_argument(
+        help="compare the pages with another copy of the listing",
+    ),
+    argument(
         "--report", type=OutputFile, metavar="FILE.html", help="write a page for the case file"
-    )
-    add_sample_argument(parser, "inputs apart: those of a published run")
-    add_set_argument(parser, "change a value of these inputs")
-    parser.add_argument("--date", help="date to stand on the report, as given")
-    parser.add_argument("--case", help="case to stand on the report, as given")
-    parser.add_argument("--examiner", help="examiner to stand on the report, as given")
+    ),
+    sample_option("the inputs are those of a published run"),
+    setting("change a value of these inputs"),
+    *(argument(f"--{name}", help=f"{name} printed on the report, as given") for name in _ON_REPORT),
+)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -94,25 +92,25 @@ def main(args: argparse.Namespace) -> int:
     status = 0
     examined = []
     for path in args.printouts:
-        one = examine(path, given, copy)
-        examined.append(one)
-        _tell(one, args)
-        adverse = any(result.verdict is not Verdict.IDENTICAL for result in one.results)
-        status = max(status, 2 if one.error else int(adverse))
-    if args.report and any(one.results for one in examined):
+        file = examine(path, given, copy)
+        examined.append(file)
+        _show(file, args)
+        adverse = any(result.verdict is not Verdict.IDENTICAL for result in file.results)
+        status = max(status, 2 if file.error else int(adverse))
+    if args.report and any(file.results for file in examined):
         from ..reporting.casefile import write_report
 
         write_report(args.report, examined, args.date, args.case, args.examiner)
     return status
 
 
-def _tell(one: Examined, args: argparse.Namespace) -> None:
-    if one.error:
-        note("verify", one.error)
+def _show(file: Examined, args: argparse.Namespace) -> None:
+    if file.error:
+        note("verify", file.error)
     if args.json:
-        for described in one.as_json():
-            print(json.dumps(stamped("verify", described), ensure_ascii=False))
+        for described in file.as_json():
+            print_json("verify", described)
     else:
-        for result in one.results:
+        for result in file.results:
             print("\n".join(lines(result, args.brief)))
     sys.stdout.flush()

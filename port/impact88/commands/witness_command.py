@@ -17,7 +17,6 @@ exit status: 0 no difference; 1 a difference; 2 bad input, or a ROM that does no
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from collections.abc import Iterator
 from functools import partial
@@ -26,15 +25,20 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UserError
 from ..progress import progress
 from ..scene import SAMPLES, Scene, sample
-from ..schemas import stamped
 from .options import (
+    OUTPUT,
     InputFile,
+    InputFolder,
     OutputFolder,
-    add_json_argument,
-    add_output_argument,
-    add_sample_argument,
-    add_set_argument,
+    argument,
+    flag,
+    json_option,
+    print_json,
+    sample_option,
+    seed,
+    setting,
     settings,
+    whole_number,
 )
 
 if TYPE_CHECKING:
@@ -46,38 +50,37 @@ if TYPE_CHECKING:
 
     Job = Callable[[Session], Heard]
 
+MOST = 10_000_000
+"""Random scenes of one run."""
 SHOWN = 10
 """Cases with differences that are shown."""
 SHOWN_LINES = 24
 """Lines of one case's differences that are shown."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `impact88 witness`."""
-    parser.add_argument(
-        "scenes", nargs="*", type=InputFile, metavar="SCENE.toml", help="scenes to run"
-    )
-    parser.add_argument(
-        "--rom", type=InputFile, required=True, metavar="FILE", help="the ROM image"
-    )
-    add_sample_argument(parser, "a published run's scene; all three when nothing is asked for")
-    add_set_argument(parser, "change a value of these scenes")
-    parser.add_argument(
+ARGUMENTS = (
+    argument("scenes", nargs="*", type=InputFile, metavar="SCENE.toml", help="scenes to run"),
+    argument("--rom", type=InputFile, required=True, metavar="FILE", help="the ROM image"),
+    sample_option("the scene of a published run; all three when nothing else is asked for"),
+    setting("change a value of these scenes"),
+    argument(
         "--captures", metavar="N", help="N random packaged captures of each kind's mix, or all"
-    )
-    parser.add_argument(
+    ),
+    argument(
         "--programs",
+        type=InputFolder,
         metavar="FOLDER",
         help="every .bas of a folder, its replies in a .in beside it, on the ROM and the emulator",
-    )
-    parser.add_argument("--random", type=int, default=0, metavar="N", help="N fresh scenes")
-    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of what is random")
-    parser.add_argument("--any-rom", action="store_true", help="take a ROM that is not known, too")
-    parser.add_argument(
-        "--save", type=OutputFolder, metavar="DIR", help="write what the ROM did as captures"
-    )
-    add_json_argument(parser, "the record as one JSON object")
-    add_output_argument(parser)
+    ),
+    argument(
+        "--random", type=whole_number(0, MOST), default=0, metavar="N", help="N random scenes"
+    ),
+    seed("of what is random"),
+    flag("--any-rom", "accept a ROM that is not known, too"),
+    argument("--save", type=OutputFolder, metavar="DIR", help="write what the ROM did as captures"),
+    json_option("the record as one JSON object"),
+    OUTPUT,
+)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -97,7 +100,7 @@ def main(args: argparse.Namespace) -> int:
 
         save(args.save, heard)
     if args.json:
-        print(json.dumps(stamped("witness", whole), indent=2))
+        print_json("witness", whole, indent=2)
     else:
         print("\n".join(_report(image, heard, whole)))
     return 0 if whole["passed"] else 1
@@ -121,12 +124,14 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         scene = Scene.from_toml(path).replaced(changes)
         jobs.append(partial(hearing.hear_scene, name=path, scene=scene))
     if args.captures is not None:
-        count = None if args.captures == ALL else _count("--captures", args.captures)
+        if args.captures != ALL and not args.captures.isdecimal():
+            raise UserError(f"--captures {args.captures}; expected a number, or all")
+        count = None if args.captures == ALL else int(args.captures)
         for case in cases(count, args.seed):
             jobs.append(partial(hearing.hear, case=case))
     if args.programs:
         jobs += [partial(hearing.hear, case=case) for case in own_programs(args.programs)]
-    if _count("--random", str(args.random)):
+    if args.random:
         from ..checking.vectors import scenes
 
         for index, (_, label, texts) in enumerate(scenes(args.random, args.seed)):
@@ -137,13 +142,6 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
     return jobs
 
 
-def _count(option: str, text: str) -> int:
-    if not text.isdecimal():
-        expected = "a number, or all" if option == "--captures" else "a number"
-        raise UserError(f"{option} {text}; expected {expected}")
-    return int(text)
-
-
 def _hear(session: Session, jobs: list[Job]) -> Iterator[Heard]:
     with progress(len(jobs), "on the ROM", lines=True) as meter:
         for job in jobs:
@@ -152,10 +150,10 @@ def _hear(session: Session, jobs: list[Job]) -> Iterator[Heard]:
 
 
 def _report(image: Image, heard: list[Heard], whole: dict[str, Any]) -> Iterator[str]:
-    wrong = [one for one in heard if one.differences]
-    for one in wrong[:SHOWN]:
-        yield f"{one.kind}: {one.name}"
-        lines = [line for difference in one.differences for line in difference.lines()]
+    wrong = [case for case in heard if case.differences]
+    for case in wrong[:SHOWN]:
+        yield f"{case.kind}: {case.name}"
+        lines = [line for difference in case.differences for line in difference.lines()]
         yield from (f"  {line}" for line in lines[:SHOWN_LINES])
         if len(lines) > SHOWN_LINES:
             yield f"  and {len(lines) - SHOWN_LINES} lines more"
