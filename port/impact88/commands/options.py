@@ -365,7 +365,7 @@ def entries_given(args: argparse.Namespace, single: bool = False) -> Entries | N
     is given. Raises UserError where both are."""
     number = getattr(args, "sample", None)
     if args.scene and number:
-        raise UserError(f"a file and --sample {number} are both given; expected one")
+        raise UserError(f"a file and --sample {number} are both given; expected one scene")
     if args.scene:
         entries = entries_in(args.scene, args.units, single)
         note_remarks(entries)
@@ -487,7 +487,7 @@ def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
     where neither is given. How its entries were understood is said on stderr, and what of the
     answer is ``based`` on other units than the scene's. Raises UserError."""
     if args.scene and args.sample:
-        raise UserError(f"a scene file and --sample {args.sample} are both given; expected one")
+        raise UserError(f"a scene file and --sample {args.sample} are both given; expected one scene")
     if not args.scene and not args.sample:
         return None
     units = getattr(args, "units", None)

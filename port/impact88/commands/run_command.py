@@ -177,7 +177,7 @@ def _run_copy(args: argparse.Namespace, scene: Scene | None) -> int:
 
 
 def _print_run(run: Run) -> None:
-    print_json("run", run._asdict())
+    print_json("run", {**run._asdict(), "floats": run.floats})
 
 
 def _show_page(text: str) -> None:
