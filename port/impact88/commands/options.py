@@ -360,19 +360,22 @@ def source_of(args: argparse.Namespace) -> str | None:
     return f"sample {number}" if number else None
 
 
+def _check_one(args: argparse.Namespace) -> None:
+    if args.scene and (number := getattr(args, "sample", None)):
+        raise UserError(f"a file and --sample {number} are both given; expected one scene")
+
+
 def entries_given(args: argparse.Namespace, single: bool = False) -> Entries | None:
     """The entries of the file or of ``--sample``, with their remarks on stderr; None where neither
     is given. Raises UserError where both are."""
-    number = getattr(args, "sample", None)
-    if args.scene and number:
-        raise UserError(f"a file and --sample {number} are both given; expected one scene")
+    _check_one(args)
     if args.scene:
         entries = entries_in(args.scene, args.units, single)
         note_remarks(entries)
         return entries
-    if not number:
+    if source_of(args) is None:
         return None
-    entries = sample(number).entries
+    entries = sample(args.sample).entries
     entries.units = args.units
     return entries
 
@@ -486,8 +489,7 @@ def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
     """The scene that file or sample name, with what ``--set`` and ``--move-contact`` change; None
     where neither is given. How its entries were understood is said on stderr, and what of the
     answer is ``based`` on other units than the scene's. Raises UserError."""
-    if args.scene and args.sample:
-        raise UserError(f"a scene file and --sample {args.sample} are both given; expected one scene")
+    _check_one(args)
     if not args.scene and not args.sample:
         return None
     units = getattr(args, "units", None)
