@@ -15,7 +15,6 @@ from pytest_regressions.file_regression import FileRegressionFixture
 
 from captures import ROOT
 from impact88 import native
-from impact88.replay import blocks
 
 
 @pytest.fixture(scope="module")
@@ -50,11 +49,8 @@ def golden_printout(file_regression: FileRegressionFixture) -> Callable[[str, st
 
 @pytest.fixture(scope="module", params=["compiled", "numpy"])
 def both_machines(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Every test of the module twice: on the compiled machine, however few scenes there are, and on
-    numpy alone."""
+    """Every test of the module twice: on the compiled machine, and on numpy alone."""
     if request.param == "compiled" and native.library is None:
         pytest.skip("built without a C compiler")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(blocks, "WORTH_COMPILING", 0)
-        with native.switched_off() if request.param == "numpy" else nullcontext():
-            yield
+    with native.switched_off() if request.param == "numpy" else nullcontext():
+        yield

@@ -21,9 +21,9 @@ from impact88.errors import UserError
 from impact88.names import SCENE
 from impact88.replay import Replay, field_names, statements
 from impact88.replay.blocks import replay_scenes
-from impact88.replay.pivoting import DONE
 from impact88.replay.realcolumns import read_columns
 from impact88.replay.reals import from_floats
+from impact88.replay.statements import SOLVED as DONE
 from impact88.replay.unit import Unit
 
 pytestmark = pytest.mark.usefixtures("both_machines")

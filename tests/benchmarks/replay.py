@@ -83,7 +83,7 @@ def primitives(size: int) -> dict[str, Callable[[], object]]:
         "SIN": lambda: polynomials.sin(left),
         "LOG": lambda: polynomials.log(positive),
         "EXP": lambda: polynomials.exp(left),
-        "x ^ 2": lambda: polynomials.power(left, polynomials.constant(2)),
+        "x ^ 2": lambda: polynomials.square(left),
         "write a field": lambda: textcolumns.write(flying),
     }
 

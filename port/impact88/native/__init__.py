@@ -24,19 +24,27 @@ def _load() -> ctypes.CDLL | None:
         path = Path(__file__).with_name(f"_machine{suffix}")
         if path.exists():
             try:
-                found = ctypes.CDLL(str(path))
-            except OSError:  # built for another machine
+                return _declared(ctypes.CDLL(str(path)))
+            except (OSError, AttributeError):  # built for another machine, or from older sources
                 continue
-            number, address = ctypes.c_int64, ctypes.c_void_p
-            found.survey.argtypes = [address, number, number, address]
-            found.run.argtypes = [
-                *(address, number, number, address, address, number, number, address, number),
-                *(address, address, number, number, address, address, number),
-            ]
-            found.instructions.restype = found.operations.restype = ctypes.c_char_p
-            found.strip.restype = found.most_places.restype = found.run.restype = number
-            return found
     return None
+
+
+def _declared(found: ctypes.CDLL) -> ctypes.CDLL:
+    """The library, with what its functions take and return. Raises AttributeError for one that has
+    not all of them."""
+    number, address = ctypes.c_int64, ctypes.c_void_p
+    found.survey.argtypes = [address, number, number, address]
+    found.run.argtypes = [
+        *(address, number, number, address, address, number, number, address, number),
+        *(address, address, number, number, address, address, number),
+    ]
+    found.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
+    found.write_numbers.argtypes = [address, number, address, address]
+    found.instructions.restype = found.operations.restype = ctypes.c_char_p
+    for counts in (found.strip, found.most_places, found.text_width, found.run):
+        counts.restype = number
+    return found
 
 
 library = _load()

@@ -30,19 +30,11 @@
 #endif
 
 /* Numbers of columns that are in cache anyway: half a megabyte. */
-#ifndef CACHED
-#ifndef CACHED
-#ifndef CACHED
-#ifndef CACHED
 #define CACHED 65536
 
 /* Strips by which memory is fetched ahead, into the second-level cache (the first is too
    small, and one strip too late): 33 to 19 ns a scene where columns come from memory. */
 #define AHEAD 2
-#endif
-#endif
-#endif
-#endif
 
 /* Values a program may keep at a time. */
 #define PLACES 1024
@@ -148,7 +140,7 @@ static inline __attribute__((always_inline)) void perform(
             break;
         }
         UNARY(REAL_INT, real_int(a[i]))
-        BINARY(REAL_LESS, real_less(a[i], b[i], odd + i))
+        BINARY(REAL_LESS, real_less(a[i], b[i]))
         UNARY(REAL_FRACTION, real_fraction(a[i]))
         UNARY(REAL_EXPONENT, real_exponent(a[i]))
         BINARY(REAL_HALVED, real_halved(a[i], b[i], odd + i))
@@ -263,8 +255,11 @@ EXPORT CLONES void survey(const double *const *columns, int64_t many, int64_t co
     }
 }
 
+#include "texts.h"
+
 EXPORT int64_t strip(void) { return STRIP; }
 EXPORT int64_t most_places(void) { return PLACES; }
+EXPORT int64_t text_width(void) { return TEXT_WIDTH; }
 
 EXPORT const char *instructions(void)
 {

@@ -231,3 +231,24 @@ def extremes(columns: Addresses, count: int) -> Array:
 def addresses(arrays: Iterable[NDArray[np.generic]]) -> Addresses:
     """Where arrays begin in memory."""
     return np.array([array.ctypes.data for array in arrays], np.int64)
+
+
+def read_numbers(text: bytes, count: int) -> tuple[Array, NDArray[np.bool_]]:
+    """The Apple's reals that ``count`` decimal texts are, each ended by a newline, extension
+    included; and which are left to others (True): no plain numbers, or very large or small."""
+    assert native.library is not None
+    values, odd = np.empty(count), np.empty(count, np.bool_)
+    native.library.read_numbers(text, count, values.ctypes.data, odd.ctypes.data)
+    return values, odd
+
+
+def write_numbers(values: Array) -> tuple[NDArray[np.str_], NDArray[np.bool_]]:
+    """The characters PRINT makes of reals, and which are left to others (True)."""
+    assert native.library is not None
+    texts = np.empty(values.shape, f"<U{native.library.text_width()}")
+    odd = np.empty(values.shape, np.bool_)
+    values = np.ascontiguousarray(values)
+    native.library.write_numbers(
+        values.ctypes.data, values.size, texts.ctypes.data, odd.ctypes.data
+    )
+    return texts, odd

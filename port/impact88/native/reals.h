@@ -1,6 +1,6 @@
 /* The Apple's 40-bit reals in doubles: the operations of replay/reals.py, one number at a time and in
    the same order. What is kept out of these loops is what hardly ever happens: a number beyond 2^100
-   or below 2^-100, a division by zero, a comparison without its carry. The scene is marked odd then,
+   or below 2^-100, a division by zero. The scene is marked odd then,
    and left to whoever asked. */
 
 static inline int64_t bits_of(double x) { int64_t b; memcpy(&b, &x, 8); return b; }
@@ -94,11 +94,16 @@ static inline double real_divide(double left, double right)
 
 static inline double real_int(double x) { return fabs(x) < WHOLE ? floor(x) : x; }
 
-/* Whether the left operand is below the accumulator; where its rounding would carry, odd. */
-static inline double real_less(double left, double right, int64_t *odd)
+/* Whether the left operand is below the accumulator, which counts as rounded, except that this carries
+   nowhere: a last byte of FF with half a unit is 256, equal to 0 and above all else. */
+static inline double real_less(double left, double right)
 {
-    *odd |= (bits_of(right) & ONES(20, 28)) == ONES(20, 28);
-    return real_rounded(left) < real_rounded(right) ? 1.0 : 0.0;
+    double other = real_rounded(right);
+    left = real_rounded(left);
+    int64_t a = bits_of(left), b = bits_of(right), full = (b & ONES(20, 28)) == ONES(20, 28);
+    int64_t same = full & (((a ^ b) & ONES(29, 63)) == 0), beyond = full & !same & (left == other);
+    int64_t less = (left < other) & !(same & !(a & ONES(21, 28)));
+    return (beyond ? left < 0 : less) ? 1.0 : 0.0;
 }
 
 /* LOG: the mantissa as a number from 1/2 to 1, and the exponent. */

@@ -2,11 +2,11 @@
 
 unit         what a block of scenes shares: who failed first, scratch memory
 reals        the 40-bit real over arrays: round, add, multiply, divide, INT, compare
-functions    LOG EXP ^ SQR SIN COS TAN ATN
-decimaltext  decimal texts to reals and back
-elimination  lines 1000-1170
-impact       lines 280-760
-columns      what the caller gives, read
+polynomials  LOG EXP ^2 SIN COS
+textcolumns  decimal texts to reals and back
+statements   lines 280-760 and 1000-1170
+realcolumns  what the caller gives, read
+compiled     the statements as a program of the compiled machine
 blocks       many scenes: sorted into kinds, cut into blocks, computed
 result       what the caller gets
 """

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from .. import native
-from ..native.program import addresses
 from ..processors import processors
 from . import compiled, statements
 from .realcolumns import Scenes
-from .reals import Floats, Reals, compare, from_floats
+from .reals import Floats, compare, from_floats, select
 from .result import OTHER_M, Replay
 from .unit import NEVER, Bools, Ints, Unit, stamp
 
+Computed = tuple[Mapping[str, Floats], Ints, Any]
+"""Results by name, the record of failures (`Unit.first`), and which scenes are left (True)."""
 BLOCK = 8192
 """Scenes computed at a time by one thread: fewer make numpy's calls dear, more fall out of the
 cache."""
 SHARED_BLOCK = 16384
 """The same when threads share the work: a thread holds the interpreter between numpy's calls, so
 the calls should be long."""
-WORTH_COMPILING = 2048
-"""Scenes from which the compiled machine is asked: noting a program takes 20 milliseconds, as long
-as numpy needs for 2000 scenes."""
 WORTH_SHARING = 32768
 """Scenes from which it pays to note a program for just these columns, which computes once what the
 scenes share."""
@@ -43,7 +42,7 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
     pivot = compare(from_floats(scenes.values["MU"], None, True), statements.MINUS_10) == 0
     pivot = np.broadcast_to(pivot, scenes.size)
     unit.at(350)
-    unit.record(~known, OTHER_M)
+    unit.fails(~known, OTHER_M)
     values = {name: np.zeros(scenes.size) for name in statements.ASSIGNED}
     useful = max(1, scenes.size // WORTH_A_THREAD)
     threads = min(threads if threads is not None else processors(), useful)
@@ -51,35 +50,44 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
         block = BLOCK if threads == 1 else SHARED_BLOCK
     block = max(1, min(block, -(-scenes.size // threads)))
 
-    def compute(one_block: Callable[..., None], left: Bools) -> None:
-        """Compute the scenes that are ``left``, block by block."""
+    left = np.array(known)  # what has not been computed yet
+
+    def compute(work: Callable[..., Computed]) -> None:
+        """Compute what is left, block by block."""
+
+        def one_block(job: tuple[Ints | slice, statements.Kind]) -> None:
+            rows, kind = job
+            columns = {name: v[rows] if v.size > 1 else v for name, v in scenes.values.items()}
+            results, unit.first[rows], left[rows] = work(columns, unit.first[rows], kind)
+            for name, column in results.items():
+                values[name][rows] = column
+
         jobs = _blocks(left, six, pivot, block)
         if threads > 1 and len(jobs) > 1:
             from concurrent.futures import ThreadPoolExecutor  # imports logging
 
             with ThreadPoolExecutor(threads) as pool:
-                for _ in pool.map(lambda job: one_block(scenes, *job, unit, values), jobs):
+                for _ in pool.map(one_block, jobs):
                     pass
         else:
             for job in jobs:
-                one_block(scenes, *job, unit, values)
+                one_block(job)
 
-    left = np.array(known)
-    if native.library is not None and scenes.size >= WORTH_COMPILING:
-        compute(partial(_compute_compiled, left), left.copy())
-    compute(_compute, left)
+    if native.library is not None:
+        compute(partial(_compiled, scenes.size >= WORTH_SHARING))
+    compute(_by_arrays)
     return Replay(scenes, six, unit, values)
 
 
 def _blocks(
-    known: Bools, six: Bools, pivot: Bools, block: int
+    left: Bools, six: Bools, pivot: Bools, block: int
 ) -> list[tuple[Ints | slice, statements.Kind]]:
     """Which scenes go together, and their kind. A slice where they are neighbours."""
     result: list[tuple[Ints | slice, statements.Kind]] = []
     for M in (6, 4):
         for is_pivot in (False, True):
             kind = statements.Kind(M, is_pivot)
-            kept = known & (six == (M == 6)) & (pivot == is_pivot)
+            kept = left & (six == (M == 6)) & (pivot == is_pivot)
             if kept.all():
                 return [(slice(at, at + block), kind) for at in range(0, kept.size, block)]
             rows = np.flatnonzero(kept)
@@ -87,64 +95,31 @@ def _blocks(
     return result
 
 
-def _compute_compiled(
-    left: Bools,
-    scenes: Scenes,
-    rows: Ints | slice,
-    kind: statements.Kind,
-    unit: Unit,
-    values: dict[str, Floats],
-) -> None:
-    """One block by the compiled machine. ``left`` keeps the scenes that it leaves to the arrays."""
-    columns = {name: scenes.values[name] for name in compiled.NAMES}
-    size = unit.first[rows].size
-    if scenes.size < WORTH_SHARING:
-        columns = {name: np.broadcast_to(v, scenes.size) for name, v in columns.items()}
-    own = {name: np.ascontiguousarray(v[rows]) for name, v in columns.items() if v.size > 1}
-    program = compiled.program(kind, frozenset(own), tuple(values))
-    found = np.empty((len(program.results), size))
-    program.prepared(
-        addresses(own[name] for name in program.columns),
-        addresses(found),
-        size,
-        program.room(),
-        fixed={name: float(v[0]) for name, v in columns.items() if v.size == 1},
-    )()
-    *results, odd = found
-    for name, column in zip(program.results[:-1], results, strict=True):
-        values[name][rows] = column
-    left[rows] = (odd != 0) | (unit.first[rows] != NEVER)
+def _compiled(
+    sharing: bool, columns: dict[str, Floats], first: Ints, kind: statements.Kind
+) -> Computed:
+    """One block by the compiled machine; what it has marked is left."""
+    if not sharing:
+        columns = {name: np.broadcast_to(v, first.size) for name, v in columns.items()}
+    varying = frozenset(name for name in compiled.NAMES if columns[name].size > 1)
+    program = compiled.program(kind, varying, tuple(statements.ASSIGNED))
+    results, odd = compiled.computed(program, columns, first.size)
+    return results, first, odd | (first != NEVER)
 
 
 @np.errstate(all="ignore")
-def _compute(
-    scenes: Scenes,
-    rows: Ints | slice,
-    kind: statements.Kind,
-    unit: Unit,
-    values: dict[str, Floats],
-) -> None:
-    """One block, its results put where they belong."""
-    first = unit.first[rows]
+def _by_arrays(columns: dict[str, Floats], first: Ints, kind: statements.Kind) -> Computed:
+    """One block by arrays; nothing is left."""
     own = Unit(first.size)
     own.first[...] = first
-    scene = {
-        name: from_floats(v[rows] if v.size > 1 else v, own, True)
-        for name, v in scenes.values.items()
-    }
+    scene = {name: from_floats(v, own, True) for name, v in columns.items()}
     results = statements.run(own, scene, kind)
     # line 400 turns MU, and line 590 adds to KF, only in scenes that get there
-    early = ~own.reached(stamp(400, 0))
-    if early.any():
-        results["MUP"] = _choose(early, scene["MU"], results["MUP"])
-    early = ~own.reached(stamp(590, 0))
-    if early.any():
-        results["KF"] = _choose(early, results["KF580"], results["KF"])
-    for name, column in values.items():
-        if name in results:
-            column[rows] = results[name].v
-    unit.first[rows] = own.first
-
-
-def _choose(condition: Bools, yes: Reals, no: Reals) -> Reals:
-    return Reals(np.where(condition, yes.v, no.v), no.unit, no.low, no.high, True)
+    for name, place, before in (
+        ("MUP", stamp(400), scene["MU"]),
+        ("KF", stamp(590), results.pop("KF580")),
+    ):
+        early = ~own.reached(place)
+        if early.any():
+            results[name] = select(early, before, results[name])
+    return {name: x.v for name, x in results.items()}, own.first, False

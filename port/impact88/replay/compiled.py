@@ -7,6 +7,7 @@ does it to any number of scenes. Scenes out of the ordinary (an error, a value b
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -14,10 +15,10 @@ import numpy as np
 
 from ..names import SCENE
 from ..native.formulas import Expression, ExpressionTable
-from ..native.program import Program
+from ..native.program import Program, addresses
 from . import statements
-from .reals import Reals, constant
-from .unit import Unit
+from .reals import ZERO, Floats, Reals, constant
+from .unit import Bools, Unit
 
 LARGE = 2.0**100
 """Beyond this, or below its inverse, a scene is marked: no ordinary one comes near, and what is
@@ -109,7 +110,7 @@ class Noted(Reals):
 
     def _sum(self, operation: str, left: Reals | int, right: Reals | int) -> Reals:
         """A known zero is no operand: x + 0 is x rounded, 0 + x is x."""
-        left, right = (constant(x) if isinstance(x, int) else x for x in (left, right))
+        left, right = as_real(left), as_real(right)
         if not right.high:
             return left.rounded()
         if not left.high:
@@ -128,16 +129,16 @@ class Noted(Reals):
     def __rsub__(self, left: Reals | int) -> Reals:
         return self._sum("real_subtract", left, self)
 
-    def __mul__(self, right: Reals | int) -> Noted:
-        return self._make("real_multiply", self, right)
+    def __mul__(self, right: Reals | int) -> Reals:
+        return self._make("real_multiply", self, right) if as_real(right).high else ZERO
 
-    def __rmul__(self, left: Reals | int) -> Noted:
-        return self._make("real_multiply", left, self)
+    def __rmul__(self, left: Reals | int) -> Reals:
+        return self._make("real_multiply", left, self) if as_real(left).high else ZERO
 
-    def __truediv__(self, right: Reals | int) -> Noted:
+    def __truediv__(self, right: Reals | int) -> Reals:
         return self._make("real_divide", self, right)
 
-    def __rtruediv__(self, left: Reals | int) -> Noted:
+    def __rtruediv__(self, left: Reals | int) -> Reals:
         return self._make("real_divide", left, self)
 
     def __lt__(self, right: Reals | int) -> Any:
@@ -147,6 +148,12 @@ class Noted(Reals):
         return Condition(self._make("real_less", -self, -as_real(right)).expression)
 
     def within(self, high: float) -> Noted:
+        return self
+
+    def not_below(self, low: float) -> Noted:
+        return self
+
+    def looked_at(self) -> Noted:
         return self
 
     def floor(self) -> Noted:
@@ -186,36 +193,76 @@ def noted(table: ExpressionTable, x: Reals | int) -> Expression:
 class _Notes(Unit):
     """Where errors are recorded while notes are taken: nowhere but in the mark."""
 
-    one_by_one = True
-
-    def __init__(self) -> None:
+    def __init__(self, table: ExpressionTable) -> None:
         super().__init__(1)
-        self.recorded: list[Condition] = []
-        self.always = False
+        self.marked = table.constant(0.0)
 
     def skip(self, skipped: Any) -> None:
         """What is marked needlessly is computed all the same."""
 
-    def record(self, failed: Any, code: int) -> None:
+    def fails(self, failed: Any, code: int) -> bool:
         if isinstance(failed, Condition):
-            self.recorded.append(failed)
+            self.marked = self.marked.table.condition("either", self.marked, failed.expression)
         elif np.any(failed):  # in every scene
-            self.always = True
+            self.marked = self.marked.table.constant(1.0)
+        return False
+
+    def still(self, chosen: dict[int, Any]) -> dict[int, Any]:
+        """None: a scene in which no other row is chosen is marked by its pivot."""
+        return {}
 
 
 @lru_cache(maxsize=64)
 def program(kind: statements.Kind, varying: frozenset[str], names: tuple[str, ...]) -> Program:
     """The program for a kind of scenes: of ``varying`` columns the results ``names``, and `ODD`."""
-    table, unit = ExpressionTable(), _Notes()
-    scene: dict[str, Reals] = {}
-    for name in NAMES:
+
+    def make(unit: Unit, scene: Mapping[str, Noted]) -> Mapping[str, Reals]:
+        results = statements.run(unit, scene, kind)
+        return {name: results[name] for name in names if name in results}
+
+    return traced(make, NAMES, varying)
+
+
+@lru_cache(maxsize=64)
+def field_program(names: tuple[str, ...], varying: frozenset[str]) -> Program:
+    """What PRINT gets for the fields ``names``, of ``varying`` values, and `ODD`."""
+
+    def make(unit: Unit, given: Mapping[str, Noted]) -> Mapping[str, Reals]:
+        return {name: statements.shown(name, *(given[x] for x in sources(name))) for name in names}
+
+    return traced(make, tuple(x for name in names for x in sources(name)), varying)
+
+
+def sources(field: str) -> tuple[str, ...]:
+    """The values that a field is made of."""
+    return ("KI", "KF") if field == "LOSS" else (field,)
+
+
+def traced(
+    make: Callable[[Unit, Mapping[str, Noted]], Mapping[str, Reals]],
+    names: Sequence[str],
+    varying: frozenset[str],
+) -> Program:
+    table = ExpressionTable()
+    unit = _Notes(table)
+    given = {}
+    for name in names:
         column = table.column(name, name in varying)
-        ordinary = table.combine("real_ordinary", column)
-        scene[name] = Noted(ordinary, unit, True)
-    results = statements.run(unit, scene, kind)
-    shown = {name: noted(table, results[name]) for name in names if name in results}
-    mark = table.constant(float(unit.always))
-    for condition in unit.recorded:
-        mark = table.condition("either", mark, condition.expression)
-    shown[ODD] = table.combine("odd", mark, varies=True)
+        given[name] = Noted(table.combine("real_ordinary", column), unit, True)
+    shown = {name: noted(table, x) for name, x in make(unit, given).items()}
+    shown[ODD] = table.combine("odd", unit.marked, varies=True)
     return Program(shown, ["COPY"] * len(shown))
+
+
+def computed(
+    program: Program, columns: Mapping[str, Floats], count: int
+) -> tuple[dict[str, Floats], Bools]:
+    """The results of a program, and which scenes it has marked. ``columns``: of ``count`` values or
+    of one."""
+    own = [np.ascontiguousarray(columns[name]) for name in program.columns]
+    found = np.empty((len(program.results), count))
+    fixed = {x: float(columns[x][0]) for x in program.scalars if isinstance(x, str)}
+    into = found.ctypes.data + found.strides[0] * np.arange(len(found))
+    program.prepared(addresses(own), into, count, program.room(), fixed=fixed)()
+    results = dict(zip(program.results, found, strict=True))
+    return results, results.pop(ODD) != 0

@@ -20,7 +20,7 @@ def _input_places() -> dict[str, tuple[int, int]]:
     return {name: (SCENE[name].line, i) for i, name in enumerate(order)}
 
 
-_AT_A_TIME = 65536
+_AT_A_TIME = 32768
 """So many texts are read together, if there are that many: few calls for few, cache for many."""
 
 PLACES = _input_places()
@@ -73,12 +73,17 @@ def read_columns(columns: Mapping[str, Any]) -> Scenes:
 
 def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], first: Ints) -> None:
     """Read some columns of texts as one."""
-    every = [text for column in texts.values() for text in column]
+    every, *others = texts.values()
+    if others:
+        every = [text for column in texts.values() for text in column]
     sizes = [len(column) for column in texts.values()]
     names = list(texts)
     starts = np.concatenate([[0], np.cumsum(sizes)])
     unit = Unit(len(every))
-    unit.at_every(np.repeat([key(*PLACES[name]) for name in names], sizes))
+    if others:
+        unit.at_every(np.repeat([key(*PLACES[name]) for name in names], sizes))
+    else:
+        unit.at(*PLACES[names[0]])
 
     def where(index: int) -> str:
         column = int(np.searchsorted(starts, index, side="right")) - 1

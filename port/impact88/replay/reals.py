@@ -45,6 +45,8 @@ LARGEST = 2.0**127
 """One past the largest real: exponent byte 256."""
 SMALLEST = 2.0**-128
 """The smallest real: exponent byte 1, mantissa 80000000."""
+WORTH_A_LOOK = 2.0**-60
+"""A lower bound from which on a few more sums could not rule out underflow."""
 WHOLE = 2.0**31
 """From here on (exponent byte 160) INT leaves a number as it is."""
 
@@ -183,9 +185,15 @@ class Reals:
     def __gt__(self, right: Reals | int) -> Bools:
         return compare(self, right if isinstance(right, Reals) else constant(right)) < 0
 
-    def __getitem__(self, key: Any) -> Reals:
-        """Some of them, as numpy indexes; the bounds still hold."""
-        return Reals(self.v[key], self.unit, self.low, self.high, self.stored, self.full)
+    def not_below(self, low: float) -> Reals:
+        """The same, where the caller knows that no magnitude is below ``low``."""
+        return Reals(self.v, self.unit, max(self.low, low), self.high, self.stored, True)
+
+    def looked_at(self) -> Reals:
+        """The same, with bounds found anew where the lower one has sunk towards underflow."""
+        if self.low >= WORTH_A_LOOK:
+            return self
+        return from_floats(self.v, self.unit, self.stored)
 
     def within(self, high: float) -> Reals:
         """The same, where the caller knows that no magnitude exceeds ``high``."""
@@ -248,7 +256,7 @@ class Reals:
         high = float(_maximum(i0, axis=None, initial=0).view(np.float64))
         if high >= LARGEST:
             failed = np.abs(v) >= LARGEST
-            self._unit().record(failed, OVERFLOW)
+            self._unit().fails(failed, OVERFLOW)
             v[failed] = 0.0
             np.bitwise_and(bits, _MAGNITUDE, out=i0)
             high = float(_maximum(i0, axis=None, initial=0).view(np.float64))
@@ -262,6 +270,10 @@ class Reals:
             low = SMALLEST
             self.full = False
         self.low, self.high = (low, high) if high else (1.0, 0.0)
+
+    def fails(self, failed: Any, code: int) -> bool:
+        """`Unit.fails`, of the block they belong to."""
+        return self._unit().fails(failed, code)
 
     def _unit(self) -> Unit:
         return self.unit or _nowhere()
@@ -326,19 +338,6 @@ def select(condition: Any, yes: Reals, no: Reals) -> Reals:
         yes.stored and no.stored,
         yes.full and no.full,
     )
-
-
-def stack(rows: list[Reals], unit: Unit) -> Reals:
-    """Arrays one above the other, so that one operation computes them all."""
-    v = np.empty((len(rows), max([row.v.shape[-1] for row in rows])))
-    low, high, stored, full = rows[0].low, 0.0, True, True
-    for i, row in enumerate(rows):
-        v[i] = row.v
-        low = row.low if row.low < low else low
-        high = row.high if row.high > high else high
-        stored = stored and row.stored
-        full = full and row.full
-    return Reals(v, unit, low, high, stored, full)
 
 
 def _shape(left: Floats, right: Floats) -> tuple[int, ...]:
@@ -468,7 +467,7 @@ def _settle_product(result: Reals, left: Reals, right: Reals) -> None:
     if result.high >= LARGEST / 2 and _maximum(np.abs(result.v), axis=None) >= LARGEST / 2:
         exponents = ((left.bits & _EXPONENT) >> 52) + ((right.bits & _EXPONENT) >> 52)
         failed = (exponents >= 384 + 2 * BIAS) & (result.v != 0)
-        result._unit().record(failed, OVERFLOW)
+        result._unit().fails(failed, OVERFLOW)
         result.v[failed] = 0.0
         result.full = False
     result._settle()
@@ -502,16 +501,9 @@ def _apply_defect(v: Floats, left: Reals, right: Reals, defects: Ints) -> None:
 
     After a second zero byte in a row the upper 32 bits of what has been built move one bit too far.
     """
-    where: Any
-    if right.v.shape == v.shape and left.v.shape in (v.shape, (1,)):
-        where = defects
-        v = v.reshape(-1)
-        bits1 = left.bits.take(defects, mode="clip")  # clip: a lone left operand is everybody's
-        bits2 = right.bits.take(defects)
-    else:
-        where = _spread(right.v.shape, v.shape, defects)
-        bits1 = np.broadcast_to(left.bits, v.shape)[where]
-        bits2 = np.broadcast_to(right.bits, v.shape)[where]
+    where = defects if right.v.shape == v.shape else slice(None)
+    bits1 = left.bits if left.v.shape == (1,) else left.bits[where]
+    bits2 = right.bits[where] if right.v.shape == v.shape else right.bits
     m1 = ((bits1 & _FRACTION | _TOP) >> 21).view(np.uint64)
     m2 = ((bits2 & _FRACTION | _TOP) >> 13).view(np.uint64)
     bytes_ = [m2 >> shift & _LAST_BYTE for shift in _BYTE_SHIFTS]
@@ -530,20 +522,6 @@ def _apply_defect(v: Floats, left: Reals, right: Reals, defects: Ints) -> None:
     v[where] = product * sign_and_power
 
 
-def _spread(own: tuple[int, ...], shape: tuple[int, ...], at: Ints) -> tuple[Ints, ...]:
-    """Where elements of an array come to stand when it is broadcast: flat indices ``at`` of one of
-    shape ``own`` as indices into one of ``shape``."""
-    own = (1,) * (len(shape) - len(own)) + own
-    spread = [axis for axis in range(len(shape)) if own[axis] != shape[axis]]
-    grid = np.ogrid[tuple(slice(shape[axis]) for axis in spread)]
-    indices = np.unravel_index(at, own)
-    column = (-1,) + (1,) * len(spread)
-    return tuple(
-        grid[spread.index(axis)][np.newaxis] if axis in spread else indices[axis].reshape(column)
-        for axis in range(len(shape))
-    )
-
-
 def _divide(left: Reals, right: Reals) -> Reals:
     """left / right, both rounded: a quotient of 34 bits, or 33 where the mantissa divided is the
     smaller one.
@@ -556,7 +534,7 @@ def _divide(left: Reals, right: Reals) -> Reals:
     if not right.full:
         by_zero = right.v == 0
         if by_zero.any():
-            (unit or _nowhere()).record(by_zero, DIVISION_BY_ZERO)
+            (unit or _nowhere()).fails(by_zero, DIVISION_BY_ZERO)
             right = select(by_zero, constant(1), right)
         right.full = True
     left = left.rounded()
@@ -605,7 +583,7 @@ def _settle_quotient(result: Reals, left: Reals, right: Reals) -> None:
     difference = ((left.bits & _EXPONENT) - (right.bits & _EXPONENT)) >> 52
     failed = (difference >= 127) & (left.v != 0)
     if failed.any():
-        result._unit().record(failed, OVERFLOW)
+        result._unit().fails(failed, OVERFLOW)
         v[failed] = 0.0
         result.full = False
     signless = np.broadcast_to(difference == -128, v.shape)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from .. import native
 from ..applesoft.errorcodes import CODES, ApplesoftError
 from ..fields import ANGLES, FIELDS, FINAL_SPINS
-from . import statements
-from .pivoting import ZERO_DETERMINANT
+from . import compiled, statements
 from .realcolumns import Scenes
 from .reals import Floats, Packed, Reals, from_floats
+from .statements import ZERO_DETERMINANT
 from .textcolumns import Strings, write
 from .unit import Bools, Ints, Unit
 
@@ -17,7 +20,7 @@ OTHER_M = 2
 """The code of a scene whose M is neither 4 nor 6: not replayed."""
 _KINDS = {code: kind for kind, code in CODES.items()}
 _AT_A_TIME = 32768
-"""So many fields are written at a time."""
+"""Numbers from which on fields are not written together."""
 
 
 class Replay:
@@ -128,43 +131,47 @@ class Replay:
 
     def _write(self, names: list[str]) -> None:
         """Write some fields together."""
-        columns = [self._to_print(name) for name in names]
+        columns = self._to_print(names)
         v = columns[0] if len(columns) == 1 else np.concatenate(columns)
-        parts = [
-            write(Reals(v[at : at + _AT_A_TIME], None, 2.0**-128, 2.0**127))
-            for at in range(0, v.size, _AT_A_TIME)
-        ]
-        texts = parts[0] if len(parts) == 1 else np.concatenate(parts)
-        start = 0
-        for name, column in zip(names, columns, strict=True):
-            field = texts[start : start + column.size]
-            self._fields[name] = np.where(self._printed(name), field, "")
-            start += column.size
+        texts = write(Reals(v, None, 2.0**-128, 2.0**127))
+        ends = np.cumsum([column.size for column in columns])
+        for name, field in zip(names, np.split(texts, ends[:-1]), strict=True):
+            printed = self._printed(name)
+            whole = field.size == self.count and printed.all()
+            self._fields[name] = field if whole else np.where(printed, field, "")
 
     def _printed(self, name: str) -> Bools:
         """The scenes in which the program came to print a field."""
         printed = self._unit.reached(statements.PRINTED[name]) & (self.code != OTHER_M)
         return printed & self._six if name in FINAL_SPINS else printed
 
-    def _to_print(self, name: str) -> Floats:
-        """What PRINT gets for a field, extension included; length 1 where all scenes share it."""
-        if name == "LOSS":
-            columns = [self._values["KI"], self._values["KF"]]
-        elif name in self._values:
-            columns = [self._values[name]]
-        else:
-            columns = [self._scenes.values[name]]
-        unit = Unit(columns[0].size)
-        with np.errstate(all="ignore"):
-            x, *more = (from_floats(column.copy(), unit, True) for column in columns)
-            if more:
-                x = statements.loss(x, *more)
-            elif name in statements.FLOORED:
-                x = statements.floored(name, x)
-            elif name in ANGLES:
-                (angle,) = statements.radians(unit, [x])
-                x = (angle / statements.AG).rounded()
-        return x.v
+    def _to_print(self, names: list[str]) -> list[Floats]:
+        """What PRINT gets for fields, extension included; length 1 where all scenes share it."""
+        values = {**self._scenes.values, **self._values}
+        made = [name for name in names if name == "LOSS" or name in (*statements.FLOORED, *ANGLES)]
+        found: Mapping[str, Floats] = {}
+        rows: Ints | None = None  # None: all scenes are left to the arrays
+        if made and native.library is not None:
+            given = {x: values[x] for name in made for x in compiled.sources(name)}
+            varying = frozenset(x for x, v in given.items() if v.size > 1)
+            program = compiled.field_program(tuple(made), varying)
+            found, odd = compiled.computed(program, given, self.count)
+            rows = np.flatnonzero(odd)
+        for name in made if rows is None or rows.size else ():
+            columns = [values[x] for x in compiled.sources(name)]
+            if rows is None:
+                values[name] = _shown(name, columns)
+            else:
+                some = [v[rows] if v.size > 1 else v for v in columns]
+                found[name][rows] = _shown(name, some)
+        return [found[name] if name in found else values[name] for name in names]
+
+
+@np.errstate(all="ignore")
+def _shown(name: str, columns: list[Floats]) -> Floats:
+    """What PRINT gets for a field, by arrays."""
+    unit = Unit(columns[0].size)
+    return statements.shown(name, *(from_floats(v.copy(), unit, True) for v in columns)).v
 
 
 def field_names() -> tuple[str, ...]:

@@ -12,8 +12,10 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
+from .. import native
 from ..applesoft import decimaltext as scalar
 from ..errors import UserError
+from ..native.program import read_numbers, write_numbers
 from .reals import OVERFLOW, Bools, Reals, compare, constant, floor, from_number
 from .unit import Ints, Unit
 
@@ -30,6 +32,10 @@ _EXACT_DIGITS = 9
 """So many digits make a whole number below 2^32, which MUL10 and adding a digit leave exact."""
 
 _END = ord("\n")
+AT_A_TIME = 32768
+"""So many numbers are written together, by arrays."""
+PLAIN = 2.0**100
+"""Numbers beyond this, or below its inverse, the compiled reader leaves to the arrays."""
 
 _QUARTER_LIMIT = 2.0**125
 """Four times this is exponent byte 256."""
@@ -40,7 +46,7 @@ def times_ten(x: Reals) -> Reals:
     x = x.rounded()
     if x.high >= _QUARTER_LIMIT / 4:
         failed = np.abs(x.v) >= _QUARTER_LIMIT
-        x._unit().record(failed, OVERFLOW)
+        x._unit().fails(failed, OVERFLOW)
         x = Reals(np.where(failed, 0.0, x.v), x.unit, x.low, _QUARTER_LIMIT, True)
     t = Reals(x.v * 4, x.unit, x.low * 4, x.high * 4, True, x.full) + x
     result = Reals(t.v * 2, t.unit, t.low * 2, t.high * 2, False, t.full)
@@ -62,14 +68,35 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
 
     Records OVERFLOW. Raises UserError for a text that is no number; ``where`` names its place.
     """
+    data = _joined(texts, where)
+    if native.library is None:
+        return _read_together(texts, data, unit, where)
+    v, odd = read_numbers(data, len(texts))
+    x = Reals(v, unit, 1 / PLAIN, PLAIN)
+    rows = np.flatnonzero(odd)
+    if rows.size:
+        some = [texts[row] for row in rows.tolist()]
+        again = _joined(some, where)
+
+        def read_again(part: Reals) -> Reals:
+            return _read_together(some, again, part._unit(), lambda row: where(int(rows[row])))
+
+        _treat(x, rows, read_again)
+    return x
+
+
+def _read_together(
+    texts: Sequence[str], data: bytes, unit: Unit, where: Callable[[int], str]
+) -> Reals:
+    """`read`, all texts a character place at a time."""
     numerals = _Numerals(len(texts))
-    for place in _character_places(texts, where):
+    for place in _character_places(data):
         numerals.take(place)
     wrong = numerals.wrong | ~numerals.started
     if wrong.any():
         raise _no_number(texts, int(np.flatnonzero(wrong)[0]), where)
     if numerals.overflow.any():
-        unit.record(numerals.overflow, OVERFLOW)
+        unit.fails(numerals.overflow, OVERFLOW)
     v = numerals.value.astype(np.float64)
     x = Reals(v, unit, 1.0, max(float(v.max(initial=0.0)), 1.0), True)
     for more, digit in numerals.further:
@@ -97,25 +124,27 @@ def _no_number(texts: Sequence[str], row: int, where: Callable[[int], str]) -> U
     return UserError(f"{texts[row]!r} is no number; expected decimal text", where(row))
 
 
-def _character_places(texts: Sequence[str], where: Callable[[int], str]) -> Iterator[Characters]:
-    """The first character of every text, then the second, ...; an END where a text has no more."""
+def _joined(texts: Sequence[str], where: Callable[[int], str]) -> bytes:
+    """The texts, each ended by END. Raises UserError for one that cannot be a number."""
     try:
-        data = np.frombuffer(("\n".join(texts) + "\n").encode("ascii"), np.uint8)
-    except TypeError:
-        row = next(i for i, text in enumerate(texts) if not isinstance(text, str))
-        raise _no_number(texts, row, where) from None
-    except UnicodeEncodeError:
-        row = next(i for i, text in enumerate(texts) if not text.isascii())
-        raise _no_number(texts, row, where) from None
-    ends = np.flatnonzero(data == _END)
-    if ends.size != len(texts):
-        row = next(i for i, text in enumerate(texts) if "\n" in text)
-        raise _no_number(texts, row, where)
+        data = ("\n".join(texts) + "\n").encode("ascii")
+        if data.count(b"\n") == len(texts):
+            return data
+    except (TypeError, UnicodeEncodeError):
+        pass
+    wrong = (not isinstance(text, str) or not text.isascii() or "\n" in text for text in texts)
+    raise _no_number(texts, next(row for row, is_wrong in enumerate(wrong) if is_wrong), where)
+
+
+def _character_places(data: bytes) -> Iterator[Characters]:
+    """The first character of every text, then the second, ...; an END where a text has no more."""
+    characters = np.frombuffer(data, np.uint8)
+    ends = np.flatnonzero(characters == _END)
     places = np.empty_like(ends)
     places[0] = 0
     np.add(ends[:-1], 1, out=places[1:])
     for _ in range(int((ends - places).max(initial=0))):
-        yield data[places]
+        yield characters[places]
         places += 1
         np.minimum(places, ends, out=places)
 
@@ -207,14 +236,13 @@ def _next_digit(value: Reals, digit: Characters) -> Reals:
 def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
     """Apply an operation to some rows of ``x`` in place, recording its errors with them."""
     assert x.unit is not None
-    part = Unit(rows.size)
-    part.take_place(x.unit, rows)
+    part = x.unit.part(rows)
     result = operation(Reals(x.v[rows], part, x.low, x.high, False, False))
     x.v[rows] = result.v
     x.low = min(x.low, result.low)
     x.high = max(x.high, result.high)
     x.stored = False
-    x.unit.first[rows] = np.minimum(x.unit.first[rows], part.first)
+    x.unit.join(part, rows)
 
 
 # --- writing --------------------------------------------------------------------------------------
@@ -225,10 +253,26 @@ def write(x: Reals) -> Strings:
 
     Records OVERFLOW, and writes nothing: where rounding the very largest numbers fails.
     """
+    unit = x.unit or Unit(x.v.size)
+    if native.library is None:
+        texts, rows = np.empty(x.v.shape, f"<U{_WIDTH}"), np.arange(x.v.size)
+    else:
+        texts, odd = write_numbers(x.v)
+        rows = np.flatnonzero(odd)
+    for at in range(0, rows.size, AT_A_TIME):
+        some = rows[at : at + AT_A_TIME]
+        part = unit.part(some)
+        texts[some] = _written_together(Reals(x.v[some], part, x.low, x.high))
+        unit.join(part, some)
+    return texts
+
+
+def _written_together(x: Reals) -> Strings:
+    """`write`, all numbers a step at a time."""
     number, d, failed = _nine_digits(x)
     texts = _lay_out(number, d, x.v < 0)
     if failed.any():
-        x._unit().record(failed, OVERFLOW)
+        x._unit().fails(failed, OVERFLOW)
         texts[failed] = ""
     return texts
 

@@ -8,7 +8,6 @@ computed together.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -42,12 +41,9 @@ def key(line: int, position: int = 0, order: int | None = None) -> int:
 class Unit:
     """The state of one block: ``count`` scenes, along the last axis of every array.
 
-    `record` notes an error at the present place. ``first`` holds one record a scene: place, count
+    `fails` notes an error at the present place. ``first`` holds one record a scene: place, count
     of errors so far, line and code packed so that the smallest is the first in program order.
     """
-
-    one_by_one = False
-    """Whether rows are computed one by one, and not stacked."""
 
     def __init__(self, count: int) -> None:
         self.count = count
@@ -67,29 +63,36 @@ class Unit:
         """Go to a place, see `key`."""
         self._place = key(line, position, order)
 
-    def at_each(self, places: Sequence[tuple[int, int]]) -> None:
-        """Go to several places at once: (line, position) of each row of a two-dimensional array."""
-        self._place = np.array([[key(line, position)] for line, position in places], dtype=np.int64)
-
     def at_every(self, places: Ints) -> None:
         """Go to a place of its own for each scene, given as `key`."""
         self._place = places
 
-    def take_place(self, other: Unit, rows: Ints) -> None:
-        """Go where some scenes of another unit are."""
-        place = other._place
-        self._place = place[rows] if isinstance(place, np.ndarray) else place
+    def part(self, rows: Ints) -> Unit:
+        """A unit of some scenes only, at the same place."""
+        part = Unit(rows.size)
+        place = self._place
+        part._place = place[rows] if isinstance(place, np.ndarray) else place
+        return part
 
-    def record(self, failed: Bools, code: int) -> None:
-        """Note an error where ``failed``, whose last axis runs over the scenes (or is 1: all)."""
+    def join(self, part: Unit, rows: Ints) -> None:
+        """Take over what has failed in a `part`."""
+        self.first[rows] = np.minimum(self.first[rows], part.first)
+
+    def fails(self, failed: Any, code: int) -> bool:
+        """Note an error where ``failed``, an array over the scenes or of length 1 for all; whether
+        there is any such scene."""
         if self.elsewhere is not None:
             failed = failed & ~self.elsewhere
         if not failed.any():
-            return
+            return False
         self._clock += 1
         keys = np.where(failed, self._place + (self._clock << _CLOCK) + code, NEVER)
-        keys = keys.reshape(-1, keys.shape[-1]).min(axis=0)
         np.minimum(self.first, keys, out=self.first)
+        return True
+
+    def still(self, chosen: dict[int, Any]) -> dict[int, Any]:
+        """What was chosen, where some scenes still have it."""
+        return {row: scenes for row, scenes in chosen.items() if scenes.any()}
 
     def code(self) -> Ints:
         """Each scene's error code; 0 for none."""
