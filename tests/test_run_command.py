@@ -64,9 +64,7 @@ def test_a_scene_file_and_changes(tmp_path):
     done = impact88("run", str(path), "--set", "MU=-10", "--set", "E = .5", "--raw")
     assert done.stdout == run(sample(3).replaced({"MU": "-10", "E": ".5"})).printout
     with open(path) as file:
-        assert (
-            impact88("run", "-", "--raw", stdin=file, input=None).stdout == run(sample(3)).printout
-        )
+        assert impact88("run", "-", "--raw", input=file.read()).stdout == run(sample(3)).printout
 
 
 def test_changed_data_with_prompts():
