@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 LONGEST_MESSAGE = 500
 LONGEST_PLACE = 200
 LONGEST_QUOTE = 60
@@ -56,3 +60,15 @@ class UserError(ValueError):
         message = shown(message)
         super().__init__(f"{shown(where, LONGEST_PLACE)}: {message}" if where else message)
         self.where = where
+
+
+def library(name: str, extra: str, what: str) -> Any:
+    """The module of that name, which ``what`` needs. Raises UserError, naming the extra that
+    installs it, where it is missing."""
+    from importlib import import_module
+
+    try:
+        return import_module(name)
+    except ImportError:
+        package = name.partition(".")[0]
+        raise UserError(f"{what} needs {package}; pip install 'impact88[{extra}]'") from None

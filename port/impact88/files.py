@@ -335,7 +335,8 @@ def packaged_bytes(package: str, name: str) -> bytes:
 
     module = import_module(package)
     folder = os.path.dirname(module.__file__ or "")
-    return module.__loader__.get_data(os.path.join(folder, name))  # type: ignore[union-attr]
+    data: bytes = module.__loader__.get_data(os.path.join(folder, name))  # type: ignore[union-attr]
+    return data
 
 
 def packaged_text(package: str, name: str) -> str:

@@ -13,7 +13,7 @@ import argparse
 from collections.abc import Iterable
 from importlib import import_module
 
-from ..errors import UserError
+from ..errors import library
 from . import CHAPTER, CHAPTER_MEANING, COMMANDS, module_of
 from .options import OUTPUT, InputFile, InputFolder, OutputFile, OutputFolder, argument, declare
 
@@ -25,10 +25,7 @@ ARGUMENTS = (
 
 def main(args: argparse.Namespace) -> int:
     """Print the script."""
-    try:
-        import shtab
-    except ImportError:
-        raise UserError("completion needs shtab; pip install 'impact88[completion]'") from None
+    shtab = library("shtab", "completion", "completion")
     print(shtab.complete(whole_parser(), args.shell))
     return 0
 

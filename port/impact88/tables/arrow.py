@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import UserError
+from ..errors import library
 
 _PLAIN = np.zeros(256, bool)
 _PLAIN[np.frombuffer(b"0123456789+-.eE", np.uint8)] = True
@@ -25,13 +25,9 @@ def available() -> bool:
     return find_spec("pyarrow") is not None
 
 
-def library(what: str) -> Any:
+def pyarrow(what: str) -> Any:
     """The module pyarrow. Raises UserError, naming the extra, when it is not installed."""
-    try:
-        import pyarrow
-    except ImportError:
-        raise UserError(f"{what} needs pyarrow; pip install 'impact88[arrow]'") from None
-    return pyarrow
+    return library("pyarrow", "arrow", what)
 
 
 class ArrowColumn(Sequence[Any]):

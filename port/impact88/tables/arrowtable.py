@@ -6,25 +6,23 @@ digits. What was text in a CSV becomes doubles where it is a scene's, and stays 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import UserError, quoted
+from ..errors import UserError
 from ..files import ESCAPED, replacing
 from ..names import SCENE
-from .arrow import ArrowColumn, ArrowTexts, library
+from .arrow import ArrowColumn, ArrowTexts, pyarrow
 from .rows import (
     Column,
     Reader,
     Rows,
     Writer,
-    heading,
     one_per_row,
-    refuse_late,
     scene_names,
     typed,
 )
@@ -33,18 +31,13 @@ BLOCK = 1 << 15
 """Rows of a block."""
 
 
-class _ArrowReader:
-    delimiter = ","
-
+class _ArrowReader(Reader):
     def __init__(self, names: Sequence[str], rows: int, batches: Iterator[Any], where: str) -> None:
-        self.total: int | None = rows
-        self.names = scene_names(names)
+        self.total = rows
+        self.names = scene_names(names, where)
         self._batches = batches
         self._where = where
         self._given = 0
-        twice = {name for name in self.names if self.names.count(name) > 1}
-        if twice:
-            raise UserError(f"has two columns named {quoted(min(twice))}", where)
 
     def position(self) -> int:
         return self._given
@@ -63,7 +56,7 @@ class _ArrowReader:
             yield rows
 
     def _scene_column(self, rows: Rows, name: str, array: Any) -> Column:
-        pa = library("this table")
+        pa = pyarrow("this table")
         kind = array.type
         if pa.types.is_integer(kind) or pa.types.is_floating(kind):
             if array.null_count and name != "M":
@@ -86,7 +79,7 @@ class _ArrowReader:
 @contextmanager
 def read_parquet(path: str) -> Iterator[Reader]:
     """Open a Parquet file. Raises UserError if it is none."""
-    pa = library("Parquet")
+    pa = pyarrow("Parquet")
     from pyarrow import parquet
 
     with _arrows_errors(path), parquet.ParquetFile(_named(path), memory_map=True) as file:
@@ -101,7 +94,7 @@ def read_parquet(path: str) -> Iterator[Reader]:
 @contextmanager
 def read_feather(path: str) -> Iterator[Reader]:
     """Open an Arrow file. Raises UserError if it is none."""
-    pa = library("an Arrow file")
+    pa = pyarrow("an Arrow file")
     with _arrows_errors(path), pa.memory_map(_named(path)) as source:
         file = pa.ipc.open_file(source)
 
@@ -123,7 +116,7 @@ def _named(path: str) -> str:
 
 @contextmanager
 def _arrows_errors(path: str) -> Iterator[None]:
-    pa = library("this table")
+    pa = pyarrow("this table")
     try:
         yield
     except pa.ArrowException as error:
@@ -132,25 +125,22 @@ def _arrows_errors(path: str) -> Iterator[None]:
         raise UserError("cannot be read: No such file or directory", path) from None
 
 
-class _ArrowWriter:
+class _ArrowWriter(Writer):
     """Blocks into a file whose schema is the first one's."""
 
-    def __init__(
-        self, file: IO[bytes], kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
-    ) -> None:
+    kind = "a table of typed columns"
+
+    def __init__(self, file: IO[bytes], *columns: Any) -> None:
+        super().__init__(*columns)
         self._file = file
-        self._kept = kept
-        self._results = results
-        self._dropped = dropped
         self._writer: Any = None
 
-    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         import pyarrow as pa
 
-        refuse_late(rows, self._dropped, "a table of typed columns")
-        arrays = {_encodable(heading(name)): _array(name, rows, pa) for name in self._kept}
-        arrays |= {heading(name): pa.array(results[name]) for name in self._results}
-        table = pa.table(arrays)
+        arrays = [_array(name, rows, pa) for name in self.kept]
+        arrays += [pa.array(results[name]) for name in self.results]
+        table = pa.table(arrays, list(map(_encodable, self.headings)))
         if self._writer is None:
             self._writer = self.open(table.schema)
         self._writer.write_table(table.cast(self._writer.schema))
@@ -162,8 +152,7 @@ class _ArrowWriter:
         if self._writer is None:  # no row at all
             import pyarrow as pa
 
-            names = map(heading, (*self._kept, *self._results))
-            self._writer = self.open(pa.schema([(name, pa.float64()) for name in names]))
+            self._writer = self.open(pa.schema([(name, pa.float64()) for name in self.headings]))
         self._writer.close()
 
 
@@ -203,15 +192,13 @@ class _FeatherWriter(_ArrowWriter):
 
 
 @contextmanager
-def write_arrow(
-    path: str, form: str, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
-) -> Iterator[Writer]:
+def write_arrow(path: str, form: str, *columns: Any) -> Iterator[Writer]:
     """Write a Parquet or Arrow file, see `tables.table.open_writer`."""
-    library("this format")
+    pyarrow("this format")
     if path == "-":
         raise UserError(f"{form} is not for standard output; expected -o FILE.{form}")
     kind = _ParquetWriter if form == "parquet" else _FeatherWriter
     with replacing(path, "wb") as file:
-        writer = kind(file, kept, results, dropped)
+        writer = kind(file, *columns)
         yield writer
         writer.close()

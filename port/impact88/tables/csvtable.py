@@ -10,8 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import chain
 from typing import IO, Any
@@ -33,15 +32,13 @@ from .rows import (
     Reader,
     Rows,
     Writer,
-    heading,
     one_per_row,
-    refuse_late,
     scene_names,
     shortest,
 )
 
 
-class _CsvReader:
+class _CsvReader(Reader):
     def __init__(self, file: TextFile) -> None:
         self.total = file.source.size
         self._file = file
@@ -76,10 +73,9 @@ class _CsvReader:
         while named and not named[-1]:
             named = named[:-1]
         self._unnamed = len(names) - len(named)
-        self.names = scene_names(named)
-        name, count = Counter(self.names or [""]).most_common(1)[0]
-        if count > 1:
-            raise UserError(f"has two columns named {quoted(name)}", lines.where)
+        self.names = scene_names(named, lines.where)
+        if not self.names:
+            raise UserError("has no names in its first line; expected a header", lines.where)
 
     def _reader(self, lines: Iterator[str]) -> Any:
         return csv.reader(lines, delimiter=self.delimiter, strict=True)
@@ -191,32 +187,47 @@ def read_csv(path: str, encoding: str | None = None) -> Iterator[Reader]:
         yield _CsvReader(file)
 
 
-class _CsvWriter:
-    def __init__(
-        self,
-        file: IO[str],
-        kept: Sequence[str],
-        results: Sequence[str],
-        dropped: Collection[str],
-        delimiter: str,
-    ) -> None:
-        self._dropped = dropped
-        self._kept = kept
-        self._results = results
+class _CsvWriter(Writer):
+    """Blocks whose columns are all pyarrow's texts go out through pyarrow."""
+
+    kind = "a CSV table"
+
+    def __init__(self, file: IO[str], delimiter: str, *columns: Any) -> None:
+        super().__init__(*columns)
         self._file = file
         self._delimiter = delimiter
         self._ends = re.compile(f'[{re.escape(delimiter)}"\\r\\n]')
-        self._write([[heading(name)] for name in (*kept, *results)])
+        self._write([[text] for text in self.headings])
+        self._through_arrow = arrow.available() and hasattr(file, "buffer")
 
-    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
-        refuse_late(rows, self._dropped, "a CSV table")
-        columns = [_fields(one_per_row(rows, name)) for name in self._kept]
-        columns += [shortest(results[name]) for name in self._results]
-        self._write(columns)
+    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+        columns = [one_per_row(rows, name) for name in self.kept]
+        texts = [column for column in columns if isinstance(column, arrow.ArrowTexts)]
+        if self._through_arrow and len(texts) == len(columns):
+            arrays = [column.array for column in texts]
+            self._write_arrays(arrays + [arrow.texts_of(results[name]) for name in self.results])
+        else:
+            self._write([*map(_fields, columns), *(shortest(results[n]) for n in self.results)])
 
     def _write(self, columns: Sequence[Sequence[str]]) -> None:
         rows = zip(*map(self._quoted, columns), strict=True)
         self._file.writelines([f"{row}\n" for row in map(self._delimiter.join, rows)])
+
+    def _write_arrays(self, arrays: Sequence[Any]) -> None:
+        import pyarrow as pa
+        from pyarrow import csv as arrow_csv
+
+        options = arrow_csv.WriteOptions(
+            include_header=False, delimiter=self._delimiter, quoting_style="none"
+        )
+        out = pa.BufferOutputStream()
+        try:
+            arrow_csv.write_csv(pa.table(arrays, list(map(str, range(len(arrays))))), out, options)
+        except pa.ArrowInvalid:  # something has to be quoted
+            out = pa.BufferOutputStream()
+            out.write(_quoted_rows(arrays, self._delimiter))
+        self._file.flush()
+        self._file.buffer.write(out.getvalue())  # type: ignore[attr-defined]
 
     def _quoted(self, column: Sequence[str]) -> Sequence[str]:
         """The texts, those in quotes that hold what ends a field or a line; not every version of
@@ -233,48 +244,6 @@ def _fields(column: Column) -> Sequence[str]:
     if isinstance(column, np.ndarray):
         return shortest(column)
     return column if set(map(type, column)) == {str} else list(map(plain, column))
-
-
-class _ArrowCsvWriter:
-    """Blocks that came as pyarrow's texts go out the same way."""
-
-    def __init__(
-        self,
-        file: IO[str],
-        plain: _CsvWriter,
-        kept: Sequence[str],
-        results: Sequence[str],
-        delimiter: str,
-    ) -> None:
-        self._text = file
-        self._plain = plain
-        self._kept = kept
-        self._results = results
-        self._delimiter = delimiter
-
-    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
-        import pyarrow as pa
-        from pyarrow import csv as arrow_csv
-
-        columns = [rows.kept(name) for name in self._kept if name in rows.columns | rows.others]
-        if len(columns) < len(self._kept) or not all(
-            isinstance(column, arrow.ArrowTexts) for column in columns
-        ):
-            self._plain.write(rows, results)
-            return
-        arrays = [column.array for column in columns]  # type: ignore[union-attr]
-        arrays += [arrow.texts_of(results[name]) for name in self._results]
-        options = arrow_csv.WriteOptions(
-            include_header=False, delimiter=self._delimiter, quoting_style="none"
-        )
-        out = pa.BufferOutputStream()
-        try:
-            arrow_csv.write_csv(pa.table(arrays, list(map(str, range(len(arrays))))), out, options)
-        except pa.ArrowInvalid:  # something has to be quoted
-            out = pa.BufferOutputStream()
-            out.write(_quoted_rows(arrays, self._delimiter))
-        self._text.flush()
-        self._text.buffer.write(out.getvalue())  # type: ignore[attr-defined]
 
 
 def _quoted_rows(arrays: Sequence[Any], delimiter: str) -> bytes:
@@ -297,17 +266,7 @@ def _quoted_rows(arrays: Sequence[Any], delimiter: str) -> bytes:
 
 
 @contextmanager
-def write_csv(
-    path: str,
-    kept: Sequence[str],
-    results: Sequence[str],
-    dropped: Collection[str],
-    delimiter: str,
-) -> Iterator[Writer]:
+def write_csv(path: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
     """Write a CSV table, see `tables.table.open_writer`."""
     with writing(path) as file:
-        writer = _CsvWriter(file, kept, results, dropped, delimiter)
-        if arrow.available() and hasattr(file, "buffer"):
-            yield _ArrowCsvWriter(file, writer, kept, results, delimiter)
-        else:
-            yield writer
+        yield _CsvWriter(file, delimiter, *columns)

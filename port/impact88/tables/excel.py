@@ -8,7 +8,7 @@ import io
 import math
 import os
 import zipfile
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import chain, islice
 from typing import Any
@@ -16,20 +16,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import UserError, quoted
+from ..errors import UserError, library, quoted
 from ..files import replacing
 from ..names import SCENE
 from .jsontext import plain
 from .npzfile import check_unpacked
 from .rows import (
     BLOCK_ROWS,
-    Column,
     Reader,
     Rows,
     Writer,
-    heading,
     one_per_row,
-    refuse_late,
     scene_names,
     typed,
 )
@@ -39,19 +36,8 @@ LONGEST_CELL = 32_767
 MOST_ROWS = 1_048_576
 
 
-def _library() -> Any:
-    try:
-        import openpyxl
-    except ImportError:
-        raise UserError("an .xlsx needs openpyxl; pip install 'impact88[excel]'") from None
-    return openpyxl
-
-
-class _ExcelReader:
-    delimiter = ","
-
+class _ExcelReader(Reader):
     def __init__(self, rows: Iterator[tuple[Any, ...]], where: str) -> None:
-        self.total: int | None = None
         self._trusted = False
         self._where = where
         self._lines = enumerate(rows, 1)
@@ -61,17 +47,11 @@ class _ExcelReader:
             header.pop()
         if not header:
             raise UserError("its first sheet is empty; expected a header of names", where)
-        self.names = scene_names(header)
-        twice = [name for name in self.names if self.names.count(name) > 1]
-        if twice:
-            raise UserError(f"has two columns named {quoted(twice[0])}", where)
-
-    def position(self) -> int:
-        return 0
+        self.names = scene_names(header, where)
 
     def __iter__(self) -> Iterator[Rows]:
         first, width = 1, len(self.names)
-        filled = (one for one in self._lines if any(cell is not None for cell in one[1]))
+        filled = (line for line in self._lines if any(cell is not None for cell in line[1]))
         while block := list(islice(filled, BLOCK_ROWS)):
             for number, row in block:
                 if any(cell is not None for cell in row[width:]):
@@ -82,14 +62,16 @@ class _ExcelReader:
                 _check_computed(self._where, width)
                 self._trusted = True
             full = ((*row[:width], *[None] * (width - len(row))) for _, row in block)
-            cells = zip(*full, strict=True)
-            columns: dict[str, Column] = {}
-            others: dict[str, Column] = {}
-            for name, column in zip(self.names, cells, strict=True):
-                if name in SCENE:
-                    columns[name] = [c if isinstance(c, bool) else _text(c) for c in column]
-                else:
-                    others[name] = [plain(c) if isinstance(c, bool) else _text(c) for c in column]
+            columns, others = self._split(
+                self.names,
+                (
+                    [
+                        _text(c) if not isinstance(c, bool) else c if name in SCENE else plain(c)
+                        for c in column
+                    ]
+                    for name, column in zip(self.names, zip(*full, strict=True), strict=True)
+                ),
+            )
             yield Rows(first, len(block), columns, others, [number for number, _ in block])
             first += len(block)
 
@@ -97,7 +79,7 @@ class _ExcelReader:
 def _check_computed(path: str, width: int) -> None:
     """Raise UserError where a formula has no value: libraries write formulas, spreadsheet programs
     compute them when they save."""
-    openpyxl = _library()
+    openpyxl = library("openpyxl", "excel", "an .xlsx")
     books = [openpyxl.load_workbook(path, read_only=True, data_only=only) for only in (True, False)]
     try:
         sheets = (book.worksheets[0].iter_rows(max_col=width) for book in books)
@@ -124,7 +106,7 @@ def _text(cell: Any) -> str:
 @contextmanager
 def read_excel(path: str) -> Iterator[Reader]:
     """Open a workbook. Raises UserError if it is none, or unpacks to more than it may."""
-    openpyxl = _library()
+    openpyxl = library("openpyxl", "excel", "an .xlsx")
     try:
         with zipfile.ZipFile(path) as archive:
             check_unpacked(archive.infolist(), os.path.getsize(path), path)
@@ -150,24 +132,21 @@ def _checked(rows: Iterator[tuple[Any, ...]], path: str) -> Iterator[tuple[Any, 
         raise UserError(f"is no .xlsx workbook: {quoted(str(error))}", path) from None
 
 
-class _ExcelWriter:
-    def __init__(
-        self, sheet: Any, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
-    ) -> None:
-        self._sheet = sheet
-        self._kept = kept
-        self._results = results
-        self._dropped = dropped
-        self._rows = 1
-        sheet.append([_cell(heading(name)) for name in (*kept, *results)])
+class _ExcelWriter(Writer):
+    kind = "a workbook"
 
-    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
-        refuse_late(rows, self._dropped, "a workbook")
+    def __init__(self, sheet: Any, *columns: Any) -> None:
+        super().__init__(*columns)
+        self._sheet = sheet
+        self._rows = 1
+        sheet.append([_cell(text) for text in self.headings])
+
+    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         self._rows += rows.count
         if self._rows > MOST_ROWS:
             raise UserError(f"a sheet has at most {MOST_ROWS:,} rows; expected to write CSV")
-        columns = [typed(name, one_per_row(rows, name)) for name in self._kept]
-        columns += [results[name] for name in self._results]
+        columns = [typed(name, one_per_row(rows, name)) for name in self.kept]
+        columns += [results[name] for name in self.results]
         cells = [c.tolist() if isinstance(c, np.ndarray) else c for c in columns]
         for row in zip(*cells, strict=True):
             self._sheet.append([_cell(cell) for cell in row])
@@ -184,15 +163,13 @@ def _cell(value: Any) -> Any:
 
 
 @contextmanager
-def write_excel(
-    path: str, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
-) -> Iterator[Writer]:
+def write_excel(path: str, *columns: Any) -> Iterator[Writer]:
     """Write a workbook, see `tables.table.open_writer`."""
-    openpyxl = _library()
+    openpyxl = library("openpyxl", "excel", "an .xlsx")
     if path == "-":
         raise UserError("xlsx is not for standard output; expected -o FILE.xlsx")
     book = openpyxl.Workbook(write_only=True)
-    writer = _ExcelWriter(book.create_sheet("impact88"), kept, results, dropped)
+    writer = _ExcelWriter(book.create_sheet("impact88"), *columns)
     with replacing(path, "wb") as file:
         packed = io.BytesIO()  # a zip file that cannot be finished complains on stderr
         try:

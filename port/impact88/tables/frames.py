@@ -7,7 +7,7 @@ None of these libraries is imported here unless the frame handed over is its own
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .. import doubles
 from ..closedform.columns import UNUSED_BY_POINTS
 from ..closedform.solve import solve
-from ..errors import UserError
+from ..errors import UserError, library
 from ..names import DEFAULT_M, SCENE
 from .rows import Rows, check_scene_columns, heading, scene_names
 from .tableunits import TableUnits
@@ -81,19 +81,17 @@ def solve_frame(
         first = Rows(1, 0, {n: list(np.ravel(np.asarray(c))) for n, c in texts.items()}, {})
         return solver(columns, TableUnits(found, units or getattr(scene, "units", None), first))
 
-    kind = type(frame)
+    is_dataset = type(frame).__module__.partition(".")[0] == "xarray"
     result: Any
     if isinstance(frame, np.ndarray):
         result = _structured(frame, solved)
-    elif isinstance(frame, Mapping) and kind.__module__.partition(".")[0] != "xarray":
+    elif isinstance(frame, Mapping) and not is_dataset:
         result = {**frame, **solved(list(frame), lambda name: frame[name])}
     elif isinstance(frame, list | tuple):
         result = _dicts(frame, solved)
-    elif hasattr(frame, "data_vars"):
-        result = _dataset(frame, solved)
     else:
-        result = _narwhals(frame, solved)
-    return result
+        result = (_dataset if hasattr(frame, "data_vars") else _narwhals)(frame, solved)
+    return cast(Frame, result)
 
 
 def _dtype(values: Any) -> np.dtype[Any]:
@@ -181,12 +179,7 @@ def _dataset(frame: Any, solved: Solver) -> Any:
 
 
 def _narwhals(frame: Any, solved: Solver) -> Any:
-    try:
-        import narwhals.stable.v1 as nw
-    except ImportError:
-        raise UserError(
-            f"a frame of type {type(frame).__name__} needs narwhals; pip install 'impact88[frames]'"
-        ) from None
+    nw = library("narwhals.stable.v1", "frames", f"a frame of type {type(frame).__name__}")
     try:
         table = nw.from_native(frame, eager_only=True)
     except TypeError:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import IO, Any
 
@@ -38,9 +38,7 @@ from .rows import (
 )
 
 
-class _JsonReader:
-    delimiter = ","
-
+class _JsonReader(Reader):
     def __init__(self, lines: Lines) -> None:
         self.total = lines.size
         self._lines = lines
@@ -137,26 +135,22 @@ def _cells(name: str, column: Column) -> list[str]:
     ]
 
 
-class _JsonWriter:
-    def __init__(
-        self, file: IO[str], kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
-    ) -> None:
+class _JsonWriter(Writer):
+    def __init__(self, file: IO[str], *columns: Any) -> None:
+        super().__init__(*columns)
         self._file = file
-        self._kept = kept
-        self._results = results
-        self._dropped = dropped
 
-    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         # a later block may hold names that the first did not, and a row need not hold all
         names = [
             name
-            for name in (*self._kept, *(n for n in rows.late if n not in self._dropped))
+            for name in (*self.kept, *(n for n in rows.late if n not in self.dropped))
             if name in rows.columns or name in rows.others
         ]
-        headings = map(heading, (*names, *self._results))
+        headings = map(heading, (*names, *self.results))
         keys = [json.dumps(text, ensure_ascii=False) for text in headings]
         columns = [_cells(name, one_per_row(rows, name)) for name in names]
-        columns += [_cells("", results[name]) for name in self._results]
+        columns += [_cells("", results[name]) for name in self.results]
         self._file.writelines(
             "{" + ", ".join(f"{k}: {v}" for k, v in zip(keys, row, strict=True) if v) + "}\n"
             for row in zip(*columns, strict=True)
@@ -164,9 +158,7 @@ class _JsonWriter:
 
 
 @contextmanager
-def write_json_lines(
-    path: str, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
-) -> Iterator[Writer]:
+def write_json_lines(path: str, *columns: Any) -> Iterator[Writer]:
     """Write a JSON Lines table, see `tables.table.open_writer`."""
     with writing(path) as file:
-        yield _JsonWriter(file, kept, results, dropped)
+        yield _JsonWriter(file, *columns)

@@ -6,7 +6,7 @@ Read and written as a whole: memory grows with the file.
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -17,7 +17,7 @@ from ..errors import UserError, quoted
 from ..files import replacing
 from ..names import SCENE
 from .npzfile import read_arrays, write_arrays
-from .rows import Column, Reader, Rows, Writer, heading, refuse_late, scene_names, typed
+from .rows import Column, Reader, Rows, Writer, scene_names, typed
 
 _NUMBERS = "fiu"
 _TEXT = "U"
@@ -25,9 +25,7 @@ LARGEST_TEXTS = 256_000_000
 """Bytes of the largest column of texts that is written: numpy gives each the longest one's."""
 
 
-class _NpzReader:
-    delimiter = ","
-
+class _NpzReader(Reader):
     def __init__(self, arrays: dict[str, NDArray[Any]], where: str) -> None:
         self.names = scene_names(list(arrays))
         arrays = dict(zip(self.names, arrays.values(), strict=True))
@@ -50,14 +48,10 @@ class _NpzReader:
         return self._count
 
     def __iter__(self) -> Iterator[Rows]:
-        columns: dict[str, Column] = {}
-        others: dict[str, Column] = {}
-        for name, array in self._arrays.items():
-            if name in SCENE:
-                column = np.broadcast_to(array.reshape(-1), (self._count,))
-                columns[name] = column if column.dtype.kind in _NUMBERS else column.tolist()
-            else:
-                others[name] = array
+        columns, others = self._split(self._arrays, self._arrays.values())
+        for name in columns:
+            column = np.broadcast_to(self._arrays[name].reshape(-1), (self._count,))
+            columns[name] = column if column.dtype.kind in _NUMBERS else column.tolist()
         yield Rows(1, self._count, columns, others)
 
 
@@ -69,30 +63,25 @@ def read_npz(path: str) -> Iterator[Reader]:
     yield _NpzReader(read_arrays(path), path)
 
 
-class _NpzWriter:
-    def __init__(
-        self, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
-    ) -> None:
-        self._kept = kept
-        self._results = results
-        self._dropped = dropped
-        self._parts: list[dict[str, NDArray[Any]]] = []
+class _NpzWriter(Writer):
+    kind = "an .npz table"
 
-    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
-        refuse_late(rows, self._dropped, "an .npz table")
-        part = {}
-        for name in self._kept:
-            column = rows.kept(name)
-            part[name] = column if isinstance(column, np.ndarray) else _array(name, column)
-        self._parts.append({**part, **{name: results[name] for name in self._results}})
+    def __init__(self, *columns: Any) -> None:
+        super().__init__(*columns)
+        self._parts: list[list[NDArray[Any]]] = []
+
+    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+        columns = [(name, rows.kept(name)) for name in self.kept]
+        arrays = [c if isinstance(c, np.ndarray) else _array(name, c) for name, c in columns]
+        self._parts.append([*arrays, *(results[name] for name in self.results)])
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        if len(self._parts) == 1:
-            return {heading(name): array for name, array in self._parts[0].items()}
-        names = self._parts[0] if self._parts else {}
-        return {
-            heading(name): np.concatenate([part[name] for part in self._parts]) for name in names
-        }
+        """The whole columns by heading."""
+        if not self._parts:
+            return {}
+        columns = zip(*self._parts, strict=True)
+        whole = (parts[0] if len(parts) == 1 else np.concatenate(parts) for parts in columns)
+        return dict(zip(self.headings, whole, strict=True))
 
 
 def _array(name: str, column: Column) -> NDArray[Any]:
@@ -109,13 +98,11 @@ def _array(name: str, column: Column) -> NDArray[Any]:
 
 
 @contextmanager
-def write_npz(
-    path: str, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
-) -> Iterator[Writer]:
+def write_npz(path: str, *columns: Any) -> Iterator[Writer]:
     """Write an .npz table, see `tables.table.open_writer`."""
     if path == "-" and sys.stdout.isatty():
         raise UserError("an .npz table is not for a terminal; expected -o FILE.npz")
-    writer = _NpzWriter(kept, results, dropped)
+    writer = _NpzWriter(*columns)
     yield writer
     if path == "-":
         write_arrays(sys.stdout.buffer, writer.arrays())

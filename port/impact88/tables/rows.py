@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
@@ -91,26 +92,62 @@ class Units(Protocol):
     def cell(self, name: str, text: str) -> str: ...
 
 
-class Reader(Protocol):
-    """An open table.
+class Reader:
+    """An open table; iterating it yields `Rows`.
 
     ``names``: its columns (of JSON Lines, those of the first row); ``delimiter``: between a CSV's
     fields; ``total``: its size in the units of ``position`` (None: unknown).
     """
 
     names: list[str]
-    delimiter: str
-    total: int | None
+    delimiter = ","
+    total: int | None = None
 
-    def __iter__(self) -> Iterator[Rows]: ...
+    def __iter__(self) -> Iterator[Rows]:
+        raise NotImplementedError
 
-    def position(self) -> int: ...
+    def position(self) -> int:
+        """How much of the table has been read."""
+        return 0
+
+    def _split(self, names: Iterable[str], columns: Iterable[Column]) -> list[dict[str, Column]]:
+        """The scene's columns and the others."""
+        both: list[dict[str, Column]] = [{}, {}]
+        for name, column in zip(names, columns, strict=True):
+            both[name not in SCENE][name] = column
+        return both
 
 
-class Writer(Protocol):
-    """A table being written."""
+class Writer:
+    """A table being written: the columns ``kept`` of a reader, then the ``results``; ``dropped``
+    columns are not wanted. `write` takes a block, `close` ends the table."""
 
-    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None: ...
+    kind = ""
+    """What messages call it, where its columns are those of the first block."""
+
+    def __init__(
+        self, kept: Sequence[str], results: Sequence[str], dropped: Collection[str]
+    ) -> None:
+        self.kept, self.results, self.dropped = kept, results, dropped
+        self.headings = [heading(name) for name in (*kept, *results)]
+
+    def write(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+        """Write a block. Raises UserError for a column that the first block did not have."""
+        for name, line in rows.late.items() if self.kind else ():
+            if name not in self.dropped:
+                raise UserError(
+                    f"line {line} has the key {quoted(name)}, which no row before it has, and "
+                    f"{self.kind} begins with its columns; expected to write JSON Lines, or the "
+                    "key in the first row too"
+                )
+        self.put(rows, results)
+
+    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
+        """Write a block whose columns fit."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """What is left to do after the last block."""
 
 
 class Heading(str):
@@ -133,9 +170,11 @@ def heading(name: str) -> str:
 _UNIT = re.compile(r"(.*?)\s*(?:\[([^]]*)\]|\(([^)]*)\))\s*")
 
 
-def scene_names(names: Sequence[str]) -> list[str]:
+def scene_names(names: Sequence[str], where: str | None = None) -> list[str]:
     """The names of a table's columns: those in small letters, or with a unit behind them
     (``Mu [1]``), are the scene's or a result's names where the table has no such column otherwise.
+
+    Raises UserError for two columns of one name, where the table has a name (``where``).
     """
     known = set(names)
     matched: list[str] = []
@@ -146,6 +185,9 @@ def scene_names(names: Sequence[str]) -> list[str]:
         taken = bare in known or not (bare in SCENE or (unit and bare in RESULTS))
         matched.append(name if taken else Heading(bare, name, unit))
         known.add(matched[-1])
+    twice = next((name for name, count in Counter(matched).items() if count > 1), None)
+    if where is not None and twice is not None:
+        raise UserError(f"has two columns named {quoted(twice)}", where)
     return matched
 
 
@@ -186,18 +228,6 @@ def typed(name: str, column: Column) -> NDArray[Any] | list[str]:
     if isinstance(column, arrow.ArrowTexts) and (found := column.doubles()) is not None:
         return found
     return np.array([np.nan if _why_no_number(cell) else _double(cell) for cell in column], float)
-
-
-def refuse_late(rows: Rows, dropped: Collection[str], what: str) -> None:
-    """Raise UserError when these rows have columns that ``what``, begun without them, cannot take;
-    those ``dropped`` are not wanted anyway."""
-    for name, line in rows.late.items():
-        if name not in dropped:
-            raise UserError(
-                f"line {line} has the key {quoted(name)}, which no row before it has, and {what} "
-                "has its columns in front; expected to write JSON Lines, or the key in the first "
-                "row too"
-            )
 
 
 def shortest(values: NDArray[Any]) -> list[str]:

@@ -55,14 +55,12 @@ def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str,
     return ranges
 
 
-class _Sweep:
+class _Sweep(Reader):
     """The reader of a swept scene."""
-
-    delimiter = ","
 
     def __init__(self, scene: Mapping[str, str], ranges: Mapping[str, Range]) -> None:
         self.names = list(scene)
-        self.total: int | None = prod(r.steps for r in ranges.values())
+        self.total = prod(r.steps for r in ranges.values())
         self._scene, self._ranges, self._done = scene, ranges, 0
 
     def position(self) -> int:

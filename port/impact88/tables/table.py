@@ -80,23 +80,23 @@ def open_writer(
     if ``scene_too``; a column named like a result gives way to it). The file appears under its name
     when all is written."""
     dropped = {*results, *(() if scene_too else SCENE)}
-    kept = [name for name in source.names if name not in dropped]
+    columns = ([name for name in source.names if name not in dropped], results, dropped)
     if form == "csv":
         from .csvtable import write_csv
 
-        return write_csv(path, kept, results, dropped, source.delimiter)
+        return write_csv(path, source.delimiter, *columns)
     if form == "jsonl":
         from .jsontable import write_json_lines
 
-        return write_json_lines(path, kept, results, dropped)
+        return write_json_lines(path, *columns)
     if form == "npz":
         from .npztable import write_npz
 
-        return write_npz(path, kept, results, dropped)
+        return write_npz(path, *columns)
     if form == "xlsx":
         from .excel import write_excel
 
-        return write_excel(path, kept, results, dropped)
+        return write_excel(path, *columns)
     from .arrowtable import write_arrow
 
-    return write_arrow(path, form, kept, results, dropped)
+    return write_arrow(path, form, *columns)
