@@ -49,7 +49,7 @@ def test_a_scene_is_answered_forward_in_its_units(tmp_path: Path, capsys: Any) -
     assert "Main and 4th" in text
     assert "Case 24-117 &lt;b&gt;" in text
     assert re.search(
-        r"A: speed before 19.8 mph, after 9\.\d+ mph, ΔV 1[01]\.\d ± \d\.\d+ mph", text
+        r"A: speed before 19.8 mph, after 9\.\d+ ± 0\.\d+ mph, ΔV 1[01]\.\d ± \d\.\d+ mph", text
     )
     assert "scale ticket" in text
     assert "4,617 lb" in text
@@ -78,6 +78,11 @@ def test_the_answer_is_what_the_commands_say(tmp_path: Path, capsys: Any) -> Non
     numbers = [expected["nominal"], expected["deviation"], expected["quantiles"]["0.05"]]
     numbers += [expected["quantiles"]["0.95"], expected["lower"], expected["upper"]]
     assert [float(cell) for cell in found[2:8]] == pytest.approx(numbers, abs=0.051)
+    (speed,) = [row for row in rows if row[:1] == ["SAF"] and len(row) == 9]
+    value, deviation, low, high = map(float, speed[2:6])
+    assert low < value < high
+    assert deviation == pytest.approx((high - low) / 3.3, rel=0.3)
+    assert speed[6:] == ["", "", "mph"]
     assert found[8] == expected["unit"] == "mph"
 
 

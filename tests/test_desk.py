@@ -405,7 +405,7 @@ def test_what_the_page_is_answered_follows_the_published_schemas(
     check("reconstruct", reconstruction.answer(known)["object"])
     check("reconstruct", reconstruction.answer({**known, "VAX": "-13 +- 1"})["object"])
     for data in (RUN1, RUN1.replace(b"3.449", b"3.549"), RUN1[:300], b"nothing"):
-        for whole in paper.judged("page.txt", coded(data))["objects"]:
+        for whole in paper.judged("page.txt", data)["objects"]:
             check("verify", whole)
 
 
@@ -526,7 +526,7 @@ def coded(data: bytes) -> str:
 )
 def test_a_paper_is_judged_as_the_command_judges_it(data: bytes, tmp_path: Path, own: Own) -> None:
     (tmp_path / "page.txt").write_bytes(data)
-    told = paper.judged("page.txt", coded(data))
+    told = paper.judged("page.txt", data)
     objects = [json.loads(line) for line in own("verify", "--json", "page.txt").splitlines()]
     assert json.loads(json.dumps(told["objects"])) == objects
     assert told["problem"] == objects[0].get("error")
@@ -559,7 +559,7 @@ def test_a_papers_name_is_a_name_and_nothing_else(name: str, base: str) -> None:
 
 def test_what_is_no_file_is_refused_before_it_is_read() -> None:
     with pytest.raises(UserError, match="is larger than"):
-        paper.judged("page.txt", coded(b" " * (paper.LARGEST_FILE + 1)))
+        paper.judged("page.txt", b" " * (paper.LARGEST_FILE + 1))
     with pytest.raises(UserError, match="nothing to report"):
         paper.report([], {})
     with pytest.raises(UserError, match=r"^case: has more than 200"):
@@ -577,25 +577,25 @@ def hocr(text: str) -> bytes:
 
 
 def test_words_with_their_places_are_read_as_the_page_they_make() -> None:
-    told = paper.judged("page.hocr", coded(hocr(RUN1.decode())))
+    told = paper.judged("page.hocr", hocr(RUN1.decode()))
     assert told["printouts"][0]["title"].startswith("IDENTICAL")
     assert "ocrx" not in told["text"]
     for check in told["objects"][0]["fields"]:
         assert check["start"] is None or told["text"][check["start"] : check["stop"]].strip()
-    assert "PDF" in paper.judged("page.pdf", coded(b"%PDF-"))["problem"]
+    assert "PDF" in paper.judged("page.pdf", b"%PDF-")["problem"]
 
 
 def test_a_scan_is_read_itself() -> None:
     pytest.importorskip("PIL", reason="the scan extra is not installed")
     scan = ROOT / "golden/scans/clean-001.png"
-    told = paper.judged(scan.name, coded(scan.read_bytes()))
+    told = paper.judged(scan.name, scan.read_bytes())
     assert [words["title"] for words in told["printouts"]] == ["IDENTICAL"]
     assert "VAX=" in told["text"]
 
 
 def test_a_megabyte_of_one_letter_is_answered_at_once() -> None:
     before = time.process_time()
-    assert "no printout" in paper.judged("page.txt", coded(b"x" * 1_000_000))["problem"]
+    assert "no printout" in paper.judged("page.txt", b"x" * 1_000_000)["problem"]
     assert time.process_time() - before < 5
 
 
@@ -626,55 +626,58 @@ def in_thread(work: Any) -> tuple[threading.Thread, list[Any]]:
 
 def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
     asking = workers.Bench("collision")
-    question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
+    question = {"values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
-        first, first_outcome = in_thread(lambda: asking.ask("page", question))
-        wait_until(lambda: asking._asking == "page" and asking._process is not None)
-        process = asking._process
-        other, other_outcome = in_thread(lambda: asking.ask("other", question))
-        newer, newer_outcome = in_thread(lambda: asking.ask("page", question))
+        first, first_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
+        wait_until(lambda: asking._asking == "page" and asking._worker is not None)
+        process = asking._worker.process
+        other, other_outcome = in_thread(lambda: asking.ask("other", "bounds_answer", **question))
+        newer, newer_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
         for thread in (first, other, newer):
             thread.join()
         assert [type(outcome) for outcome in first_outcome] == [workers.SupersededError]
         assert process is not None
-        assert process.poll() is not None
+        assert not process.is_alive()
         assert newer_outcome[0]["inputs"]["MU"]["limits"] == [0.7, 0.9]
         assert newer_outcome == other_outcome
         with pytest.raises(UserError, match="no ranges"):
-            asking.ask("page", {"task": "bounds", "values": dict(sample(1))})
-        with pytest.raises(workers.BrokenError, match="KeyError"):
-            asking.ask("page", {"task": "nothing of the sort"})
+            asking.ask("page", "bounds_answer", values=dict(sample(1)))
+        with pytest.raises(workers.BrokenError, match="AttributeError"):
+            asking.ask("page", "nothing_of_the_sort")
     finally:
         asking.close()
 
 
 def test_what_takes_too_long_is_ended_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
     asking = workers.Bench("collision")
-    question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
+    question = {"values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
         monkeypatch.setattr(workers, "ANSWERED_WITHIN", 0.01)
         with pytest.raises(UserError, match="not answered within"):
-            asking.ask("page", question)
+            asking.ask("page", "bounds_answer", **question)
         monkeypatch.undo()
-        assert asking.ask("page", question)["inputs"]["MU"]["limits"] == [0.7, 0.9]
+        assert asking.ask("page", "bounds_answer", **question)["inputs"]["MU"]["limits"] == [
+            0.7,
+            0.9,
+        ]
     finally:
         asking.close()
 
 
 def test_stopping_ends_what_a_page_waits_for_and_no_other_pages() -> None:
     asking = workers.Bench("collision")
-    question = {"task": "bounds", "values": {**sample(1), "MU": "0.7 .. 0.9"}}
+    question = {"values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
-        thread, outcome = in_thread(lambda: asking.ask("page", question))
-        wait_until(lambda: asking._asking == "page" and asking._process is not None)
-        process = asking._process
+        thread, outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
+        wait_until(lambda: asking._asking == "page" and asking._worker is not None)
+        process = asking._worker.process
         assert process is not None
         asking.stop("other")
-        assert process.poll() is None
+        assert process.is_alive()
         asking.stop("page")
         thread.join()
         assert [type(one) for one in outcome] == [workers.SupersededError]
-        assert process.poll() is not None
+        assert not process.is_alive()
     finally:
         asking.close()
 

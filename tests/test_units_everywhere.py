@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,8 @@ import pytest
 
 from impact88.amounts import shown_text
 from impact88.cli import main
-from impact88.names import quantity
+from impact88.closedform.solve import solve
+from impact88.names import FINAL_STATE, quantity
 from impact88.scene import sample
 from impact88.units import SYSTEMS, size_of
 
@@ -210,6 +212,7 @@ def test_every_system_gives_the_same(door: Door, tmp_path: Path, capsys: Any) ->
 
 VARIANTS = {
     "contact point": {"DA": "", "PA": "", "CAF": "7 ft", "CAL": "-2.5 ft"},
+    "contact point within limits": {"DA": "", "PA": "", "CAF": "6.5..7.5 ft", "CAL": "-2.5 ft"},
     "outline": {"LA": "15 ft 6 in", "BA": "5 ft 10 in"},
     "estimate": {"LA": "15 ft 6 in", "BA": "6 ft", "IA": "estimate +- 20 %"},
     "ranges without blanks": {"UX": "-31..-29 mph", "MU": "0.5+-0.1"},
@@ -236,4 +239,36 @@ def test_the_same_file_at_every_door(
     (tmp_path / "FILE").write_text(toml("us", **VARIANTS[variant]), encoding="utf-8")
     (tmp_path / "FILE.toml").write_text(toml("us", **VARIANTS[variant]), encoding="utf-8")
     words = ["FILE.toml" if word == "FILE" else word for word in COMMANDS[command]]
+    if (variant, command) == ("contact point within limits", "reconstruct"):
+        assert main(words) == 2  # as scene --help has it
+        assert "limits for DA and PA" in capsys.readouterr().err
+        return
     assert main(words) == 0, capsys.readouterr().err
+
+
+def test_the_oracle_takes_units_and_says_its_own(monkeypatch: Any, capsys: Any) -> None:
+    """The program is given base units; the answer names them."""
+    given = {**sample(1), **{"units": "us", "UX": "-19.8 mph"}}
+    monkeypatch.setattr(
+        sys, "stdin", io.TextIOWrapper(io.BytesIO(json.dumps({"scene": given}).encode()))
+    )
+    assert main(["oracle", "--no-reference"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["units"] == "ft, slug, s"
+    assert float(answer["scene"]["UX"]) == pytest.approx(-29.04)
+    assert float(answer["scene"]["MA"]) == pytest.approx(143.5 / 32.17404855643)
+    expected = solve({name: float(text) for name, text in answer["scene"].items()}, ["VAX"])
+    assert answer["results"]["VAX"]["double"] == pytest.approx(float(expected["VAX"]))
+
+
+def test_a_staged_collision_of_ones_own_says_its_base_units(tmp_path: Path, capsys: Any) -> None:
+    known = {n: t for n, t in sample(1).items() if n not in ("E", "MU", "EM", "M")}
+    after = solve({name: float(text) for name, text in sample(1).items()})
+    known |= {name: f"{float(after[name])!r}" for name in FINAL_STATE}
+    text = "".join(f'{name} = "{value}"\n' for name, value in known.items())
+    (tmp_path / "own.toml").write_text(text)
+    assert main(["chapter", "staged", str(tmp_path / "own.toml")]) == 0
+    assert "base units: any consistent units" in " ".join(capsys.readouterr().out.split())
+    options = ["--units", "si", "--json"]
+    assert main(["chapter", "staged", str(tmp_path / "own.toml"), *options]) == 0
+    assert json.loads(capsys.readouterr().out)["base_units"] == "m, kg, s"

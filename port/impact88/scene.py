@@ -116,9 +116,12 @@ class Scene(Mapping[str, str]):
         self.estimated = self.entries.estimated
 
     @classmethod
-    def from_mapping(cls, values: Mapping[str, str], source: str = "scene") -> Scene:
-        """A scene from texts by name, with units where they have any; M defaults to 6."""
-        return cls._of(values, source, None)
+    def from_mapping(
+        cls, values: Mapping[str, str], source: str = "scene", units: str | None = None
+    ) -> Scene:
+        """A scene from texts by name, with units where they have any, bare numbers in ``units``
+        where it names none itself; M defaults to 6."""
+        return cls._of(values, source, units)
 
     @classmethod
     def from_toml(cls, path: str, units: str | None = None) -> Scene:
@@ -227,27 +230,24 @@ def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
     return result
 
 
-_OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
+OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
 
 
 def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
     """The values with DA PA or DB PB worked out where the contact point is given in a vehicle's own
-    axes: CAF CAL, CBF CBL, forward and to the left of its center of gravity."""
-    for vehicle, names in _OWN_AXES.items():
+    axes: CAF CAL, CBF CBL, forward and to the left of its center of gravity. Within limits they are
+    left as they are, for `reconstruction.contact`."""
+    for vehicle, names in OWN_AXES.items():
         if not set(names) & set(values):
             continue
         for name in names:
             if name not in values:
                 raise UserError(f"{name} is missing beside {' '.join(names)}", source)
-            if _is_range(values[name]):
-                raise UserError(
-                    f"{name} is known within limits; expected a number, and CX CY for how far the "
-                    "contact point may lie off",
-                    source,
-                )
         both = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in values]
         if both:
             raise UserError(f"{both[0]} and {names[0]} are both given; expected one pair", source)
+        if any(_is_range(values[name]) for name in names):
+            continue
         forward, left = (double(check_value(name, values.pop(name), source)) for name in names)
         distance = math.hypot(forward, left)
         if math.isinf(distance):

@@ -20,6 +20,7 @@ from ..errors import UserError
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..scene import Scene
 from ..schemas import stamped
+from ..units import base_of, system_of
 
 BATCH = 256
 """Scenes computed together."""
@@ -31,10 +32,12 @@ _decode = json.JSONDecoder(parse_float=str, parse_int=str).decode
 
 
 class Request:
-    """One line of input: its number, its ``id`` as given, and the scene or what is wrong."""
+    """One line of input: its number, its ``id`` as given, and the scene or what is wrong; bare
+    numbers are in ``units`` where the scene names none."""
 
-    def __init__(self, line: int, text: str) -> None:
+    def __init__(self, line: int, text: str, units: str | None = None) -> None:
         self.line = line
+        self.units = units
         self.id: Any = None
         self.extra: dict[str, Any] = {}
         self.scene: Scene | None = None
@@ -63,7 +66,7 @@ class Request:
         wrong = [name for name, value in values.items() if not isinstance(value, str)]
         if wrong:
             raise ValueError(f"{wrong[0]} is no number; expected a number or its decimal text")
-        scene = Scene({"M": DEFAULT_M, **values}, source="scene")
+        scene = Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", self.units)
         if doubles.double(scene["M"]) not in (4, 6):
             raise ValueError(f"M is {scene['M']}; expected 6 or 4")
         self.scene = scene
@@ -97,6 +100,10 @@ def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[st
         else:
             scene = {name: request.scene[name] for name in SCENE}
             whole = {"id": request.id, **request.extra, "scene": scene, **next(answers)}
+            if request.scene.units:
+                whole["units"] = base_of(system_of(request.scene.units))
+            if remarks := [*request.scene.entries.remarks.values()]:
+                whole["remarks"] = remarks
             yield stamped("oracle", whole)
 
 

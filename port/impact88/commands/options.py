@@ -18,6 +18,7 @@ from ..errors import UserError, quoted
 from ..files import called, check_apart
 from ..names import SCENE, check_names
 from ..scene import (
+    OWN_AXES,
     RANGES,
     SAMPLES,
     Entries,
@@ -407,6 +408,12 @@ def known_within_limits(
         named = entries.units
         texts = {name: text for name, text in entries.values.items() if text}
         if args.scene:
+            for name in set(sum(OWN_AXES.values(), ())).intersection(texts) - set(allowed):
+                raise UserError(
+                    f"{name} is known within limits, which impact88 bounds takes; expected a "
+                    f"number, or limits for D{name[1]} and P{name[1]}",
+                    source,
+                )
             check_names(entries.values, allowed, "value here", source)
         else:
             texts = {name: text for name, text in texts.items() if name in allowed}

@@ -1,7 +1,9 @@
 """Reads JSON Lines {"id": ..., "scene": {"MA": 143.5, ...}} from a file or standard input, numbers
 or decimal strings, and answers each line with one: the printout; each result as Applesoft has it
 (printed text, five bytes, exact decimal), in double precision, to 30 digits; condition, error
-bound, STATUS. A line that cannot be used is answered with its number and what is wrong.
+bound, STATUS. A line that cannot be used is answered with its number and what is wrong. A scene may
+have "units" and amounts with units ("30 mph"); the program is given base units, and so it answers:
+"units" in the answer names them.
 
 With --vectors it writes labelled test vectors instead, the same on any machine for the same seed:
 casework, edge and failure in turn, or one class. --published writes the vectors that golden/README
@@ -33,7 +35,7 @@ from ..checking.oracle import Request, answer
 from ..checking.vectors import CLASSES
 from ..errors import UserError
 from ..files import called, encoding_of, open_bytes
-from .options import OUTPUT, InputFile, OutputFolder, argument, flag, seed, whole_number
+from .options import OUTPUT, UNITS, InputFile, OutputFolder, argument, flag, seed, whole_number
 
 MOST_VECTORS = 10_000_000
 
@@ -54,6 +56,7 @@ ARGUMENTS = (
         help="write vectors, conventions and programs that answer them, in five languages",
     ),
     flag("--published", "write the published vectors"),
+    UNITS,
 )
 
 
@@ -92,7 +95,7 @@ def main(args: argparse.Namespace) -> int:
 
         _print(vectors(args.vectors, args.seed, not args.no_reference, args.only), counts)
     else:
-        for batch in _batches(args.scenes):
+        for batch in _batches(args.scenes, args.units):
             _print(answer(batch, not args.no_reference), counts)
             sys.stdout.flush()
     if not counts["answered"]:
@@ -110,7 +113,7 @@ def _print(answers: Iterator[dict[str, Any]], counts: dict[str, int]) -> None:
         print(json.dumps(found, ensure_ascii=False))
 
 
-def _batches(path: str) -> Iterator[list[Request]]:
+def _batches(path: str, units: str | None) -> Iterator[list[Request]]:
     """The requests that have arrived, some at a time: a program that asks line by line over a pipe
     is answered line by line, a file in larger batches."""
     from ..checking.oracle import BATCH, LONGEST_LINE
@@ -135,7 +138,7 @@ def _batches(path: str) -> Iterator[list[Request]]:
             for line in lines:
                 number += 1
                 if text := line.strip():
-                    batch.append(Request(number, text))
+                    batch.append(Request(number, text, units))
             for at in range(0, len(batch), BATCH):
                 yield batch[at : at + BATCH]
             if not arrived:

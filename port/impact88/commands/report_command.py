@@ -7,6 +7,9 @@ sign.
 In the file, case = "24-117" is the case's number, and UX_source = "event data recorder" (or UX =
 {value = "-25 mph", source = "event data recorder"}) says where a value comes from.
 
+Chromium and Safari print the case number and "page 2 of 4" in the margins. Firefox has no such
+margins: leave its own header and footer on there, which number the pages, or print from another.
+
 The same input, options and version give the same bytes.
 
 examples:

@@ -8,9 +8,10 @@ cell by cell beside its recomputation, the differences explained. Units: ft, s, 
   --table N   table 1 or 2 itself, emended
 
 FILE.toml is another staged collision, with the listing's names: vehicles and geometry, the
-velocities before (UX UY WA VX VY WB) and after (VAX VAY WAF VBX VBY WBF), consistent units. Its
-e, e_m and mu are fitted as Section V's are; --spin-weight says what a squared spin counts against a
-squared velocity (25 ft² for the chapter's; by default the square of the radius of gyration).
+velocities before (UX UY WA VX VY WB) and after (VAX VAY WAF VBX VBY WBF), with or without units.
+Its e, e_m and mu are fitted as Section V's are; --spin-weight says what a squared spin counts
+against a squared velocity (25 ft² for the chapter's; by default the square of the radius of
+gyration).
 impact88 reconstruct fits the same with a tolerance for each velocity.
 
 examples:
@@ -83,15 +84,16 @@ def _own(args: argparse.Namespace) -> int:
     """Fit the collision of a file."""
     from ..reconstruction.doublerange import within_doubles
     from ..reconstruction.geometry import NAMES
+    from ..units import base_of, system_of
 
     if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
         raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number, 0 or more")
     names = (*NAMES, *VELOCITIES, *FINAL_STATE)
-    known, _ = known_values(args, names)
+    known, named = known_values(args, names)
     if absent := [name for name in names if name not in known]:
         raise UserError(missing(absent), args.scene)
     try:
-        whole, lines = within_doubles(_fitted)(known, args.spin_weight)
+        whole, lines = within_doubles(_fitted)(known, args.spin_weight, base_of(system_of(named)))
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     if args.json:
@@ -101,7 +103,9 @@ def _own(args: argparse.Namespace) -> int:
     return 0
 
 
-def _fitted(known: dict[str, float], weight: float | None) -> tuple[dict[str, Any], list[str]]:
+def _fitted(
+    known: dict[str, float], weight: float | None, units: str
+) -> tuple[dict[str, Any], list[str]]:
     """The fit of one collision, as JSON and as lines."""
     import numpy as np
 
@@ -124,7 +128,7 @@ def _fitted(known: dict[str, float], weight: float | None) -> tuple[dict[str, An
     measured = closure(own)
     whole = {
         **{"fit": asdict(found), "closure": asdict(measured)},
-        **{"spin_weight": weight, "em_range": (low, high)},
+        **{"spin_weight": weight, "em_range": (low, high), "base_units": units},
     }
     rows = [
         ["E", fixed(found.E, 4), "e" + (", at its bound" if "E" in found.at_bound else "")],
@@ -133,7 +137,8 @@ def _fitted(known: dict[str, float], weight: float | None) -> tuple[dict[str, An
     ]
     text = (
         f"Least squares over the six velocities after, a squared spin weighing {weight:.4g}: sum "
-        f"of squares {found.sum_of_squares:.4g}. 0 <= e <= 1, -1 <= e_m <= 0."
+        f"of squares {found.sum_of_squares:.4g}. 0 <= e <= 1, -1 <= e_m <= 0. Squares and "
+        f"momentum in base units: {units}."
     )
     return whole, [*table(rows, left=(0, 2)), "", *paragraph(text), "", *_closures([measured])]
 

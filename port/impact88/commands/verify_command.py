@@ -35,6 +35,7 @@ from ..reporting.verification import lines
 from ..stderr import note
 from .options import (
     OUTPUT,
+    UNITS,
     InputFile,
     OutputFile,
     argument,
@@ -72,6 +73,7 @@ ARGUMENTS = (
     ),
     sample_option("the inputs are those of a published run"),
     setting("change a value of these inputs"),
+    UNITS,
     *(argument(f"--{name}", help=f"{name} printed on the report, as given") for name in _ON_REPORT),
 )
 

@@ -27,12 +27,14 @@ from ..progress import progress
 from ..scene import SAMPLES, Scene, sample
 from .options import (
     OUTPUT,
+    UNITS,
     InputFile,
     InputFolder,
     OutputFolder,
     argument,
     flag,
     json_option,
+    note_remarks,
     print_json,
     sample_option,
     seed,
@@ -63,6 +65,7 @@ ARGUMENTS = (
     argument("--rom", type=InputFile, required=True, metavar="FILE", help="the ROM image"),
     sample_option("the scene of a published run; all three when nothing else is asked for"),
     setting("change a value of these scenes"),
+    UNITS,
     argument(
         "--captures", metavar="N", help="N random packaged captures of each kind's mix, or all"
     ),
@@ -121,7 +124,9 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         else:
             jobs.append(partial(hearing.hear_sample, number=number))
     for path in args.scenes:
-        scene = Scene.from_toml(path).replaced(changes)
+        given = Scene.from_toml(path, args.units)
+        scene = given.replaced(settings(args.set, units=given.units))
+        note_remarks(scene.entries)
         jobs.append(partial(hearing.hear_scene, name=path, scene=scene))
     if args.captures is not None:
         if args.captures != ALL and not args.captures.isdecimal():

@@ -12,8 +12,7 @@ bodies and headers of its own.
 - `guard`: who may ask: Host, token, Origin, and the headers that go with every answer
 - `app`: addresses and what answers them
 - `halfopen`: connections that send no whole request
-- `workers`: processes for what takes long, so that a newer question can end an older one;
-  `worker` is what runs in them
+- `workers`: processes for what takes long, so that a newer question can end an older one
 - `paper`, `collision`, `reconstruction`: what the views are answered
 - `page`: what the template is given
 - ``templates/``, ``static/``: the page, one style sheet, JavaScript modules

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import threading
-from base64 import b64decode, b64encode
+from base64 import b64decode
 from typing import Any, TypeGuard
 
 from flask import Blueprint, Flask, Response, abort, render_template, request
@@ -98,9 +98,9 @@ _REFUSED = {413: f"more than {LARGEST_BODY:,} bytes, the most that is read here"
 def _addresses(desk: Desk) -> Blueprint:
     routes = Blueprint("desk", __name__)
 
-    def asked(bench: str, task: str, **arguments: Any) -> Any:
+    def asked(bench: str, function: str, **arguments: Any) -> Any:
         who = request.headers.get("X-Desk-Page", "")[:64]
-        return desk.benches[bench].ask(who, {"task": task, **arguments})
+        return desk.benches[bench].ask(who, function, **arguments)
 
     @routes.get("/")
     def whole_page() -> str:
@@ -110,8 +110,7 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.post("/judge")
     def judge() -> Any:
         bench = "edit" if request.args.get("bench") == "edit" else "paper"
-        data = b64encode(request.get_data()).decode()
-        return asked(bench, "judge", name=request.args.get("name", ""), data=data)
+        return asked(bench, "judged", name=request.args.get("name", ""), data=request.get_data())
 
     @routes.post("/published/<name>")
     def published(name: str) -> Response:
@@ -136,7 +135,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/bounds")
     def bounds() -> Any:
-        return asked("bounds", "bounds", values=_texts("values"), units=_units())
+        return asked("bounds", "bounds_answer", values=_texts("values"), units=_units())
 
     @routes.post("/scene-file")
     def scene_file() -> Response:
@@ -165,7 +164,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
-        return asked("reconstruction", "reconstruct", values=_texts("values"), units=_units())
+        return asked("reconstruction", "answer", values=_texts("values"), units=_units())
 
     @routes.post("/known-file")
     def known_file() -> Response:

@@ -20,7 +20,7 @@ from ..errors import UserError
 from ..files import decode
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, quantity
 from ..plaintable import number
-from ..scene import Scene, check_value, entries_of, sample, template, toml_texts
+from ..scene import OWN_AXES, Scene, check_value, entries_of, sample, template, toml_texts
 from ..schemas import stamped
 from ..uncertainty import uncertain
 from .entries import entries
@@ -35,7 +35,7 @@ _DIGITS = 12
 """Digits of an exact result, as many as double precision is sure of."""
 _ROUNDING = 1e-14
 """Share of the largest value of its kind below which a result shows as 0: a hundred roundings."""
-_OWN_AXES = frozenset(("CAF", "CAL", "CBF", "CBL"))
+_OWN_AXES = frozenset(sum(OWN_AXES.values(), ()))
 """The contact point in a vehicle's own axes, which the form has as DA PA, DB PB."""
 _WHOSE_BASE = {"us": "chapter", "metric": "si"}
 """The system whose bare numbers are another's base units."""

@@ -5,7 +5,7 @@ A paper is a name and the bytes of its file, or of what has become of its text o
 
 from __future__ import annotations
 
-from base64 import b64decode, b64encode
+from base64 import b64decode
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -30,21 +30,20 @@ WORDS = ("date", "case", "examiner")
 
 def warm() -> None:
     """Load what the first answer needs."""
-    judged("run1", b64encode(packaged_bytes("impact88.legacy", "run1-as-printed.txt")).decode())
+    judged("run1", packaged_bytes("impact88.legacy", "run1-as-printed.txt"))
 
 
-def judged(name: str, data: str) -> dict[str, Any]:
-    """The verdicts on one paper; ``data`` is its file in base 64.
+def judged(name: str, data: bytes) -> dict[str, Any]:
+    """The verdicts on one paper; ``data`` is its file.
 
     ``text``: the paper as text, which the places below count in, or None where it is none;
     ``problem``: why it cannot be judged, or None; ``objects``: what `impact88 verify --json` prints
     for it; ``printouts``: the words of each of its verdicts.
     """
-    content = b64decode(data)
-    examined = _examined(name, content)
+    examined = _examined(name, data)
     return {
         "name": examined.file,
-        "text": _text(examined, content),
+        "text": _text(examined, data),
         "problem": examined.error,
         "objects": examined.as_json(),
         "printouts": [_words(result) for result in examined.results],

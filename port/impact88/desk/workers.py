@@ -1,46 +1,51 @@
 """Processes for what takes long, so that the page stays quick and a newer question ends an older.
 
 A thread cannot be ended from outside; a process can. Each kind of work has one, started before it
-is needed, kept between questions and replaced when it had to be ended. Questions and answers are
-lines of JSON over its standard input and output (`worker`).
+is needed, kept between questions and replaced when it had to be ended.
 """
 
 from __future__ import annotations
 
-import json
+import multiprocessing
 import os
-import subprocess
-import sys
+import signal
 import threading
-import time
-from typing import Any
+from importlib import import_module
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+from typing import Any, NamedTuple
 
 from ..errors import UserError
-
-_INSTALLED_IN = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-_START = (
-    f"import sys; sys.path.append(sys.argv.pop()); from {__package__}.worker import main; main()"
-)
-"""The process finds the package where this one did, even where it is not installed."""
-
-
-class SupersededError(Exception):
-    """The question was ended: its page has asked a newer one, or wants to wait no longer."""
-
 
 ANSWERED_WITHIN = 60.0
 """Seconds for an answer, after which its process is ended. The slowest pages and scans at hand take
 ten on an idle machine."""
 
 
+class SupersededError(Exception):
+    """The question was ended: its page has asked a newer one, or wants to wait no longer."""
+
+
 class BrokenError(Exception):
     """The process ended by itself, or said that a fault of this project stopped it."""
+
+
+class Worker(NamedTuple):
+    """A process, and the line to it."""
+
+    process: SpawnProcess
+    line: Connection
+
+    def end(self) -> None:
+        """End the process at once."""
+        self.process.kill()
+        self.process.join()
 
 
 class Bench:
     """One process that answers one question at a time.
 
-    ``module``: the module of this room that answers, loaded before the first question.
+    ``module``: the module of this room whose functions answer, loaded before the first question.
 
     Questions of one ``page`` replace each other; those of different pages wait for their turn.
     """
@@ -48,7 +53,7 @@ class Bench:
     def __init__(self, module: str) -> None:
         self._module = module
         self._turn = threading.Condition()
-        self._process: subprocess.Popen[str] | None = None
+        self._worker: Worker | None = None
         self._asking: str | None = None
         self._latest: dict[str, int] = {}
         self._closed = False
@@ -59,8 +64,8 @@ class Bench:
             if not self._closed:
                 self._ready()
 
-    def ask(self, page: str, question: dict[str, Any]) -> Any:
-        """The answer to ``question`` (`worker.answer` tells what can be asked).
+    def ask(self, page: str, function: str, /, **arguments: Any) -> Any:
+        """What a function of the bench's module returns.
 
         Raises UserError with what is wrong with the question, SupersededError, and BrokenError.
         """
@@ -74,39 +79,35 @@ class Bench:
             if self._latest[page] != mine or self._closed:
                 raise SupersededError
             self._asking = page
-            process = self._ready()
-        began = time.monotonic()
-        budget = threading.Timer(ANSWERED_WITHIN, process.kill)
-        budget.daemon = True
-        budget.start()
+            worker = self._ready()
+        kind, answer = "ended", None
         try:
-            line = _exchanged(process, question)
-            if not line:  # it is ending; the next question starts another
-                process.wait()
+            worker.line.send((function, arguments))
+            kind = "late"
+            if worker.line.poll(ANSWERED_WITHIN):
+                kind, answer = worker.line.recv()
+        except (OSError, EOFError):
+            kind = "ended"
         finally:
-            expired = time.monotonic() - began >= ANSWERED_WITHIN
-            budget.cancel()
             with self._turn:
-                ended = self._process is not process
-                if not ended and process.poll() is not None:
-                    self._process = None
-                self._asking = None
-                superseded = self._latest[page] != mine
+                superseded = self._latest[page] != mine or self._worker is not worker
                 if not superseded:
                     del self._latest[page]
+                if kind in ("ended", "late") and self._worker is worker:
+                    self._end()  # the next question starts another
+                self._asking = None
                 self._turn.notify_all()
-        if superseded or (ended and not line):
+        if superseded:
             raise SupersededError
-        if not line and expired:
+        if kind == "late":
             raise UserError(f"is not answered within {ANSWERED_WITHIN:.0f} seconds")
-        if not line:
+        if kind == "ended":
             raise BrokenError("the process that computes ended unexpectedly")
-        reply = json.loads(line)
-        if "problem" in reply:
-            raise UserError(reply["problem"])
-        if "fault" in reply:
-            raise BrokenError(reply["fault"])
-        return reply["answer"]
+        if kind == "problem":
+            raise UserError(str(answer))
+        if kind == "fault":
+            raise BrokenError(answer)
+        return answer
 
     def stop(self, page: str) -> None:
         """End what ``page`` is waiting for, if anything."""
@@ -124,32 +125,39 @@ class Bench:
             self._end()
             self._turn.notify_all()
 
-    def _ready(self) -> subprocess.Popen[str]:
-        if self._process is None or self._process.poll() is not None:
-            self._process = subprocess.Popen(
-                # -P: a file of the user's in the current folder is no module of ours
-                [sys.executable, "-P", "-c", _START, self._module, _INSTALLED_IN],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                encoding="utf-8",
-                bufsize=1,
-            )
-        return self._process
+    def _ready(self) -> Worker:
+        if self._worker is None or not self._worker.process.is_alive():
+            context = multiprocessing.get_context("spawn")
+            ours, theirs = context.Pipe()
+            process = context.Process(target=_work, args=(self._module, theirs), daemon=True)
+            process.start()
+            theirs.close()
+            self._worker = Worker(process, ours)
+        return self._worker
 
     def _end(self) -> None:
-        process, self._process = self._process, None
-        if process is not None:
-            process.kill()
-            process.wait()
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.end()
 
 
-def _exchanged(process: subprocess.Popen[str], question: dict[str, Any]) -> str:
-    """The line that comes back; empty when the process has ended."""
-    assert process.stdin is not None
-    assert process.stdout is not None
-    try:
-        process.stdin.write(json.dumps(question) + "\n")
-        process.stdin.flush()
-        return process.stdout.readline()
-    except (OSError, ValueError):  # it was ended while the question was on its way
-        return ""
+def _work(name: str, line: Connection) -> None:
+    """What runs in the process: answer until the line is closed. Control-C is for the parent, which
+    ends this process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    module = import_module(f"{__package__}.{name}")
+    module.warm()
+    while True:
+        try:
+            function, arguments = line.recv()
+        except EOFError:
+            return
+        try:
+            reply = "answer", getattr(module, function)(**arguments)
+        except UserError as error:
+            reply = "problem", str(error)
+        except Exception as error:
+            if os.environ.get("IMPACT88_DEBUG"):
+                raise
+            reply = "fault", f"{type(error).__name__}: {error}"
+        line.send(reply)

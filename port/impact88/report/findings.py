@@ -13,7 +13,7 @@ from ..figures.sceneview import scene_drawing
 from ..figures.svg import svg
 from ..names import DEFAULT_M, SCENE, check_names, quantity
 from ..plaintable import fixed, number
-from ..reconstruction.contact import MOVES, moved
+from ..reconstruction.contact import MOVES, moved, placed
 from ..reconstruction.impulse import clock
 from ..reconstruction.knowable import KNOWABLE
 from ..scene import Entries
@@ -102,8 +102,9 @@ def report(
     """
     units = system_of(entries.units)
     given = {n for n, text in entries.values.items() if text.strip()}
-    whole = set(SCENE) - {"M"} <= given <= {*SCENE, *MOVES, "correlations"}
-    check_names(given - {"correlations"}, (*KNOWABLE, *MOVES), "value here", source)
+    scene = placed(SCENE, given)
+    whole = set(scene) - {"M"} <= given <= {*scene, *MOVES, "correlations"}
+    check_names(given - {"correlations"}, placed((*KNOWABLE, *MOVES), given), "value here", source)
     find = _forward if whole else _inverse
     found = find(entries, source, samples, seed, units)
     case = case or entries.case or ""
@@ -154,8 +155,18 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
     settings = ""
     if any(item.varies for item in inputs.values.values()):
         found = bounds(
-            inputs.values, FORWARD, samples=samples, seed=seed, correlations=inputs.correlations
+            inputs.values,
+            FORWARD,
+            samples=samples,
+            seed=seed,
+            correlations=inputs.correlations,
+            keep_draws=True,
         )
+        for vehicle in "AB":
+            speeds = np.hypot(found.draws[f"V{vehicle}X"], found.draws[f"V{vehicle}Y"])
+            speeds = speeds[np.isfinite(speeds)]
+            low, high = np.quantile(speeds, (0.05, 0.95)).tolist()
+            spreads[f"S{vehicle}F"] = Spread(float(speeds.std(ddof=1)), low, high)
         for name, bound in found.bounds.items():
             spread = found.spreads[name]
             low, high = spread.quantiles[0.05], spread.quantiles[0.95]
@@ -175,8 +186,9 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
     scene = {name: float(nominal[name]) for name in SCENE}
     kind = "Velocities after the impact from those before it"
     driving = "how far the result goes while one input goes through its limits, largest first"
+    main = ("SAF", "SBF", *FORWARD)
     return Findings(
-        *(kind, values, FORWARD, spreads, drivers, driving, remarks, scene, method, settings)
+        *(kind, values, main, spreads, drivers, driving, remarks, scene, method, settings)
     )
 
 
@@ -292,6 +304,7 @@ def _answer(found: Findings, units: System) -> Table:
     caption = (
         "sd: standard deviation; 5 and 95 %: of the draws; bounds: attained within the limits "
         "of the inputs, not proven to be the farthest"
+        + ("; none are sought for speeds after" if "SAF" in found.main[:1] else "")
         if found.spreads
         else ""
     )

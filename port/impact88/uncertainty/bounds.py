@@ -32,7 +32,7 @@ from ..closedform.solve import quantities
 from ..errors import UserError
 from ..mappings import check_mapping, within_limits
 from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
-from ..reconstruction.contact import MOVES, moved
+from ..reconstruction.contact import MOVES, moved, placed
 from ..reconstruction.model import (
     DividedModel,
     Model,
@@ -264,10 +264,9 @@ class _Box:
             return self.model(self.scenes(columns), outputs)
 
     def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
-        """All inputs, the contact point moved by CX and CY where they are among them."""
+        """All inputs, the contact point where its own axes, CX and CY have it."""
         values: dict[str, Array | float] = {**self.known, **columns}
-        if set(MOVES) & set(values):
-            values = dict(moved(values))
+        values = dict(moved(values))
         return {**values, "MU": typed_friction(values, values["MU"])} if self.share else values
 
     def extremes(self, rng: np.random.Generator) -> Extremes:
@@ -351,7 +350,7 @@ def _stacked(columns: Sequence[Array], count: int) -> Array:
 
 
 def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
-    names = input_names(problem)
+    names = placed(input_names(problem), given)
     for name in names:
         if name not in given:
             raise UserError(f"{name} is missing; a {problem} needs {' '.join(names)}")

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 from ..errors import UserError
 from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, VELOCITIES
-from ..reconstruction.contact import MOVES, moved
+from ..reconstruction.contact import MOVES, moved, placed
 from . import uncertain
 from .uncertain import Uncertain
 
@@ -56,10 +56,11 @@ def read_inputs(
     entries.pop("title", None)
     correlations = read_correlations(entries.pop("correlations", ""), source)
     for name in entries:
-        if name not in (*SCENE, *AFTER, *MOVES):
+        if name not in (*placed(SCENE, entries), *AFTER, *MOVES):
             expected = " ".join((*SCENE, *AFTER, "title", "correlations"))
             raise UserError(f"{name!r} is no value here; expected {expected}", source)
-    wanted = (*COMMON, *(BEFORE if problem == "forward" else AFTER))
+    scene = placed(SCENE, entries)
+    wanted = placed((*COMMON, *(BEFORE if problem == "forward" else AFTER)), entries)
     for name in changes:
         if name not in (*wanted, *MOVES):
             raise UserError(
@@ -70,7 +71,7 @@ def read_inputs(
     values = {
         name: uncertain.read(text, f"{source}, {name}")
         for name, text in entries.items()
-        if name in (*SCENE, *MOVES) or problem != "forward"
+        if name in (*scene, *MOVES) or problem != "forward"
     }
     derived: tuple[str, ...] = ()
     if problem != "forward" and not set(AFTER) & set(values) and not set(AFTER) <= set(changes):
@@ -91,7 +92,7 @@ def read_inputs(
 
 def _forward_solution(values: Mapping[str, Uncertain], source: str) -> dict[str, Uncertain]:
     """The final velocities and MUP of the forward solution of the nominal values."""
-    missing = [name for name in SCENE if name not in values]
+    missing = [name for name in placed(SCENE, values) if name not in values]
     if missing:
         raise UserError(
             f"neither final velocities ({' '.join(AFTER)}) nor the whole scene to have them from "
