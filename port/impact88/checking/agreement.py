@@ -1,91 +1,214 @@
-"""Whether another program's number agrees with ours, and how closely it must.
+"""Whether another program's numbers agree with ours, and how closely they must.
 
 Each scene is judged by its own condition. A result agrees
 
 * *to the double* when it is no farther off than rounding allows in the best of programs
   (`accuracy.errorbound`);
 * *to the digits claimed* when it is the exact value rounded to the digits it is written with;
-* *as elimination does* when it is no farther off than plain elimination in double precision may be
-  in this scene. Elimination is as good as the condition number of the 6 by 6 matrix as it stands
-  (masses, cosines and inertias side by side, not scaled): its forward error stays below unit
-  roundoff times that number times the largest unknown. Measured on the vectors: at most 0.03 of it.
+* *as elimination does* when it is no farther off than the usual ways allow in double precision in
+  this scene. Elimination is as good as the condition number of the 6 by 6 matrix as it stands, not
+  scaled: its error is below unit roundoff times that number times the largest unknown (measured on
+  the vectors: at most 0.03 of it). Contact impulses in closed form have a running error bound.
+
+Where rounding decides which way the contact slides, either way of MU's sign is right.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
 from ..accuracy.elimination import fill
+from ..closedform.solve import solve
 from ..doubles import double, doubles
+from ..equations.bounded import running_errors
+from ..equations.evaluation import Run
+from ..equations.spelling import IMPULSES, spellings
 from ..errors import quoted
-from ..names import FINAL_VELOCITIES
+from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..tables.rows import Rows, one_per_row
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
-Columns = dict[str, Floats]
+Columns = Mapping[str, Floats]
 
-_SPINS = ("WAF", "WBF")
-
-
-class Theirs(NamedTuple):
-    """One column of another program's results: values, and the unit of the last digit written (0
-    where it is written in binary, or with an exponent that leaves nothing)."""
-
-    values: Floats
-    units: Floats
-
-
-@dataclass
-class Slack:
-    """How far results may be off, scene by scene, as a share of their ``sizes``.
-
-    ``double``: for the best of programs; ``elimination``: for plain elimination in double;
-    ``per_unit``: for plain elimination in other arithmetic, per unit roundoff."""
-
-    sizes: Columns
-    double: Floats
-    elimination: Floats
-    per_unit: Floats
-
-    def part(self, rows: NDArray[np.intp]) -> Slack:
-        """The slack of some of the scenes."""
-        sizes = {name: column[rows] for name, column in self.sizes.items()}
-        return Slack(sizes, self.double[rows], self.elimination[rows], self.per_unit[rows])
-
-
-class Verdict(NamedTuple):
-    """For one result: where it agrees to the double, to the digits claimed, as elimination does
-    (each includes those before it), and the difference as a share of its size."""
-
-    double: Bools
-    digits: Bools
-    elimination: Bools
-    relative: Floats
-
-
+EQUATIONS = {
+    "13": "momentum along x",
+    "14": "momentum along y",
+    "15": "restitution",
+    "16": "friction",
+    "17": "angular momentum",
+    "18": "moment",
+}
+"""Number and subject."""
+_FORM = "equations with A's impulse"
+"""The spelling in which each equation can be violated alone: none takes another for granted."""
+_ROUNDING = 1e-13
+"""Of the sum of an equation's terms, for evaluating it."""
 _NOTHING = re.compile(
     r"|null|none|n/a|#[A-Z]+[/0-9A-Z]*[!?]?|[+-]?(nan|inf|infinity|1\.#[A-Z]+[0-9]*)(\([a-z0-9]*\))?",
     re.IGNORECASE,
 )
 """What programs write where they have no result: spreadsheets' errors, C's -nan(ind), infinity."""
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
+_HALF = 0.5 + 1e-9
+"""Of the last digit written."""
 
 
-def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> Theirs:
-    """A column of results, times ``factor`` in base units; an empty cell is NaN and counts as not
-    given. What is no number is added to ``rows.bad``. Raises UserError for an array that has not a
-    number for each row."""
+class Verdict(NamedTuple):
+    """Results by rows: where both sides have a number; where they agree to the double, to the
+    digits claimed, as elimination does (each includes those before it); the difference as a share
+    of its size."""
+
+    given: Bools
+    double: Bools
+    digits: Bools
+    loose: Bools
+    relative: Floats
+
+
+@dataclass(frozen=True)
+class Case:
+    """Rows of a table, theirs and ours: arrays with the rows last, the ``names`` of results before.
+
+    ``units``: the last digit written of ``values`` (0 where there is none); ``sizes``: what errors
+    are a share of; ``best``, ``loose``: the shares that the best of programs, and the usual ways,
+    may be off in double precision; ``per_unit``: the latter in other arithmetic, per unit roundoff.
+    """
+
+    names: tuple[str, ...]
+    scene: Floats
+    values: Floats
+    units: Floats
+    ours: Floats
+    sizes: Floats
+    condition: Floats
+    best: Floats
+    loose: Floats
+    per_unit: Floats
+
+    def part(self, rows: NDArray[np.intp] | Bools) -> Case:
+        """Some of the rows."""
+        return _each(self, lambda name: getattr(self, name)[..., rows])
+
+    @property
+    def columns(self) -> dict[str, Floats]:
+        """The scenes by name."""
+        return dict(zip(SCENE, self.scene, strict=True))
+
+    def of(self, name: str) -> int:
+        """Which of the results has a name."""
+        return self.names.index(name)
+
+    def judged(self) -> Verdict:
+        """Where the results agree."""
+        with np.errstate(all="ignore"):
+            off = np.abs(self.values - self.ours)
+            last_bits = 2 * np.spacing(np.abs(self.ours))
+            tight, loose = (share * self.sizes + last_bits for share in (self.best, self.loose))
+            written = self.units * _HALF
+            # nothing there to measure by: as a share of what they have
+            measure = np.where(self.sizes > 0, self.sizes, np.abs(self.values))
+            relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
+            given = np.isfinite(self.values) & np.isfinite(self.ours)
+            within = (off <= tight, off <= written + tight, off <= written + loose)
+            return Verdict(given, *within, relative)
+
+
+def joined(cases: Sequence[Case]) -> Case:
+    """Rows of several blocks of one table."""
+    return _each(cases[0], lambda name: np.concatenate([getattr(c, name) for c in cases], -1))
+
+
+def _each(case: Case, made: Callable[[str], Any]) -> Case:
+    return replace(case, **{one.name: made(one.name) for one in fields(Case)[1:]})
+
+
+def case_of(
+    scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None = None
+) -> Case:
+    """Scenes (columns of n) with another program's results, values and the units of their last
+    digits; ``rtol``: a user's own share that agrees, for every scene alike."""
+    case, undecided = _case(scene, theirs, rtol)
+    if undecided.size:
+        few = {name: column[undecided] for name, column in scene.items()}
+        some = {name: (a[undecided], b[undecided]) for name, (a, b) in theirs.items()}
+        other, _ = _case({**few, "MU": -few["MU"]}, some, rtol)
+        better = _agree(other) & ~_agree(case.part(undecided))
+        for name in ("ours", "sizes", "condition", "best", "loose", "per_unit"):
+            getattr(case, name)[..., undecided[better]] = getattr(other, name)[..., better]
+    return case
+
+
+def _agree(case: Case) -> Bools:
+    verdict = case.judged()
+    return np.asarray((verdict.loose | ~verdict.given).all(0))
+
+
+def _case(
+    scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None
+) -> tuple[Case, NDArray[np.intp]]:
+    """The case, and the rows in which rounding decides which way the contact slides."""
+    ours = {name: column.astype(float) for name, column in solve(scene).items()}
+    sizes = errorbound.scales(scene, ours)
+    best = errorbound.relative_bounds(ours["COND"], 1.0)
+    spent = running_errors(spellings()[IMPULSES], scene)
+    with np.errstate(all="ignore"):
+        largest = np.nanmax(np.abs([ours[name] for name in FINAL_VELOCITIES]), 0, initial=0.0)
+        eliminated = plain_condition(scene) * largest
+        shares = [
+            np.fmax(eliminated, np.broadcast_to(spent[name].errors, largest.shape)) / sizes[name]
+            for name in FINAL_VELOCITIES
+        ]
+        finite = np.max(np.where(np.isfinite(shares), shares, 0.0), axis=0)
+        sliding = np.abs(spent["gt"].values) / errorbound.DOUBLE
+        undecided = (sliding <= spent["gt"].errors) & (scene["MU"] != PIVOT) & (scene["MU"] != 0)
+    per_unit = np.fmax(best, finite)
+    alike = None if rtol is None else np.full(best.size, rtol)
+    case = Case(
+        tuple(theirs),
+        np.stack([scene[name] for name in SCENE]),
+        np.stack([values for values, _ in theirs.values()]),
+        np.stack([units for _, units in theirs.values()]),
+        np.stack([ours[name] for name in theirs]),
+        np.stack([sizes[name] for name in theirs]),
+        ours["COND"],
+        best * errorbound.DOUBLE if alike is None else alike,
+        per_unit * errorbound.DOUBLE if alike is None else alike,
+        per_unit,
+    )
+    return case, np.flatnonzero(undecided)
+
+
+def plain_condition(scene: Columns) -> Floats:
+    """The condition numbers (largest row sum) of the listing's matrices as they stand; infinite
+    where there is no finite one. Point masses are bodies without arms that nothing turns."""
+    point = scene["M"] == 4
+    alone = {"DA": 0.0, "DB": 0.0, "EM": 1.0, "IA": 1.0, "IB": 1.0}
+    changed = {name: np.where(point, value, scene[name]) for name, value in alone.items()}
+    matrix, _ = fill({**scene, **changed})
+    usable = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
+    signs, _ = np.linalg.slogdet(np.where(usable[:, None, None], matrix, np.eye(6)))
+    usable = usable & (signs != 0)
+    inverse = np.linalg.inv(np.where(usable[:, None, None], matrix, np.eye(6)))
+    condition = np.abs(matrix).sum(2).max(1) * np.abs(inverse).sum(2).max(1)
+    return np.where(usable & np.isfinite(condition), condition, np.inf)
+
+
+def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Floats]:
+    """A column of results, times ``factor`` in base units, and the unit of the last digit written
+    (0 where it is written in binary). An empty cell is NaN and counts as not given; what is no
+    number is added to ``rows.bad``. Raises UserError for an array that has not a number for each
+    row."""
     column = one_per_row(rows, name)
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
-        return Theirs(column.astype(float) * factor, np.zeros(rows.count))
+        return column.astype(float) * factor, np.zeros(rows.count)
     texts = ["" if cell is None else str(cell).strip() for cell in column]
     there = [index for index, text in enumerate(texts) if not _NOTHING.fullmatch(text)]
     values, units = np.full(rows.count, np.nan), np.zeros(rows.count)
@@ -104,59 +227,40 @@ def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> Theirs:
             decimals, exponent = written.groups(default="")
             power = float(exponent or 0) - len(decimals)
             units[index] = 10.0 ** min(300.0, max(power, -400.0))
-    return Theirs(values * factor, units * factor)
+    return values * factor, units * factor
 
 
-def slack(scene: Columns, ours: Columns, rtol: float | None = None) -> Slack:
-    """The slack of scenes with our results; ``rtol``: a user's own, for every scene alike."""
-    sizes = errorbound.scales(scene, ours)
-    best = errorbound.relative_bounds(ours["COND"], 1.0)
-    with np.errstate(all="ignore"):
-        condition = plain_condition(scene)
-        unknowns = np.stack([np.abs(ours[name]) for name in FINAL_VELOCITIES])
-        error = condition * np.nanmax(unknowns, axis=0, initial=0.0)
-        shares = [error / sizes[name] for name in ("VAX", *_SPINS)]
-        largest = np.nanmax(np.where(np.isfinite(shares), shares, 0.0), axis=0)
-    per_unit = np.fmax(best, largest)
-    if rtol is not None:
-        alike = np.full(best.size, rtol)
-        return Slack(sizes, alike, alike, per_unit)
-    return Slack(sizes, best * errorbound.DOUBLE, per_unit * errorbound.DOUBLE, per_unit)
+def violated(case: Case) -> dict[str, Bools]:
+    """Which of Equations 13 to 18 their results violate: number -> rows.
 
-
-def plain_condition(scene: Columns) -> Floats:
-    """The condition numbers (largest row sum) of the listing's matrices as they stand; infinite
-    where there is no finite one. Point masses are bodies without arms that nothing turns."""
+    The equations are evaluated on the results as they were given: no solution of ours comes in. One
+    is violated when its two sides differ by more than the digits written, and rounding, allow.
+    Empty when the table lacks a final velocity (point masses keep their spins, given or not). A
+    scene with a missing number violates nothing.
+    """
+    spelling, scene = spellings()[_FORM], case.columns
     point = scene["M"] == 4
-    alone = {"DA": 0.0, "DB": 0.0, "EM": 1.0, "IA": 1.0, "IB": 1.0}
-    changed = {name: np.where(point, value, scene[name]) for name, value in alone.items()}
-    matrix, _ = fill({**scene, **changed})
-    usable = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
-    signs, _ = np.linalg.slogdet(np.where(usable[:, None, None], matrix, np.eye(6)))
-    usable = usable & (signs != 0)
-    inverse = np.linalg.inv(np.where(usable[:, None, None], matrix, np.eye(6)))
-    condition = np.abs(matrix).sum(2).max(1) * np.abs(inverse).sum(2).max(1)
-    return np.where(usable & np.isfinite(condition), condition, np.inf)
-
-
-def judge(theirs: Theirs, ours: Floats, name: str, allowed: Slack) -> Verdict:
-    """Where a result agrees."""
-    size = allowed.sizes[name]
+    missing = set(spelling.unknown) - set(case.names)
+    if missing - ({"WAF", "WBF"} if point.all() else set()):
+        return {}
+    values, room = [], []
+    for name in spelling.unknown:
+        value = np.full(point.size, np.nan) if name in missing else case.values[case.of(name)]
+        slack = np.zeros(point.size)
+        if name not in missing:
+            row = case.of(name)
+            slack = case.units[row] * 0.5 + case.loose * case.sizes[row]
+        if name in ("WAF", "WBF"):
+            value = np.where(point, scene[name[:2]], value)
+            slack = np.where(point, 0.0, slack)
+        values.append(value)
+        room.append(slack)
+    matrix, right = (whole[0] for whole in Run(spelling, scene).system({}))
     with np.errstate(all="ignore"):
-        off = np.abs(theirs.values - ours)
-        last_bits = 2 * np.spacing(np.abs(ours))
-        tight = allowed.double * size + last_bits
-        loose = allowed.elimination * size + last_bits
-        written = theirs.units * (0.5 + 1e-9)
-        # nothing there to measure by: as a share of what they have
-        measure = np.where(size > 0, size, np.abs(theirs.values))
-        relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
-        return Verdict(off <= tight, off <= written + tight, off <= written + loose, relative)
-
-
-def given(theirs: Mapping[str, Theirs], ours: Columns) -> dict[str, Bools]:
-    """Where both sides have a number."""
-    return {
-        name: np.isfinite(column.values) & np.isfinite(ours[name])
-        for name, column in theirs.items()
-    }
+        terms = matrix * np.stack(values, 1)[:, None, :]
+        limit = (np.abs(matrix) * np.stack(room, 1)[:, None, :]).sum(2)
+        limit += _ROUNDING * (np.abs(terms).sum(2) + np.abs(right))
+        off = np.abs(terms.sum(2) - right) > limit
+    subjects = [spelling.statements[index].subject for index in spelling.equations]
+    numbers = [found[0] for text in subjects if (found := re.search("[0-9]+", text))]
+    return {number: off[:, numbers.index(number)] for number in EQUATIONS}

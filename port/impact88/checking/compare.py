@@ -10,14 +10,13 @@ from __future__ import annotations
 import difflib
 import os
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.solve import solve
 from ..doubles import double
 from ..equations.otherprogram import Program
 from ..errors import UserError
@@ -29,19 +28,16 @@ from ..progress import progress
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers, one_per_row
 from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
-from .agreement import Slack, Theirs, Verdict, given, judge, read_theirs, slack
-from .diagnosis import UNKNOWN, Case, Cause, diagnose
+from .agreement import Case, Verdict, case_of, joined, read_theirs
+from .diagnosis import UNKNOWN, Cause, diagnose
 from .vectors import FAILURE
 
-Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
-Columns = dict[str, Floats]
 
 WORST = 20
 """Rows that disagree most, kept for the report."""
-DIAGNOSED = 4000
-"""Rows that disagree, and as many that agree, that are looked into for the cause."""
-BEYOND = f"not looked into: after the first {DIAGNOSED:,} that disagree"
+LOOKED_INTO = 4000
+"""Rows that agree, and must bear a cause out, and rows that disagree whose texts are kept."""
 NOT_COMPARED = ("STATUS", "COND")
 CARRIED = ("id", "class", "label", "expect", "flags", "comment")
 """Columns of test vectors that say which row it is."""
@@ -97,9 +93,9 @@ class Comparison:
     """The result of `compare_file`.
 
     ``causes``: likely cause -> rows it explains; ``evidence`` and ``programs``: what bears out each
-    cause that is a program, and the program; ``differences``: every row that disagrees, as long
-    as they are few (`DIAGNOSED`); ``not_compared``: reason -> rows; ``unknown``: columns that were
-    not recognised -> the name that was meant, or "".
+    cause that is a program, and the program; ``differences``: every row that disagrees;
+    ``not_compared``: reason -> rows; ``unknown``: columns that were not recognised -> the name that
+    was meant, or "".
     """
 
     rows: int = 0
@@ -181,11 +177,12 @@ class Comparison:
         return whole
 
 
-class _Waiting(NamedTuple):
-    """Rows of one block kept for the diagnosis."""
+class _Kept(NamedTuple):
+    """Rows of one block kept for the diagnosis, those that disagree, and their scenes as text."""
 
     case: Case
-    rows: list[Row]
+    wrong: Bools
+    texts: list[dict[str, str]]
 
 
 def compare_file(
@@ -218,7 +215,7 @@ def compare_file(
     path = os.fspath(path)
     form = format_of(path, form)
     comparison = Comparison()
-    waiting: list[_Waiting] = []
+    kept: list[_Kept] = []
     with open_reader(path, form, encoding) as reader:
         wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
         where = called(path)
@@ -241,15 +238,13 @@ def compare_file(
             table: TableUnits | None = None
             for rows in reader:
                 table = table or TableUnits(reader.names, units, rows, wanted, where)
-                kept = _compare_block(rows, values, wanted, comparison, rtol, table)
-                if kept is not None:
-                    waiting.append(kept)
+                kept.append(_compare_block(rows, values, wanted, comparison, rtol, table))
                 meter.update(reader.position() - before)
                 before = reader.position()
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
-    if causes:
-        _explain(waiting, comparison)
+    if causes and comparison.differing:
+        _explain(kept, comparison)
     return comparison
 
 
@@ -271,72 +266,55 @@ def _compare_block(
     comparison: Comparison,
     rtol: float | None,
     units: TableUnits,
-) -> _Waiting | None:
+) -> _Kept:
     """Judge a block and count; the rows to be explained are returned."""
     whole = {"M": DEFAULT_M, **values}
     scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
     scene |= numbers(rows, units)
-    if any(units.converts(name) for name in scene):
-        rows.columns |= {name: scene[name] for name in rows.columns}
     scene = {name: scene[name] for name in SCENE}
-    ours = {name: column.astype(float) for name, column in solve(scene).items()}
-    allowed = slack(scene, ours, rtol)
     theirs = {name: read_theirs(rows, name, units.factor(name)) for name in wanted}
-    verdicts = {name: judge(theirs[name], ours[name], name, allowed) for name in wanted}
+    case = case_of(scene, theirs, rtol)
+    verdict = case.judged()
     bad = {one.row for one in rows.bad}
     readable = np.array([rows.first + index not in bad for index in range(rows.count)], bool)
-    there = {name: mask & readable for name, mask in given(theirs, ours).items()}
-    compared = np.logical_or.reduce(list(there.values()))
-    wrong = np.zeros(rows.count, bool)
-    for name in wanted:
-        wrong |= there[name] & ~verdicts[name].elimination
-        judged = readable & np.isfinite(ours[name]) & compared
-        _tally(comparison.tallies[name], verdicts[name], there[name], judged)
+    there = verdict.given & readable
+    compared = there.any(0)
+    wrong = (there & ~verdict.loose).any(0)
+    judged = readable & np.isfinite(case.ours) & compared
+    for place, name in enumerate(wanted):
+        _tally(comparison.tallies[name], verdict, there[place], judged[place], place)
     comparison.rows += rows.count
     comparison.bad += rows.bad
     comparison.agreeing += int((compared & ~wrong).sum())
     comparison.differing += int(wrong.sum())
-    _count_skipped(comparison, rows, readable, compared, theirs, ours)
-    _count_elimination(comparison, rows, verdicts, there, compared & ~wrong, ours["COND"])
-    places = np.flatnonzero(compared)
-    room = DIAGNOSED - len(comparison.differences)
-    keep = np.concatenate(
-        [np.flatnonzero(wrong)[: max(room, 0)], np.flatnonzero(compared & ~wrong)[:DIAGNOSED]]
+    _count_skipped(comparison, rows, readable, compared, case)
+    _count_elimination(comparison, rows.first, verdict, there & compared & ~wrong, case.condition)
+    places = np.flatnonzero(wrong)
+    comparison.differences += _differing(rows, places, verdict, there & ~verdict.loose, case)
+    room = LOOKED_INTO - len(comparison.differences) + places.size
+    kept = list(_texts(rows, values, units, scene, places[: max(room, 0)]))
+    looked_into = np.concatenate([places, np.flatnonzero(compared & ~wrong)[:LOOKED_INTO]])
+    return _Kept(case.part(looked_into), wrong[looked_into], kept)
+
+
+def _tally(tally: Tally, verdict: Verdict, there: Bools, judged: Bools, place: int) -> None:
+    double, digits, loose = (
+        np.asarray(part[place]) for part in (verdict.double, verdict.digits, verdict.loose)
     )
-    comparison.causes[BEYOND] += max(int(wrong.sum()) - max(room, 0), 0)
-    if not places.size or not keep.size:
-        return None
-    theirs_by_name = [
-        _row(rows, index, theirs, ours, verdicts, there) for index in np.flatnonzero(wrong).tolist()
-    ]
-    theirs_by_name = theirs_by_name[: max(room, 0)]
-    comparison.differences += theirs_by_name
-    case = Case(scene, _texts(rows, values), theirs, ours, allowed, wrong)
-    return _Waiting(case.part(keep), theirs_by_name)
-
-
-def _tally(tally: Tally, verdict: Verdict, there: Bools, judged: Bools) -> None:
     tally.compared += int(there.sum())
-    tally.double += int((there & verdict.double).sum())
-    tally.digits += int((there & verdict.digits & ~verdict.double).sum())
-    tally.elimination += int((there & verdict.elimination & ~verdict.digits).sum())
-    tally.differ += int((there & ~verdict.elimination).sum())
+    tally.double += int((there & double).sum())
+    tally.digits += int((there & digits & ~double).sum())
+    tally.elimination += int((there & loose & ~digits).sum())
+    tally.differ += int((there & ~loose).sum())
     tally.missing += int((judged & ~there).sum())
-    if there.any():
-        tally.largest = max(tally.largest, float(verdict.relative[there].max()))
+    tally.largest = float(verdict.relative[place].max(initial=tally.largest, where=there))
 
 
 def _count_skipped(
-    comparison: Comparison,
-    rows: Rows,
-    readable: Bools,
-    compared: Bools,
-    theirs: Mapping[str, Theirs],
-    ours: Columns,
+    comparison: Comparison, rows: Rows, readable: Bools, compared: Bools, case: Case
 ) -> None:
     """Count the rows that were not compared, by reason."""
-    solvable = np.logical_or.reduce([np.isfinite(ours[name]) for name in theirs])
-    answered = np.logical_or.reduce([np.isfinite(column.values) for column in theirs.values()])
+    solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
     kinds = rows.others.get("class")
     may = np.array([str(kind) == FAILURE for kind in kinds], bool) if kinds is not None else False
     reasons = {
@@ -351,110 +329,68 @@ def _count_skipped(
         if which.any():
             comparison.not_compared[reason] += int(which.sum())
             first = comparison.places_not_compared.setdefault(reason, [])
-            first += [rows.first + index for index in np.flatnonzero(which).tolist()]
+            first += (rows.first + np.flatnonzero(which)).tolist()
             del first[WORST:]
 
 
 def _count_elimination(
-    comparison: Comparison,
-    rows: Rows,
-    verdicts: Mapping[str, Verdict],
-    there: Mapping[str, Bools],
-    agreeing: Bools,
-    condition: Floats,
+    comparison: Comparison, first: int, verdict: Verdict, agreeing: Bools, condition: Any
 ) -> None:
-    loose = np.zeros(agreeing.size, bool)
-    relative = np.zeros(agreeing.size)
-    for name, verdict in verdicts.items():
-        only = there[name] & verdict.elimination & ~verdict.digits & agreeing
-        loose |= only
-        relative = np.where(only, np.fmax(relative, verdict.relative), relative)
+    only = agreeing & verdict.loose & ~verdict.digits
     tally = comparison.elimination
-    tally.rows += int(loose.sum())
-    if loose.any():
-        worst = int(np.argmax(np.where(loose, relative, -1.0)))
+    tally.rows += int(only.any(0).sum())
+    if only.any():
+        relative = np.where(only, verdict.relative, 0.0).max(0)
+        worst = int(np.argmax(relative))
         if relative[worst] > tally.worst_relative:
-            tally.worst_row = rows.first + worst
+            tally.worst_row = first + worst
             tally.worst_relative = float(relative[worst])
             tally.worst_condition = float(condition[worst])
 
 
-def _row(
-    rows: Rows,
-    index: int,
-    theirs: Mapping[str, Theirs],
-    ours: Columns,
-    verdicts: Mapping[str, Verdict],
-    there: Mapping[str, Bools],
-) -> Row:
-    """A row that disagrees, by its worst result."""
-    off = {
-        name: float(verdict.relative[index])
-        for name, verdict in verdicts.items()
-        if there[name][index] and not verdict.elimination[index]
-    }
-    name = max(off, key=lambda one: off[one])
+def _differing(rows: Rows, places: Any, verdict: Verdict, off: Bools, case: Case) -> Iterator[Row]:
+    """The rows that disagree, each by its worst result."""
+    worst = np.argmax(np.where(off, verdict.relative, -1.0), axis=0)
     ids = one_per_row(rows, "id") if "id" in rows.others else None
-    return Row(
-        rows.first + index,
-        rows.lines[index] if rows.lines else 0,
-        str(ids[index]) if ids is not None else "",
-        name,
-        str(one_per_row(rows, name)[index]),
-        float(ours[name][index]),
-        off[name],
-        UNKNOWN,
-    )
+    written = [one_per_row(rows, name) for name in case.names]
+    for index in places.tolist():
+        place = int(worst[index])
+        yield Row(
+            rows.first + index,
+            rows.lines[index] if rows.lines else 0,
+            str(ids[index]) if ids is not None else "",
+            case.names[place],
+            str(written[place][index]),
+            float(case.ours[place, index]),
+            float(verdict.relative[place, index]),
+            UNKNOWN,
+        )
 
 
-def _texts(rows: Rows, values: Mapping[str, str]) -> dict[str, list[str]]:
-    """The scenes as decimal text."""
-    return {
-        name: list(map(str, rows.columns[name]))
-        if name in rows.columns
-        else [values.get(name, DEFAULT_M)] * rows.count
-        for name in SCENE
-    }
+def _texts(
+    rows: Rows, values: Mapping[str, str], units: TableUnits, scene: Any, places: Any
+) -> Iterator[dict[str, str]]:
+    """Scenes as they are written, or as numbers where units are converted."""
+    converted = any(units.converts(name) for name in scene)
+    columns = {n: scene[n] if converted else rows.columns[n] for n in SCENE if n in rows.columns}
+    for index in places.tolist():
+        yield {
+            name: str(columns[name][index]) if name in columns else values.get(name, DEFAULT_M)
+            for name in SCENE
+        }
 
 
-def _explain(waiting: list[_Waiting], comparison: Comparison) -> None:
+def _explain(kept: Sequence[_Kept], comparison: Comparison) -> None:
     """Find the causes, over the whole table at once."""
-    if comparison.differing:
-        case = _joined([one.case for one in waiting])
-        rows = np.concatenate([np.flatnonzero(case.wrong), np.flatnonzero(~case.wrong)[:DIAGNOSED]])
-        diagnosis = diagnose(case.part(rows))
-        comparison.equations = diagnosis.equations
-        comparison.evidence = diagnosis.evidence
-        comparison.programs = diagnosis.programs
-        comparison.differences = [
-            row._replace(cause=cause)
-            for row, cause in zip(comparison.differences, diagnosis.causes, strict=True)
-        ]
-        comparison.causes.update(diagnosis.causes)
-    comparison.causes += Counter()  # drops what counts 0
-
-
-def _joined(cases: Sequence[Case]) -> Case:
-    def together(columns: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-        return {name: np.concatenate([one[name] for one in columns]) for name in columns[0]}
-
-    first = cases[0]
-    return Case(
-        together([one.scene for one in cases]),
-        {name: [text for one in cases for text in one.texts[name]] for name in first.texts},
-        {
-            name: Theirs(
-                np.concatenate([one.theirs[name].values for one in cases]),
-                np.concatenate([one.theirs[name].units for one in cases]),
-            )
-            for name in first.theirs
-        },
-        together([one.ours for one in cases]),
-        Slack(
-            together([one.allowed.sizes for one in cases]),
-            np.concatenate([one.allowed.double for one in cases]),
-            np.concatenate([one.allowed.elimination for one in cases]),
-            np.concatenate([one.allowed.per_unit for one in cases]),
-        ),
-        np.concatenate([one.wrong for one in cases]),
-    )
+    wrong = np.concatenate([one.wrong for one in kept])
+    places = np.concatenate([np.flatnonzero(wrong), np.flatnonzero(~wrong)[:LOOKED_INTO]])
+    written = [scene for one in kept for scene in one.texts]
+    diagnosis = diagnose(joined([one.case for one in kept]).part(places), wrong[places], written)
+    comparison.equations = diagnosis.equations
+    comparison.evidence = diagnosis.evidence
+    comparison.programs = diagnosis.programs
+    comparison.differences = [
+        row._replace(cause=cause)
+        for row, cause in zip(comparison.differences, diagnosis.causes, strict=True)
+    ]
+    comparison.causes.update(diagnosis.causes)

@@ -26,8 +26,8 @@ import math
 from collections.abc import Iterator
 
 from ..accuracy.errorbound import DOUBLE
+from ..checking.agreement import EQUATIONS
 from ..checking.compare import HARMLESS, Comparison, compare_file
-from ..checking.residuals import EQUATIONS
 from ..errors import UserError, shown
 from ..stderr import note
 from ..tables.table import format_of
@@ -152,6 +152,7 @@ def _lines(comparison: Comparison) -> Iterator[str]:
             yield f"  {count:>7}  {cause}"
         yield from _evidence(comparison)
         yield from _equations(comparison)
+    if comparison.differing:
         yield ""
         yield "worst first:"
         for one in comparison.worst:

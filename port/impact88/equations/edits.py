@@ -1,303 +1,316 @@
-"""Everything that may be written wrong in a statement: generic edits of every node.
-
-An edit knows nothing of mechanics but which names stand for things of one kind.
-"""
+"""What may be wrong in a program: a statement written otherwise (``rules.txt``, at every node), the
+same throughout one equation, columns read or shown otherwise (``readings.txt``), and other models
+(``variants.txt``)."""
 
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from typing import NamedTuple
 
-from .spelling import Kin, Spelling, Statement, names_in, written
+from ..names import SCENE
+from .spelling import (
+    IMPULSES,
+    LISTING,
+    SHOWN,
+    TYPED,
+    Kin,
+    Sides,
+    Spelling,
+    expression,
+    names_in,
+    parts,
+    renamed,
+    spellings,
+    table,
+    with_part,
+    written,
+)
 
-_CONSTANTS: dict[float, tuple[float, ...]] = {
-    0: (1,),
-    1: (0, 2),
-    2: (1, 4, 0.5),
-    100: (1,),
-    180: (360, 200, 90),
-}
-"""What may be written for a constant."""
-_FUNCTIONS = {"sin": ("cos", "tan"), "cos": ("sin", "tan"), "hypot": ("added", "abs", "squared")}
+MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE = range(6)
+"""How likely an edit is: of those that compute the same, the likeliest is named."""
 CONDITIONS = ("point", "pivot", "stick")
 """Names that are true or false."""
-_LIKELY, _LESS, _RARE = 1, 2, 3
-"""How likely an edit is: of those that compute the same, the likeliest is named."""
+_SECTIONS = {"[likely]": LIKELY, "[less likely]": LESS}
+_EVERYWHERE = {LIKELY: "-a", LESS: "2*a; a/2"}
+"""What may stand for any node that is a number."""
+_WHOLE = {LESS: "a**2; abs(a); sqrt(abs(a)); 1 - a; 1/a", RARE: "single(a)"}
+"""And for a name, or all of a side."""
+
+_NO_NAMES = (*CONDITIONS, "sin", "cos", "where", "hypot", "pi")
 
 
 class Edit(NamedTuple):
-    """Statements of a spelling written otherwise: place among its statements -> its sides; how
-    likely that is; what is said of it where the statements do not say enough."""
+    """Statements written otherwise: key -> sides; how likely that is; what is said of it where the
+    statements do not say enough. ``title``: the spelling that it is of, "" if of any."""
 
-    spelling: Spelling
-    sides: Mapping[int, tuple[ast.expr, ...]]
-    rank: int = _LIKELY
+    title: str
+    sides: Mapping[str, Sides]
+    rank: int = LIKELY
     says: str = ""
 
-    def text(self, right: Spelling | None = None) -> str:
-        """Place, what is written, what should be (as ``right`` has it), and what it is about."""
+    @property
+    def shows(self) -> bool:
+        """Whether results are shown otherwise."""
+        return any(key.startswith(SHOWN) for key in self.sides)
+
+    @property
+    def text(self) -> str:
+        """Place, what is written, what should be, and what it is about."""
         if self.says:
             return self.says
-        parts = []
-        for index, sides in self.sides.items():
-            one = (right or self.spelling).statements[index]
+        said = []
+        right = spellings()[self.title]
+        for key, sides in self.sides.items():
+            one = right.statements[right.where[key]]
             now, should = written(one.target, sides), one.text.removeprefix(f"{one.target} = ")
-            parts.append(f"{one.place}: {now}, should be {should}; {one.subject}")
-        return "; and ".join(parts)
+            said.append(f"{one.place}: {now}, should be {should}; {one.subject}")
+        return "; and ".join(said)
 
 
-def name(text: str) -> ast.expr:
-    """A name as a node."""
-    return ast.Name(text, ast.Load())
+# --- one node ------------------------------------------------------------------------------------
 
 
-def number(value: float) -> ast.expr:
-    """A constant as a node."""
-    return ast.Constant(value)
-
-
-def negative(node: ast.expr) -> ast.expr:
-    """The node with the other sign."""
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        return node.operand
-    return ast.UnaryOp(ast.USub(), node)
-
-
-def call(function: str, *arguments: ast.expr) -> ast.expr:
-    """A call as a node."""
-    return ast.Call(name(function), list(arguments), [])
-
-
-def _sum(left: ast.expr, op: ast.operator, right: ast.expr) -> ast.expr:
-    return ast.BinOp(left, op, right)
-
-
-def is_condition(node: ast.expr) -> bool:
-    """Whether an expression is true or false."""
-    return isinstance(node, ast.Compare) or (isinstance(node, ast.Name) and node.id in CONDITIONS)
-
-
-def statement_edits(spelling: Spelling, places: range | None = None) -> Iterator[Edit]:
-    """Every edit of one node of one statement. ``places``: of these statements only."""
-    for index in places or range(len(spelling.statements)):
+def statement_edits(spelling: Spelling, places: Sequence[int]) -> Iterator[Edit]:
+    """Every edit of one node of one statement."""
+    for index in places:
         one, kin = spelling.statements[index], spelling.kin_at(index)
         for place, side in enumerate(one.sides):
             for rank, other in variations(side, kin):
                 sides = (*one.sides[:place], other, *one.sides[place + 1 :])
-                yield Edit(spelling, {index: sides}, rank)
+                yield Edit(spelling.title, {one.key: sides}, rank)
 
 
 def variations(node: ast.expr, kin: Kin, whole: bool = True) -> Iterator[tuple[int, ast.expr]]:
     """An expression with one of its nodes edited, and how likely that is; ``whole``: it is all of
     its side."""
-    yield from _here(node, kin)
-    if (whole or isinstance(node, ast.Name)) and not is_condition(node):
-        yield from _rarely(node)
-    if isinstance(node, ast.BinOp):
-        for rank, left in variations(node.left, kin, False):
-            yield rank, ast.BinOp(left, node.op, node.right)
-        for rank, right in variations(node.right, kin, False):
-            yield rank, ast.BinOp(node.left, node.op, right)
-    elif isinstance(node, ast.UnaryOp):
-        for rank, operand in variations(node.operand, kin, False):
-            yield rank, ast.UnaryOp(node.op, operand)
-    elif isinstance(node, ast.Compare):
-        for rank, left in variations(node.left, kin, False):
-            yield rank, ast.Compare(left, node.ops, node.comparators)
-        for rank, right in variations(node.comparators[0], kin, False):
-            yield rank, ast.Compare(node.left, node.ops, [right])
-    elif isinstance(node, ast.Call):
-        for place, argument in enumerate(node.args):
-            for rank, other in variations(argument, kin, False):
-                arguments = [*node.args[:place], other, *node.args[place + 1 :]]
-                yield rank, ast.Call(node.func, arguments, [])
-
-
-def _here(node: ast.expr, kin: Kin) -> Iterator[tuple[int, ast.expr]]:
-    """What may stand in a node's place."""
-    if isinstance(node, ast.Compare):
-        yield from _compared(node)
-        return
-    if isinstance(node, ast.Name) and node.id in CONDITIONS:
-        yield _LIKELY, ast.Constant(False)
-        yield _LIKELY, ast.Constant(True)
-        return
-    yield _LIKELY, negative(node)
+    for rank, pattern, alternatives in _rules().get(_kind(node), ()):
+        bound: dict[str, ast.expr] = {}
+        if _matches(pattern, node, bound):
+            for made in alternatives:
+                yield rank, _filled(made, bound)
+    is_name = isinstance(node, ast.Name)
     if isinstance(node, ast.Name):
-        for other in kin.get(node.id, ()):
-            yield _LIKELY, name(other)
-        if node.id == "pi":
-            for value in (3.14159265, 3.14, 3.1416, 3.1415927, 22 / 7):
-                yield _LIKELY, number(value)
-        yield _LESS, number(0)
-    elif isinstance(node, ast.Constant):
-        assert isinstance(node.value, int | float)
-        for value in _CONSTANTS.get(node.value, ()):
-            yield _LIKELY, number(value)
-    elif isinstance(node, ast.BinOp):
-        yield from _operated(node)
-    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-        yield from _called(node, node.func.id)
-    if not isinstance(node, ast.Constant):
-        yield _LESS, _sum(node, ast.Mult(), number(2))
-        yield _LESS, _sum(node, ast.Div(), number(2))
+        if node.id in CONDITIONS:
+            yield LIKELY, ast.Constant(False)
+            yield LIKELY, ast.Constant(True)
+            return
+        for twin in kin.get(node.id, ()):
+            yield LIKELY, ast.Name(twin)
+        yield LESS, ast.Constant(0)
+    if not isinstance(node, ast.Compare):
+        for rank, made in _always(False) + (_always(True) if whole or is_name else ()):
+            if rank == LIKELY or not isinstance(node, ast.Constant):
+                yield rank, _filled(made, {"a": node})
+    for field, place, part in parts(node):
+        for rank, other in variations(part, kin, False):
+            yield rank, with_part(node, field, place, other)
 
 
-def _rarely(node: ast.expr) -> Iterator[tuple[int, ast.expr]]:
-    if not isinstance(node, ast.Constant):
-        yield _LESS, _sum(node, ast.Pow(), number(2))
-        yield _LESS, call("abs", node)
-        yield _LESS, call("sqrt", call("abs", node))
-        yield _LESS, _sum(number(1), ast.Sub(), node)
-        yield _LESS, _sum(number(1), ast.Div(), node)
-        yield _RARE, call("single", node)
+@cache
+def _rules() -> dict[object, list[tuple[int, ast.expr, list[ast.expr]]]]:
+    """The rules of ``rules.txt`` by the kind of node they are for."""
+    rules: dict[object, list[tuple[int, ast.expr, list[ast.expr]]]] = {}
+    rank = LIKELY
+    for line in table("rules.txt"):
+        if line in _SECTIONS:
+            rank = _SECTIONS[line]
+            continue
+        pattern, made = line.split("->")
+        node, others = expression(pattern), list(map(expression, made.split(";")))
+        rules.setdefault(_kind(node), []).append((rank, node, others))
+    return rules
 
 
-def _compared(node: ast.Compare) -> Iterator[tuple[int, ast.expr]]:
-    for op in (ast.Lt(), ast.LtE(), ast.Gt(), ast.GtE()):
-        if not isinstance(op, type(node.ops[0])):
-            yield _LIKELY, ast.Compare(node.left, [op], node.comparators)
-    yield _LIKELY, ast.Constant(False)
-    yield _LIKELY, ast.Constant(True)
+@cache
+def _always(whole: bool) -> tuple[tuple[int, ast.expr], ...]:
+    several = (_WHOLE if whole else _EVERYWHERE).items()
+    return tuple((rank, expression(one)) for rank, made in several for one in made.split(";"))
 
 
-def _operated(node: ast.BinOp) -> Iterator[tuple[int, ast.expr]]:
-    left, op, right = node.left, node.op, node.right
-    yield _LIKELY, left
-    if isinstance(op, ast.Sub):
-        yield _LIKELY, negative(right)
-        yield _LIKELY, _sum(left, ast.Add(), right)
-        yield _LIKELY, right
-    elif isinstance(op, ast.Add):
-        yield _LIKELY, right
-        yield _LIKELY, _sum(left, ast.Sub(), right)
-    elif isinstance(op, ast.Mult):
-        yield _LIKELY, right
-        yield _LIKELY, _sum(left, ast.Div(), right)
-        yield from _bracketed(left, right)
-    elif isinstance(op, ast.Div):
-        yield _LIKELY, _sum(right, ast.Div(), left)
-        yield _LIKELY, _sum(left, ast.Mult(), right)
-        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub):
-            yield _LIKELY, _sum(left.left, left.op, _sum(left.right, ast.Div(), right))
-        if isinstance(right, ast.BinOp):
-            if isinstance(right.op, ast.Mult):
-                yield _LIKELY, _sum(_sum(left, ast.Div(), right.left), ast.Mult(), right.right)
-            elif isinstance(right.op, ast.Add | ast.Sub):
-                yield _LIKELY, _sum(_sum(left, ast.Div(), right.left), right.op, right.right)
-    elif isinstance(op, ast.Pow):
-        yield _LIKELY, _sum(left, ast.Mult(), number(2))
-        yield _LESS, _sum(left, ast.Pow(), number(3))
-    if isinstance(op, ast.Add | ast.Sub) and _is_inverse(left) and _is_inverse(right):
-        yield _LIKELY, _sum(number(1), ast.Div(), _sum(left.right, op, right.right))  # type: ignore[attr-defined]
+def _kind(node: ast.expr) -> object:
+    """What a node has in common with the patterns that may match it."""
+    if isinstance(node, ast.BinOp):
+        return type(node.op)
+    if isinstance(node, ast.Compare):
+        return type(node.ops[0])
+    if isinstance(node, ast.Call):
+        return node.func.id  # type: ignore[attr-defined]
+    if isinstance(node, ast.Name):
+        return node.id
+    return node.value if isinstance(node, ast.Constant) else type(node)
 
 
-def _is_inverse(node: ast.expr) -> bool:
-    return (
-        isinstance(node, ast.BinOp)
-        and isinstance(node.op, ast.Div)
-        and isinstance(node.left, ast.Constant)
+def _matches(pattern: ast.expr, node: ast.expr, bound: dict[str, ast.expr]) -> bool:
+    """Whether a node is of a pattern; what its letters stand for goes to ``bound``."""
+    if isinstance(pattern, ast.Name) and len(pattern.id) == 1:
+        bound[pattern.id] = node
+        return True
+    return _kind(pattern) == _kind(node) and all(
+        _matches(one, other, bound)
+        for (_, _, one), (_, _, other) in zip(parts(pattern), parts(node), strict=True)
     )
 
 
-def _bracketed(left: ast.expr, right: ast.expr) -> Iterator[tuple[int, ast.expr]]:
-    """A product with a sum, its brackets forgotten."""
-    for one, other in ((left, right), (right, left)):
-        if isinstance(one, ast.BinOp) and isinstance(one.op, ast.Add | ast.Sub):
-            yield _LIKELY, _sum(_sum(other, ast.Mult(), one.left), one.op, one.right)
-            yield _LIKELY, _sum(one.left, one.op, _sum(other, ast.Mult(), one.right))
+def _filled(made: ast.expr, bound: Mapping[str, ast.expr]) -> ast.expr:
+    """A template with its letters replaced; minus minus is nothing."""
+    if isinstance(made, ast.UnaryOp) and isinstance(inner := bound["a"], ast.UnaryOp):
+        return inner.operand
+    return renamed(made, bound)
 
 
-def _called(node: ast.Call, function: str) -> Iterator[tuple[int, ast.expr]]:
-    for other in _FUNCTIONS.get(function, ()):
-        if function == other or other != "abs":
-            yield _LIKELY, call(other, *node.args)
-    if function == "where":
-        condition, there, otherwise = node.args
-        yield _LIKELY, call("where", condition, otherwise, there)
-        yield _LIKELY, there
-        yield _LIKELY, otherwise
-    elif function == "hypot":
-        for argument in node.args:
-            yield _LIKELY, call("abs", argument)
-            yield _LIKELY, argument
-    elif len(node.args) == 1:
-        yield _LESS, node.args[0]
+# --- one equation --------------------------------------------------------------------------------
 
 
 def equation_edits(spelling: Spelling) -> Iterator[Edit]:
     """The same edit throughout one equation (all statements of one subject), or one statement."""
-    subjects: dict[str, list[int]] = {}
-    for index, one in enumerate(spelling.statements[: spelling.results]):
-        if index < spelling.own:
-            continue
+    groups: dict[str, list[int]] = {}
+    for index in range(spelling.own, spelling.results):
+        one = spelling.statements[index]
         if one.subject.startswith("Equation"):
-            subjects.setdefault(one.subject, []).append(index)
-        subjects[f"{one.text}; {one.subject}"] = [index]
-    for subject, places in subjects.items():
-        names = Counter(n for i in places for n in _occurring(spelling.statements[i]))
-        if len(places) == 1 and subject == spelling.statements[places[0]].subject:
+            groups.setdefault(one.subject, []).append(index)
+        groups[f"{one.text}; {one.subject}"] = [index]
+    for subject, places in groups.items():
+        several = [spelling.statements[index] for index in places]
+        if len(places) == 1 and subject == several[0].subject:
             continue
-        for what, often in names.items():
-            if what in (*CONDITIONS, *spelling.unknown):
-                continue
-            kin = spelling.kin_at(min(places)).get(what, ())
-            for says, change in _throughout(what, kin, names, often > 1):
+        names = Counter(
+            node.id
+            for one in several
+            for side in one.sides
+            for node in ast.walk(side)
+            if isinstance(node, ast.Name)
+        )
+        for name in [one for one in names if one not in (*_NO_NAMES, *spelling.unknown)]:
+            kin = spelling.kin_at(places[0]).get(name, ())
+            for says, changes in _throughout(name, kin, names):
                 sides = {
-                    i: tuple(renamed(side, change) for side in spelling.statements[i].sides)
-                    for i in places
-                    if any(change(n) is not None for n in spelling.reads[i])
+                    one.key: tuple(renamed(side, changes) for side in one.sides)
+                    for one in several
+                    if any(name in changes for side in one.sides for name in names_in(side))
                 }
-                yield Edit(
-                    spelling, sides, _LESS, f"{_places(spelling, sides)}: {says} in {subject}"
-                )
-
-
-def _occurring(one: Statement) -> Iterator[str]:
-    for side in one.sides:
-        for node in ast.walk(side):
-            if isinstance(node, ast.Name) and node.id not in ("sin", "cos", "where", "hypot", "pi"):
-                yield node.id
+                where = dict.fromkeys(one.place for one in several if one.key in sides)
+                yield Edit(spelling.title, sides, LESS, f"{', '.join(where)}: {says} in {subject}")
 
 
 def _throughout(
-    what: str, kin: Sequence[str], there: Container[str], everywhere: bool
-) -> Iterator[tuple[str, Callable[[str], ast.expr | None]]]:
-    """What may be done to a name wherever it stands, and to pairs of those ``there``."""
-
-    def put(node: ast.expr, other: str = "", back: ast.expr | None = None) -> Any:
-        return lambda n: node if n == what else back if n == other else None
-
+    name: str, kin: Sequence[str], names: Counter[str]
+) -> Iterator[tuple[str, dict[str, ast.expr]]]:
+    """What may be done to a name wherever it stands."""
     for other in kin:
-        if other > what and other in there:
-            yield f"{what} and {other} exchanged", put(name(other), other, name(what))
-    if everywhere:
-        yield f"{what} with the wrong sign", put(negative(name(what)))
-        yield f"{what} left out", put(number(0))
-        yield f"{what} halved", put(_sum(name(what), ast.Div(), number(2)))
+        if other > name and other in names:
+            yield f"{name} and {other} exchanged", {name: ast.Name(other), other: ast.Name(name)}
+    if names[name] > 1:
+        yield f"{name} with the wrong sign", {name: expression(f"-{name}")}
+        yield f"{name} left out", {name: ast.Constant(0)}
+        yield f"{name} halved", {name: expression(f"{name}/2")}
         for other in kin:
-            yield f"{other} for {what}", put(name(other))
+            yield f"{other} for {name}", {name: ast.Name(other)}
 
 
-def _places(spelling: Spelling, sides: Mapping[int, object]) -> str:
-    where = dict.fromkeys(spelling.statements[i].place for i in sides)
-    return ", ".join(place for place in where if place)
+@cache
+def edits_of(title: str) -> tuple[Edit, ...]:
+    """The edits of a spelling as it stands; what all share is edited in the listing's alone."""
+    spelling = spellings()[title]
+    places = range(spelling.own, spelling.results)
+    if title == LISTING:
+        places = range(len(SCENE), len(spelling.statements) - _count_shown(spelling))
+    return (*_likeliest(spelling, places), *equation_edits(spelling))
 
 
-def renamed(node: ast.expr, change: Callable[[str], ast.expr | None]) -> ast.expr:
-    """An expression with names replaced."""
-    if not any(change(one) is not None for one in names_in(node)):
-        return node
-    if isinstance(node, ast.Name):
-        return change(node.id) or node
-    if isinstance(node, ast.BinOp):
-        return ast.BinOp(renamed(node.left, change), node.op, renamed(node.right, change))
-    if isinstance(node, ast.UnaryOp):
-        return ast.UnaryOp(node.op, renamed(node.operand, change))
-    if isinstance(node, ast.Compare):
-        left, right = (renamed(one, change) for one in (node.left, node.comparators[0]))
-        return ast.Compare(left, node.ops, [right])
-    assert isinstance(node, ast.Call)
-    return ast.Call(node.func, [renamed(one, change) for one in node.args], [])
+def edits_on(spelling: Spelling) -> tuple[Edit, ...]:
+    """The edits of one node of an edited spelling."""
+    last = len(spelling.statements) - _count_shown(spelling)
+    return tuple(_likeliest(spelling, range(len(SCENE), last)))
+
+
+def _likeliest(spelling: Spelling, places: range) -> list[Edit]:
+    """Edits by statement, the likeliest first: of those that compute the same it stays."""
+    return [
+        edit
+        for place in places
+        for edit in sorted(statement_edits(spelling, [place]), key=lambda edit: edit.rank)
+    ]
+
+
+def _count_shown(spelling: Spelling) -> int:
+    return sum(one.target.startswith(SHOWN) for one in spelling.statements)
+
+
+# --- conventions and models ----------------------------------------------------------------------
+
+
+@cache
+def readings() -> tuple[Edit, ...]:
+    """Columns read or shown otherwise, of ``readings.txt``."""
+    tables: dict[str, list[tuple[str, str]]] = {}
+    found = []
+    for line in table("readings.txt"):
+        if line.startswith("table "):
+            name, entries = line.removeprefix("table ").split(":", 1)
+            pairs = (one.rsplit("=", 1) for one in entries.split(", "))
+            tables[name] = [(says.strip(), factor.strip()) for says, factor in pairs]
+            continue
+        word = re.search(r"\{(?!factor)(\w+)\}", line)
+        for says, factor in tables[word[1]] if word else [("", "")]:
+            filled = line.replace("{factor}", factor)
+            found.append(_reading(filled.replace(word[0], says) if word else filled))
+    return tuple(found)
+
+
+_AS_TYPED = {name: ast.Name(f"{TYPED}{name}") for name in SCENE}
+
+
+def _reading(line: str) -> Edit:
+    says, rest = line.split(" | ", 1)
+    scene, _, results = rest.partition(";;")
+    sides: dict[str, Sides] = {}
+    for name, made in _assigned(scene):
+        sides[name] = (renamed(made, {**_AS_TYPED, "x": _AS_TYPED[name]}),)
+    for name, made in _assigned(results):
+        sides[f"{SHOWN}{name}"] = (renamed(made, {"x": ast.Name(name)}),)
+    rank = RARE_CONVENTION if says.startswith("~") else CONVENTION
+    return Edit("", sides, rank, says.lstrip("~ "))
+
+
+def _assigned(text: str) -> Iterator[tuple[str, ast.expr]]:
+    for part in filter(str.strip, text.split(";")):
+        names, made = part.split("=", 1)
+        for name in names.split():
+            yield name, expression(made)
+
+
+@cache
+def variants() -> tuple[Edit, ...]:
+    """Other models, of ``variants.txt``."""
+    found = []
+    spelling = spellings()[IMPULSES]
+    for line in table("variants.txt"):
+        if line.startswith("["):
+            spelling = spellings()[line.strip("[]")]
+        else:
+            found.append(_variant(line, spelling))
+    return tuple(found)
+
+
+def _variant(line: str, spelling: Spelling) -> Edit:
+    says, rest = line.split(" | ", 1)
+    sides: dict[str, Sides] = {}
+    new: dict[str, ast.expr] = {}
+    for part in rest.split(";"):
+        text, _, subject = part.partition("@")
+        if subject:
+            key = next(key for key in spelling.where if key.startswith(f"== {subject.strip()}"))
+            left, right = text.split("==")
+            sides[key] = expression(left), expression(right)
+            continue
+        target, made = text.split(" = ", 1)
+        whole = renamed(expression(made), new)
+        if target.strip() in spelling.where:
+            sides[target.strip()] = (whole,)
+        else:
+            new[target.strip()] = whole
+    return Edit(spelling.title, sides, MODEL, says)

@@ -1,0 +1,304 @@
+"""Which program gives another's numbers: every small mistake made, alone and two together.
+
+All edits of all spellings are run over a few rows that disagree and a few that agree; those that
+explain any are run over more. Of two mistakes the first is looked for in three ways: *by outputs*
+(it explains some results everywhere), *by rows* (it explains some rows) and *by equations* (with
+their velocities put into all, it mends some); the second is looked for on top of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, product
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..equations.edits import CONVENTION, Edit, edits_of, edits_on, readings, variants
+from ..equations.evaluation import Columns, Run, chunks, value
+from ..equations.otherprogram import Program
+from ..equations.spelling import IMPULSES, LISTING, SHOWN, Spelling, expression, spellings
+from ..names import FINAL_VELOCITIES
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+BORNE_OUT = 0.9
+"""The share of the rows, of those that disagree as of those that agree, that a cause must fit."""
+_KEPT = 60
+"""Programs that are run over the larger sample."""
+_FIRST_WRONG, _FIRST_RIGHT = 10, 5
+_FEW = 8
+"""Rows that disagree on which pairs are looked for, and half as many for pairs of readings."""
+_SHARE = 0.1
+"""The least share of the rows that the first of two mistakes explains alone."""
+_FIRSTS = 4
+"""Mistakes on top of which another is looked for."""
+_EACH = 3
+"""Edits of those that mend the same equations that are tried together with others."""
+_ROUNDING = 1e-11
+
+
+class Judge:
+    """How near results must come to another program's to be the same: for some rows.
+
+    ``limit``: how far each result may be off, row by row; ``wrong``: the rows that disagree."""
+
+    def __init__(self, scene: Columns, theirs: Columns, limit: Columns, wrong: Bools) -> None:
+        self.scene, self.theirs, self.limit, self.wrong = scene, theirs, limit, wrong
+
+    def part(self, rows: NDArray[np.intp]) -> Judge:
+        """Some of the rows."""
+        scene, theirs, limit = (
+            {name: column[rows] for name, column in columns.items()}
+            for columns in (self.scene, self.theirs, self.limit)
+        )
+        return Judge(scene, theirs, limit, self.wrong[rows])
+
+    def of(self, names: Sequence[str]) -> Judge:
+        """By some of the results only."""
+        theirs = {name: column for name, column in self.theirs.items() if name in names}
+        return Judge(self.scene, theirs, self.limit, self.wrong)
+
+    def near(self, results: Columns, prefix: str = "") -> Bools:
+        """The rows whose every result is near enough: (n,) or (K, n)."""
+        fits: Any = np.ones(self.wrong.size, bool)
+        for name, theirs in self.theirs.items():
+            mine = results.get(prefix + name)
+            if mine is not None:
+                # what they do not give, NaN, contradicts nothing
+                fits = fits & ((np.abs(mine - theirs) <= self.limit[name]) | np.isnan(theirs))
+        return np.asarray(fits)
+
+    def few(self, unexplained: Bools, wrong: int = _FIRST_WRONG) -> Judge:
+        """Some rows of those not explained yet, and some that agree."""
+        right = spread(np.flatnonzero(~self.wrong), _FIRST_RIGHT)
+        return self.part(np.concatenate([spread(np.flatnonzero(unexplained), wrong), right]))
+
+    @property
+    def has_velocities(self) -> bool:
+        """Whether all final velocities are judged."""
+        return self.theirs.keys() >= set(FINAL_VELOCITIES)
+
+
+def spread(places: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    """At most ``count`` of some places, evenly."""
+    if places.size <= count:
+        return places
+    return places[np.linspace(0, places.size - 1, count).astype(int)]
+
+
+class Found(NamedTuple):
+    """A program, and the rows it fits."""
+
+    program: Program
+    rows: Bools
+
+    @property
+    def rank(self) -> int:
+        """How likely it is; less is likelier."""
+        return sum(edit.rank for edit in self.program.edits)
+
+    def explains(self, wrong: Bools) -> int:
+        """How many of the rows that disagree it explains."""
+        return int((self.rows & wrong).sum())
+
+    def stands(self, wrong: Bools) -> bool:
+        """Whether the rows that agree bear it out."""
+        return bool((self.rows & ~wrong).sum() >= BORNE_OUT * (~wrong).sum())
+
+    def whole(self, wrong: Bools) -> bool:
+        """Whether it explains what there is to explain, and the rows that agree bear it out."""
+        return self.stands(wrong) and self.explains(wrong) >= BORNE_OUT * wrong.sum() > 0
+
+
+def run(program: Program, judge: Judge) -> Found:
+    """A program over all rows of a judge."""
+    return Found(program, judge.near(program.results(judge.scene)))
+
+
+def ranked(found: Sequence[Found], wrong: Bools) -> list[Found]:
+    """The programs that explain rows, best first; of equals the likeliest."""
+
+    def worth(one: Found) -> tuple[int, int, int]:
+        explains = one.explains(wrong) * one.stands(wrong)
+        return -explains, -int((one.rows & ~wrong).sum()), one.rank
+
+    return sorted(found, key=worth)
+
+
+@np.errstate(all="ignore")
+def singles(judge: Judge, unexplained: Bools, on: Program | None = None) -> list[Found]:
+    """Programs with one mistake, or with one more than ``on``, that explain rows, best first."""
+    small = judge.few(unexplained)
+    seen = list(_tried(small, on or Program()))
+    seen.sort(key=lambda one: (-int(one.rows.sum()), one.rank))
+    return ranked([run(one.program, judge) for one in seen[:_KEPT]], judge.wrong)
+
+
+def _candidates(base: Program) -> Iterator[tuple[Spelling, list[Edit]]]:
+    """What may be wrong besides, by spelling."""
+    titled = [edit.title for edit in base.edits if edit.title]
+    for title in titled[:1] or spellings():
+        whole = Program((*base.edits, Edit(title, {}))).spelling
+        edits = [] if titled else [one for one in variants() if one.title == title]
+        if titled or title == LISTING:
+            edits += [one for one in readings() if one not in base.edits]
+        yield whole, [*edits, *(edits_on(whole) if titled else edits_of(title))]
+
+
+def _tried(judge: Judge, base: Program) -> Iterator[Found]:
+    """Programs with one mistake more than ``base`` that explain a row."""
+    size = judge.wrong.size
+    for spelling, edits in _candidates(base):
+        start = Run(spelling, judge.scene)
+        found = start.distinct([spelling.composed(edit.sides) for edit in edits])
+        for part in chunks(len(found), size):
+            several = [changes for _, changes in found[part]]
+            near = judge.near({**start.names, **start.edited(several).names}, SHOWN)
+            near = np.broadcast_to(near, (len(several), size))
+            for k in np.flatnonzero((near & judge.wrong).any(1)):
+                yield Found(base.with_edit(edits[found[part][k][0]]), near[k])
+
+
+# --- two mistakes --------------------------------------------------------------------------------
+
+
+@np.errstate(all="ignore")
+def pairs(judge: Judge, alone: Sequence[Found], few: bool) -> Iterator[list[Program]]:
+    """Programs with two mistakes, by stages. ``alone``: what explains rows alone; ``few``: it
+    leaves few of them, look by rows only."""
+    if not few:
+        yield from _apart(judge)
+    enough = [one for one in alone if one.explains(judge.wrong) >= _SHARE * judge.wrong.sum()]
+    for one in [one for one in enough if one.stands(judge.wrong)][:_FIRSTS]:
+        unexplained = judge.wrong & ~one.rows
+        if unexplained.any():
+            yield _second(judge, unexplained, one.program)
+    if not few:
+        yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
+
+
+def _apart(judge: Judge) -> Iterator[list[Program]]:
+    yield list(_by_outputs(judge))
+    if judge.has_velocities:
+        finals = judge.of(FINAL_VELOCITIES).few(judge.wrong, _FEW)
+        given = np.all([np.isfinite(column) for column in finals.theirs.values()], axis=0)
+        yield list(_by_equations(finals.part(np.flatnonzero(given)), judge))
+
+
+def _second(judge: Judge, unexplained: Bools, first: Program) -> list[Program]:
+    return [one.program for one in singles(judge, unexplained, first)[:2]]
+
+
+def _by_outputs(judge: Judge) -> Iterator[Program]:
+    """One mistake explains some results, another on top of it the others."""
+    rest = [[name] for name in judge.theirs if name not in FINAL_VELOCITIES]
+    groups = [list(FINAL_VELOCITIES), *rest] if judge.has_velocities else rest
+    right = [judge.of(group).near(Program().results(judge.scene)) for group in groups]
+    amiss = [group for group, rows in zip(groups, right, strict=True) if rows.mean() < BORNE_OUT]
+    if len(amiss) < 2:
+        return
+    part = judge.of(amiss[0])
+    wrong = ~run(Program(), part).rows
+    part = Judge(part.scene, part.theirs, part.limit, wrong)
+    first = [one for one in singles(part, wrong) if one.whole(wrong)]
+    for one in first[:_FIRSTS]:
+        yield from _second(judge, judge.wrong, one.program)
+
+
+def _two_readings(judge: Judge) -> Iterator[Program]:
+    """Programs with two of the commoner readings."""
+    common = [one for one in readings() if one.rank == CONVENTION]
+    first = [one for one in common if not one.shows]
+    spelling = spellings()[IMPULSES]
+    seen = dict(judge.scene) | Run(spelling, judge.scene).edited([one.sides for one in first]).names
+    for other in common:
+        near = judge.near(Run(spelling.edited(other.sides), seen).names, SHOWN)
+        for place in np.flatnonzero(near.mean(-1) >= BORNE_OUT) if near.ndim > 1 else ():
+            yield Program((first[place], other))
+
+
+# --- by equations --------------------------------------------------------------------------------
+
+_IMPULSES = {
+    "A": {"Px": "MA*(VAX - UX)", "Py": "MA*(VAY - UY)", "Pm": "ia*(WAF - WA) - D3*Px + D4*Py"},
+    "B": {"Px": "-MB*(VBX - VX)", "Py": "-MB*(VBY - VY)", "Pm": "D1*Px - D2*Py - ib*(WBF - WB)"},
+}
+"""The impulses by what they change of A or of B."""
+_ALONG = {"Pn": "c*Px + s*Py", "Pt": "c*Py - s*Px", "T": "Pm"}
+_WITHOUT_IMPULSES = (LISTING, "equations with A's impulse")
+
+
+def _by_equations(judge: Judge, whole: Judge) -> Iterator[Program]:
+    """Programs with two mistakes in different equations, or a reading and a mistake. ``judge``: a
+    few rows, of which all have all final velocities; ``whole``: those that a second one is to
+    explain."""
+    for title in spellings():
+        for how in "AB" if title not in _WITHOUT_IMPULSES else "A":
+            faults = _Faults(spellings()[title], judge, how)
+            by_mended: dict[frozenset[str], list[Edit]] = {}
+            for edit, mended in sorted(faults.found(edits_of(title)), key=lambda one: one[0].rank):
+                by_mended.setdefault(mended, []).append(edit)
+            for one, other in combinations(by_mended, 2):
+                if one | other == faults.violated:
+                    for edits in product(by_mended[one][:_EACH], by_mended[other][:_EACH]):
+                        yield Program(edits)
+    faults = _Faults(spellings()[LISTING], judge, "A")
+    reading = [one for one in readings() if not one.shows]
+    left = faults.left([one.sides for one in reading])
+    for place in np.argsort(left, kind="stable")[:_FIRSTS]:
+        if left[place] < len(faults.violated):
+            yield from _second(whole, whole.wrong, Program((reading[place],)))
+
+
+class _Faults:
+    """The equations of a spelling that their velocities violate, ``how``: with the impulses by what
+    changes of A or of B."""
+
+    def __init__(self, spelling: Spelling, judge: Judge, how: str) -> None:
+        self.spelling, self.size = spelling, judge.wrong.size
+        names = Run(spelling, judge.scene).names
+
+        def clamped(theirs: Columns) -> Run:
+            seen = {**names, **theirs}
+            made = {**_IMPULSES[how], **_ALONG}
+            for name, text in made.items():
+                seen[name] = value(expression(text), seen)
+            return Run(spelling, judge.scene, {n: seen[n] for n in (*FINAL_VELOCITIES, *made)})
+
+        self.start = clamped(judge.theirs)
+        self.limits: dict[str, Any] = dict.fromkeys(self.start.residuals, _ROUNDING)
+        for name in FINAL_VELOCITIES:
+            moved = {**judge.theirs, name: judge.theirs[name] + judge.limit[name]}
+            for key, found in clamped(moved).residuals.items():
+                self.limits[key] = self.limits[key] + np.abs(found - self.start.residuals[key])
+        holding = {key: self._holds(key, found) for key, found in self.start.residuals.items()}
+        self.violated = frozenset(key for key, holds in holding.items() if not holds.all())
+
+    def _holds(self, key: str, residual: Any) -> Bools:
+        """Whether an equation holds in nearly all rows, for each edit."""
+        good = np.abs(residual) <= 2 * self.limits[key]
+        return np.asarray(np.broadcast_to(good, (len(good), self.size)).mean(-1) >= BORNE_OUT)
+
+    def left(self, several: Sequence[Mapping[str, Any]]) -> NDArray[np.intp]:
+        """How many equations are still violated with each of some edits."""
+        residuals = {**self.start.residuals, **self.start.edited(several).residuals}
+        found = [np.broadcast_to(self._holds(*one), len(several)) for one in residuals.items()]
+        return np.asarray(len(found) - np.sum(found, axis=0))
+
+    def found(self, edits: Sequence[Edit]) -> Iterator[tuple[Edit, frozenset[str]]]:
+        """The edits that mend equations and break none, and what they mend. An equation that one
+        touches and that still fails may be the other's."""
+        if not self.violated:
+            return
+        distinct = self.start.distinct([edit.sides for edit in edits])
+        for part in chunks(len(distinct), self.size):
+            places, several = zip(*distinct[part], strict=True)
+            residuals = self.start.edited(several).residuals
+            holds = {key: self._holds(key, found) for key, found in residuals.items()}
+            for k, place in enumerate(places):
+                good = {key for key, flags in holds.items() if flags[min(k, len(flags) - 1)]}
+                if good & self.violated and holds.keys() - good <= self.violated:
+                    yield edits[place], frozenset(good & self.violated)
