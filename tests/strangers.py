@@ -1,6 +1,5 @@
-"""Bugs in programs that are written in no spelling the search knows: one by a Jacobian and masses
-in matrices, one by textbook lever arms and an impulse ratio, one in complex numbers with the work of
-the impulses, one with a C programmer's shared temporaries, one that solves for A alone.
+"""Bugs in programs that are written in no spelling the search knows: by a Jacobian and masses in
+matrices; by textbook lever arms and an impulse ratio; in complex numbers, with the impulses' work.
 
 Each program is text; a bug is a text in it and what stands there instead. The package has no part
 in any of it. `SINGLES` are programs with one bug, `PAIRS` with two.
@@ -59,7 +58,7 @@ def run(case):
                 DVA=np.linalg.norm(v[:2] - q[:2]), DVB=np.linalg.norm(v[3:5] - q[3:5]))
 """
 
-# lever arms normal to the line of impact, reduced mass, an impulse ratio; the pivot is its own ratio
+# lever arms normal to the line of impact, reduced mass, an impulse ratio; the pivot is a ratio too
 RATIO = """
 def run(case):
     rad = pi/180
