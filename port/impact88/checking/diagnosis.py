@@ -28,7 +28,7 @@ from ..names import FINAL_VELOCITIES, SCENE
 from ..progress import progress
 from ..replay import replay
 from .agreement import Case, violated
-from .search import BORNE_OUT, Found, Judge, pairs, ranked, run, singles, spread
+from .trials import BORNE_OUT, Found, Judge, pairs, ranked, run, singles, spread
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
