@@ -607,7 +607,7 @@ class TestCommand:
         [
             ("VAX=about 3", "VAX = 'about 3' is not an amount"),
             ("UX=-20 +- 1%x", "UX = '-20 +- 1%x' is not an amount"),
-            ("FOO=1", "'FOO' is no value here"),
+            ("FOO=1", "'FOO' is not a name used here"),
         ],
     )
     def test_refuses_in_one_line(self, setting, message, section_7, capsys):

@@ -120,7 +120,7 @@ def test_a_barrier_takes_arrays_and_refuses_what_it_has_no_place_for() -> None:
     assert found["DVA"][1] == pytest.approx(2 * found["DVA"][0])
     with pytest.raises(UserError, match="'VX' does not belong to a barrier"):
         barrier(CAR | {"VX": 1.0})
-    with pytest.raises(UserError, match="'DVB' is no barrier result"):
+    with pytest.raises(UserError, match="'DVB' is not a barrier result"):
         barrier(CAR, ["DVB"])
 
 

@@ -475,8 +475,8 @@ class TestRefusals:
         [
             ({"M": read("4 .. 6", "M")}, {}, "M: expected 6"),
             ({"MU": read("-12 .. 1", "MU")}, {}, "MU: a range must keep off -10"),
-            ({"XX": fixed(1)}, {}, "XX: is no input"),
-            ({}, {"outputs": ["FOO"]}, "'FOO' is no result"),
+            ({"XX": fixed(1)}, {}, "XX: is not an input"),
+            ({}, {"outputs": ["FOO"]}, "'FOO' is not a result"),
             ({}, {"outputs": []}, "no result is asked for"),
             ({}, {"samples": 1}, "too few"),
             ({}, {"sigmas": 0.0}, "span nothing"),

@@ -126,11 +126,14 @@ def test_seed_decides(capsys):
         (["--sample", "1", "--range", "UX=1 .. x"], "UX = '1 .. x' is not an amount"),
         (["--sample", "1", "--range", "UX=2 .. 1"], "out of order"),
         (["--sample", "1", "--range", "UX=+-1", "--range", "ux=+-2"], "given twice"),
-        (["--sample", "1", "--range", "VAX=1 .. 2"], "'VAX' is no input of the forward problem"),
+        (
+            ["--sample", "1", "--range", "VAX=1 .. 2"],
+            "'VAX' is not an input of the forward problem",
+        ),
         (["--sample", "1", *RANGES, "--correlation", "UX,MU"], "expected A,B=R"),
         (["--sample", "1", *RANGES, "--correlation", "UX,VX=0.5"], "VX does not vary"),
-        (["--sample", "1", *RANGES, "--correlation", "UX,MU=2"], "no correlation"),
-        (["--sample", "1", *RANGES, "--outputs", "XX"], "'XX' is no result"),
+        (["--sample", "1", *RANGES, "--correlation", "UX,MU=2"], "not a correlation"),
+        (["--sample", "1", *RANGES, "--outputs", "XX"], "'XX' is not a result"),
         (["--sample", "1", *RANGES, "--samples", "0"], "too few"),
         (["--sample", "1", *RANGES, "--samples", "many"], "not a whole number"),
         (["--sample", "1", *RANGES, "--seed", "-1"], "--seed: '-1'"),
@@ -154,7 +157,7 @@ def test_unknown_key_names_the_file(capsys, scene_file):
     status, _, err = answer(capsys, scene_file)
     assert status == 2
     assert scene_file in err
-    assert "'WEIGHT' is no value here" in err
+    assert "'WEIGHT' is not a name used here" in err
 
 
 def examples():

@@ -64,7 +64,7 @@ def as_json(capsys: pytest.CaptureFixture[str], *arguments: str) -> Any:
     assert (status, err) == (0, "")
 
     def refuse(text: str) -> None:
-        pytest.fail(f"{text} is no JSON")
+        pytest.fail(f"{text} is not JSON")
 
     return json.loads(out, parse_constant=refuse)
 
@@ -123,15 +123,15 @@ def test_reconstruct_flags_what_errors_do(after: str, capsys: pytest.CaptureFixt
         (["AFTER", "--set", "E=0"], "after.toml: E = 0: Equation 15"),
         (["AFTER", "--set", "EM=0"], "EM = 0: Equation 18"),
         (["AFTER", "--set", "MU=-10"], "MU = -10 (pivot)"),
-        (["AFTER", "--set", "E=abc"], "--set: E = 'abc' is no number; expected one such as 1.5"),
+        (["AFTER", "--set", "E=abc"], "--set: E = 'abc' is not a number; expected one such as 1.5"),
         (["AFTER", "--set", "e5"], "--set e5: expected NAME=VALUE"),
-        (["AFTER", "--set", "FOO=1"], "'FOO' is no value here"),
+        (["AFTER", "--set", "FOO=1"], "'FOO' is not a name used here"),
         (["AFTER", "--set", "E=.1", "--set", "E=.2"], "E is given twice"),
         (["AFTER", "--set", "MA="], "missing MA (mass of A)"),
         (["AFTER", "--set", "MA=-1"], "MA is not positive"),
         (["AFTER", "--set", "M=5"], "M must be 6"),
         (["AFTER", "--for", "VAX"], "VAX is both known and wanted"),
-        (["AFTER", "--for", "XA"], "'XA' is no result"),
+        (["AFTER", "--for", "XA"], "'XA' is not a result"),
         (["AFTER", "--contact-time", "0"], "contact time 0.0 is not positive"),
         (["AFTER", "--contact-time", "x"], "--contact-time"),
     ],
@@ -154,7 +154,7 @@ def test_a_file_with_a_wrong_key_is_told_with_its_name(
     path.write_text("ma = 96\n", encoding="utf-8")
     status, _, err = run(capsys, "reconstruct", str(path))
     assert status == 2
-    assert f"{path}: 'ma' is no value here; did you mean MA?" in err
+    assert f"{path}: 'ma' is not a name used here; did you mean MA?" in err
     path.write_text("MA = .5\n", encoding="utf-8")
     status, _, err = run(capsys, "reconstruct", str(path))
     assert "line 1: MA = .5 is not TOML; write 0.5" in err
@@ -179,7 +179,7 @@ def test_barrier_forward_and_back(capsys: pytest.CaptureFixture[str]) -> None:
     assert back["badly_conditioned"]
     status, _, err = run(capsys, "barrier", "--set", "VX=1")
     assert status == 2
-    assert "'VX' is no value here" in err
+    assert "'VX' is not a name used here" in err
 
 
 POINT_MASSES = "M=4 MA=100 MB=80 GA=0 E=.1 UX=-10 UY=0 VX=0 VY=3"

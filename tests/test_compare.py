@@ -422,7 +422,7 @@ def test_bounds_are_those_of_the_condition(tmp_path) -> None:
     assert errorbound.relative_bounds(OURS["COND"]).max() < 1e-9
 
 
-# --- what is no number -----------------------------------------------------------------------
+# --- what is not a number -----------------------------------------------------------------------
 
 
 def test_refusals_in_the_words_of_other_languages(tmp_path) -> None:

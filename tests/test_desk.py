@@ -177,19 +177,19 @@ def test_what_is_no_question_gets_a_sentence(client: Client, body: bytes) -> Non
 @pytest.mark.parametrize(
     ("path", "body", "problem"),
     [
-        ("collision", {"values": {}, "units": {}}, "'units' is no text"),
-        ("collision", {"values": {}, "units": "furlongs"}, "'furlongs' is no system of units"),
-        ("bounds", {"values": {}, "units": ["us"]}, "'units' is no text"),
-        ("reconstruct", {"values": {}, "units": 7}, "'units' is no text"),
-        ("scene-file", {"values": {}, "title": []}, "'title' is no text"),
-        ("scene-file", {"values": {}, "title": "\ud800"}, "is no JSON"),
-        ("report", {}, "'papers' is no list"),
-        ("report", {"papers": 3, "words": {}}, "'papers' is no list"),
-        ("report", {"papers": [3], "words": {}}, "'papers' is no list"),
-        ("report", {"papers": [{"name": "a", "data": "?"}], "words": {}}, "is no base 64"),
-        ("report", {"papers": [{"name": "a"}], "words": {}}, "is no base 64"),
-        ("report", {"papers": [], "words": []}, "'words' is no object of texts"),
-        ("report", {"papers": [], "words": {"case": 5}}, "'words' is no object of texts"),
+        ("collision", {"values": {}, "units": {}}, "'units' is not text"),
+        ("collision", {"values": {}, "units": "furlongs"}, "'furlongs' is not a system of units"),
+        ("bounds", {"values": {}, "units": ["us"]}, "'units' is not text"),
+        ("reconstruct", {"values": {}, "units": 7}, "'units' is not text"),
+        ("scene-file", {"values": {}, "title": []}, "'title' is not text"),
+        ("scene-file", {"values": {}, "title": "\ud800"}, "is not JSON"),
+        ("report", {}, "'papers' is not a list"),
+        ("report", {"papers": 3, "words": {}}, "'papers' is not a list"),
+        ("report", {"papers": [3], "words": {}}, "'papers' is not a list"),
+        ("report", {"papers": [{"name": "a", "data": "?"}], "words": {}}, "is not base 64"),
+        ("report", {"papers": [{"name": "a"}], "words": {}}, "is not base 64"),
+        ("report", {"papers": [], "words": []}, "'words' is not an object of texts"),
+        ("report", {"papers": [], "words": {"case": 5}}, "'words' is not an object of texts"),
     ],
 )
 def test_json_of_another_form_gets_a_reason(
@@ -369,7 +369,7 @@ def test_a_scene_file_with_ranges_is_read_again(client: Client) -> None:
     ("data", "problem"),
     [
         (b"MU = 1\nMU = 2", "s.toml, line 2: MU is given twice"),
-        (b"QQ = 1", "s.toml: 'QQ' is no value of a scene"),
+        (b"QQ = 1", "s.toml: 'QQ' is not a value of a scene"),
         (b"#" + b" " * 1_000_000, "s.toml: is larger than 1,000,000 bytes"),
         (b"\xff\xfe\x00", "s.toml"),
     ],
@@ -502,7 +502,7 @@ def test_what_is_known_is_saved_as_the_commands_file(
     template = own("reconstruct", "--template")
     assert client.post("known-file", {"values": {"M": "6"}}).get_data(as_text=True) == template
     refused = client.post("known?name=k.toml", b"QQ = 1")
-    assert refused.json["problem"].startswith("k.toml: 'QQ' is no value here")
+    assert refused.json["problem"].startswith("k.toml: 'QQ' is not a name used here")
 
 
 def test_why_there_is_no_solution_is_told() -> None:

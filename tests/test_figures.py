@@ -305,7 +305,7 @@ class TestPlan:
 
     @pytest.mark.parametrize("value", ["", "nan", "1e999", "x"])
     def test_refuses_what_is_no_number(self, value):
-        with pytest.raises(UserError, match=r"MA: .* is no finite number"):
+        with pytest.raises(UserError, match=r"MA: .* is not a finite number"):
             plan({**sample(1), "MA": value})
         with pytest.raises(UserError, match="GA"):
             plan({name: text for name, text in sample(1).items() if name != "GA"})

@@ -98,11 +98,11 @@ def test_what_is_out_of_the_ordinary_is_left_to_the_arrays(change: dict[str, flo
 
 
 def test_wrong_names_are_told_as_ever() -> None:
-    with pytest.raises(UserError, match="'MX' is no scene name"):
+    with pytest.raises(UserError, match="'MX' is not a scene name"):
         solve({**RUN_1, "MX": 1.0})
     with pytest.raises(UserError, match="missing: UX"):
         solve({name: value for name, value in RUN_1.items() if name != "UX"})
-    with pytest.raises(UserError, match="'VX' is no result name"):
+    with pytest.raises(UserError, match="'VX' is not a result name"):
         solve(RUN_1, ["VAX", "VX"])
 
 
@@ -130,7 +130,7 @@ class TestOut:
             ({"STATUS": np.empty(4)}, "out, STATUS: is float64"),
             ({"VAX": [0.0] * 4}, "out, VAX: is <class 'list'>"),
             ({"VAX": np.empty(8)[::2]}, "not contiguous"),
-            ({"VBX": np.empty(4)}, "is no result asked for"),
+            ({"VBX": np.empty(4)}, "is not a result asked for"),
         ],
     )
     def test_refused(self, out: Any, says: str) -> None:

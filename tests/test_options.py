@@ -67,7 +67,7 @@ class TestSet:
         assert "expected NAME=VALUE" in self.refused(command, capsys, "MA")
 
     def test_no_name(self, command: str, capsys: pytest.CaptureFixture[str]) -> None:
-        assert "'MASS' is no value here" in self.refused(command, capsys, "mass=1")
+        assert "'MASS' is not a name used here" in self.refused(command, capsys, "mass=1")
 
     @pytest.mark.parametrize("text", ["1_0", "nan", "much", "M=1 2x"])
     def test_no_number(self, command: str, text: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,7 +81,7 @@ class TestNames:
         assert options.names_given([], known, "-x") == []
 
     def test_a_near_miss_is_pointed_at(self) -> None:
-        with pytest.raises(UserError, match="'LOS' is no result"):
+        with pytest.raises(UserError, match="'LOS' is not a result"):
             options.names_given(["LOS"], ("LOSS",), "--outputs")
         with pytest.raises(UserError, match="did you mean STATUS"):
             options.names_given(["STATSU"], ("STATUS",), "--outputs")

@@ -91,8 +91,8 @@ def test_pdf_tiff_and_a_turned_page() -> None:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"\x89PNG\r\n\x1a\nnothing", "is no picture that can be read"),
-        (b"%PDF-1.4 nothing", "is no PDF that can be read"),
+        (b"\x89PNG\r\n\x1a\nnothing", "is not a picture that can be read"),
+        (b"%PDF-1.4 nothing", "is not a PDF that can be read"),
         (saved(Pillow.new("L", (400, 300), 255), "PNG"), "no printout was found in the picture"),
     ],
 )

@@ -88,7 +88,7 @@ def test_digits_are_kept_as_typed(line, text):
         ('UX = ""', ["UX"]),
         ("", ["missing UX", "initial x velocity of A"]),
         ("UX = 1\nUX = 2", ["UX is given twice", "line"]),
-        ("UX = 1\nspeed = 2", ["'speed' is no value of a scene"]),
+        ("UX = 1\nspeed = 2", ["'speed' is not a value of a scene"]),
         ("UX = 1\nux = 2", ["did you mean UX"]),
         ("UX = 1\n[part]", ["part is a table"]),
         ("UX = 1\nwhat is this", ["line"]),

@@ -1,7 +1,7 @@
 """What the commands print with --json has the form its schema says, and nothing more.
 
-A field that a schema does not know is no error for a reader. Here it is one: whoever adds a field
-describes it.
+A field that a schema does not know is not an error for a reader. Here it is: every field
+added is described.
 """
 
 from __future__ import annotations

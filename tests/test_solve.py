@@ -369,12 +369,12 @@ class TestColumns:
     @pytest.mark.parametrize(
         ("columns", "outputs", "told"),
         [
-            ({**RUN_1, "MX": 1}, None, "'MX' is no scene name"),
+            ({**RUN_1, "MX": 1}, None, "'MX' is not a scene name"),
             ({"MA": 1, "M": 6}, None, "missing: E MU"),
             ({**RUN_1, "MA": "heavy"}, None, "column MA"),
             ({**RUN_1, "MA": 1j}, None, "column MA"),
             ({**RUN_1, "MA": [1, 2], "MB": [1, 2, 3]}, None, r"MA \(2,\), MB \(3,\)"),
-            (RUN_1, ["VAX", "VX"], "'VX' is no result name"),
+            (RUN_1, ["VAX", "VX"], "'VX' is not a result name"),
         ],
     )
     def test_unusable(self, columns, outputs, told):

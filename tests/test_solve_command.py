@@ -103,12 +103,12 @@ class TestBadRows:
         out = tmp_path / "r.csv"
         assert main(["solve", str(spoiled), "-o", str(out), "--outputs", "VAX,STATUS"]) == 1
         told = capsys.readouterr().err
-        assert "row 2 (line 3), MA: 'heavy' is no number" in told
+        assert "row 2 (line 3), MA: 'heavy' is not a number" in told
         assert "row 5 (line 6), IB: is empty; expected a number" in told
         assert "row 6 (line 7), M: 5.0 is neither 4 nor 6" in told
         assert "row 8 (line 9), VX:" in told
         assert "a barrier is at rest" in told
-        assert "row 10 (line 11), GA: 'nan' is no number" in told
+        assert "row 10 (line 11), GA: 'nan' is not a number" in told
         assert told.count("\n") == 5
         rows = table(out)
         assert len(rows) == 12
@@ -170,7 +170,7 @@ class TestApplesoft:
     def test_knows_only_what_the_listing_computes(self, cases, tmp_path, capsys):
         asked = ["solve", str(cases), "-o", "x.csv", "--arithmetic", "applesoft"]
         assert main([*asked, "--outputs", "COND"]) == 2
-        assert "'COND' is no result of --arithmetic applesoft" in capsys.readouterr().err
+        assert "'COND' is not a result of --arithmetic applesoft" in capsys.readouterr().err
 
 
 def test_set_gives_a_value_for_all_rows(cases, tmp_path):
@@ -204,9 +204,9 @@ def test_standard_input_and_output(cases, capsys, monkeypatch):
     [
         (["none.csv", "-o", "r.csv"], "none.csv: cannot be read"),
         (["cases.xls", "-o", "r.csv"], "cannot tell its format"),
-        (["{cases}", "-o", "r.csv", "--outputs", "VAX,SPEED"], "'SPEED' is no result"),
-        (["{cases}", "-o", "r.csv", "--set", "MX=1"], "--set: 'MX' is no value here"),
-        (["{cases}", "-o", "r.csv", "--set", "MU=x"], "'x' is no number"),
+        (["{cases}", "-o", "r.csv", "--outputs", "VAX,SPEED"], "'SPEED' is not a result"),
+        (["{cases}", "-o", "r.csv", "--set", "MX=1"], "--set: 'MX' is not a name used here"),
+        (["{cases}", "-o", "r.csv", "--set", "MU=x"], "'x' is not a number"),
         (["{cases}", "-o", "nowhere/r.csv"], "cannot be written"),
         (["{few}", "-o", "r.csv"], "no column MU EM"),
     ],
@@ -277,7 +277,7 @@ class TestSweep:
             ("MU=0:1", "no LOW:HIGH:COUNT"),
             ("MU=0:1:0", "out of range"),
             ("MU=0:x:3", "is not an amount"),
-            ("FOO=0:1:3", "'FOO' is no value of a scene"),
+            ("FOO=0:1:3", "'FOO' is not a value of a scene"),
             ("MU=0:1:100000000", "out of range"),
         ],
     )

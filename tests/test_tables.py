@@ -136,7 +136,7 @@ class TestJsonLines:
         found = numbers(rows)
         assert found["E"].tolist()[0] == 1
         reasons = {(bad.row, bad.column): bad.reason for bad in rows.bad}
-        assert reasons[4, "E"] == "True is no number"
+        assert reasons[4, "E"] == "True is not a number"
 
     def test_written_rows_are_json_and_pass_everything_through(self, tmp_path):
         path, out = tmp_path / "a.jsonl", tmp_path / "b.jsonl"

@@ -196,7 +196,7 @@ def test_coefficients_of_nothing_have_no_value() -> None:
         ({"MA": -1.0}, "MA is not positive"),
         ({"MA": float("nan")}, "MA is not finite"),
         ({"UX": float("inf")}, "UX is not finite"),
-        ({"SPEED": 1.0}, "'SPEED' is no value of an impact"),
+        ({"SPEED": 1.0}, "'SPEED' is not a value of an impact"),
         ({"vax": 1.0}, "did you mean VAX"),
         ({"M": 5.0}, "M must be 6"),
         ({"MU": 0.5}, "MU and MUP are both given"),
@@ -227,7 +227,7 @@ def test_missing_vehicles_and_wrong_wishes_are_refused() -> None:
         solve_for(without(known, "MA", "MU"))
     with pytest.raises(UserError, match="UX is both known and wanted"):
         solve_for(known, ["UX"])
-    with pytest.raises(UserError, match="'XA' is no unknown"):
+    with pytest.raises(UserError, match="'XA' is not an unknown"):
         solve_for(known, ["XA"])
     with pytest.raises(UserError, match="nothing is unknown"):
         solve_for(without(table_3()))

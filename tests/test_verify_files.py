@@ -70,13 +70,13 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
 }  # fmt: skip
 """What people type and paste -> the verdict: exact where every number stands as it is printed."""
 NO_TEXT = {
-    "scan.pdf": (b"%PDF-1.4\n" + b"x" * 900, "is no PDF that can be read"),
+    "scan.pdf": (b"%PDF-1.4\n" + b"x" * 900, "is not a PDF that can be read"),
     "scan.png": (b"\x89PNG\r\n\x1a\n" + b"\0" * 900, "picture"),
     "scan.jpg": (b"\xff\xd8\xff\xe0" + b"\0" * 900, "picture"),
     "page.docx": (b"PK\x03\x04" + b"\0" * 900, "plain text"),
     "page.doc": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + b"\0" * 900, "antiword"),
 }
-"""Files that are no text -> what their one line tells to use."""
+"""Files that are not text -> what their one line tells to use."""
 
 
 def written(folder: Path, files: dict[str, tuple[str | bytes, str]]) -> list[str]:
@@ -197,7 +197,7 @@ def test_scenes_given_apart_otherwise_than_the_page_has_them() -> None:
     ("old", "new", "says"),
     [
         ('MA = "143.5"', "", "missing MA (mass of A)"),
-        ('"143.5"', '"much"', "MA = 'much' is no number"),
+        ('"143.5"', '"much"', "MA = 'much' is not a number"),
         ("MA =", "MA = =", "line "),
     ],
 )

@@ -319,7 +319,7 @@ def rom(text: str, reals: Mapping[str, str], a: Mapping[str, Any] | None) -> byt
         piece.encode("ascii") if index == 0 else b"\xfe" + piece.partition("\r")[2].encode("ascii")
         for index, piece in enumerate(re.split(r"(?<=\?\0)", text))
     )
-    table = b"P\x80\x05\x00\x00\x00\x00"  # a string, P$, is no real
+    table = b"P\x80\x05\x00\x00\x00\x00"  # a string, P$, is not a real
     for name, stored in reals.items():
         table += name.ljust(2, "\0").encode("ascii") + bytes.fromhex(stored)
     arrays = b""

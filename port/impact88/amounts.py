@@ -45,11 +45,11 @@ ACCEPTED = (
     "'normal MEAN SD [within A .. B]'"
 )
 WORDS = ("title", "case", "correlations", "M")
-"""Entries of a file that are no amounts."""
+"""Entries of a file that are not amounts."""
 ENTRY = "units"
 """The entry of a file that names its system."""
 SHARED = ("MU", "MUP")
-"""Ratios whose percentage is a share of something else; it is kept for those who know of what."""
+"""Ratios whose percentage is a share of something else; kept for the code that knows of what."""
 
 _MEANT = str.maketrans(
     {"−": "-", "′": "'", "’": "'", "″": '"', "”": '"', "⋅": "·", "×": "*", "•": "·", "º": "°"}
@@ -163,7 +163,7 @@ def _split(text: str, count: int) -> list[Amount]:
 
 
 class _Value:
-    """The text of one entry, and what it measures. Raises UserError for what is no amount."""
+    """The text of one entry, and what it measures. Raises UserError for what is not an amount."""
 
     def __init__(self, name: str, text: str, rule: str, source: str) -> None:
         self.name, self.text, self.rule, self.source = name, text, rule, source
@@ -326,7 +326,7 @@ def in_base(
     """The texts in base units, and the system they belong to (None where nothing says).
 
     ``texts``: by name, as they were written, and perhaps the entry ``units``; ``system``: of bare
-    numbers, where no entry says. Raises UserError for what is no amount, for a unit that does not
+    numbers, where no entry says. Raises UserError for what is not an amount, a unit that does not
     measure the quantity, for bare numbers among others with units, and for units of two systems
     where none is named.
     """
@@ -366,7 +366,7 @@ def shown_text(name: str, text: str, system: System) -> str:
 
 
 def units_in(name: str, text: str) -> list[tuple[str, str]]:
-    """The units in a text, each with what it measures; none where it is no amount."""
+    """The units in a text, each with what it measures; none where it is not an amount."""
     try:
         value = _taken_apart(name, text, "")
     except UserError:

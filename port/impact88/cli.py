@@ -153,7 +153,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     debug = os.environ.get("IMPACT88_DEBUG") == "1"
     with orderly(), warnings.catch_warnings():
         if not sys.warnoptions and not debug:
-            # what a library remarks about its own work is no message to somebody's terminal
+            # a library's warnings are not for the user's terminal
             warnings.simplefilter("ignore")
         status = _status(arguments, called, debug)
     return status

@@ -41,7 +41,7 @@ def double(text: str) -> float:
         except ValueError:
             pass
     if not is_number(text):
-        raise ValueError(f"{text!r} is no number")
+        raise ValueError(f"{text!r} is not a number")
     return read(text)[0]
 
 
@@ -53,7 +53,7 @@ def doubles_of(texts: Mapping[str, str]) -> dict[str, float]:
 def doubles(texts: Sequence[str]) -> list[float]:
     """`double` of each of many texts.
 
-    Raises ValueError if any is no number, TypeError if any is no text.
+    Raises ValueError if any is not a number, TypeError if any is not text.
     """
     if _PLAIN.issuperset("".join(texts)):
         try:

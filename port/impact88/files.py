@@ -148,13 +148,13 @@ def read_text(path: str, limit: int = LARGEST) -> str:
 def typed_line() -> str | None:
     """The next line of standard input without its end, None when there is none.
 
-    Raises UserError if it is no text or too long.
+    Raises UserError if it is not text or too long.
     """
     sys.stdout.flush()
     try:
         line = sys.stdin.readline(LONGEST_LINE)
     except UnicodeDecodeError as error:
-        raise UserError(f"holds bytes that are no {error.encoding} text", called("-")) from None
+        raise UserError(f"contains bytes that are not {error.encoding} text", called("-")) from None
     except OSError as error:
         raise UserError(f"cannot be read: {_why(error)}", called("-")) from None
     if len(line) == LONGEST_LINE and not line.endswith("\n"):

@@ -71,7 +71,7 @@ def in_doubles(name: str, values: Any) -> Array:
         return array
     if array.dtype.kind not in "USO":
         raise UserError(f"holds {array.dtype} values; expected numbers", f"column {name}")
-    # a cell that is missing is no number; what its row needs of it is another's to say
+    # a cell that is missing is not a number; whether its row needs it is checked later
     cells = [
         math.nan if cell is None and array.ndim else _double(name, cell)
         for cell in array.reshape(-1).tolist()

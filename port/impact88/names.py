@@ -190,15 +190,15 @@ def check_names(
     for name in names:
         if name not in allowed:
             hint = did_you_mean(name, allowed)
-            raise UserError(f"{name!r} is no {what}{hint} (expected {' '.join(allowed)})", where)
+            raise UserError(f"{name!r} is not a {what}{hint} (expected {' '.join(allowed)})", where)
 
 
 def did_you_mean(word: str, known: Collection[str]) -> str:
     """A hint at the known word that ``word`` comes near to, or nothing."""
     from difflib import get_close_matches
 
-    in_any_case = {one.lower(): one for one in known}
-    # of short names one letter is most of what tells them apart
+    in_any_case = {name.lower(): name for name in known}
+    # short names differ by one letter anyway
     likeness = 0.75 if len(word) > 3 else 1.0
     near = get_close_matches(word.lower()[:80], in_any_case, 1, likeness)
     return f"; did you mean {in_any_case[near[0]]}?" if near else ""

@@ -15,7 +15,7 @@ SECONDS_BETWEEN_LINES = 2.0
 
 
 class Meter(Protocol):
-    """Where progress is told: ``update(n)`` says that ``n`` more units are done."""
+    """Where progress is reported: ``update(n)`` says that ``n`` more units are done."""
 
     def update(self, n: int) -> object: ...
 

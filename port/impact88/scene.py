@@ -94,7 +94,7 @@ class Scene(Mapping[str, str]):
         units: str | None = None,
         entries: Entries | None = None,
     ) -> None:
-        """Raises UserError for a missing or unknown name and for text that is no number."""
+        """Raises UserError for a missing or unknown name and for text that is not a number."""
         check_mapping(values)
         given = dict(values)
         given.setdefault("M", DEFAULT_M)
@@ -225,7 +225,7 @@ def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
         except (TypeError, ValueError):
             value = math.nan
         if not math.isfinite(value):
-            raise UserError(f"{text!r} is no finite number", name)
+            raise UserError(f"{text!r} is not a finite number", name)
         result[name] = value
     return result
 
@@ -258,7 +258,7 @@ def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
 
 
 def check_mapping(values: object) -> None:
-    """Raises UserError for what is no mapping, such as the name of a file."""
+    """Raises UserError for what is not a mapping, such as the name of a file."""
     if not isinstance(values, Mapping):
         hint = ", such as impact88.Scene.from_toml(...)" if isinstance(values, str) else ""
         raise UserError(f"{quoted(values)}: expected a mapping of names to values{hint}")
@@ -269,7 +269,7 @@ _NO_AMOUNTS = ("title", "case", "correlations")
 SOURCE = "_source"
 """The end of an entry that says where a value comes from: UX_source = "event data recorder"."""
 RANGES = ("..", "+-", "±", "+/-", "uniform", "triangular", "normal")
-"""What tells a value known within limits from a number."""
+"""What marks a value known within limits."""
 _SIZES = frozenset(("LA", "BA", "LB", "BB"))
 
 
@@ -358,7 +358,8 @@ def check_value(name: str, text: str, source: str | None) -> str:
         raise UserError(f"{name} is {text!r}; expected the number's text", source)
     if not is_number(text):
         raise UserError(
-            f"{name} = {text!r} is no number; expected one such as 1.5 ({quantity(name).meaning})",
+            f"{name} = {text!r} is not a number; expected one such as 1.5 "
+            f"({quantity(name).meaning})",
             source,
         )
     if len(text) > VALUE_LIMIT:
@@ -407,7 +408,7 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
             raise UserError(f"{key} is {kind}; expected a number", where)
         else:
             if not is_number(raw_text):
-                raise UserError(f"{key} = {raw_text} is no number that INPUT takes", where)
+                raise UserError(f"{key} = {raw_text} is not a number that INPUT takes", where)
             texts[key] = raw_text
     return texts
 
@@ -548,9 +549,9 @@ def known_template(
 
 def _quoted(text: str) -> str:
     """A text as TOML has it, on one line whatever it holds."""
-    shown = "".join(character if character.isprintable() else " " for character in text)
-    shown = shown.replace("\\", "\\\\").replace('"', '\\"')
-    return '"{}"'.format(shown.replace("'''", "\\u0027" * 3))  # which would begin several lines
+    line = "".join(character if character.isprintable() else " " for character in text)
+    line = line.replace("\\", "\\\\").replace('"', '\\"')
+    return '"{}"'.format(line.replace("'''", "\\u0027" * 3))  # which would begin several lines
 
 
 def _plain_toml(text: str) -> bool:

@@ -48,7 +48,7 @@ WORDS: dict[Status, str] = {
     Status.ENERGY_GAINED: "kinetic energy is gained in the impact",
     Status.E_OUT_OF_RANGE: "E is outside 0 ... 1",
     Status.SINGULAR: "the equations are singular or nearly so",
-    Status.NOT_FINITE: "a value is missing, not finite or not allowed, or a result is no number",
+    Status.NOT_FINITE: "a value is missing, not finite or not allowed, or a result is not a number",
     Status.A_ON_WRONG_SIDE: (
         "A's center lies on B's side of the contact plane (A belongs on the +n side): turn round A "
         "(TA by 180) or correct PA"

@@ -257,7 +257,7 @@ class Console:
     def input(self, read: Read, zero: Any) -> Iterator[Reply]:
         """INPUT of numbers: one Reply per attempt, to be called once for each variable.
 
-        Too few values are asked for with ``??``; a value that is no number gets ``?REENTER`` and a
+        Too few values are asked for with ``??``; what is not a number gets ``?REENTER`` and a
         new attempt; values left over get ``?EXTRA IGNORED``. Values stored before a bad one stay
         stored, as in the ROM. Raises EndOfInput, and KeyboardInterrupt for control-C at the start
         of a reply.
@@ -331,7 +331,7 @@ class Reply:
 def keyed(text: str) -> str:
     """A text in the codes of the Apple's keyboard, which has seven bits.
 
-    A byte that is no text (of Apple text with its high bits set) counts for its seven bits. Other
+    A byte that is not text (of Apple text with its high bits set) counts for its seven bits. Other
     characters have no key: ``?`` stands for them, so that a typographic minus or a micro sign is
     refused where a number is expected, and not taken for the key that has its last seven bits.
     """

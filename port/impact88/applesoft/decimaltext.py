@@ -135,7 +135,7 @@ def is_number(text: str) -> bool:
 def number(text: str) -> Number:
     """The real that the whole of ``text`` is. Raises ValueError if it is not one number."""
     if not is_number(text):
-        raise ValueError(f"{text!r} is no number that Applesoft reads")
+        raise ValueError(f"{text!r} is not a number that Applesoft reads")
     return read(text)[0]
 
 

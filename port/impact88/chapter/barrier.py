@@ -58,5 +58,7 @@ def barrier(columns: Mapping[str, Any], outputs: Sequence[str] | None = None) ->
             )
     for name in outputs or ():
         if name not in RESULTS:
-            raise UserError(f"{name!r} is no barrier result; expected some of {' '.join(RESULTS)}")
+            raise UserError(
+                f"{name!r} is not a barrier result; expected some of {' '.join(RESULTS)}"
+            )
     return solve({**BARRIER, **columns}, RESULTS if outputs is None else tuple(outputs))

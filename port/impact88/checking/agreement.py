@@ -219,7 +219,7 @@ def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Flo
             try:
                 values[index] = double(texts[index])
             except ValueError:
-                reason = f"{quoted(texts[index])} is no number"
+                reason = f"{quoted(texts[index])} is not a number"
                 rows.bad.append(rows.cell(index, name, reason))
     for index in there:
         written = _WRITTEN.fullmatch(texts[index])

@@ -55,9 +55,9 @@ class Request:
             whole = json.loads(text)
             digits = _decode(text)
         except ValueError as error:
-            raise ValueError(f"is no JSON: {error}") from None
+            raise ValueError(f"is not JSON: {error}") from None
         if not isinstance(whole, dict):
-            raise ValueError('is no JSON object; expected {"id": ..., "scene": {...}}')
+            raise ValueError('is not a JSON object; expected {"id": ..., "scene": {...}}')
         self.id = whole.get("id")
         self.extra = {name: whole[name] for name in ("class", "label") if name in whole}
         values = digits.get("scene")
@@ -65,7 +65,7 @@ class Request:
             raise ValueError('has no "scene" object')
         wrong = [name for name, value in values.items() if not isinstance(value, str)]
         if wrong:
-            raise ValueError(f"{wrong[0]} is no number; expected a number or its decimal text")
+            raise ValueError(f"{wrong[0]} is not a number; expected a number or its decimal text")
         scene = Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", self.units)
         if doubles.double(scene["M"]) not in (4, 6):
             raise ValueError(f"M is {scene['M']}; expected 6 or 4")

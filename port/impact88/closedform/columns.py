@@ -79,7 +79,7 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
     unknown = [name for name in columns if name not in SCENE]
     if unknown:
         raise UserError(
-            f"{unknown[0]!r} is no scene name; expected {' '.join(SCENE)} "
+            f"{unknown[0]!r} is not a scene name; expected {' '.join(SCENE)} "
             "(impact88.solve_frame takes further columns)"
         )
     arrays = {name: in_doubles(name, columns[name]) for name in SCENE if name in columns}

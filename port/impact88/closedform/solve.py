@@ -183,7 +183,9 @@ def _check_room(
     for name, array in out.items():
         where = f"out, {name}"
         if name not in wanted:
-            raise UserError(f"is no result asked for; expected some of {' '.join(wanted)}", where)
+            raise UserError(
+                f"is not a result asked for; expected some of {' '.join(wanted)}", where
+            )
         dtype = np.dtype(np.uint16 if name == "STATUS" else np.float64)
         if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
             got = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array)
@@ -251,10 +253,10 @@ def _wanted(outputs: Sequence[str] | str | None) -> tuple[str, ...]:
 
 @lru_cache(maxsize=256)
 def _known(names: tuple[str, ...]) -> tuple[str, ...]:
-    """The names, each once. Raises UserError for one that is no result."""
+    """The names, each once. Raises UserError for one that is not a result."""
     for name in names:
         if name not in RESULTS:
-            raise UserError(f"{name!r} is no result name; expected some of {' '.join(RESULTS)}")
+            raise UserError(f"{name!r} is not a result name; expected some of {' '.join(RESULTS)}")
     return tuple(dict.fromkeys(names))
 
 

@@ -104,7 +104,7 @@ class Terminal:
         except EOFError:
             return None
         except UnicodeDecodeError:
-            raise UserError("holds bytes that are no text", called("-")) from None
+            raise UserError("contains bytes that are not text", called("-")) from None
 
     @property
     def row_begun(self) -> bool:

@@ -92,7 +92,7 @@ def main(arguments: argparse.Namespace) -> int:
 
     if find_spec("mpmath") is None:
         raise UserError("the reference is timed as mpmath; pip install 'impact88[bench]'")
-    told = measure.machine()
+    machine = measure.machine()
     finite = [name for name in POPULATIONS if name != "barriers"]
     populations = names_given(arguments.populations, finite, "--populations", "population")
     populations = populations or list(BENCHMARK)
@@ -111,10 +111,10 @@ def main(arguments: argparse.Namespace) -> int:
 
         save(figure.work_precision(rows), arguments.figure)
     if arguments.json:
-        record = {"machine": told, "seed": arguments.seed, "results": measure.as_json(rows)}
+        record = {"machine": machine, "seed": arguments.seed, "results": measure.as_json(rows)}
         _print_json(record)
     else:
-        print(tables.machine(told), end="\n\n")
+        print(tables.machine(machine), end="\n\n")
         print(tables.results(rows))
         print("\n" + tables.ratios(rows))
     return 0

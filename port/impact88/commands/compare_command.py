@@ -5,7 +5,7 @@ PN PT PM MUP MUC. Each result agrees to the double, to the digits it is written 
 plain elimination in double precision can in that scene, or not. Rows that disagree are explained:
 every small mistake in the equations, some 25,000 in five spellings of them, and other conventions
 are made here too, alone and two together, and the one that gives their numbers is named, with the
-rows that bear it out. What could not be compared is told on standard error.
+rows that bear it out. What could not be compared is listed on standard error.
 
 Conventions (axes, signs, units, how close is close, vector classes): impact88 schema conventions.
 
@@ -155,12 +155,12 @@ def _lines(comparison: Comparison) -> Iterator[str]:
     if comparison.differing:
         yield ""
         yield "worst first:"
-        for one in comparison.worst:
-            place = f"row {one.row}" + (f" (line {one.line})" if one.line else "")
-            name = f", id {shown(one.id, 40)}" if one.id else ""
+        for cell in comparison.worst:
+            place = f"row {cell.row}" + (f" (line {cell.line})" if cell.line else "")
+            name = f", id {shown(cell.id, 40)}" if cell.id else ""
             yield (
-                f"  {place}{name}: {one.result} {shown(one.theirs, 40)}, here {one.ours:.12g}, "
-                f"off by {one.relative:.2g}; {one.cause}"
+                f"  {place}{name}: {cell.result} {shown(cell.theirs, 40)}, here {cell.ours:.12g}, "
+                f"off by {cell.relative:.2g}; {cell.cause}"
             )
     for reason, count in comparison.not_compared.items():
         yield ""
@@ -169,13 +169,13 @@ def _lines(comparison: Comparison) -> Iterator[str]:
 
 def _evidence(comparison: Comparison) -> Iterator[str]:
     """How many rows bear out each cause that is a program's, and what would do the same."""
-    for one in comparison.evidence:
+    for cause in comparison.evidence:
         yield ""
         yield (
-            f"{one.says}: explains {one.explains} of {one.disagreeing} rows that disagree, gives "
-            f"{one.fits} of {one.agreeing} that agree (those looked into)"
+            f"{cause.says}: explains {cause.explains} of {cause.disagreeing} rows that disagree, "
+            f"gives {cause.fits} of {cause.agreeing} that agree (those looked into)"
         )
-        for other in one.equivalents:
+        for other in cause.equivalents:
             yield f"  or, the same in this table: {other}"
 
 

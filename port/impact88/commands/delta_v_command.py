@@ -111,14 +111,14 @@ def _velocity_changes(
         estimate = {"LOSS": loss, **{name: float(value) for name, value in change.items()}}
         _check_finite(estimate.values())
         estimates.append(written(estimate, units))
-    shown = written(given, units)
+    speeds = written(given, units)
     label = units.label("length/time")
     rows = [[number(estimate[n]) for n in ("LOSS", "DVA", "DVB")] for estimate in estimates]
     heading = ["loss [percent]", f"DVA [{label}]", f"DVB [{label}]"]
-    lines = [*quantities(shown, units), "", *table(rows, heading, left=()), "", f"loss: {source}"]
+    lines = [*quantities(speeds, units), "", *table(rows, heading, left=()), "", f"loss: {source}"]
     return {
         "factor": factor,
-        "given": shown,
+        "given": speeds,
         "loss_from": source,
         "estimates": estimates,
         "units": _labels((*given, "DVA", "DVB", "LOSS"), units),
@@ -164,8 +164,8 @@ def _loss(
     changes: dict[str, float] = {n: known[n] for n in ("DVA", "DVB") if n in known}
     found = {n: float(loss_of({**given, n: change}, factor)) for n, change in changes.items()}
     _check_finite(found.values())
-    shown = written(changes, units)
-    rows = [[name, number(shown[name]), number(loss)] for name, loss in found.items()]
+    displayed = written(changes, units)
+    rows = [[name, number(displayed[name]), number(loss)] for name, loss in found.items()]
     heading = ["from", f"velocity change [{units.label('length/time')}]", "loss [percent]"]
     whole = {"given": written(given, units), "LOSS_from": found, "units": _labels(given, units)}
     return whole, [*table(rows, heading), ""]

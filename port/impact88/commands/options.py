@@ -310,7 +310,7 @@ def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
 
 def _set_pairs(texts: Sequence[str], allowed: Collection[str]) -> dict[str, str]:
     given = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
-    check_names(given, allowed, "value here", "--set")
+    check_names(given, allowed, "name used here", "--set")
     return given
 
 
@@ -389,7 +389,7 @@ def known_values(
 
     What is not known is left out of the file, or left empty as in a template; an empty setting
     makes a value unknown; of a value within limits the middle is taken. Raises UserError, naming
-    file and name, for names not ``allowed`` and texts that are no amounts.
+    file and name, for names not ``allowed`` and texts that are not amounts.
     """
     values, named = known_within_limits(args, allowed, single=True)
     return {name: item.nominal for name, item in values.items()}, named
@@ -414,7 +414,7 @@ def known_within_limits(
                     f"number, or limits for D{name[1]} and P{name[1]}",
                     source,
                 )
-            check_names(entries.values, allowed, "value here", source)
+            check_names(entries.values, allowed, "name used here", source)
         else:
             texts = {name: text for name, text in texts.items() if name in allowed}
         values = {n: _within_limits(n, text, source, named) for n, text in texts.items()}

@@ -88,7 +88,7 @@ from .options import (
 Results = dict[str, NDArray[Any]]
 
 SHOWN = 20
-"""Bad rows told on stderr, when no file takes them all."""
+"""Bad rows listed on stderr when no file takes them all."""
 
 
 def _list_of_results() -> str:
@@ -361,7 +361,7 @@ def _unreadable(text: Any) -> str | None:
     if text is None or text == "":
         return "is empty; expected a number"
     if not (isinstance(text, str) and is_number(text)):
-        return f"{quoted(text)} is no number that Applesoft reads"
+        return f"{quoted(text)} is not a number that Applesoft reads"
     if len(text) > VALUE_LIMIT:
         return f"has more than {VALUE_LIMIT} characters"
     return None
@@ -374,7 +374,7 @@ class _Complaints:
         self.count = 0
         self._path = path
         self._stack = ExitStack()
-        self._write: Callable[[BadCell], object] = self._tell
+        self._write: Callable[[BadCell], object] = self._note
 
     def __enter__(self) -> _Complaints:
         if self._path is not None:
@@ -392,7 +392,7 @@ class _Complaints:
             self.count += 1
             self._write(cell)
 
-    def _tell(self, cell: BadCell) -> None:
+    def _note(self, cell: BadCell) -> None:
         if self.count <= SHOWN:
             note("solve", str(cell))
 
@@ -403,4 +403,4 @@ class _Complaints:
         if self._path is not None:
             note("solve", f"{rows}: see {self._path}")
         elif self.count > SHOWN:
-            note("solve", f"{rows}; --errors FILE tells all")
+            note("solve", f"{rows}; --errors FILE lists all of them")

@@ -203,11 +203,11 @@ def _object() -> dict[str, Any]:
     """The JSON object that was sent. Raises UserError."""
     try:
         whole = json.loads(request.get_data())
-        json.dumps(whole, ensure_ascii=False).encode()  # half a pair of surrogates is no text
+        json.dumps(whole, ensure_ascii=False).encode()  # half a pair of surrogates is not text
     except (ValueError, RecursionError):
-        raise UserError("the request is no JSON; expected an object") from None
+        raise UserError("the request is not JSON; expected an object") from None
     if not isinstance(whole, dict):
-        raise UserError("the request is no JSON object")
+        raise UserError("the request is not a JSON object")
     return whole
 
 
@@ -225,7 +225,7 @@ def _units() -> str:
     units = _text("units")
     if units and units not in dict(page.SYSTEMS):
         raise UserError(
-            f"{units!r} is no system of units; expected {', '.join(dict(page.SYSTEMS))}"
+            f"{units!r} is not a system of units; expected {', '.join(dict(page.SYSTEMS))}"
         )
     return units
 
@@ -234,7 +234,7 @@ def _text(name: str) -> str:
     """One entry of the object sent that may be missing: a text. Raises UserError."""
     text = _object().get(name)
     if not isinstance(text, str | None):
-        raise UserError(f"{name!r} is no text")
+        raise UserError(f"{name!r} is not text")
     return text or ""
 
 
@@ -246,7 +246,7 @@ def _texts(name: str) -> dict[str, str]:
     """One entry of the object sent: texts by name. Raises UserError."""
     values = _object().get(name)
     if not _is_texts(values):
-        raise UserError(f"{name!r} is no object of texts")
+        raise UserError(f"{name!r} is not an object of texts")
     return values
 
 
@@ -254,10 +254,10 @@ def _papers() -> list[dict[str, str]]:
     """The papers sent, each with a ``name`` and ``data`` in base 64. Raises UserError."""
     papers = _object().get("papers")
     if not isinstance(papers, list) or not all(map(_is_texts, papers)):
-        raise UserError("'papers' is no list of objects of texts")
+        raise UserError("'papers' is not a list of objects of texts")
     for paper in papers:
         try:
             b64decode(paper.get("data", "?"), validate=True)
         except ValueError:
-            raise UserError("'data' of a paper is no base 64") from None
+            raise UserError("'data' of a paper is not base 64") from None
     return [{"name": "", **paper} for paper in papers]

@@ -95,7 +95,7 @@ def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dic
 
 
 def _read(name: str, text: str) -> Uncertain:
-    check_names((name,), KNOWABLE, "value here", "")
+    check_names((name,), KNOWABLE, "name used here", "")
     return uncertain.read(text, name)
 
 
@@ -195,7 +195,7 @@ def read_known_file(data: bytes, name: str) -> dict[str, Any]:
     """The ``values`` in such a file. Raises UserError naming file and line."""
     texts = small_toml(data, name)
     title, units = texts.pop("title", ""), texts.pop("units", "").lower()
-    check_names(texts, KNOWABLE, "value here", name)
+    check_names(texts, KNOWABLE, "name used here", name)
     values = {entry: text for entry, text in texts.items() if text}
     return {"values": values, "title": title, "units": units}
 

@@ -42,7 +42,7 @@ class Inputs(Printing):
     # --- READ ---------------------------------------------------------------------------------
 
     def read_(self) -> None:
-        """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is no number."""
+        """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is not a number."""
         self._take_items(FROM_DATA, self.datptr, self.sp - 2)
 
     def restore_(self) -> None:

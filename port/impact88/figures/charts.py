@@ -173,7 +173,7 @@ def friction_sweep(scene: Any) -> Drawing:
     ``scene``: from none to beyond the critical coefficient, at which the sliding ends.
 
     More friction than that would reverse the sliding, which friction cannot do: shaded. Raises
-    UserError when a value of the scene is no number.
+    UserError when a value of the scene is not a number.
     """
     from ..closedform.solve import solve
 

@@ -112,7 +112,7 @@ def plan(
     VAX, VAY, VBX, VBY and, unless the scene has point masses, WAF and WBF; STATUS where known.
 
     Without a result, or where it is not finite, there is nothing after the impact to show.
-    Raises UserError for a value that is no finite number, or too large to draw.
+    Raises UserError for a value that is not a finite number, or too large to draw.
     """
     values, outlines = numbers_of(scene), outlines or {}
     for name, value in values.items():

@@ -178,5 +178,5 @@ ARITHMETICS = {arithmetic.name: arithmetic for arithmetic in (APPLESOFT, FLOAT64
 def named(name: str) -> Arithmetic:
     """The arithmetic of that name. Raises UserError for an unknown one."""
     if name not in ARITHMETICS:
-        raise UserError(f"{name!r} is no arithmetic; expected {' or '.join(ARITHMETICS)}")
+        raise UserError(f"{name!r} is not an arithmetic; expected {' or '.join(ARITHMETICS)}")
     return ARITHMETICS[name]

@@ -46,7 +46,7 @@ class ChangedLine(NamedTuple):
 class ListingCopy:
     """A copy of the listing from a file. ``file``: its name; ``sha256``: of its bytes.
 
-    Raises UserError for a file that is no Applesoft program."""
+    Raises UserError for a file that is not an Applesoft program."""
 
     def __init__(self, path: str) -> None:
         data = files.read_bytes(path, LARGEST_COPY)
@@ -56,7 +56,7 @@ class ListingCopy:
             text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
             self._source = _listed(text)
         except (ValueError, ApplesoftError) as error:
-            raise UserError(f"is no Applesoft program: {error}", path) from None
+            raise UserError(f"is not an Applesoft program: {error}", path) from None
         if not self._source:
             raise UserError("holds no program; expected numbered lines of Applesoft", path)
 

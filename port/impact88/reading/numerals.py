@@ -294,7 +294,7 @@ def _extra(
 
 def _in_a_note(region: tuple[tuple[str, Gap, bool], ...], i: int) -> bool:
     """Whether a digit after the number stands well apart from it: after a wide gap or a line's end,
-    or after a word that is no number."""
+    or after a word that is not a number."""
     words = [place for place in range(1, i + 1) if not region[place][2]]
     if not words:
         return False

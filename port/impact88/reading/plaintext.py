@@ -25,10 +25,10 @@ _NO_TEXT = (
     (b"\xd0\xcf\x11\xe0", "is a Word file; expected text: save it as plain text, or antiword FILE"),
     (b"\x1f\x8b", "is packed; expected text: gunzip FILE"),
 )  # fmt: skip
-"""First bytes of files that are no text, and what makes text of them."""
+"""First bytes of files that are not text, and what makes text of them."""
 
 _BINARY = 0.02
-"""More control characters than this, and a file is no text."""
+"""More control characters than this, and a file is not text."""
 _MARKS = ("MA=", "MB=", "KE=", "VAX", "UX=", "ENTER", "LOSS", "PA PB", "ZERO DET", "MA ")
 
 

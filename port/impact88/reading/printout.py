@@ -214,13 +214,13 @@ class Printout:
 def read_file(path: str) -> list[Printout]:
     """The printouts in a file (``-``: standard input), in any usual encoding.
 
-    Raises UserError when it is too large, is no text or holds no printout."""
+    Raises UserError when it is too large, is not text or holds no printout."""
     return read_bytes(files.read_bytes(path, LARGEST_FILE), files.called(path))
 
 
 def read_bytes(data: bytes, where: str) -> list[Printout]:
     """The printouts in a file's bytes, whatever wrote it. Raises UserError (naming ``where``) for
-    what is no text or holds no printout."""
+    what is not text or holds no printout."""
     return read_printouts(pasted.decoded(data, where), where)
 
 

@@ -737,7 +737,7 @@ def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertai
     given = within_limits(known)
     for name in given:
         if name not in KNOWABLE:
-            raise UserError(f"{name!r} is no value of an impact; expected {' '.join(KNOWABLE)}")
+            raise UserError(f"{name!r} is not a value of an impact; expected {' '.join(KNOWABLE)}")
     m = given.setdefault("M", fixed(6.0))
     if m.varies or m.nominal not in (4, 6):
         raise UserError("M must be 6, or 4 for point masses")

@@ -155,7 +155,7 @@ def status(geometry: Geometry, given: Mapping[str, Array], condition: Any = 1.0)
             geometry.bt,
             np.where(geometry.point, 0.0, given["DA"]),
             np.where(geometry.point, 0.0, given["DB"]),
-            # energies that are not known are no numbers that are not finite
+            # energies that are not known are not numbers that are not finite
             2 * (value("KI") - value("KF")) if "KF" in given and "KI" in given else np.zeros(()),
             given.get("KI", np.ones(())),
             value("E"),

@@ -199,7 +199,7 @@ class _Problem:
         wanted = absent if unknown is None else tuple(dict.fromkeys(unknown))
         for name in wanted:
             if name not in names:
-                raise UserError(f"{name!r} is no unknown; expected some of {' '.join(names)}")
+                raise UserError(f"{name!r} is not an unknown; expected some of {' '.join(names)}")
             if name not in absent:
                 raise UserError(f"{name} is both known and wanted; leave it out of one")
         if not wanted:

@@ -37,10 +37,10 @@ class Scenes(NamedTuple):
 
 def read_columns(columns: Mapping[str, Any]) -> Scenes:
     """Read all columns. Raises UserError for a missing or unknown name, lengths that do not agree,
-    a text that is no number, or values that are neither texts nor stored reals."""
+    a text that is not a number, or values that are neither texts nor stored reals."""
     unknown = [name for name in columns if name not in SCENE]
     if unknown:
-        raise UserError(f"{unknown[0]!r} is no value of a scene (expected {' '.join(SCENE)})")
+        raise UserError(f"{unknown[0]!r} is not a value of a scene (expected {' '.join(SCENE)})")
     given = {"M": DEFAULT_M, **columns}
     missing = [name for name in SCENE if name not in given]
     if missing:

@@ -37,7 +37,7 @@ AG = (from_number(scalar.read("3.14159265")[0]) / 180).rounded()
 MINUS_10 = constant(-10)
 
 ZERO_DETERMINANT = 1
-"""What `Unit.code` says for the listing's own END at line 1160, which is no error."""
+"""What `Unit.code` says for the listing's own END at line 1160, which is not an error."""
 SOLVED = stamp(570, 900)
 """The place after line 570's GOSUB 1000."""
 NEAR_OVERFLOW = 2.0**120

@@ -66,7 +66,7 @@ def over_ten(x: Reals) -> Reals:
 def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals:
     """The numbers that texts are, extension included: as many texts as ``unit`` has scenes.
 
-    Records OVERFLOW. Raises UserError for a text that is no number; ``where`` names its place.
+    Records OVERFLOW. Raises UserError for a text that is not a number; ``where`` names its place.
     """
     data = _joined(texts, where)
     if native.library is None:
@@ -121,7 +121,7 @@ def _signed_bytes(n: Ints) -> Ints:
 
 
 def _no_number(texts: Sequence[str], row: int, where: Callable[[int], str]) -> UserError:
-    return UserError(f"{texts[row]!r} is no number; expected decimal text", where(row))
+    return UserError(f"{texts[row]!r} is not a number; expected decimal text", where(row))
 
 
 def _joined(texts: Sequence[str], where: Callable[[int], str]) -> bytes:

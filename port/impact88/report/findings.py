@@ -104,7 +104,9 @@ def report(
     given = {n for n, text in entries.values.items() if text.strip()}
     scene = placed(SCENE, given)
     whole = set(scene) - {"M"} <= given <= {*scene, *MOVES, "correlations"}
-    check_names(given - {"correlations"}, placed((*KNOWABLE, *MOVES), given), "value here", source)
+    check_names(
+        given - {"correlations"}, placed((*KNOWABLE, *MOVES), given), "name used here", source
+    )
     find = _forward if whole else _inverse
     found = find(entries, source, samples, seed, units)
     case = case or entries.case or ""

@@ -48,7 +48,7 @@ def pages_of(data: bytes, path: str) -> Iterator[Page]:
                 yield Page(number + 1, _grey(picture))
     except (OSError, SyntaxError, ValueError, PIL.Image.DecompressionBombError) as error:
         message = str(error).splitlines()[0] if str(error) else "damaged"
-        raise UserError(f"{called(path)}: is no picture that can be read: {message}") from None
+        raise UserError(f"{called(path)}: is not a picture that can be read: {message}") from None
 
 
 def _grey(picture: object) -> Image:
@@ -75,7 +75,7 @@ def _pdf(data: bytes, path: str) -> Iterator[Page]:
     try:
         document = pypdfium2.PdfDocument(data)
     except pypdfium2.PdfiumError:
-        raise UserError(f"{called(path)}: is no PDF that can be read") from None
+        raise UserError(f"{called(path)}: is not a PDF that can be read") from None
     for number in range(min(len(document), _MOST_PAGES)):
         page = document[number]
         width, height = page.get_size()

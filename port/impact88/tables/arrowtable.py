@@ -78,7 +78,7 @@ class _ArrowReader(Reader):
 
 @contextmanager
 def read_parquet(path: str) -> Iterator[Reader]:
-    """Open a Parquet file. Raises UserError if it is none."""
+    """Open a Parquet file. Raises UserError if it is not one."""
     pa = pyarrow("Parquet")
     from pyarrow import parquet
 
@@ -93,7 +93,7 @@ def read_parquet(path: str) -> Iterator[Reader]:
 
 @contextmanager
 def read_feather(path: str) -> Iterator[Reader]:
-    """Open an Arrow file. Raises UserError if it is none."""
+    """Open an Arrow file. Raises UserError if it is not one."""
     pa = pyarrow("an Arrow file")
     with _arrows_errors(path), pa.memory_map(_named(path)) as source:
         file = pa.ipc.open_file(source)

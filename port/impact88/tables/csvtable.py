@@ -1,6 +1,6 @@
 """Comma-separated values: a header of names, a row for each scene.
 
-Fields may be separated by commas, semicolons or tabs (told from the header) and quoted as usual.
+Fields may be separated by commas, semicolons or tabs (detected in the header) and quoted as usual.
 Every field is passed through as it stands; floats are written with the fewest digits that read back
 to the same double.
 """
@@ -57,7 +57,7 @@ class _CsvReader(Reader):
         filled = (line for line in lines if line.strip())
         header = next(filled, "")
         separator = re.fullmatch(r"sep=([,;|\t])", header.strip("\r\n \ufeff"), re.IGNORECASE)
-        if separator:  # how Excel is told, and tells
+        if separator:  # as Excel reads and writes it
             header = next(filled, "")
         if not header:
             raise UserError(

@@ -105,7 +105,7 @@ def _text(cell: Any) -> str:
 
 @contextmanager
 def read_excel(path: str) -> Iterator[Reader]:
-    """Open a workbook. Raises UserError if it is none, or unpacks to more than it may."""
+    """Open a workbook. Raises UserError if it is not one, or unpacks to more than it may."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     try:
         with zipfile.ZipFile(path) as archive:
@@ -118,7 +118,7 @@ def read_excel(path: str) -> Iterator[Reader]:
     except UserError:
         raise
     except Exception as error:  # whatever its parsers raise on arbitrary bytes
-        raise UserError(f"is no .xlsx workbook: {quoted(str(error))}", path) from None
+        raise UserError(f"is not an .xlsx workbook: {quoted(str(error))}", path) from None
     try:
         yield _ExcelReader(_checked(rows, path), path)
     finally:
@@ -129,7 +129,7 @@ def _checked(rows: Iterator[tuple[Any, ...]], path: str) -> Iterator[tuple[Any, 
     try:
         yield from rows
     except Exception as error:
-        raise UserError(f"is no .xlsx workbook: {quoted(str(error))}", path) from None
+        raise UserError(f"is not an .xlsx workbook: {quoted(str(error))}", path) from None
 
 
 class _ExcelWriter(Writer):

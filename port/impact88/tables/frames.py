@@ -184,8 +184,8 @@ def _narwhals(frame: Any, solved: Solver) -> Any:
         table = nw.from_native(frame, eager_only=True)
     except TypeError:
         raise UserError(
-            f"{type(frame).__module__}.{type(frame).__name__} is no frame that is known here and "
-            "computed already; expected a DataFrame of pandas or polars, a pyarrow Table, an "
+            f"{type(frame).__module__}.{type(frame).__name__} is not a frame of values "
+            "already computed; expected a DataFrame of pandas or polars, a pyarrow Table, an "
             "xarray Dataset, a structured array or a list of dicts"
         ) from None
     results = solved(table.columns, lambda name: _series(name, table[name]))

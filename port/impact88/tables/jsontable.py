@@ -3,8 +3,8 @@
 A number, or a string that holds one, is taken as the decimal text it is written as. A column that
 is written has one type from the first line to the last: a scene's values are doubles with their own
 digits (``1`` is written 1.0), results doubles with the fewest digits that read back to the same;
-what is no number, such as NaN, which JSON does not have, is null, and infinity 1e999, which readers
-take for it. Other columns have the type that they came with: texts from a CSV.
+NaN, which JSON does not have, is null, and infinity 1e999, which readers take for it. Other columns
+have the type that they came with: texts from a CSV.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class _JsonReader(Reader):
                 continue
             line = self._lines.number
             try:
-                value, reason = jsontext.read(text), "is no JSON object"
+                value, reason = jsontext.read(text), "is not a JSON object"
             except ValueError as error:
                 value, reason = None, str(error)
             if not isinstance(value, dict):

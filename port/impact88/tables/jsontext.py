@@ -31,13 +31,13 @@ _decode = json.JSONDecoder(parse_float=Numeral, parse_int=Numeral, parse_constan
 
 
 def read(text: str) -> Any:
-    """The value of a JSON text. Raises ValueError if it is none, or nested too deeply."""
+    """The value of a JSON text. Raises ValueError if it is not one, or nested too deeply."""
     try:
         value = _decode(text)
     except RecursionError:
         raise ValueError(f"is nested deeper than {DEEPEST} levels") from None
     except ValueError as error:
-        raise ValueError(f"is no JSON: {error}") from None
+        raise ValueError(f"is not JSON: {error}") from None
     if text.count("[") + text.count("{") > DEEPEST and _is_deep(value):
         raise ValueError(f"is nested deeper than {DEEPEST} levels")
     return value
@@ -88,7 +88,7 @@ def double(text: str) -> str:
     if _WHOLE.fullmatch(text):
         return text + ".0"
     if not doubles.is_number(text):
-        raise ValueError(f"{text!r} is no number")
+        raise ValueError(f"{text!r} is not a number")
     sign, whole, decimals, exponent_sign, exponent, _ = scan(text.upper())
     power = f"E{exponent_sign}{exponent}" if exponent else ""
     return f"{sign.strip('+')}{whole.lstrip('0') or '0'}.{decimals or '0'}{power}"

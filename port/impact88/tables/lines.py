@@ -21,7 +21,7 @@ class Lines:
     """An iterator over lines as they stand, their ends included.
 
     ``number``: of the line last given, from 1; ``taken``: the characters given since `begin_block`.
-    Raises UserError, naming file and line, for bytes that are no text, and for a line, or several
+    Raises UserError, naming file and line, for bytes that are not text, and for a line, or several
     since `begin_record`, longer than `LONGEST_LINE` characters.
     """
 
@@ -42,7 +42,7 @@ class Lines:
         try:
             line = self._readline(LONGEST_LINE)
         except UnicodeError:
-            what = f"holds bytes that are not {self._encoding.removesuffix('-sig').upper()} text"
+            what = f"contains bytes that are not {self._encoding.removesuffix('-sig').upper()} text"
             raise UserError(
                 f"{what}, in line {self.number + 1} or after it; expected UTF-8, or the encoding "
                 "named, such as --encoding cp1252 for older Excel",
@@ -141,6 +141,5 @@ def _check_encoding(name: str) -> None:
         "".encode(codec.name)
     except (LookupError, ValueError):
         raise UserError(
-            f"--encoding: {quoted(name)} is no encoding of text known here; expected one such as "
-            "cp1252"
+            f"--encoding: {quoted(name)} is not a known text encoding; expected one such as cp1252"
         ) from None

@@ -30,13 +30,13 @@ _KINDS = "biufcSU"
 def read_arrays(path: str) -> dict[str, NDArray[Any]]:
     """Every array of an .npz file by name.
 
-    Raises UserError if it is none, holds anything else, or unpacks to more than it may.
+    Raises UserError if it is not one, holds anything else, or unpacks to more than it may.
     """
     try:
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()
             _check(members, os.path.getsize(path), path)
-            return {one.filename[:-4]: _array(archive, one, path) for one in members}
+            return {m.filename[:-4]: _array(archive, m, path) for m in members}
     except OSError as error:
         raise UserError(f"cannot be read: {error.strerror or error}", path) from None
     except (zipfile.BadZipFile, ValueError, EOFError, NotImplementedError) as error:
@@ -46,27 +46,27 @@ def read_arrays(path: str) -> dict[str, NDArray[Any]]:
 def _refused(path: str, error: Exception) -> UserError:
     if isinstance(error, UserError):
         return error
-    return UserError(f"is no .npz file of plain arrays: {error}", path)
+    return UserError(f"is not an .npz file of plain arrays: {error}", path)
 
 
 def _check(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
     if len(members) > MOST_ARRAYS:
         raise UserError(f"holds {len(members):,} arrays; at most {MOST_ARRAYS:,} are read", path)
     seen = set()
-    for one in members:
-        if not one.filename.endswith(".npy"):
-            raise UserError(f"holds {quoted(one.filename)}; expected .npy arrays alone", path)
-        if one.flag_bits & 1:
+    for member in members:
+        if not member.filename.endswith(".npy"):
+            raise UserError(f"holds {quoted(member.filename)}; expected .npy arrays only", path)
+        if member.flag_bits & 1:
             raise UserError("is encrypted; expected a plain .npz file", path)
-        if one.filename in seen:
-            raise UserError(f"holds {quoted(one.filename)} twice", path)
-        seen.add(one.filename)
+        if member.filename in seen:
+            raise UserError(f"holds {quoted(member.filename)} twice", path)
+        seen.add(member.filename)
     check_unpacked(members, size, path)
 
 
 def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
     """Raise UserError when an archive of ``size`` bytes unpacks to more than is read."""
-    unpacked = sum(one.file_size for one in members)
+    unpacked = sum(member.file_size for member in members)
     limit = max(UNPACKED, RATIO * size)
     if unpacked > limit:
         raise UserError(
@@ -107,8 +107,8 @@ def _header(data: bytes, where: str) -> tuple[np.dtype[Any], tuple[int, ...], in
     except MemoryError:
         raise
     except Exception as error:  # whatever a literal's parser raises on arbitrary bytes
-        said = quoted(str(error).partition("\n")[0])
-        raise UserError(f"is no array of numbers or of text: {said}", where) from None
+        reason = quoted(str(error).partition("\n")[0])
+        raise UserError(f"is not an array of numbers or text: {reason}", where) from None
     if any(length < 0 for length in shape):
         raise UserError("has a negative length", where)
     return dtype, shape, file.tell()

@@ -38,8 +38,8 @@ class _NpzReader(Reader):
                 raise UserError(f"{name} is an array of {shape}; expected one dimension", where)
         lengths = {name: array.size for name, array in scene.items() if array.size != 1}
         if len(set(lengths.values())) > 1:
-            told = ", ".join(f"{name} {length}" for name, length in lengths.items())
-            raise UserError(f"its columns differ in length: {told}", where)
+            sizes = ", ".join(f"{name} {length}" for name, length in lengths.items())
+            raise UserError(f"its columns differ in length: {sizes}", where)
         self._count = next(iter(lengths.values()), 1)
         self.total: int | None = self._count
         self._arrays = arrays
@@ -57,7 +57,7 @@ class _NpzReader(Reader):
 
 @contextmanager
 def read_npz(path: str) -> Iterator[Reader]:
-    """Open an .npz table. Raises UserError if it is none, or holds Python objects."""
+    """Open an .npz table. Raises UserError if it is not one, or holds Python objects."""
     if path == "-":
         raise UserError("an .npz table cannot be read from standard input; expected a file")
     yield _NpzReader(read_arrays(path), path)

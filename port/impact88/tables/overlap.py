@@ -18,7 +18,7 @@ _END = object()
 
 def may_wait(path: str) -> bool:
     """Whether reading or writing ``path`` can take for ever: standard input or output, a pipe. A
-    thread that waits there would keep a command that was told to stop from ending."""
+    thread that waits there would keep a terminated command from ending."""
     return path == "-" or (os.path.exists(path) and not os.path.isfile(path))
 
 
@@ -50,5 +50,5 @@ def behind(write: Callable[..., object]) -> Iterator[Callable[..., None]]:
             waiting.append(pool.submit(write, *arguments))
 
         yield later
-        for one in waiting:
-            one.result()
+        for task in waiting:
+            task.result()

@@ -237,7 +237,7 @@ def shortest(values: NDArray[Any]) -> list[str]:
 
 def numbers(rows: Rows, units: Units | None = None) -> dict[str, NDArray[np.float64]]:
     """The scene columns of ``rows`` as doubles, in base units where ``units`` says what they are
-    in. A cell that is no number is NaN, and a complaint is added to ``rows.bad`` (unless its row
+    in. A cell that is not a number is NaN, and a complaint is added to ``rows.bad`` (unless its row
     has one already, or is a point mass that does not look at the cell)."""
     asked, every = ~point_masses(rows), np.ones(rows.count, np.bool_)
     return {
@@ -303,7 +303,7 @@ def _plain_numbers(column: Column) -> NDArray[np.float64] | None:
         return values
     try:
         return np.array(doubles.doubles(list(column)))
-    except (TypeError, ValueError):  # some cell is no number
+    except (TypeError, ValueError):  # some cell is not a number
         return None
 
 
@@ -312,7 +312,7 @@ def _why_no_number(text: object) -> str | None:
         return "is empty; expected a number"
     if isinstance(text, str) and (is_infinite(text) or doubles.is_number(text)):
         return None
-    return f"{quoted(text)} is no number"
+    return f"{quoted(text)} is not a number"
 
 
 def _double(text: str) -> float:

@@ -41,11 +41,11 @@ def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str,
     for name, text in texts.items():
         parts = [part.strip() for part in text.split(":")]
         if len(parts) != 3 or not parts[2].isdigit():
-            raise UserError(f"--sweep {name}: {quoted(text)} is no LOW:HIGH:COUNT, such as 0:1:51")
+            raise UserError(f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51")
         limits = in_base_units({name: " .. ".join(parts[:2])}, "--sweep", units)[0][name]
         ends = limits.split(" .. ")
         if len(ends) != 2 or not all(map(is_number, ends)):
-            raise UserError(f"--sweep {name}: {quoted(text)} is no LOW:HIGH:COUNT, such as 0:1:51")
+            raise UserError(f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51")
         low, high, count = double(ends[0]), double(ends[1]), int(parts[2])
         if not (isfinite(low) and isfinite(high)) or not 1 <= count <= MOST:
             raise UserError(f"--sweep {name}: {quoted(text)} is out of range")

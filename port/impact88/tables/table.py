@@ -30,7 +30,7 @@ FORMATS = {
 
 
 def format_of(path: str, given: str | None) -> str:
-    """The format, csv or another. Raises UserError if neither name nor ``given`` tells."""
+    """The format, csv or another. Raises UserError if neither name nor ``given`` says which."""
     if given:
         return given
     if path == "-":
@@ -46,7 +46,7 @@ def format_of(path: str, given: str | None) -> str:
 def open_reader(
     path: str, form: str, encoding: str | None = None
 ) -> AbstractContextManager[Reader]:
-    """Open a table for reading (``-``: standard input). Raises UserError if it is none.
+    """Open a table for reading (``-``: standard input). Raises UserError if it is not one.
 
     ``encoding``: of a CSV or of JSON Lines that are not UTF-8.
     """

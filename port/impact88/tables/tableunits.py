@@ -102,7 +102,7 @@ class TableUnits:
         return self.strict and self.converts(name) and self._open(name)
 
     def cell(self, name: str, text: str) -> str:
-        """One cell in base units, exactly. Raises UserError for what is no amount."""
+        """One cell in base units, exactly. Raises UserError for what is not an amount."""
         unit = self._unit(name)
         usual = {quantity(name).unit: unit} if unit else {}
         if self.system is RULES and (found := system_using(_units_in(name, text), "")) is not RULES:

@@ -193,7 +193,7 @@ def _check(samples: int, sigmas: float, quantiles: Sequence[float]) -> None:
         raise UserError(f"{sigmas:g} standard deviations span nothing; expected more than 0")
     for share in quantiles:
         if not 0 <= share <= 1:
-            raise UserError(f"{share:g} is no quantile; expected 0 ... 1")
+            raise UserError(f"{share:g} is not a quantile; expected 0 ... 1")
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,7 @@ class _Box:
         exclude: Sequence[str],
     ) -> _Box:
         if problem not in PROBLEMS:
-            raise UserError(f"{problem!r} is no problem; expected {' or '.join(PROBLEMS)}")
+            raise UserError(f"{problem!r} is not a problem; expected {' or '.join(PROBLEMS)}")
         given = within_limits(values)
         given.setdefault("M", fixed(6.0))
         _check_values(given, problem)
@@ -230,7 +230,7 @@ class _Box:
         wanted = tuple(dict.fromkeys(usual if outputs is None else outputs))
         for name in wanted:
             if name not in allowed:
-                raise UserError(f"{name!r} is no result; expected some of {' '.join(allowed)}")
+                raise UserError(f"{name!r} is not a result; expected some of {' '.join(allowed)}")
         if not wanted:
             raise UserError(f"no result is asked for; expected some of {' '.join(allowed)}")
         limits = {name: item.limits(sigmas) for name, item in inputs.items()}
@@ -242,7 +242,7 @@ class _Box:
         divided = forward_with_denominators if forward else reconstruction_with_denominators
         for name in exclude:
             if name not in WARNINGS:
-                raise UserError(f"{name!r} is no warning; expected some of {' '.join(WARNINGS)}")
+                raise UserError(f"{name!r} is not a warning; expected some of {' '.join(WARNINGS)}")
         excluded = sum({WARNINGS[name] for name in exclude})
         share = "MU" in given and given["MU"].share
         return cls(model, divided, known, inputs, wanted, limits, excluded, share)
@@ -356,7 +356,9 @@ def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
             raise UserError(f"{name} is missing; a {problem} needs {' '.join(names)}")
     for name in given:
         if name not in (*names, *MOVES):
-            raise UserError(f"is no input of a {problem}; expected one of {' '.join(names)}", name)
+            raise UserError(
+                f"is not an input of a {problem}; expected one of {' '.join(names)}", name
+            )
     if given["M"].varies or given["M"].nominal not in (4, 6):
         raise UserError("expected 6, or 4 for point masses", "M")
     name = "MU" if problem == "forward" else "MUP"

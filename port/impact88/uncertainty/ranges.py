@@ -58,13 +58,13 @@ def read_inputs(
     for name in entries:
         if name not in (*placed(SCENE, entries), *AFTER, *MOVES):
             expected = " ".join((*SCENE, *AFTER, "title", "correlations"))
-            raise UserError(f"{name!r} is no value here; expected {expected}", source)
+            raise UserError(f"{name!r} is not a name used here; expected {expected}", source)
     scene = placed(SCENE, entries)
     wanted = placed((*COMMON, *(BEFORE if problem == "forward" else AFTER)), entries)
     for name in changes:
         if name not in (*wanted, *MOVES):
             raise UserError(
-                f"{name!r} is no input of the {problem} problem; expected one of "
+                f"{name!r} is not an input of the {problem} problem; expected one of "
                 f"{' '.join(wanted)}",
                 "--range",
             )
@@ -128,7 +128,7 @@ def read_correlations(text: str, source: str) -> dict[Pair, float]:
             comma = ""
         if not comma or not first or not second:
             raise UserError(
-                f"{part!r} is no correlation; expected NAME,NAME R such as UX,VX 0.5", source
+                f"{part!r} is not a correlation; expected NAME,NAME R such as UX,VX 0.5", source
             )
         if result.setdefault((first, second), value) != value:
             raise UserError(f"the correlation of {first},{second} is given twice", source)

@@ -270,7 +270,7 @@ def correlation_root(
         if first == second:
             raise UserError("a value's correlation with itself is 1 and cannot be given", where)
         if not -1 <= value <= 1:
-            raise UserError(f"{value:g} is no correlation; expected -1 ... 1", where)
+            raise UserError(f"{value:g} is not a correlation; expected -1 ... 1", where)
         if given.setdefault(frozenset((first, second)), value) != value:
             raise UserError("is given twice, with different values", where)
     names = [name for name in inputs if any(name in pair for pair in given)]
