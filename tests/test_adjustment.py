@@ -508,7 +508,7 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("known", "message"),
         [
-            ({"FOO": 1.0}, "no value of an impact"),
+            ({"FOO": 1.0}, "not a value of an impact"),
             ({**VEHICLES, "MA": 0.0}, "MA is not positive"),
             ({n: v for n, v in VEHICLES.items() if n != "GA"}, "missing GA"),
             ({**SECTION_7, "MU": 0.5, "MUP": 0.5}, "MU and MUP are both given"),

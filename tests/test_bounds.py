@@ -268,8 +268,8 @@ class TestCopula:
         [
             ({("UX", "E"): 0.5}, "E does not vary; those that do: UX VX"),
             ({("UX", "UX"): 1.0}, "with itself"),
-            ({("UX", "VX"): 1.5}, "no correlation"),
-            ({("UX", "VX"): math.nan}, "no correlation"),
+            ({("UX", "VX"): 1.5}, "not a correlation"),
+            ({("UX", "VX"): math.nan}, "not a correlation"),
             ({("UX", "VX"): 0.5, ("VX", "UX"): 0.4}, "twice"),
         ],
     )
@@ -480,9 +480,9 @@ class TestRefusals:
             ({}, {"outputs": []}, "no result is asked for"),
             ({}, {"samples": 1}, "too few"),
             ({}, {"sigmas": 0.0}, "span nothing"),
-            ({}, {"quantiles": [2.0]}, "no quantile"),
-            ({}, {"problem": "sideways"}, "no problem"),
-            ({}, {"exclude": ["BAD"]}, "no warning"),
+            ({}, {"quantiles": [2.0]}, "not a quantile"),
+            ({}, {"problem": "sideways"}, "not a problem"),
+            ({}, {"exclude": ["BAD"]}, "not a warning"),
             ({"MA": fixed(0)}, {}, "no finite value at the nominal"),
         ],
     )
@@ -603,7 +603,7 @@ class TestInputs:
             ("MA", "IA"): -0.9,
         }
         for bad in ("UX VX", "UX,VX", "UX,VX much", ",VX 0.5"):
-            with pytest.raises(UserError, match="no correlation"):
+            with pytest.raises(UserError, match="not a correlation"):
                 read_correlations(bad, "x")
 
     @pytest.mark.parametrize("name", [*SCENE, *FINAL_VELOCITIES, "SA", "SB", "MUP"])

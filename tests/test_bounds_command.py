@@ -137,7 +137,7 @@ def test_seed_decides(capsys):
         (["--sample", "1", *RANGES, "--samples", "0"], "too few"),
         (["--sample", "1", *RANGES, "--samples", "many"], "not a whole number"),
         (["--sample", "1", *RANGES, "--seed", "-1"], "--seed: '-1'"),
-        (["--sample", "1", *RANGES, "--exclude", "NONSENSE"], "no warning"),
+        (["--sample", "1", *RANGES, "--exclude", "NONSENSE"], "not a warning"),
         (["--sample", "1", "--range", "MA=-5 .. 0"], "no finite value at the nominal"),
         (["--sample", "3", "--reconstruct", "--range", "UX=+-1"], "reconstruction problem"),
     ],

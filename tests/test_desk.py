@@ -448,7 +448,7 @@ def test_what_a_collision_gave_is_reconstructed_to_the_collision() -> None:
         ("VAX", "-13.2 +- .1", None),
         ("VAX", "-13.2 +- x", "is not an amount"),
         ("SA", "29", None),
-        ("QQ", "1", "no value here"),
+        ("QQ", "1", "not a name used here"),
     ],
 )
 def test_each_known_value_is_judged_alone(

@@ -29,9 +29,9 @@ def test_what_INPUT_takes_is_a_number(text: str, value: float) -> None:
 @pytest.mark.parametrize("text", NO_NUMBERS)
 def test_what_INPUT_refuses_is_none(text: str) -> None:
     assert not is_number(text)
-    with pytest.raises(ValueError, match="no number"):
+    with pytest.raises(ValueError, match="not a number"):
         double(text)
-    with pytest.raises(ValueError, match="no number"):
+    with pytest.raises(ValueError, match="not a number"):
         doubles(["1", text])
 
 

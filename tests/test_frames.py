@@ -138,7 +138,7 @@ def test_a_scene_gives_what_the_frame_lacks() -> None:
         ([{"MU": 1}], "no column E EM DA"),
         ([1, 2], "list of dicts"),
         (np.zeros(3), "has no columns"),
-        ("text", "no frame that is known"),
+        ("text", "not a frame of values"),
     ],
 )
 def test_what_cannot_be_solved_is_said_in_one_line(frame: Any, says: str) -> None:

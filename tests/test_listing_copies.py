@@ -114,7 +114,7 @@ def test_rounding_on_one_line_comes_before_a_misread_digit(tmp_path: Path) -> No
     ("text", "says"),
     [
         ("", "holds no program"),
-        ("no numbers here", "no Applesoft program"),
+        ("no numbers here", "not an Applesoft program"),
         ("10 INPUT A$: GOTO 10", "asks for more"),
         ("10 GOTO 10", "does not end"),
     ],

@@ -274,7 +274,7 @@ class TestSweep:
     @pytest.mark.parametrize(
         ("setting", "message"),
         [
-            ("MU=0:1", "no LOW:HIGH:COUNT"),
+            ("MU=0:1", "not LOW:HIGH:COUNT"),
             ("MU=0:1:0", "out of range"),
             ("MU=0:x:3", "is not an amount"),
             ("FOO=0:1:3", "'FOO' is not a value of a scene"),
