@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from typing import Any
 
 import pytest
 
 import printouts
 from impact88.doubles import double
+from impact88.explaining.evidence import cut
 from impact88.explaining.explanations import Explanation
-from impact88.explaining.otherprints import rounded_text
 from impact88.program.run import run
+from impact88.reading.numerals import as_printed
 from impact88.reading.printout import FIELDS, read_printouts
 from impact88.recovery import replays
 from impact88.recovery.misprints import misreadings, opposite, slip
@@ -141,8 +143,9 @@ def test_a_digit_far_from_the_last_place_is_misread_and_no_other_machine_is_name
 def test_rounded_instead_of_floored() -> None:
     scene = sample(1)
     rounded = {
-        name: rounded_text(value, FIELDS[name].places or 0)
+        name: as_printed(f"{made[0]:f}") or ""
         for name, value in replays.run_whole(scene)[1].items()
+        if name != "KI" and (made := cut(value, FIELDS[name].places or 0, "rounded"))
     }
     assert rounded["XB"] == "14.52"
     found = first(_printed(scene, rounded))
@@ -173,11 +176,11 @@ def test_slips_are_symmetric_enough() -> None:
     assert slip("14.52", "25.15") is None
 
 
-def test_rounding_text() -> None:
-    assert rounded_text(-0.004, 2) == "0"
-    assert rounded_text(-13.2626, 3) == "-13.263"
-    assert rounded_text(0.5, 0) == "1"
-    assert rounded_text(100.0, 2) == "100"
+@pytest.mark.parametrize(
+    ("value", "places", "number"), [(-0.004, 2, 0), (-13.2626, 3, "-13.263"), (0.5, 0, 1)]
+)
+def test_halves_are_rounded_upward(value: float, places: int, number: str) -> None:
+    assert cut(value, places, "rounded") == (Decimal(number), Decimal(number))
 
 
 @pytest.mark.parametrize(

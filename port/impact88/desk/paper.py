@@ -6,12 +6,11 @@ A paper is a name and the bytes of its file, or of what has become of its text o
 from __future__ import annotations
 
 from base64 import b64decode
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..errors import UserError
 from ..files import packaged_bytes
-from ..judging.judgement import Verdict
 from ..reading import plaintext as pasted
 from ..reading.printout import LARGEST_FILE
 from ..reading.wordplaces import laid_out
@@ -76,30 +75,20 @@ def _text(examined: Examined, data: bytes) -> str | None:
 
 def _words(result: Verification) -> dict[str, Any]:
     """A verdict in words: its title, what it says, what it rests on, and what stands under it."""
-    says = wording.says(result.verdict)
+    says = wording.MEANINGS[result.verdict]
+    contradicted = [check for check in [*result.fields, *result.replies] if check.same is False]
+    look = [line for check in contradicted for line in wording.look(check)]
+    parts = [verification.Section("where to look", look), *verification.sections(result)]
     return {
-        "title": wording.title(result.verdict),
+        "title": wording.TITLES[result.verdict],
         "says": says,
         "summary": [line for line in verification.summary(result) if line != says],
         "parts": [
-            {"heading": heading, "items": items} for heading, items in _parts(result) if items
+            {"heading": one.heading[:1].upper() + one.heading[1:], "items": one.lines}
+            for one in parts
+            if one.lines
         ],
     }
-
-
-def _parts(result: Verification) -> Iterable[tuple[str, list[str]]]:
-    """What stands under a verdict, in the command's order and words: headings and sentences."""
-    contradicted = [check for check in [*result.fields, *result.replies] if check.same is False]
-    yield "Where to look", [line for check in contradicted for line in wording.look(check)]
-    yield "Doubtful", [line for check in result.doubtful for line in wording.doubts(check)]
-    if result.verdict is Verdict.DIFFERS:
-        first, *rest = verification.explained(result)
-        heading = first.rstrip(":")
-        yield (heading[:1].upper() + heading[1:], rest or [first])
-    yield "The page cannot show", result.unseen
-    yield "What the page shows besides", result.findings
-    yield "Beside the verdict", result.warnings
-    yield "Notes on the reading", [*result.remarks, *wording.left_over(result.left_over)]
 
 
 def report(papers: Sequence[Mapping[str, str]], words: Mapping[str, str]) -> str:

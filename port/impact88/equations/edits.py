@@ -7,7 +7,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -246,9 +246,13 @@ def _count_shown(spelling: Spelling) -> int:
 @cache
 def readings() -> tuple[Edit, ...]:
     """Columns read or shown otherwise, of ``readings.txt``."""
+    return tuple(map(_reading, written_out(table("readings.txt"))))
+
+
+def written_out(lines: Iterable[str]) -> Iterator[str]:
+    """The lines of a table of readings, each for every entry of the table it names."""
     tables: dict[str, list[tuple[str, str]]] = {}
-    found = []
-    for line in table("readings.txt"):
+    for line in lines:
         if line.startswith("table "):
             name, entries = line.removeprefix("table ").split(":", 1)
             pairs = (one.rsplit("=", 1) for one in entries.split(", "))
@@ -257,8 +261,7 @@ def readings() -> tuple[Edit, ...]:
         word = re.search(r"\{(?!factor)(\w+)\}", line)
         for says, factor in tables[word[1]] if word else [("", "")]:
             filled = line.replace("{factor}", factor)
-            found.append(_reading(filled.replace(word[0], says) if word else filled))
-    return tuple(found)
+            yield filled.replace(word[0], says) if word else filled
 
 
 _AS_TYPED = {name: ast.Name(f"{TYPED}{name}") for name in SCENE}
@@ -268,15 +271,16 @@ def _reading(line: str) -> Edit:
     says, rest = line.split(" | ", 1)
     scene, _, results = rest.partition(";;")
     sides: dict[str, Sides] = {}
-    for name, made in _assigned(scene):
+    for name, made in assigned(scene):
         sides[name] = (renamed(made, {**_AS_TYPED, "x": _AS_TYPED[name]}),)
-    for name, made in _assigned(results):
+    for name, made in assigned(results):
         sides[f"{SHOWN}{name}"] = (renamed(made, {"x": ast.Name(name)}),)
     rank = RARE_CONVENTION if says.startswith("~") else CONVENTION
     return Edit("", sides, rank, says.lstrip("~ "))
 
 
-def _assigned(text: str) -> Iterator[tuple[str, ast.expr]]:
+def assigned(text: str) -> Iterator[tuple[str, ast.expr]]:
+    """Each column of ``A B = expression; C = expression``, with its expression."""
     for part in filter(str.strip, text.split(";")):
         names, made = part.split("=", 1)
         for name in names.split():

@@ -1,62 +1,62 @@
-"""Explaining a printout that differs: causes, each tested by replay, best first.
+"""Explaining a printout that differs: causes, each tested by replay, the likeliest first.
 
-A cause is a slip or two in what is printed (`rereading`), two numbers in each other's place,
-another unit, another program or arithmetic (`otherruns`), or two of a side or an axis exchanged and
-a slip besides. What counts is how many of the numbers that differ then agree and how much has to be
-believed for it; a cause is offered only when it explains nearly all that differs. Causes that ask
-for about as much and leave the same unexplained share a rank: the page cannot tell them apart.
+A cause is an edit: of what is printed (slips, labels), of the inputs or results as a whole (the
+rows of ``hypotheses.txt``), of the machine or its printing, or of one line of the listing. Each
+asks for some bits to be believed, and for as many more as every number that it leaves unexplained
+would take as a slip of its own; the fewest bits come first. A cause is offered only when it
+explains nearly all that differs. Causes that ask for about as much and leave the same unexplained
+share a rank: the page cannot tell them apart.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from dataclasses import field as default
 from decimal import Decimal
 from functools import cached_property
 from typing import Any
 
 from ..fields import FIELDS, INPUTS
-from ..judging.judgement import FieldCheck, Status
+from ..judging.judgement import Judged, Status, same_value
 from ..reading.numerals import value_of
-from ..reading.printout import Printout
 from ..recovery import misprints
 from ..recovery.recovered import Recovered
 from ..recovery.rereading import Change, Reread, Rereading
-from ..recovery.search import Scored
-from . import otherruns, refining
-from .hypothesis import NATURAL, NOT_APPLESOFT, Hypothesis
+from . import hypotheses, listinglines, machines
+from .evidence import Evidence
 
 MOST = 6
 """Explanations given at most."""
+NO_SINGLE_SLIP = "no single slip explains this"
+_SLIP = 10.0
+"""Bits of a number misread, and so of one that a cause leaves unexplained (hypotheses.txt)."""
 _NEARLY_ALL = 0.15
 """An explanation that leaves more than this of what differs is none."""
 _SLIPS_IN_RESULTS = 3
 _MOST_SLIPS = 4
 """More slips than these are no explanation: nobody makes them all."""
-_ALIKE = 0.8
-"""Causes that leave the same unexplained and ask for no more than this more share a rank."""
-_WORSE = 1.5
-"""What asks for so much more than the best is no cause."""
-_GOOD = 1.6
-_SLIPS_BESIDES = 60
-_TWINS = 8
-LABELS_EXCHANGED = "labels exchanged"
-LABEL_WRONG = "another label"
-NO_SINGLE_SLIP = "no single slip explains this"
-
-_COST = {
-    misprints.DIGIT: 1.0,
-    misprints.SIGN: 0.95,
-    misprints.POINT: 1.05,
-    misprints.SWAP: 1.1,
-    misprints.COUNT: 1.25,
-    misprints.TWO_DIGITS: 1.9,
+_ALIKE = 8.0
+"""Causes that leave the same unexplained and ask for no more bits than these more share a rank."""
+_WORSE = 15.0
+"""What asks for so many bits more than the best is no cause."""
+_GOOD = 16.0
+"""Up to so many bits nothing further is looked for but what may share the rank; 10 more are given
+where every search costs a second."""
+_SLIPS_BESIDES, _TWINS, _BY_COPY = 60, 8, 12
+_KINDS = {
+    misprints.DIGIT: 10.0,
+    misprints.SIGN: 9.5,
+    misprints.POINT: 10.5,
+    misprints.SWAP: 11.0,
+    misprints.COUNT: 12.5,
+    misprints.TWO_DIGITS: 19.0,
 }
-"""How much a slip asks to be believed."""
-_LAST_PLACE = 0.8
-"""A result wrong by one in its last place is more likely another arithmetic than a misreading, and
-so is a page on which nothing worse is wrong."""
+"""Bits of a slip; one more for each after the first, and up to 1.6 for digits that look unlike."""
+_UNLIKE, _EACH = 0.4, 1.0
+_LAST_PLACE = 8.0
+"""Bits more for a result misread by one in its last place, where another arithmetic is likelier;
+and for misread inputs on a page on which nothing worse is wrong."""
 _ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
 """The kinetic energy is printed to so many digits; other arithmetics end within so many units of
 the last of them."""
@@ -84,62 +84,91 @@ class Explanation:
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
-        shown = dict(vars(self))
-        del shown["weight"], shown["unexplained"]
-        return shown
+        return {n: one for n, one in vars(self).items() if n not in ("weight", "unexplained")}
+
+    @property
+    def puts_right(self) -> frozenset[tuple[str, str]]:
+        """The numbers it puts right, and as what."""
+        return frozenset((change["field"], change["would_be"]) for change in self.changes)
+
+    @property
+    def accuses(self) -> bool:
+        """Whether it says that another program or machine made the page."""
+        return self.note.endswith(machines.NOT_APPLESOFT)
 
 
 def explain(
-    shown: Printout,
-    recovered: Recovered,
-    checks: Sequence[FieldCheck],
-    replies: Sequence[FieldCheck],
-    ending: FieldCheck,
+    found: Judged,
     rereads: Sequence[Reread] | None = None,
     in_time: Callable[[], bool] = lambda: True,
 ) -> list[Explanation]:
     """Causes that make more of a differing printout agree, those that ask least first. ``rereads``:
     slips that were tried already, where those are all there can be; ``in_time``: whether another
     kind of cause may still be tried."""
-    base = frozenset(
-        [check.name for check in checks if check.status == Status.CONTRADICTED]
-        + [f"reply {check.name}" for check in replies if check.status == Status.CONTRADICTED]
-        + ([ending.name] if ending.status == Status.CONTRADICTED else [])
-        + [f"label {one.name}" for one in shown.mislabelled]
-    )
-    work = _Work(shown, recovered, base, {check.name: check for check in checks})
-    alone = work.by_results_alone(replies)
-    explanations = [*([alone] if alone else []), *work.labels_exchanged()]
-    if not recovered.missing and any(not name.startswith("label ") for name in base):
-        reread = list(work.rereading.best() if rereads is None else rereads)
-        explanations += work.rereads(reread, replies)
-        hypotheses = otherruns.hypotheses(shown, recovered)
-        explanations += work.others(hypotheses, replies)
-        if in_time() and (not explanations or min(one.weight for one in explanations) > _GOOD):
-            doubles = work.rereading.double_slips()
-            explanations += work.rereads(doubles, replies)
+    work = _Work(found)
+    causes = [*work.by_results_alone(), *work.labels_exchanged()]
+
+    def wanting(bits: float) -> bool:
+        return in_time() and min((one.weight for one in causes), default=100.0) > bits
+
+    if not found.recovered.missing and any(not one.startswith("label ") for one in work.base):
+        rereading = Rereading(found.recovered, apart=True)
+        reread = list(rereading.best() if rereads is None else rereads)
+        causes += work.rereads(reread)
+        tables = hypotheses.Tables(work.evidence)
+        causes += work.rows(tables.nearest)
+        causes += work.results_otherwise()
+        causes += map(work.machine, machines.causes(work.evidence))
+        if wanting(_GOOD):
+            doubles = rereading.double_slips()
+            causes += work.rereads(doubles)
             reread += doubles
-        explanations += work.twins(reread, replies)
-        if in_time() and (not explanations or min(one.weight for one in explanations) > _GOOD + 1):
-            refined = list(refining.refined(recovered, hypotheses))
-            explanations += work.others(refined, replies)
-            explanations += work.exchanged_and_slipped(hypotheses, replies)
-    return _chosen(explanations, len(base))
+        best = sorted(reread, key=lambda one: one.scored.cost)[:_TWINS]
+        causes += work.rereads(list(rereading.twins(best)))
+        if wanting(_GOOD + _SLIP):
+            causes += work.rows(list(tables.searched()))
+            causes += work.exchanged_and_slipped(tables.exchanges(), rereading)
+        if wanting(_GOOD + _SLIP):
+            causes += map(work.machine, listinglines.causes(work.evidence, work.base))
+    return _chosen(causes, len(work.base))
 
 
-@dataclass
+def explain_copy(
+    found: Judged,
+    recovered: Recovered,
+    held: Callable[[Recovered], Judged],
+) -> list[Explanation]:
+    """The same of a page held against a copy of the listing: slips, judged by the copy's own page.
+    ``recovered``: by the restored listing, whose nearest slips are tried; ``held``: the page
+    judged by the copy for another scene."""
+    work = _Work(found)
+    causes = [*work.by_results_alone(), *work.labels_exchanged()]
+    if not recovered.missing:
+        for one in Rereading(recovered).best()[:_BY_COPY]:
+            scored = one.scored
+            by = held(replace(recovered, scene=scored.scene, assumed=scored.assumed))
+            wrong = frozenset(check.name for check in by.contradicted)
+            same = scored._replace(outcome=by.recovered.outcome, wrong=wrong)
+            causes += work.rereads([one._replace(scored=same)])
+    return _chosen(causes, len(work.base))
+
+
 class _Work:
     """What all explanations are measured against: the names that differ."""
 
-    shown: Printout
-    recovered: Recovered
-    base: frozenset[str]
-    checks: dict[str, FieldCheck]
+    def __init__(self, found: Judged) -> None:
+        self.shown, self.recovered, self.replies = found.shown, found.recovered, found.replies
+        self.checks = {check.name: check for check in found.fields}
+        replies = set(map(id, found.replies))
+        self.base = frozenset(
+            [f"{'reply ' * (id(one) in replies)}{one.name}" for one in found.contradicted]
+            + [f"label {one.name}" for one in found.shown.mislabelled]
+        )
 
     @cached_property
-    def rereading(self) -> Rereading:
-        """Slips in inputs, wherever they come from."""
-        return Rereading(self.recovered, apart=True)
+    def evidence(self) -> Evidence:
+        """The page as evidence."""
+        return Evidence(self.shown, self.recovered)
 
     @cached_property
     def last_places(self) -> bool:
@@ -151,14 +180,11 @@ class _Work:
             for name in self.base
         )
 
-    def by_results_alone(self, replies: Sequence[FieldCheck]) -> Explanation | None:
+    def by_results_alone(self) -> Iterator[Explanation]:
         """Results and replies that are one slip away from what they should be."""
-        names = {name for name in self.base if name != "ENDING" and not name.startswith("label ")}
-        changes = list(self._slips(names, self.recovered.outcome.fields, replies))
-        if not changes:
-            return None
-        unexplained = self.base - {change.field for change in changes}
-        return self._explanation(changes, unexplained, len(unexplained))
+        changes = list(self._slips(self.base, self.recovered.outcome.fields))
+        if changes:
+            yield self._slipped(changes, self.base - {change.field for change in changes})
 
     def labels_exchanged(self) -> Iterator[Explanation]:
         """Labels that stand in each other's place, or say another number, on numbers that are what
@@ -170,108 +196,57 @@ class _Work:
         ]
         if not wrong:
             return
-        read, printed = (
-            sorted(getattr(one, side) for one in wrong) for side in ("read", "printed")
-        )
-        kind = LABELS_EXCHANGED if read == printed else LABEL_WRONG
+        exchanged = sorted(one.read for one in wrong) == sorted(one.printed for one in wrong)
+        kind = "labels exchanged" if exchanged else "another label"
+        described = [
+            _described(kind, one.name, one.read, one.printed, one.line, one.column) for one in wrong
+        ]
         unexplained = self.base - {f"label {one.name}" for one in wrong}
-        changes = [
-            {
-                "kind": kind, "field": one.name, "printed": one.read, "would_be": one.printed,
-                "line": one.line, "column": one.column,
-                "look": f"line {one.line}, column {one.column}: is this {one.read} {one.printed}?",
-            }
-            for one in wrong
-        ]  # fmt: skip
-        first = wrong[0]
-        yield Explanation(
-            kind, first.name, first.read, first.printed, len(wrong), len(unexplained),
-            "the numbers are what the program prints where they stand", changes,
-            [str(change["look"]) for change in changes],
-            weight=1.0 + len(unexplained), unexplained=unexplained,
-        )  # fmt: skip
+        note = "the numbers are what the program prints where they stand"
+        yield self._explanation(kind, note, _SLIP, unexplained, described)
 
-    def rereads(
-        self, reread: Sequence[Reread], replies: Sequence[FieldCheck]
-    ) -> Iterator[Explanation]:
+    def rereads(self, reread: Iterable[Reread]) -> Iterator[Explanation]:
         """Inputs put right, with what results are then still a slip away."""
         for one in reread:
             if not one.changes:
                 continue
-            wrong = self._wrong(one.scored, replies) | self._inputs_left(one.changes)
+            wrong = one.scored.wrong | self._wrong_replies(one.scored.scene)
+            wrong |= self._inputs_left(one.changes)
             changes = list(one.changes)
-            names = {name for name in wrong if name in self.base}
-            if len(names) <= _SLIPS_IN_RESULTS:
-                changes += self._slips(names, one.scored.outcome.fields, replies)
-            unexplained = len(wrong) - (len(changes) - len(one.changes))
-            yield self._explanation(changes, wrong - {c.field for c in changes}, unexplained)
+            if len(wrong & self.base) <= _SLIPS_IN_RESULTS:
+                changes += self._slips(wrong & self.base, one.scored.outcome.fields)
+            yield self._slipped(changes, wrong - {change.field for change in changes})
 
-    def twins(
-        self, reread: Sequence[Reread], replies: Sequence[FieldCheck]
-    ) -> Iterator[Explanation]:
-        """The best of the same by the other angle of a sum."""
-        best = sorted(reread, key=lambda one: one.scored.cost)[:_TWINS]
-        return self.rereads(list(self.rereading.twins(best)), replies)
+    def rows(self, every: Sequence[hypotheses.Hypothesis]) -> Iterator[Explanation]:
+        """Inputs in other places and units, replayed."""
+        for one, wrong in hypotheses.unexplained(self.evidence, every):
+            wrong |= self._wrong_replies(one.scene) | self._inputs_left(one.changes)
+            described = list(map(self._change, one.changes))
+            yield self._explanation(one.row.kind, one.row.note, one.row.bits, wrong, described)
 
-    def others(
-        self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
-    ) -> Iterator[Explanation]:
-        """Other units, places, programs and arithmetics, tried."""
-        for one in otherruns.tried(self.shown, self.recovered, hypotheses):
-            wrong = one.wrong | self._wrong_replies(one.scene, replies)
-            if one.hypothesis.outcome is None:
-                wrong |= self._inputs_left(one.hypothesis.changes)
-            explained = len(self.base - wrong)
-            shown = Explanation(
-                one.hypothesis.kind,
-                None,
-                None,
-                None,
-                explained,
-                len(wrong),
-                one.hypothesis.note,
-                weight=one.hypothesis.weight + len(wrong),
-                unexplained=wrong,
-            )
-            first = one.hypothesis.changes[0] if one.hypothesis.changes else None
-            if first is not None:
-                shown.field, shown.printed, shown.would_be = (
-                    first.field,
-                    first.printed,
-                    first.would_be,
-                )
-                shown.changes = [self._change(change) for change in one.hypothesis.changes]
-            yield shown
+    def results_otherwise(self) -> Iterator[Explanation]:
+        """Results in other places and units."""
+        for row, wrong, changes in hypotheses.results_otherwise(self.evidence):
+            described = list(map(self._change, changes))
+            yield self._explanation(row.kind, row.note, row.bits, wrong, described)
+
+    def machine(self, one: machines.Cause) -> Explanation:
+        """Another machine, another print, another line of the listing."""
+        wrong = one.wrong | self._wrong_replies(one.scene)
+        return self._explanation(one.kind, one.note, one.bits, wrong, [])
 
     def exchanged_and_slipped(
-        self, hypotheses: Sequence[Hypothesis], replies: Sequence[FieldCheck]
+        self, exchanges: Sequence[hypotheses.Hypothesis], rereading: Rereading
     ) -> Iterator[Explanation]:
         """Inputs of a side or an axis exchanged, and a slip in another."""
-        printed = set(self.recovered.assumed)
-        exchanges = [
-            one
-            for one in hypotheses
-            if one.assumed is not None
-            and one.weight <= NATURAL
-            and one.changes
-            # inputs that were given apart stand nowhere on the page to be exchanged
-            and {change.field for change in one.changes} <= printed
-        ]
-        texts = [
-            {change.field: (one.assumed or {})[change.field] for change in one.changes}
-            for one in exchanges
-        ]
-        if not texts:
-            return
-        for number, one in self.rereading.besides(texts, _SLIPS_BESIDES):
-            hypothesis = exchanges[number]
-            wrong = self._wrong(one.scored, replies)
-            wrong |= self._inputs_left([*hypothesis.changes, *one.changes])
-            believed = hypothesis.weight + sum(map(_believed, one.changes)) + 0.1
-            made = self._explanation(
-                [*hypothesis.changes, *one.changes], wrong, len(wrong), believed
-            )
-            made.note = hypothesis.note
+        texts = [{c.field: one.assumed[c.field] for c in one.changes} for one in exchanges]
+        for number, one in rereading.besides(texts, _SLIPS_BESIDES) if texts else ():
+            exchange = exchanges[number]
+            changes = [*exchange.changes, *one.changes]
+            wrong = one.scored.wrong | self._wrong_replies(one.scored.scene)
+            bits = exchange.row.bits + sum(map(_believed, one.changes)) + _EACH
+            made = self._slipped(changes, wrong | self._inputs_left(changes), bits)
+            made.note = exchange.row.note
             yield made
 
     def _inputs_left(self, changes: Sequence[Change]) -> frozenset[str]:
@@ -279,33 +254,22 @@ class _Work:
         changed = {change.field for change in changes}
         return self.base & frozenset(INPUTS) - {"MUP"} - changed
 
-    def _wrong(self, scored: Scored, replies: Sequence[FieldCheck]) -> frozenset[str]:
-        return scored.wrong | self._wrong_replies(scored.scene, replies)
-
-    def _wrong_replies(
-        self, scene: dict[str, str], replies: Sequence[FieldCheck]
-    ) -> frozenset[str]:
-        from ..judging.judgement import same_value
-
+    def _wrong_replies(self, scene: dict[str, str]) -> frozenset[str]:
         return frozenset(
             f"reply {check.name}"
-            for check in replies
+            for check in self.replies
             if check.printed is not None
             and check.status in (Status.READ, Status.CONTRADICTED)
             and not same_value(check.printed, scene[check.name])
         )
 
-    def _slips(
-        self, names: set[str], fields: dict[str, str], replies: Sequence[FieldCheck]
-    ) -> Iterator[Change]:
-        for name in sorted(names - {"ENDING"}):
-            if name.startswith("label "):
+    def _slips(self, names: Iterable[str], fields: dict[str, str]) -> Iterator[Change]:
+        replies = {f"reply {check.name}": check for check in self.replies}
+        for name in sorted(names):
+            check = replies.get(name) or self.checks.get(name)
+            if check is None:
                 continue
-            if name.startswith("reply "):
-                check = next(one for one in replies if f"reply {one.name}" == name)
-                should = self.recovered.scene.get(check.name)
-            else:
-                check, should = self.checks[name], fields.get(name)
+            should = self.recovered.scene.get(check.name) if name in replies else fields.get(name)
             if check.printed is None or should is None:
                 continue
             kind = misprints.slip(check.printed, should)
@@ -314,67 +278,81 @@ class _Work:
             if kind:
                 yield Change(kind, name, check.printed, should)
 
-    def _explanation(
-        self,
-        changes: Sequence[Change],
-        unexplained: frozenset[str],
-        remaining: int,
-        believed: float | None = None,
+    def _slipped(
+        self, changes: Sequence[Change], unexplained: frozenset[str], bits: float | None = None
     ) -> Explanation:
-        first = changes[0]
-        kinds = list(dict.fromkeys(change.kind for change in changes))
-        kind = kinds[0] if len(kinds) == 1 else " and ".join(kinds)
-        if believed is None:
-            believed = sum(map(_believed, changes)) + 0.1 * (len(changes) - 1)
+        if bits is None:
+            bits = sum(map(_believed, changes)) + _EACH * (len(changes) - 1)
         if all(change.field in INPUTS for change in changes) and self.last_places:
-            believed += _LAST_PLACE
-        weight = believed + remaining
-        explains = len(self.base - unexplained)
-        name = first.field.removeprefix("reply ")
+            bits += _LAST_PLACE
         note = ""
-        if first.field.startswith("reply "):
+        if changes[0].field.startswith("reply "):
             note = "in the typed reply"
         elif any(one.field in self.recovered.apart for one in changes):
             note = "in the inputs given apart"
-        described = [self._change(change) for change in changes]
-        look = [one["look"] for one in described if one["look"]]
+        kind = " and ".join(dict.fromkeys(change.kind for change in changes))
+        made = self._explanation(kind, note, bits, unexplained, list(map(self._change, changes)))
+        made.look = [change["look"] for change in made.changes if change["look"]]
+        return made
+
+    def _explanation(
+        self,
+        kind: str,
+        note: str,
+        bits: float,
+        unexplained: frozenset[str],
+        changes: list[dict[str, Any]],
+    ) -> Explanation:
+        first = changes[0] if changes else dict.fromkeys(("field", "printed", "would_be"))
+        remaining = len(unexplained)
         return Explanation(
-            kind, name, first.printed, first.would_be, explains, max(0, remaining), note,
-            described, look, weight=weight, unexplained=unexplained,
+            kind, first["field"], first["printed"], first["would_be"],
+            len(self.base - unexplained), remaining, note, changes,
+            [change["look"] for change in changes if kind.endswith(("label", "exchanged"))],
+            weight=bits + _SLIP * remaining, unexplained=unexplained,
         )  # fmt: skip
 
     def _change(self, change: Change) -> dict[str, Any]:
         name = change.field.removeprefix("reply ")
         source = self.shown.replies if change.field.startswith("reply ") else self.shown.fields
         reading = source.get(name)
-        where = (reading.line, reading.column) if reading else (None, None)
-        look = ""
-        if reading is not None and change.kind == misprints.DIGIT:
+        if reading is None:
+            return _described(change.kind, name, change.printed, change.would_be)
+        at = reading.line, reading.column
+        made = _described(change.kind, name, change.printed, change.would_be, *at)
+        if change.kind == misprints.DIGIT:
             pairs = enumerate(zip(change.printed, change.would_be, strict=False))
             index = next((i for i, (read, true) in pairs if read != true), 0)
             if index < len(reading.region):
-                line, column = self.shown.place(reading.region[index].offset)
-                read, true = change.printed[index], change.would_be[index]
-                article = "an" if true == "8" else "a"
-                look = f"line {line}, column {column}: is this {read} {article} {true}?"
-        elif reading is not None:
-            look = (
-                f"line {reading.line}, column {reading.column}: is this {change.printed} "
-                f"{change.would_be}?"
-            )
-        return {
-            "kind": change.kind, "field": name, "printed": change.printed,
-            "would_be": change.would_be, "line": where[0], "column": where[1], "look": look,
-        }  # fmt: skip
+                at = self.shown.place(reading.region[index].offset)
+            digit = change.would_be[index]
+            is_this = f"is this {change.printed[index]} {'an' if digit == '8' else 'a'} {digit}?"
+            made["look"] = f"line {at[0]}, column {at[1]}: {is_this}"
+        return made
+
+
+def _described(
+    kind: str,
+    name: str,
+    printed: str,
+    would_be: str,
+    line: int | None = None,
+    column: int | None = None,
+) -> dict[str, Any]:
+    look = "" if line is None else f"line {line}, column {column}: is this {printed} {would_be}?"
+    return {
+        "kind": kind, "field": name, "printed": printed, "would_be": would_be,
+        "line": line, "column": column, "look": look,
+    }  # fmt: skip
 
 
 def _believed(change: Change) -> float:
-    cost = _COST[change.kind]
+    bits = _KINDS[change.kind]
     if change.kind == misprints.DIGIT:
-        cost += 0.04 * misprints.likeness(change.printed, change.would_be)
+        bits += _UNLIKE * misprints.likeness(change.printed, change.would_be)
     if change.field not in INPUTS:
-        cost += _LAST_PLACE * _in_last_places(change.field, change.printed, change.would_be)
-    return cost
+        bits += _LAST_PLACE * _in_last_places(change.field, change.printed, change.would_be)
+    return bits
 
 
 def _in_last_places(name: str, printed: str | None, other: str | None) -> bool:
@@ -389,27 +367,29 @@ def _in_last_places(name: str, printed: str | None, other: str | None) -> bool:
     return abs(one - two) <= _ENERGY_UNITS * Decimal(1).scaleb(two.adjusted() - _ENERGY_DIGITS + 1)
 
 
-def _chosen(explanations: list[Explanation], base: int) -> list[Explanation]:
+# --- which are offered, and in what order ---
+
+
+def _chosen(explanations: Iterable[Explanation], base: int) -> list[Explanation]:
     """Those that explain nearly all, the least to believe first; none twice."""
-    most_left = max(0, int(_NEARLY_ALL * base))
     kept = [
         one
         for one in explanations
-        if one.explains > 0 and one.remaining <= most_left and _few_slips(one)
+        if one.explains > 0 and one.remaining <= int(_NEARLY_ALL * base) and _few_slips(one)
     ]
     kept = [one for one in kept if not any(_completes(other, one) for other in kept)]
     kept.sort(key=lambda one: one.weight)
-    if kept:
-        kept = [one for one in kept if one.weight <= kept[0].weight + _WORSE]
     chosen: list[Explanation] = []
     for one in kept:
         # what only adds to a simpler cause, or says it again, is none of its own
-        if not any(_adds_to(one, other) or _says(one) == _says(other) for other in chosen):
+        if one.weight <= kept[0].weight + _WORSE and not any(
+            _adds_to(one, other) or _same(one, other) for other in chosen
+        ):
             chosen.append(one)
     # a misreading that would do is not left out where another machine is named
     shown, others = chosen[:MOST], chosen[MOST:]
-    innocent = next((one for one in others if not _accuses(one)), None)
-    if innocent is not None and all(map(_accuses, shown)):
+    innocent = next((one for one in others if not one.accuses), None)
+    if innocent is not None and all(one.accuses for one in shown):
         shown[-1] = innocent
     return _ranked(shown)
 
@@ -424,7 +404,7 @@ def _ranked(chosen: list[Explanation]) -> list[Explanation]:
             for rank, other in enumerate(leaders, 1)
             if one.unexplained == other.unexplained
             and one.weight <= other.weight + _ALIKE
-            and (_accuses(other) or not _accuses(one))
+            and (other.accuses or not one.accuses)
         )
         one.rank = next(alike, len(leaders) + 1)
         if one.rank > len(leaders):
@@ -432,22 +412,18 @@ def _ranked(chosen: list[Explanation]) -> list[Explanation]:
     return sorted(chosen, key=lambda one: (one.rank, one.weight))
 
 
-def _accuses(one: Explanation) -> bool:
-    return one.note.endswith(NOT_APPLESOFT)
-
-
 def _few_slips(one: Explanation) -> bool:
-    count = sum(change["kind"] in misprints.KINDS_OF_SLIPS for change in one.changes)
-    return count <= _MOST_SLIPS
+    slips = sum(change["kind"] in misprints.KINDS_OF_SLIPS for change in one.changes)
+    return slips <= _MOST_SLIPS
 
 
 def _completes(one: Explanation, other: Explanation) -> bool:
     """Whether one puts right what the other does and, slip for slip, what that leaves."""
-    more = len(_changes(one)) - len(_changes(other))
+    more = len(one.puts_right) - len(other.puts_right)
     return (
         bool(other.changes)
         and one.unexplained < other.unexplained
-        and _changes(other) < _changes(one)
+        and other.puts_right < one.puts_right
         and more <= len(other.unexplained - one.unexplained)
     )
 
@@ -455,15 +431,14 @@ def _completes(one: Explanation, other: Explanation) -> bool:
 def _adds_to(one: Explanation, other: Explanation) -> bool:
     """Whether one puts right what the other does and more, the same in the same way, or the same
     numbers in the same way and worse."""
-    changes, others = _changes(one), _changes(other)
     if one.kind == other.kind and one.remaining > other.remaining:
-        return {name for name, _ in changes} == {name for name, _ in others} != set()
-    return bool(others) and (others < changes or (others == changes and one.kind == other.kind))
+        names = {name for name, _ in one.puts_right}
+        return names == {name for name, _ in other.puts_right} != set()
+    if not other.changes:
+        return False
+    same = other.puts_right == one.puts_right and one.kind == other.kind
+    return same or other.puts_right < one.puts_right
 
 
-def _says(one: Explanation) -> tuple[str, str, frozenset[tuple[str, str]]]:
-    return one.kind, one.note, _changes(one)
-
-
-def _changes(one: Explanation) -> frozenset[tuple[str, str]]:
-    return frozenset((change["field"], change["would_be"]) for change in one.changes)
+def _same(one: Explanation, other: Explanation) -> bool:
+    return (one.kind, one.note, one.puts_right) == (other.kind, other.note, other.puts_right)

@@ -8,7 +8,7 @@ scene whose page is nearest counts. Numbers are compared by name, in whatever or
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 from ..errors import UserError
@@ -19,21 +19,10 @@ from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.printout import Printout, read_printouts
 from ..recovery.choices import with_opposite_mu
 from ..recovery.recovered import Recovered
-from ..recovery.replays import Outcome, run_once
+from ..recovery.replays import Outcome
 from ..recovery.typedtext import texts_that_print
 from ..scene import sample
-from .judgement import FieldCheck, Status, field_checks
-
-
-@dataclass
-class HeldAgainst:
-    """A printout judged by a copy: its numbers, the scene, what the copy and what the restored
-    listing print for it."""
-
-    shown: Printout
-    recovered: Recovered
-    fields: list[FieldCheck]
-    restored: dict[str, str]
+from .judgement import Judged, Status, judge
 
 
 def in_order(copy: ListingCopy, text: str) -> tuple[str, list[int]]:
@@ -75,18 +64,20 @@ def _labelled(printed: str) -> list[str]:
     return [letters for line in body.split("\n") if (letters := _letters(line)) and "=" in line]
 
 
-def held_against(copy: ListingCopy, shown: Printout, recovered: Recovered) -> HeldAgainst:
-    """The printout by the copy's page for the scene that comes nearest."""
-    best: HeldAgainst | None = None
+def held_against(
+    copy: ListingCopy, shown: Printout, recovered: Recovered, just: bool = False
+) -> Judged:
+    """The printout judged by the copy's page for the scene that comes nearest, or for ``just`` the
+    one recovered."""
+    best: Judged | None = None
     least = 10_000
-    for scene in _scenes(copy, shown, recovered):
+    for scene in [recovered.scene] if just else _scenes(copy, shown, recovered):
         outcome, printed = _outcome(copy, scene)
-        other = replace(recovered, scene=scene, outcome=outcome)
         labelled = replace(shown, labels=_labels(shown, printed))
-        checks = field_checks(labelled, other)
-        wrong = sum(check.status != Status.READ for check in checks)
+        found = judge(labelled, replace(recovered, scene=scene, outcome=outcome))
+        wrong = sum(check.status != Status.READ for check in found.fields)
         if wrong < least:
-            best, least = HeldAgainst(labelled, other, checks, run_once(scene).fields), wrong
+            best, least = found, wrong
         if not wrong:
             break
     assert best is not None

@@ -259,6 +259,33 @@ def ending_check(shown: Printout, recovered: Recovered) -> FieldCheck:
 # --- the verdict ---------------------------------------------------------------------------------
 
 
+@dataclass
+class Judged:
+    """A printout held against the page of the scene that was recovered: every number, the replies,
+    the ending, and the verdict."""
+
+    shown: Printout
+    recovered: Recovered
+    fields: list[FieldCheck]
+    replies: list[FieldCheck]
+    ending: FieldCheck
+    verdict: Verdict
+
+    @property
+    def contradicted(self) -> list[FieldCheck]:
+        """The numbers and the ending that are not what the program prints."""
+        every = [*self.fields, *self.replies, self.ending]
+        return [check for check in every if check.status == Status.CONTRADICTED]
+
+
+def judge(shown: Printout, recovered: Recovered) -> Judged:
+    """The printout, judged."""
+    fields = field_checks(shown, recovered)
+    replies, ending = reply_checks(shown, recovered), ending_check(shown, recovered)
+    verdict = verdict_of(shown, recovered, fields, replies, ending)
+    return Judged(shown, recovered, fields, replies, ending, verdict)
+
+
 def verdict_of(
     shown: Printout,
     recovered: Recovered,

@@ -8,7 +8,7 @@ whether what is still wrong is the reader's.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from ..doubles import double
@@ -20,13 +20,7 @@ from ..recovery.choices import reply_ways
 from ..recovery.recovered import Recovered
 from ..recovery.rereading import Reread, Rereading
 from ..recovery.search import MISMATCH, Scored, Search
-from .judgement import (
-    FieldCheck,
-    Status,
-    field_checks,
-    reply_checks,
-    settled,
-)
+from .judgement import Judged, Status, Verdict, judge, settled
 
 _TRIED = 8
 """Scenes of each kind that are judged, those that explain most."""
@@ -36,15 +30,6 @@ _FULL_TURN, _TURNED = 360.0, 2.0
 """Beyond it nobody types an angle, and what it costs to believe that somebody did."""
 _AS_WELL = 1.0
 """Scenes that cost so little more than the best explain the page as well."""
-
-
-@dataclass
-class Rejudged:
-    """The printout judged with the slips of its reader looked past."""
-
-    scene: dict[str, str | None]
-    fields: list[FieldCheck]
-    replies: list[FieldCheck]
 
 
 class LookingPast:
@@ -62,7 +47,7 @@ class LookingPast:
             return None
         return Rereading(self._recovered).best(deep=True)
 
-    def judged(self) -> Rejudged | None:
+    def judged(self) -> Judged | None:
         """The printout judged with its reader's slips put right; None where they are not its alone.
 
         The scene that explains most decides, and every other that explains the page as well must
@@ -74,7 +59,7 @@ class LookingPast:
         search = self._recovered.search
         scenes = list(self._slips_put_right())
         costs = [paper_cost(shown, search, one) for one in scenes]
-        best: Rejudged | None = None
+        best: Judged | None = None
         for cost, _, scored in sorted(zip(costs, range(len(scenes)), scenes, strict=True)):
             if cost > min(costs) + _AS_WELL:
                 break
@@ -93,7 +78,7 @@ class LookingPast:
         yield from (one.scored for one in (self.rereads or [])[:_TRIED])
 
 
-def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Rejudged | None:
+def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Judged | None:
     """The printout judged as one of a scene; None where more than its reader is wrong."""
     other = replace(
         recovered,
@@ -102,14 +87,14 @@ def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Rejudged |
         outcome=scored.outcome,
         missing=[],
     )
-    checks = field_checks(shown, other)
-    replies = reply_checks(shown, other)
-    if not settled(shown, checks, replies):
+    found = judge(shown, other)
+    if not settled(shown, found.fields, found.replies):
         return None
-    for check in [*checks, *replies]:
+    for check in [*found.fields, *found.replies]:
         if check.status == Status.CONTRADICTED:
             check.status, check.same = Status.DOUBTFUL, None
-    return Rejudged(other.scene_or_missing(), checks, replies)
+    found.verdict = Verdict.IDENTICAL_AS_READ
+    return found
 
 
 def paper_cost(shown: Printout, search: Search, scored: Scored) -> float:

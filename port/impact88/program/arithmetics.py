@@ -175,8 +175,10 @@ FLOAT64 = Arithmetic(
 ARITHMETICS = {arithmetic.name: arithmetic for arithmetic in (APPLESOFT, FLOAT64)}
 
 
-def named(name: str) -> Arithmetic:
-    """The arithmetic of that name. Raises UserError for an unknown one."""
+def named(name: str | Arithmetic) -> Arithmetic:
+    """The arithmetic of that name, or the one itself. Raises UserError for an unknown one."""
+    if isinstance(name, Arithmetic):
+        return name
     if name not in ARITHMETICS:
         raise UserError(f"{name!r} is not an arithmetic; expected {' or '.join(ARITHMETICS)}")
     return ARITHMETICS[name]

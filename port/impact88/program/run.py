@@ -17,6 +17,7 @@ from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.operators import Real
 from ..scene import Scene
 from . import arithmetics, listing, stepping
+from .arithmetics import Arithmetic
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def page(text: str) -> str:
 def start(
     data: Mapping[str, str],
     console: Console,
-    arithmetic: str = "applesoft",
+    arithmetic: str | Arithmetic = "applesoft",
     slot: str = "0",
     after_line: stepping.AfterLine | None = None,
 ) -> tuple[ApplesoftError | None, bool, stepping.Variables]:
@@ -126,7 +127,7 @@ def start(
 
 def run(
     scene: Mapping[str, str],
-    arithmetic: str = "applesoft",
+    arithmetic: str | Arithmetic = "applesoft",
     *,
     dos: bool = True,
     slot: int = 0,

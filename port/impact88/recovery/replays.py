@@ -27,16 +27,16 @@ class Outcome(NamedTuple):
     ending: str | None
 
 
-def run_once(scene: Mapping[str, str], arithmetic: str = "applesoft") -> Outcome:
+def run_once(scene: Mapping[str, str], arithmetic: str | Arithmetic = "applesoft") -> Outcome:
     """The outcome of one scene in the port."""
     return run_whole(scene, arithmetic)[0]
 
 
 def run_whole(
-    scene: Mapping[str, str], arithmetic: str = "applesoft"
+    scene: Mapping[str, str], arithmetic: str | Arithmetic = "applesoft"
 ) -> tuple[Outcome, dict[str, float]]:
-    """The outcome of one scene in the port, and the values that lines 660 to 760 floor before they
-    print them, unfloored (none when the run does not reach its end)."""
+    """The outcome of one scene in the port, and the values of lines 660 to 760 before they are
+    floored (none when the run does not reach its end)."""
     from ..program.run import run
 
     ported = run(scene, arithmetic)
@@ -95,6 +95,7 @@ def _unfloored(ported: Run) -> dict[str, float]:
         "YA": value["UY"] - value["D4"] * value["WA"],
         "XB": value["VX"] - value["D1"] * value["WB"],
         "YB": value["VY"] + value["D2"] * value["WB"],
+        "KI": value["KI"],
         "LOSS": 100 * (value["KI"] - value["KF"]) / value["KI"],
         **{f"{name}F": value[name] for name in ("XA", "YA", "XB", "YB")},
         **dict(zip(("VAX", "VAY", "VBX", "VBY"), solution, strict=False)),
@@ -102,29 +103,3 @@ def _unfloored(ported: Run) -> dict[str, float]:
     if value["M"] == value["N"]:
         values |= {"WAF": solution[4], "WBF": solution[5]}
     return values
-
-
-def run_on(scene: Mapping[str, str], arithmetic: Arithmetic) -> Outcome:
-    """What the listing prints for a scene in another machine's arithmetic."""
-    from ..applesoft.console import Console
-    from ..program import listing
-    from ..scene import Scene
-
-    whole = Scene.from_mapping(scene)
-    printed: list[str] = []
-    replies = iter(whole.keyboard())
-    console = Console(lambda: next(replies, None), printed.append)
-    ending: str | None = None
-    import numpy as np
-
-    try:
-        with np.errstate(divide="raise", over="raise", invalid="raise"):
-            listing.impact(whole, arithmetic, console)
-    except listing.End:
-        ending = ZERO_DETERMINANT
-    except Exception as exception:
-        error = arithmetic.error(exception)
-        if error is None:
-            raise
-        ending = error.message
-    return Outcome(outcome_fields("".join(printed)), ending)

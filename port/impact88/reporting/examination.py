@@ -11,18 +11,10 @@ from time import process_time
 
 from .. import files
 from ..errors import UserError
-from ..explaining.explanations import explain
+from ..explaining.explanations import explain, explain_copy
 from ..judging import beside
 from ..judging.copies import held_against, in_order
-from ..judging.judgement import (
-    FieldCheck,
-    Status,
-    Verdict,
-    ending_check,
-    field_checks,
-    reply_checks,
-    verdict_of,
-)
+from ..judging.judgement import FieldCheck, Judged, Status, Verdict, judge
 from ..judging.lookingpast import LookingPast
 from ..judging.unseen import unseen
 from ..names import SCENE
@@ -30,6 +22,7 @@ from ..program.listingcopy import ListingCopy
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import Recovered, recover, without_angles
+from ..recovery.replays import run_once
 from . import provenance, wording
 from .verification import Examined, Verification
 
@@ -72,11 +65,12 @@ def examine_bytes(
 ) -> Examined:
     """The same of a file's bytes; ``path`` is what it is called."""
     digest = provenance.sha256(data)
+    picture = data if data.startswith(PICTURE_STARTS) else b""
     try:
         results = list(_verified(path, data, digest, given, copy))
     except UserError as error:
         return Examined(path, digest, error=str(error))
-    return Examined(path, digest, results)
+    return Examined(path, digest, results, picture=picture)
 
 
 def verify_file(path: str, given: Mapping[str, str] | None = None) -> Iterator[Verification]:
@@ -145,30 +139,91 @@ def verify(
 
     ``given``: texts of inputs by scene name, known from elsewhere than the printout. ``copy``: the
     listing it is held against, in place of the restored one."""
-    if copy is not None:
-        return _against(copy, shown, recover(shown, given), file, number)
     begun = process_time()
+
+    def in_time() -> bool:
+        return process_time() - begun < BUDGET
+
     recovered = recover(shown, given)
+    if copy is not None:
+        return completed(_against(copy, shown, recovered, file, number))
     past = LookingPast(shown, recovered)
-    looked_past = None
-    if recovered.row_in_doubt and not shown.mislabelled:
-        looked_past = past.judged()
+    better = None
     tried = recovered.row_in_doubt or bool(shown.mislabelled)
-    if recovered.row_in_doubt and looked_past is None:
-        recovered = without_angles(recovered)
-    checks = field_checks(shown, recovered)
-    replies = reply_checks(shown, recovered)
-    ending = ending_check(shown, recovered)
-    result = Verification(
+    if recovered.row_in_doubt:
+        better = None if shown.mislabelled else past.judged()
+        recovered = recovered if better else without_angles(recovered)
+    found = judge(shown, recovered)
+    late = []
+    if found.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE) and not tried:
+        if in_time():
+            better = past.judged()
+        elif shown.machine_read:
+            found.verdict = Verdict.INCOMPLETE
+            late = [f"what its reader misread was not sought: over {BUDGET:g} s"]
+    result = _result(better or found, file, number)
+    result.remarks += late
+    if result.verdict is Verdict.DIFFERS:
+        # what was reread tries the page's inputs alone
+        rereads = None if recovered.apart else past.rereads
+        result.explanations = explain(found, rereads, in_time)
+    if result.verdict is Verdict.INCOMPLETE and shown.badly_read and result.differing:
+        result.remarks.append(
+            f"{len(result.differing)} numbers are read otherwise than the program prints them, and "
+            "the page is too badly read to tell what was altered on it from what was misread"
+        )
+    apart = [name for name in given or () if _not_printed(result, name)]
+    result.findings = [
+        *(wording.looked_past(result.fields, result.replies) if better else ()),
+        *wording.findings(shown, result.fields, recovered),
+        *wording.given_apart(apart, result.fields),
+        *wording.given_otherwise(given or {}, result.scene, result.fields),
+    ]
+    return completed(result)
+
+
+def _against(
+    copy: ListingCopy, shown: Printout, recovered: Recovered, file: str, number: int
+) -> Verification:
+    """The verdict on a printout as a page of an office's copy of the listing."""
+    found = held_against(copy, shown, recovered)
+    result = _result(found, file, number)
+    if result.verdict is Verdict.DIFFERS:
+        result.explanations = explain_copy(
+            found, recovered, lambda other: held_against(copy, shown, other, just=True)
+        )
+    result.findings = wording.of_copy(copy, found, run_once(found.recovered.scene).fields)
+    result.copy = {
+        "file": copy.file,
+        "sha256": copy.sha256,
+        "lines": [line._asdict() for line in copy.changed_lines()],
+    }
+    return result
+
+
+def _result(found: Judged, file: str, number: int) -> Verification:
+    """What is told of a printout that was judged."""
+    shown = found.shown
+    scene = found.recovered.scene_or_missing()
+    status = {check.name: check.status for check in found.fields}
+    guessed = [
+        name
+        for name, text in scene.items()
+        if text is not None
+        and name != "M"
+        and status.get("MUP" if name == "MU" else name) != Status.READ
+    ]
+    return Verification(
         file=file,
         number=number,
         line=shown.line,
-        verdict=verdict_of(shown, recovered, checks, replies, ending),
-        scene=recovered.scene_or_missing(),
-        fields=checks,
-        replies=replies,
-        ending=ending,
-        missing=recovered.missing,
+        verdict=found.verdict,
+        scene=scene,
+        fields=found.fields,
+        replies=found.replies,
+        ending=found.ending,
+        missing=found.recovered.missing,
+        guessed=guessed,
         remarks=[*map(str, shown.remarks), *shown.notes, *filter(None, [shown.unread])],
         left_over=shown.left_over,
         labels=shown.labels,
@@ -176,42 +231,6 @@ def verify(
         stop=shown.stop,
         text=shown.page.text if shown.page else "",
     )
-    if result.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE) and not tried:
-        if process_time() - begun < BUDGET:
-            looked_past = past.judged()
-        elif shown.machine_read:
-            result.verdict = Verdict.INCOMPLETE
-            result.remarks.append(f"what its reader misread was not sought: over {BUDGET:g} s")
-    if result.verdict is Verdict.DIFFERS and looked_past is None:
-        rereads = None if recovered.apart else past.rereads  # those try the page's inputs alone
-        result.explanations = explain(
-            shown,
-            recovered,
-            checks,
-            replies,
-            ending,
-            rereads,
-            lambda: process_time() - begun < BUDGET,
-        )
-    if looked_past is not None:
-        result.verdict = Verdict.IDENTICAL_AS_READ
-        result.scene, result.fields = looked_past.scene, looked_past.fields
-        result.replies, result.explanations = looked_past.replies, []
-    result.guessed = _guessed(result)
-    if result.verdict is Verdict.INCOMPLETE and shown.badly_read and result.differing:
-        result.remarks.append(
-            f"{len(result.differing)} numbers are read otherwise than the program prints them, and "
-            "the page is too badly read to tell what was altered on it from what was misread"
-        )
-    result.findings = [
-        *(wording.looked_past(result.fields, result.replies) if looked_past else ()),
-        *wording.findings(shown, result.fields, recovered),
-        *wording.given_apart(
-            [name for name in given or () if _not_printed(result, name)], result.fields
-        ),
-        *wording.given_otherwise(given or {}, result.scene, result.fields),
-    ]
-    return completed(result)
 
 
 def completed(result: Verification) -> Verification:
@@ -225,59 +244,7 @@ def completed(result: Verification) -> Verification:
     return result
 
 
-def _against(
-    copy: ListingCopy, shown: Printout, recovered: Recovered, file: str, number: int
-) -> Verification:
-    """The verdict on a printout as a page of an office's copy of the listing."""
-    held = held_against(copy, shown, recovered)
-    checks = held.fields
-    replies = reply_checks(held.shown, held.recovered)
-    ending = ending_check(held.shown, held.recovered)
-    result = Verification(
-        file=file,
-        number=number,
-        line=shown.line,
-        verdict=verdict_of(held.shown, held.recovered, checks, replies, ending),
-        scene=held.recovered.scene_or_missing(),
-        fields=checks,
-        replies=replies,
-        ending=ending,
-        missing=held.recovered.missing,
-        remarks=[*map(str, shown.remarks), *shown.notes, *filter(None, [shown.unread])],
-        left_over=held.shown.left_over,
-        labels=held.shown.labels,
-        start=shown.start,
-        stop=shown.stop,
-        text=shown.page.text if shown.page else "",
-    )
-    result.guessed = _guessed(result)
-    result.unseen = unseen(result.scene, result.missing)
-    result.findings = wording.of_copy(copy, result.verdict, held)
-    result.copy = {
-        "file": copy.file,
-        "sha256": copy.sha256,
-        "lines": [line._asdict() for line in copy.changed_lines()],
-    }
-    if result.runnable:
-        scene = {name: text or "" for name, text in result.scene.items()}
-        beside.add_exact_values(scene, result.fields)
-        result.warnings = beside.warnings(scene)
-    return result
-
-
 def _not_printed(result: Verification, name: str) -> bool:
     """Whether an input was not read from the page; M is printed nowhere."""
     field = "MUP" if name == "MU" else name
     return any(check.name == field and check.printed is None for check in result.fields)
-
-
-def _guessed(result: Verification) -> list[str]:
-    """The inputs that do not stand on the paper as they were used."""
-    status = {check.name: check.status for check in result.fields}
-    return [
-        name
-        for name, text in result.scene.items()
-        if text is not None
-        and name != "M"
-        and status.get("MUP" if name == "MU" else name) != Status.READ
-    ]

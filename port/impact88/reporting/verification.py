@@ -1,10 +1,13 @@
-"""What a verification holds: the result for one printout, and for one file; and both as text."""
+"""What a verification holds, for one printout and for one file; and what is said of it.
+
+`sections` is all that is said in words, whatever the form: text, a page, the desk.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from .. import notebook
 from ..errors import shown
@@ -135,12 +138,14 @@ class Verification:
 
 @dataclass
 class Examined:
-    """One file: what was found in it, or why it could not be read. ``sha256``: of its bytes."""
+    """One file: what was found in it, or why it could not be read. ``sha256``: of its bytes;
+    ``picture``: these, where they are a picture."""
 
     file: str
     sha256: str | None
     results: list[Verification] = field(default_factory=list)
     error: str | None = None
+    picture: bytes = field(default=b"", repr=False)
 
     def as_json(self) -> list[dict[str, Any]]:
         """The objects `impact88 verify --json` prints for the file."""
@@ -150,100 +155,142 @@ class Examined:
         return [stamped("verify", refused)]
 
 
-# --- as text --------------------------------------------------------------------------------------
+# --- in words -------------------------------------------------------------------------------------
 
 
-def summary(result: Verification) -> Iterator[str]:
+class Section(NamedTuple):
+    """A part of what is said of a printout, in any form: a heading and its lines; a line that
+    begins with blanks belongs to the one above it."""
+
+    heading: str
+    lines: list[str]
+
+
+def summary(result: Verification) -> list[str]:
     """What a verdict rests on: counts, and by name what is missing."""
-    verdict = result.verdict
-    fields = result.fields
+    verdict, fields = result.verdict, result.fields
+    said = []
     if verdict is Verdict.IDENTICAL:
         who = f"the copy {result.copy['file']}" if result.copy else "the program"
-        yield f"all {len(fields)} printed numbers are what {who} prints, digit for digit"
+        said.append(f"all {len(fields)} printed numbers are what {who} prints, digit for digit")
     elif verdict is Verdict.DIFFERS:
         compared = sum(check.same is not None for check in fields)
-        yield f"{compared} printed numbers compared, {len(result.differing)} differ"
+        said.append(f"{compared} printed numbers compared, {len(result.differing)} differ")
         wrong = len(result.mislabelled)
         if wrong:
-            yield f"{wrong} label{'' if wrong == 1 else 's'} contradict{'s' if wrong == 1 else ''}"
+            said.append(f"{wrong} label{'' if wrong == 1 else 's'} contradict{'s' * (wrong == 1)}")
     else:
-        yield wording.counts(fields)
+        said.append(wording.counts(fields))
     if verdict is Verdict.IDENTICAL_AS_READ:
-        yield wording.says(verdict)
-    if len(result.missing) == 1:
-        yield f"{result.missing[0]} is missing: what depends on it was not compared"
-    elif result.missing:
-        yield f"{', '.join(result.missing)} are missing: what depends on them was not compared"
+        said.append(wording.MEANINGS[verdict])
+    if result.missing:
+        one = len(result.missing) == 1
+        names = ", ".join(result.missing)
+        said.append(
+            f"{names} {'is' if one else 'are'} missing: what depends on {'it' if one else 'them'} "
+            "was not compared"
+        )
     not_read = [name for name in result.not_read if name not in result.missing]
     if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
-        yield f"not read: {', '.join(not_read)}"
+        said.append(f"not read: {', '.join(not_read)}")
     if verdict is Verdict.INCOMPLETE and not result.missing and not not_read:
-        yield "the results are missing, or the page ends before they do"
+        said.append("the results are missing, or the page ends before they do")
     ending = result.ending
     if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
-        yield (
+        said.append(
             f"ends with {ending.printed or 'no error'}, "
             f"recomputed: {ending.recomputed or 'no error'}"
         )
+    return said
 
 
-def explained(result: Verification) -> Iterator[str]:
+DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
+EXPLAINED = "possible explanations, best first"
+
+
+def sections(result: Verification) -> list[Section]:
+    """Everything below the verdict and beside the table, in order; no empty ones."""
+    doubtful = wording.labels(result.labels)
+    doubtful += [line for check in result.doubtful for line in wording.doubts(check)]
+    explained = _explained(result) if result.verdict is Verdict.DIFFERS else []
+    notes = [
+        f"the reply {check.printed} for {check.name} is not the {check.recomputed} used"
+        for check in result.replies
+        if check.same is False
+    ]
+    notes += [*result.remarks, *wording.left_over(result.left_over)]
+    every = (
+        Section(DOUBTFUL, doubtful),
+        Section(EXPLAINED, explained),
+        Section("the page cannot show", result.unseen),
+        Section("what the page shows besides", result.findings),
+        Section("beside the verdict", result.warnings),
+        Section(NOTES, notes),
+    )
+    return [one for one in every if one.lines]
+
+
+def _explained(result: Verification) -> list[str]:
     """The explanations, best first, and where to look on the paper."""
-    if not result.explanations:
-        yield NO_SINGLE_SLIP
-        return
-    yield "possible explanations, best first:"
+    said: list[str] = []
     before = 0
     for one in result.explanations:
         if one.rank != before:
-            words = f"{one.rank}. {wording.cause(one)}; explains {one.explains} of "
-            words += str(result.disagreements)
+            of_all = f"explains {one.explains} of {result.disagreements}"
+            said.append(f"{one.rank}. {wording.cause(one)}; {of_all}")
         else:
-            words = f"   or, {wording.NOT_TOLD_APART}: {wording.cause(one)}"
+            said.append(f"   or, which this page cannot tell from it: {wording.cause(one)}")
         before = one.rank
-        yield words
-        for where in one.look[:4]:
-            yield f"   look at {where}"
+        said += [f"   look at {where}" for where in one.look[:4]]
+    return said or [NO_SINGLE_SLIP]
+
+
+# --- as text --------------------------------------------------------------------------------------
 
 
 def lines(result: Verification, brief: bool = False) -> Iterator[str]:
     """What `impact88 verify` prints of one printout; ``brief``: only verdict and what differs."""
     where = f"{shown(called(result.file))}, printout {result.number} (line {result.line})"
-    yield f"{where}: {wording.title(result.verdict)}"
+    yield f"{where}: {wording.TITLES[result.verdict]}"
     yield from (f"  {line}" for line in summary(result))
-    doubts = wording.labels(result.labels)
-    doubts += [line for check in result.doubtful for line in wording.doubts(check)]
-    yield from (f"  {line}" for line in _some(doubts, brief))
+    parts = {one.heading: one.lines for one in sections(result)}
+    yield from (f"  {line}" for line in _some(parts.pop(DOUBTFUL, []), brief))
     checks = result.differing if brief else result.fields
     if checks:
         yield ""
         yield from (f"  {line}" for line in _table(checks, exact=not brief))
-    for check in result.replies:
-        if check.same is False:
-            yield f"  the reply {check.printed} for {check.name} is not the {check.recomputed} used"
-    if result.verdict is Verdict.DIFFERS:
-        yield ""
-        yield from (f"  {line}" for line in explained(result))
-    for title, sentences in (
-        ("the page cannot show:", result.unseen),
-        ("what the page shows besides:", result.findings),
-        ("beside the verdict:", [] if brief else result.warnings),
-    ):
-        if sentences:
+    notes = parts.pop(NOTES, [])
+    for heading, said in parts.items():
+        if not brief or said is not result.warnings:
             yield ""
-            yield f"  {title}"
-            yield from (f"  - {line}" for line in sentences)
-    notes = [*result.remarks, *wording.left_over(result.left_over)]
+            yield f"  {heading}:"
+            mark = "" if heading == EXPLAINED else "- "
+            yield from (f"  {mark}{line}" for line in said)
     yield from (f"  note: {line}" for line in _some(notes, brief))
     if not brief:
         yield ""
 
 
-def _some(lines: list[str], brief: bool) -> list[str]:
+def _some(said: list[str], brief: bool) -> list[str]:
     """All lines, or a few of them and how many more there are."""
-    if not brief or len(lines) <= 4:
-        return lines
-    return [*lines[:3], f"and {len(lines) - 3} more places"]
+    if not brief or len(said) <= 4:
+        return said
+    return [*said[:3], f"and {len(said) - 3} more places"]
+
+
+def _table(checks: Sequence[FieldCheck], exact: bool) -> Iterator[str]:
+    """Rows of printed against recomputed, those that differ marked."""
+    headings = ["", "printed", "recomputed", "exact", "printed-exact"]
+    rows = [headings[: 5 if exact else 3]]
+    for check in checks:
+        row = [check.name, check.printed or "-", check.recomputed or "-"]
+        rows.append(row + [check.exact or "", check.difference or ""] * exact)
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    marks = ["", *(_MARKS[Status(check.status)] for check in checks)]
+    for row, mark in zip(rows, marks, strict=True):
+        cells = [row[0].ljust(widths[0])]
+        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        yield "  ".join([*cells, mark]).rstrip()
 
 
 _MARKS = {
@@ -253,20 +300,3 @@ _MARKS = {
     Status.NOT_READ: "not read",
     Status.NOT_COMPARED: "not compared",
 }
-
-
-def _table(checks: list[FieldCheck], exact: bool) -> Iterator[str]:
-    """Rows of printed against recomputed, those that differ marked."""
-    rows = [["", "printed", "recomputed"]]
-    for check in checks:
-        rows.append([check.name, check.printed or "-", check.recomputed or "-"])
-    if exact:
-        rows[0] += ["exact", "printed-exact"]
-        for row, check in zip(rows[1:], checks, strict=True):
-            row += [check.exact or "", check.difference or ""]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    notes = ["", *(_MARKS[Status(check.status)] for check in checks)]
-    for row, note in zip(rows, notes, strict=True):
-        cells = [row[0].ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
-        yield "  ".join([*cells, note]).rstrip()

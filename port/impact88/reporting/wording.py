@@ -7,8 +7,7 @@ from collections.abc import Mapping, Sequence
 from ..errors import printable
 from ..explaining.explanations import Explanation
 from ..fields import ANGLES, INPUTS
-from ..judging.copies import HeldAgainst
-from ..judging.judgement import FieldCheck, Status, Verdict, misread_at_all, swapped_digits
+from ..judging.judgement import FieldCheck, Judged, Status, Verdict, misread_at_all, swapped_digits
 from ..program.listingcopy import ListingCopy
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
@@ -24,24 +23,14 @@ TITLES = {
     Verdict.INCOMPLETE: "INCOMPLETE",
 }
 
-NOT_TOLD_APART = "which this page cannot tell from it"
-_SAYS = {
+MEANINGS = {
     Verdict.IDENTICAL: "every printed number is what the 1988 program prints, digit for digit",
     Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; what was not read "
     "exactly is listed, and is to be looked at on the paper",
     Verdict.DIFFERS: "something on the paper contradicts every scene that its inputs allow",
     Verdict.INCOMPLETE: "numbers are missing or could not be read; what could be compared agrees",
 }
-
-
-def title(verdict: Verdict) -> str:
-    """The verdict as it is shown."""
-    return TITLES[verdict]
-
-
-def says(verdict: Verdict) -> str:
-    """What a verdict says, in a lay person's words."""
-    return _SAYS[verdict]
+"""What a verdict says."""
 
 
 def counts(fields: Sequence[FieldCheck]) -> str:
@@ -111,7 +100,7 @@ def _a(glyph: str) -> str:
     return "an" if glyph[:1] == "8" else "a"
 
 
-def findings(shown: Printout, fields: Sequence[FieldCheck], recovered: Recovered) -> list[str]:
+def findings(page: Printout, fields: Sequence[FieldCheck], recovered: Recovered) -> list[str]:
     """What the page shows besides its numbers."""
     sentences = []
     retyped = [
@@ -122,7 +111,7 @@ def findings(shown: Printout, fields: Sequence[FieldCheck], recovered: Recovered
             f"{', '.join(retyped)} in a form Applesoft never prints (a zero before the point or at "
             "the end, a plus sign): retyped, or made by another program"
         )
-    if commas(shown):
+    if commas(page):
         sentences.append("decimal commas throughout: retyped, or made by another program")
     if recovered.m_unknown and not recovered.missing:
         m = recovered.scene["M"]
@@ -130,7 +119,7 @@ def findings(shown: Printout, fields: Sequence[FieldCheck], recovered: Recovered
             f"no line of final spins: read as M = {m}; with M = {'6' if m == '4' else '4'} the "
             "program prints the same numbers but for that line"
         )
-    elif recovered.scene["M"] == "4" and "M" not in recovered.missing and not shown.has_final_spins:
+    elif recovered.scene["M"] == "4" and "M" not in recovered.missing and not page.has_final_spins:
         sentences.append("no line of final spins: the results are those of M = 4, not of M = 6")
     return sentences
 
@@ -152,24 +141,23 @@ def looked_past(fields: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> 
     ]
 
 
-def of_copy(copy: ListingCopy, verdict: Verdict, held: HeldAgainst) -> list[str]:
-    """What an office's copy of the listing prints, and in which lines it is another program."""
-    agrees = verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
-    says = f"this page is {'' if agrees else 'not '}what the copy {copy.file} prints"
-    others = [
-        f"{check.name} {held.restored.get(check.name, 'nothing')}"
+def of_copy(copy: ListingCopy, held: Judged, restored: Mapping[str, str]) -> list[str]:
+    """What an office's copy of the listing prints, and in which lines it is another program;
+    ``restored``: what the restored listing prints for the scene."""
+    agrees = held.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+    others = ", ".join(
+        f"{check.name} {restored.get(check.name, 'nothing')}"
         for check in held.fields
-        if check.recomputed != held.restored.get(check.name)
-    ]
-    lines = [
-        f"line {line.line}: the copy has {line.copy or 'nothing'} | "
-        f"the restored listing {line.restored or 'nothing'}"
-        for line in copy.changed_lines()
-    ]
-    same = "the restored listing prints the same numbers"
+        if check.recomputed != restored.get(check.name)
+    )
     return [
-        f"{says}; {'the restored listing prints ' + ', '.join(others) if others else same}",
-        *lines,
+        f"this page is {'' if agrees else 'not '}what the copy {copy.file} prints; the restored "
+        f"listing prints {others or 'the same numbers'}",
+        *(
+            f"line {line.line}: the copy has {line.copy or 'nothing'} | "
+            f"the restored listing {line.restored or 'nothing'}"
+            for line in copy.changed_lines()
+        ),
     ]
 
 
@@ -205,9 +193,9 @@ def given_otherwise(
     return [f"given apart otherwise than the page has it, which counts: {'; '.join(otherwise)}"]
 
 
-def commas(shown: Printout) -> bool:
+def commas(page: Printout) -> bool:
     """Whether every decimal point is a comma."""
-    text = "".join(glyph.char for reading in shown.fields.values() for glyph in reading.region[:-1])
+    text = "".join(glyph.char for reading in page.fields.values() for glyph in reading.region[:-1])
     return text.count(",") >= 3 and "." not in text
 
 

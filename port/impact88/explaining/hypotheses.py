@@ -1,0 +1,326 @@
+"""Named causes (``hypotheses.txt``): pages whose inputs or results stand there otherwise.
+
+Each row means a scene that was computed with, or results that are shown otherwise. All are ranked
+in double precision, the nearest replayed. A number shown in another unit was rounded there, so that
+it may have been computed with several; they are searched for the nearest rows.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from itertools import combinations
+from math import isfinite
+from typing import NamedTuple
+
+import numpy as np
+
+from ..doubles import double, doubles_of
+from ..equations.evaluation import value
+from ..equations.otherprogram import assigned, written_out
+from ..fields import FIELDS, INPUTS
+from ..files import packaged_text
+from ..reading import numerals
+from ..recovery import replays
+from ..recovery.choices import Choice, Choices, scene_name, with_opposite_mu
+from ..recovery.rereading import Change
+from ..recovery.search import in_doubles
+from .evidence import Evidence, Range, around, as_printed
+
+_REPLAYED = 40
+"""Rows that are replayed, the nearest of some 700."""
+_FAR, _NEAR = 0.1, 0.03
+"""What a result counts at most that is far off, relatively; and how far a unit may be off on
+average to be searched: 88 for 88.4 is off by 0.005."""
+_SEARCHED, _BY_ENERGY, _LAST = 2, 300, 24
+_CANDIDATES, _COMBINATIONS = 24, 60_000
+"""Numbers that may have been computed with: of one input, and of all together."""
+_FACTOR = 1e-6
+"""Relative error of a factor that is known to seven digits."""
+
+
+class Row(NamedTuple):
+    """A line of the table."""
+
+    kind: str
+    note: str
+    bits: float
+    inputs: Mapping[str, ast.expr]
+    results: Mapping[str, ast.expr]
+
+
+class Hypothesis(NamedTuple):
+    """A row, the scene it means for a page, the printed inputs it puts right, the texts it takes
+    to have been printed in their place, and how far what was typed may be from what the scene
+    has."""
+
+    row: Row
+    scene: dict[str, str]
+    changes: tuple[Change, ...]
+    assumed: Mapping[str, str]
+    within: Mapping[str, float]
+
+
+@cache
+def table() -> tuple[Row, ...]:
+    """All rows, each cause once."""
+    lines = []
+    for line in packaged_text(__package__ or "", "hypotheses.txt").splitlines():
+        if line.startswith("#") or not line.strip():
+            continue
+        if "{one}" in line:
+            of_results = ";;" in line
+            names = [n for n in FIELDS if n not in INPUTS] if of_results else list(INPUTS)
+            for one, two in combinations(map(scene_name, names), 2):
+                lines.append(line.replace("{one}", one).replace("{two}", two))
+        else:
+            lines.append(line)
+    rows: dict[str, Row] = {}
+    for line in written_out(lines):
+        kind, note, bits, edits = (part.strip() for part in line.split("|"))
+        inputs, _, results = edits.partition(";;")
+        row = Row(kind, note, float(bits), dict(assigned(inputs)), dict(assigned(results)))
+        rows.setdefault(edits, row)
+    return tuple(rows.values())
+
+
+class Tables:
+    """The rows that change inputs, for one page."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._evidence = evidence
+        self._scene, self._printed = evidence.recovered.scene, evidence.recovered.assumed
+        self._values = doubles_of({name: text or "0" for name, text in self._scene.items()})
+        rows = [row for row in table() if row.inputs]
+        every = [one for row in rows for one in self._either_sign(row)]
+        far = self._far(every)
+        bits = [one.row.bits for one in every]
+        order = np.lexsort((bits, far))[:_REPLAYED].tolist()
+        self.nearest = [every[index] for index in order]
+        self._close = [
+            one for one, index in zip(self.nearest, order, strict=True) if far[index] <= _NEAR
+        ]
+
+    def exchanges(self) -> list[Hypothesis]:
+        """The inputs in each other's place that are printed on the page."""
+        return [
+            one
+            for row in table()
+            if row.bits < 20 and all(isinstance(made, ast.Name) for made in row.inputs.values())
+            for one in [self._made(row)]
+            if one
+            and one.changes
+            and {change.field for change in one.changes} <= set(self._printed)
+        ]
+
+    def _either_sign(self, row: Row) -> Iterator[Hypothesis]:
+        one = self._made(row)
+        if one:
+            yield one
+            for scene in with_opposite_mu(one.scene):
+                yield one._replace(scene=scene)
+
+    def _made(self, row: Row) -> Hypothesis | None:
+        typed: dict[str, str] = {}
+        assumed = dict(self._printed)
+        within: dict[str, float] = {}
+        decimals = max((_decimals(self._scene[name]) for name in row.inputs), default=0)
+        for name, made in row.inputs.items():
+            if isinstance(made, ast.Name) and made.id != "x":
+                typed[name] = self._scene[made.id]
+                if (other := _field(made.id)) in self._printed:
+                    assumed[_field(name)] = self._printed[other]
+                continue
+            x = self._values[name]
+            found = float(value(made, {**self._values, "x": x}))
+            if not isfinite(found):
+                return None
+            slack = 0.0
+            if x and _is_conversion(made):
+                half = 0.5 * 10.0**-decimals
+                ends = [float(value(made, {**self._values, "x": x + way})) for way in (-half, half)]
+                slack = within[name] = abs(ends[1] - ends[0]) / 2
+            typed[name] = _shortest(found, slack)
+        changes = tuple(
+            Change(
+                row.kind,
+                name,
+                self._printed.get(name, self._scene[scene_name(name)]),
+                assumed[name]
+                if name in assumed and assumed[name] != self._printed.get(name)
+                else numerals.as_printed(text) or text,
+            )
+            for name in INPUTS
+            if (text := typed.get(scene_name(name))) and text != self._scene[scene_name(name)]
+        )
+        if not changes and typed.get("M", self._scene["M"]) == self._scene["M"]:
+            return None
+        return Hypothesis(row, {**self._scene, **typed}, changes, assumed, within)
+
+    def _far(self, every: Sequence[Hypothesis]) -> np.ndarray:
+        """How far off the results are, relatively and on average, by double precision."""
+        columns = {
+            name: np.array([double(one.scene[name] or "0") for one in every])
+            for name in self._scene
+        }
+        numbers = {name: some[0] for name, some in self._evidence.results.items() if some}
+        found = in_doubles(columns, list(numbers))
+        for index, one in enumerate(every):
+            if one.row.results:
+                names = {name: column[index] for name, column in found.items()}
+                for name, made in one.row.results.items():
+                    if name in names:
+                        found[name][index] = value(made, {**names, "x": names[name]})
+        rows = [
+            np.nan_to_num(np.abs(found[name] - float(number)) / (abs(float(number)) + 0.1), nan=1.0)
+            for name, number in numbers.items()
+        ]
+        if not rows:
+            return np.zeros(len(every))
+        return np.minimum(rows, _FAR).mean(axis=0)
+
+    # --- a unit's rounding undone ---
+
+    def searched(self) -> Iterator[Hypothesis]:
+        """The units that nearly explain the page, with the numbers that explain it best."""
+        if self._scene["M"] == "6":
+            units = [one for one in self._close if one.within and not one.row.results]
+            yield from map(self._searched, units[:_SEARCHED])
+
+    def _searched(self, unit: Hypothesis) -> Hypothesis:
+        choices = self._choices(unit)
+        picks = np.stack(
+            [axis.ravel() for axis in np.indices([len(some) for some in choices])], axis=1
+        )
+        search = self._evidence.recovered.search
+        picks = search.by_energy(choices, picks, _BY_ENERGY)
+        picks = search.screened(choices, picks, _LAST)
+        best = min(search.replayed(choices, picks), key=lambda one: one.cost)
+        changes = tuple(
+            change._replace(would_be=numerals.as_printed(text) or text)
+            for change in unit.changes
+            if (text := best.scene[scene_name(change.field)])
+        )
+        return unit._replace(changes=changes, scene=best.scene, within={})
+
+    def _choices(self, unit: Hypothesis) -> Choices:
+        """For the converted inputs every number that may have been computed with."""
+        most = int(_COMBINATIONS ** (1 / len(unit.within)))
+        choices: Choices = []
+        for name in INPUTS:
+            own = scene_name(name)
+            if own in unit.within:
+                made = unit.row.inputs[own]
+                exact = float(value(made, {**self._values, "x": self._values[own]}))
+                texts = _near(exact, unit.within[own], min(_CANDIDATES, most))
+                choices.append([Choice({own: text}, {}, 0.0) for text in texts])
+                continue
+            printed = {name: self._printed[name]} if name in self._printed else {}
+            choices.append([Choice({own: unit.scene[own]}, printed, 0.0)])
+            if own == "MU":
+                for typed in with_opposite_mu({own: unit.scene[own]}):
+                    choices[-1].append(Choice(typed, printed, 0.0))
+        choices.append([Choice({"M": unit.scene["M"]}, {}, 0.0)])
+        return choices
+
+
+def unexplained(
+    evidence: Evidence, every: Sequence[Hypothesis]
+) -> Iterator[tuple[Hypothesis, frozenset[str]]]:
+    """What each leaves unexplained, replayed."""
+    for one, outcome in zip(every, replays.run_all([one.scene for one in every]), strict=True):
+        predicted = as_printed(outcome)
+        if one.row.results:
+            predicted |= shown_otherwise(evidence, one.row, *replays.run_whole(one.scene))
+        inputs = {}
+        if not any(change.field == "MUP" for change in one.changes) and "MUP" in outcome.fields:
+            inputs["MUP"] = outcome.fields["MUP"]
+        yield one, evidence.differing(predicted, outcome.ending, inputs)
+
+
+def shown_otherwise(
+    evidence: Evidence, row: Row, outcome: replays.Outcome, values: Mapping[str, float]
+) -> dict[str, Range]:
+    """The results that a row shows otherwise: another number's, or to the page's decimals."""
+    ranges: dict[str, Range] = {}
+    printed = as_printed(outcome)
+    for name, made in row.results.items():
+        if isinstance(made, ast.Name):
+            if made.id in printed:
+                ranges[name] = printed[made.id]
+        elif name in values and name in evidence.texts:
+            found = float(value(made, {**values, "x": values[name]}))
+            places = evidence.decimals(name)
+            unit = 10.0 ** -max(places, FIELDS[name].places or places)
+            near = around(found, 1.001 * unit + _FACTOR * abs(found))
+            if near:
+                ranges[name] = near
+    return ranges
+
+
+def _is_conversion(made: ast.expr) -> bool:
+    """Whether a number read so was rounded when it was converted."""
+    return isinstance(made, ast.Call) or (
+        isinstance(made, ast.BinOp) and isinstance(made.op, ast.Mult | ast.Div)
+    )
+
+
+def _field(name: str) -> str:
+    return "MUP" if name == "MU" else name
+
+
+def _decimals(text: str) -> int:
+    number = numerals.value_of(text.replace(" ", "").upper())
+    return 0 if number is None else max(0, -int(number.as_tuple().exponent))
+
+
+def _short(number: float) -> str:
+    """A value as one would type it, nine digits at most."""
+    return f"{number + 0.0:.9G}"
+
+
+def _shortest(number: float, half: float) -> str:
+    """The number of fewest decimals that is no further than ``half`` from a value."""
+    for places in range(9):
+        if abs(round(number, places) - number) <= half:
+            return _short(round(number, places))
+    return _short(number)
+
+
+def _near(number: float, within: float, most: int) -> list[str]:
+    """Decimals no further than ``within`` from a value: as many places as give ``most``."""
+    texts = [_short(number)]
+    for places in range(9):
+        step = 10.0**-places
+        first, last = np.ceil((number - within) / step), np.floor((number + within) / step)
+        if last - first + 1 > most:
+            break
+        if last >= first:
+            texts = [_short(round(k * step, places)) for k in range(int(first), int(last) + 1)]
+    return texts
+
+
+def results_otherwise(
+    evidence: Evidence,
+) -> Iterator[tuple[Row, frozenset[str], tuple[Change, ...]]]:
+    """The rows that change results alone: what each leaves unexplained, and puts right."""
+    recovered = evidence.recovered
+    for scene in (recovered.scene, *with_opposite_mu(recovered.scene)):
+        outcome, values = replays.run_whole(scene)
+        own = as_printed(outcome)
+        for row in table():
+            if row.inputs:
+                continue
+            other = shown_otherwise(evidence, row, outcome, values)
+            changes = tuple(
+                Change(row.kind, name, outcome.fields[made.id], outcome.fields[name])
+                for name, made in row.results.items()
+                if isinstance(made, ast.Name)
+                and {name, made.id} <= set(outcome.fields)
+                and outcome.fields[made.id] != outcome.fields[name]
+            )
+            if other and (changes or other != own):
+                inputs = {"MUP": outcome.fields["MUP"]} if "MUP" in outcome.fields else {}
+                wrong = evidence.differing({**own, **other}, outcome.ending, inputs)
+                yield row, wrong, changes
