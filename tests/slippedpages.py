@@ -449,7 +449,7 @@ def bcd(row: Row, rng: random.Random) -> Slipped | None:
     machine = machines.decimal(
         rng.choice((10, 12, 14)), rng.choice(("ROUND_HALF_UP", "ROUND_DOWN"))
     )
-    return _computed(row, machine, _is("decimal (BCD) arithmetic"))
+    return _computed(row, machine, _is("another arithmetic", "IEEE double arithmetic"))
 
 
 CLASSES: dict[str, Maker] = {

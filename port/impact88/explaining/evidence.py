@@ -6,7 +6,7 @@ A cause predicts for each result a range of numbers, of one number where it says
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from decimal import Decimal
 
 from ..fields import FIELDS, INPUTS
@@ -30,10 +30,16 @@ _LARGEST = 1e22
 
 
 class Evidence:
-    """The numbers of a printout, and the scene it was found to show."""
+    """The numbers of a printout, the scene it was found to show, and ``contradicted``: the names of
+    those that are not what the program prints for it."""
 
-    def __init__(self, shown: Printout, recovered: Recovered) -> None:
+    def __init__(
+        self, shown: Printout, recovered: Recovered, contradicted: Container[str] = ()
+    ) -> None:
         self.shown, self.recovered = shown, recovered
+        self._contradicted = {
+            name: one for name, one in as_printed(recovered.outcome).items() if name in contradicted
+        }
         self.results = {
             one.name: [
                 number
@@ -70,6 +76,10 @@ class Evidence:
             for name, numbers in self.results.items()
             if name not in predicted
             or not any(predicted[name][0] <= one <= predicted[name][1] for one in numbers)
+        }
+        # what contradicts the program's number contradicts a cause that predicts the same
+        wrong |= {
+            name for name, one in self._contradicted.items() if predicted.get(name, one) == one
         }
         for name, text in (inputs or {}).items():
             if name in INPUTS and name in self.texts:

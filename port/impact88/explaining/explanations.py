@@ -57,6 +57,8 @@ _UNLIKE, _EACH = 0.4, 1.0
 _LAST_PLACE = 8.0
 """Bits more for a result misread by one in its last place, where another arithmetic is likelier;
 and for misread inputs on a page on which nothing worse is wrong."""
+_OTHER_ARITHMETIC = 17.0
+"""Bits of an arithmetic that is not among those tried: less than two last places misread (37)."""
 _ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
 """The kinetic energy is printed to so many digits; other arithmetics end within so many units of
 the last of them."""
@@ -119,6 +121,7 @@ def explain(
         causes += work.rows(tables.nearest)
         causes += work.results_otherwise()
         causes += map(work.machine, machines.causes(work.evidence))
+        causes += work.last_places_alone()
         if wanting(_GOOD):
             doubles = rereading.double_slips()
             causes += work.rereads(doubles)
@@ -168,7 +171,7 @@ class _Work:
     @cached_property
     def evidence(self) -> Evidence:
         """The page as evidence."""
-        return Evidence(self.shown, self.recovered)
+        return Evidence(self.shown, self.recovered, self.base)
 
     @cached_property
     def last_places(self) -> bool:
@@ -185,6 +188,15 @@ class _Work:
         changes = list(self._slips(self.base, self.recovered.outcome.fields))
         if changes:
             yield self._slipped(changes, self.base - {change.field for change in changes})
+
+    def last_places_alone(self) -> Iterator[Explanation]:
+        """An arithmetic that is none of those tried: results off by one in their last places."""
+        longer = any(
+            self.evidence.decimals(n) > (FIELDS[n].places or 9) for n in self.evidence.texts
+        )
+        if self.last_places and len(self.base) > 1 and not longer:
+            note = f"all that differs is off by one in its last place; {machines.NOT_APPLESOFT}"
+            yield self._explanation("another arithmetic", note, _OTHER_ARITHMETIC, frozenset(), [])
 
     def labels_exchanged(self) -> Iterator[Explanation]:
         """Labels that stand in each other's place, or say another number, on numbers that are what
@@ -210,8 +222,7 @@ class _Work:
         for one in reread:
             if not one.changes:
                 continue
-            wrong = one.scored.wrong | self._wrong_replies(one.scored.scene)
-            wrong |= self._inputs_left(one.changes)
+            wrong = self._wrong(one, one.changes)
             changes = list(one.changes)
             if len(wrong & self.base) <= _SLIPS_IN_RESULTS:
                 changes += self._slips(wrong & self.base, one.scored.outcome.fields)
@@ -232,7 +243,7 @@ class _Work:
 
     def machine(self, one: machines.Cause) -> Explanation:
         """Another machine, another print, another line of the listing."""
-        wrong = one.wrong | self._wrong_replies(one.scene)
+        wrong = one.wrong | self._wrong_replies(one.scene) | self._inputs_left(())
         return self._explanation(one.kind, one.note, one.bits, wrong, [])
 
     def exchanged_and_slipped(
@@ -243,11 +254,18 @@ class _Work:
         for number, one in rereading.besides(texts, _SLIPS_BESIDES) if texts else ():
             exchange = exchanges[number]
             changes = [*exchange.changes, *one.changes]
-            wrong = one.scored.wrong | self._wrong_replies(one.scored.scene)
             bits = exchange.row.bits + sum(map(_believed, one.changes)) + _EACH
-            made = self._slipped(changes, wrong | self._inputs_left(changes), bits)
+            made = self._slipped(changes, self._wrong(one, changes), bits)
             made.note = exchange.row.note
             yield made
+
+    def _wrong(self, one: Reread, changes: Sequence[Change]) -> frozenset[str]:
+        """What differs from the page of a scene put right; a number that contradicted the same
+        text before still does."""
+        now, before = one.scored.outcome.fields, self.recovered.outcome.fields
+        still = {n for n in self.base if n not in INPUTS and n in now and now[n] == before.get(n)}
+        wrong = one.scored.wrong | still | self._wrong_replies(one.scored.scene)
+        return wrong | self._inputs_left(changes)
 
     def _inputs_left(self, changes: Sequence[Change]) -> frozenset[str]:
         """Printed inputs that differ and that these changes leave as they are."""

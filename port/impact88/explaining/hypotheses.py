@@ -21,6 +21,7 @@ from ..equations.evaluation import value
 from ..equations.otherprogram import assigned, written_out
 from ..fields import FIELDS, INPUTS
 from ..files import packaged_text
+from ..names import PIVOT
 from ..reading import numerals
 from ..recovery import replays
 from ..recovery.choices import Choice, Choices, scene_name, with_opposite_mu
@@ -33,8 +34,8 @@ _REPLAYED = 40
 _FAR, _NEAR = 0.1, 0.03
 """What a result counts at most that is far off, relatively; and how far a unit may be off on
 average to be searched: 88 for 88.4 is off by 0.005."""
-_SEARCHED, _BY_ENERGY, _LAST = 2, 300, 24
-_CANDIDATES, _COMBINATIONS = 24, 60_000
+_SEARCHED, _BY_ENERGY, _LAST = 3, 300, 24
+_CANDIDATES, _COMBINATIONS = 40, 60_000
 """Numbers that may have been computed with: of one input, and of all together."""
 _FACTOR = 1e-6
 """Relative error of a factor that is known to seven digits."""
@@ -96,7 +97,11 @@ class Tables:
         every = [one for row in rows for one in self._either_sign(row)]
         far = self._far(every)
         bits = [one.row.bits for one in every]
-        order = np.lexsort((bits, far))[:_REPLAYED].tolist()
+        # double precision does not follow line 510 where MU is past the pivot's -10
+        most = (
+            len(every) if self._values["MU"] <= PIVOT or self._values["MU"] >= -PIVOT else _REPLAYED
+        )
+        order = np.lexsort(np.array([bits, far]))[:most].tolist()
         self.nearest = [every[index] for index in order]
         self._close = [
             one for one, index in zip(self.nearest, order, strict=True) if far[index] <= _NEAR
@@ -115,13 +120,16 @@ class Tables:
         ]
 
     def _either_sign(self, row: Row) -> Iterator[Hypothesis]:
-        one = self._made(row)
-        if one:
+        made = [self._made(row)]
+        if made[0] and made[0].within:
+            made.append(self._made(row, in_full=True))
+        for one in filter(None, made):
             yield one
             for scene in with_opposite_mu(one.scene):
                 yield one._replace(scene=scene)
 
-    def _made(self, row: Row) -> Hypothesis | None:
+    def _made(self, row: Row, in_full: bool = False) -> Hypothesis | None:
+        """A row's scene; numbers converted are the shortest that round so, or ``in_full``."""
         typed: dict[str, str] = {}
         assumed = dict(self._printed)
         within: dict[str, float] = {}
@@ -141,7 +149,7 @@ class Tables:
                 half = 0.5 * 10.0**-decimals
                 ends = [float(value(made, {**self._values, "x": x + way})) for way in (-half, half)]
                 slack = within[name] = abs(ends[1] - ends[0]) / 2
-            typed[name] = _shortest(found, slack)
+            typed[name] = _shortest(found, 0.0 if in_full else slack)
         changes = tuple(
             Change(
                 row.kind,
@@ -185,8 +193,11 @@ class Tables:
     def searched(self) -> Iterator[Hypothesis]:
         """The units that nearly explain the page, with the numbers that explain it best."""
         if self._scene["M"] == "6":
-            units = [one for one in self._close if one.within and not one.row.results]
-            yield from map(self._searched, units[:_SEARCHED])
+            units: dict[tuple[str, str], Hypothesis] = {}
+            for one in self._close:
+                if one.within and not one.row.results:
+                    units.setdefault((one.row.note, " ".join(one.row.inputs)), one)
+            yield from map(self._searched, list(units.values())[:_SEARCHED])
 
     def _searched(self, unit: Hypothesis) -> Hypothesis:
         choices = self._choices(unit)

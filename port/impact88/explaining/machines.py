@@ -78,9 +78,14 @@ _MACHINES: tuple[tuple[str, str, float, Callable[[], Arithmetic]], ...] = (
 
 
 def causes(evidence: Evidence) -> Iterator[Cause]:
-    """Every other machine and way to print, tried."""
+    """Every other machine and way to print, tried; of those of one kind the best."""
     known = all(reading.clean for reading in evidence.shown.fields.values())
+    best: dict[str, Cause] = {}
     for one in _causes(evidence):
+        kind = f"{one.kind} {one.note}" if one.bits == SOME_LINES else one.kind
+        if kind not in best or len(one.wrong) < len(best[kind].wrong):
+            best[kind] = one
+    for one in best.values():
         accused = NOT_APPLESOFT if known else ""
         yield one._replace(note="; ".join(filter(None, [one.note, accused])))
 
@@ -127,6 +132,7 @@ class _Page:
     ) -> None:
         self.evidence, self.scene, self.outcome = evidence, scene, outcome
         self.values = {name: one for name, one in values.items() if name != "KI"}
+        self.energy = values.get("KI", 0.0) if "KI" in evidence.texts else 0.0
         self._own = as_printed(outcome) | _energy(evidence, values)
         self._inputs = {n: text for n, text in outcome.fields.items() if n not in spared}
 
@@ -153,14 +159,16 @@ class _Page:
         some = [
             line
             for line, names in every.items()
-            if all(name not in texts or self._is(name, made) for name in names)
-            and any(name in texts and not self._is(name, self._own) for name in names)
+            if all(name not in texts or self.prints(name, made) for name in names)
+            and any(name in texts and not self.prints(name) for name in names)
         ]
         return some if len(some) < len(every) else []
 
-    def _is(self, name: str, ranges: Mapping[str, Range]) -> bool:
+    def prints(self, name: str, ranges: Mapping[str, Range] | None = None) -> bool:
+        """Whether the page has just the number that is predicted."""
+        predicted = (ranges or self._own).get(name)
         number = numerals.value_of(self.evidence.texts[name])
-        return name in ranges and number is not None and number == ranges[name][0]
+        return predicted is not None and number is not None and number == predicted[0]
 
 
 def _energy(evidence: Evidence, values: Mapping[str, float]) -> dict[str, Range]:
@@ -192,18 +200,21 @@ def _other_decimals(page: _Page) -> Iterator[Cause]:
             made = {n: cut(page.values[n], most[places_of(n)], how) for n in names}
             ranges = {name: one for name, one in made.items() if one}
             yield page.cause(kind, f"{how} to {said}", _DECIMALS[how], ranges)
-    own: dict[str, Range] = {}
-    for name in names:
+    own, longer = {}, 0
+    for name in [*names, *(["KI"] if page.energy else [])]:
+        if page.prints(name):
+            continue
         number = Decimal(evidence.texts[name])
         unit = Decimal(1).scaleb(int(number.as_tuple().exponent))
-        slack = unit * Decimal("1.001")
-        if evidence.digits(name) == SINGLE_DIGITS:
-            slack = max(slack, abs(number) * Decimal("3E-6"))
-        longer = evidence.decimals(name) > places_of(name) or "E" in evidence.texts[name]
-        near = around(page.values[name], slack)
-        if longer and unit < abs(number) and near:
+        single_digits = len(number.as_tuple().digits) == SINGLE_DIGITS
+        error = abs(number) * Decimal("3E-6" if single_digits else "2E-9")
+        slack = max(unit * Decimal("1.001"), error)
+        near = around(page.energy if name == "KI" else page.values[name], slack)
+        if near and unit < (abs(number) or 1):
             own[name] = near
-    if len(own) >= 2:
+            more = evidence.decimals(name) > places_of(name) or "E" in evidence.texts[name]
+            longer += more and name != "KI"
+    if longer >= 2:
         yield page.cause(kind, "each number to decimals of its own", _DECIMALS["own"], own)
 
 
