@@ -98,9 +98,8 @@ class Tables:
         far = self._far(every)
         bits = [one.row.bits for one in every]
         # double precision does not follow line 510 where MU is past the pivot's -10
-        most = (
-            len(every) if self._values["MU"] <= PIVOT or self._values["MU"] >= -PIVOT else _REPLAYED
-        )
+        past = abs(self._values["MU"]) >= -PIVOT != -self._values["MU"]
+        most = len(every) if past else _REPLAYED
         order = np.lexsort(np.array([bits, far]))[:most].tolist()
         self.nearest = [every[index] for index in order]
         self._close = [
