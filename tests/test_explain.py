@@ -9,8 +9,8 @@ import pytest
 
 import printouts
 from impact88.doubles import double
-from impact88.explaining.evidence import cut
 from impact88.explaining.explanations import Explanation
+from impact88.explaining.predictions import cut
 from impact88.program.run import run
 from impact88.reading.numerals import as_printed
 from impact88.reading.printout import FIELDS, read_printouts

@@ -24,7 +24,7 @@ from ..recovery import misprints
 from ..recovery.recovered import Recovered
 from ..recovery.rereading import Change, Reread, Rereading
 from . import hypotheses, listinglines, machines
-from .evidence import Evidence
+from .predictions import Evidence
 
 MOST = 6
 """Explanations given at most."""

@@ -27,7 +27,7 @@ from ..recovery import replays
 from ..recovery.choices import Choice, Choices, scene_name, with_opposite_mu
 from ..recovery.rereading import Change
 from ..recovery.search import in_doubles
-from .evidence import Evidence, Range, around, as_printed
+from .predictions import Evidence, Range, around, as_printed
 
 _REPLAYED = 40
 """Rows that are replayed, the nearest of some 700."""

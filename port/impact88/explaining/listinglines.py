@@ -19,8 +19,8 @@ from ..equations.edits import Edit, statement_edits
 from ..equations.evaluation import Run
 from ..equations.spelling import LISTING, spellings
 from ..fields import FIELDS
-from .evidence import Evidence
 from .machines import NOT_APPLESOFT, Cause
+from .predictions import Evidence
 
 _BITS = 24.0
 """Bits of a line written otherwise: one of some 5,000 edits (12), and an office's copy in which a

@@ -23,7 +23,7 @@ from ..program.arithmetics import APPLESOFT, FLOAT64, Arithmetic
 from ..reading import numerals
 from ..recovery import replays
 from ..recovery.choices import with_opposite_mu
-from .evidence import CUTS, Evidence, Range, around, as_printed, cut, digits_of, places_of
+from .predictions import CUTS, Evidence, Range, around, as_printed, cut, digits_of, places_of
 
 NOT_APPLESOFT = "then this program on an Apple II did not print it"
 SOME_LINES = 14.2
