@@ -23,7 +23,7 @@ from ..reading.numerals import value_of
 from ..recovery import misprints
 from ..recovery.recovered import Recovered
 from ..recovery.rereading import Change, Reread, Rereading
-from . import hypotheses, listinglines, machines
+from . import hypotheses, machines, programs
 from .predictions import Evidence
 
 MOST = 6
@@ -132,7 +132,7 @@ def explain(
             causes += work.rows(list(tables.searched()))
             causes += work.exchanged_and_slipped(tables.exchanges(), rereading)
         if wanting(_GOOD + _SLIP):
-            causes += map(work.machine, listinglines.causes(work.evidence, work.base))
+            causes += map(work.machine, programs.causes(work.evidence, work.base))
     return _chosen(causes, len(work.base))
 
 

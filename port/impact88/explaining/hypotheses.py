@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..doubles import double, doubles_of
+from ..equations.edits import assigned, written_out
 from ..equations.evaluation import value
-from ..equations.otherprogram import assigned, written_out
 from ..fields import FIELDS, INPUTS
 from ..files import packaged_text
 from ..names import PIVOT
