@@ -42,7 +42,6 @@ _LARGEST = float(np.finfo(np.float64).max)
 _SMALLEST = float(np.nextafter(0.0, 1.0))
 _ABOVE_PIVOT = float(np.nextafter(PIVOT, 0.0))
 _ANY = -_LARGEST, _LARGEST
-_NAMES = tuple(SCENE)
 
 
 class Source(NamedTuple):
@@ -205,9 +204,9 @@ def _extremes(columns: Sequence[Floats]) -> list[Limits]:
     found = [(float(column[0]), float(column[0])) for column in columns]
     long = [i for i, column in enumerate(columns) if len(column) > 1]
     if long:
-        found_extremes = extremes(addresses(columns[i] for i in long), len(columns[long[0]]))
-        for i, (least, most) in zip(long, found_extremes.tolist(), strict=True):
-            found[i] = least, most
+        least, most = extremes(addresses(columns[i] for i in long), len(columns[long[0]]))
+        for i, limits in zip(long, zip(least, most, strict=True), strict=True):
+            found[i] = limits
     return found
 
 
@@ -257,21 +256,18 @@ def _ordinary(name: str) -> Limits:
 ORDINARY = {name: _ordinary(name) for name in SCENE}
 """Name -> within which a column is an ordinary array, or an ordinary value: nothing in it has to be
 looked at."""
-_LEAST, _MOST = np.array(list(ORDINARY.values())).T
-_ARRAYS = tuple("6" if name == "M" else "array" for name in SCENE)
 
 
-def ordinary_kinds(least: Floats, most: Floats) -> tuple[str, ...] | None:
-    """The kinds of a block, as `examine` finds them, from the least and largest number of each
-    column in the table's order; None where its numbers have to be looked at."""
-    if not ((least >= _LEAST).all() and (most <= _MOST).all()):  # NaN is neither
-        return None
-    alike = np.flatnonzero(least == most).tolist()
-    if len(alike) == 1:
-        return _ARRAYS
-    kinds = list(_ARRAYS)
-    for i in alike:
-        kinds[i] = _alike_kind(_NAMES[i], float(least[i]))
+def ordinary_kinds(least: Mapping[str, float], most: Mapping[str, float]) -> tuple[str, ...] | None:
+    """The kinds of a block, as `examine` finds them, from the least number of each column and the
+    largest of those that may vary; None where its numbers have to be looked at."""
+    kinds = []
+    for name, (low, high) in ORDINARY.items():
+        value = least[name]
+        largest = most.get(name, value)
+        if not (low <= value and largest <= high):  # NaN is neither
+            return None
+        kinds.append("array" if value < largest else _alike_kind(name, value))
     return tuple(kinds)
 
 

@@ -11,7 +11,7 @@ zero, a result that is not finite) is left to the arrays: `solve_one` then says 
 from __future__ import annotations
 
 import math
-import threading
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from operator import itemgetter
@@ -19,17 +19,18 @@ from typing import Any
 
 import numpy as np
 
-from .. import native
 from ..fields import ANGLES
 from ..names import DEFAULT_M, PIVOT, SCENE
 from ..native.formulas import Expression, ExpressionTable
-from ..native.program import Program, in_order
+from ..native.program import in_order
 from . import degrees
 from .columns import INERTIAS, LARGE_ANGLE, UNUSED_BY_POINTS
-from .fused import CIRCLE
 from .impact import Impact
 
 NAMES = tuple(SCENE)
+LONGEST_PART = 60
+"""Characters up to which what is used once is written where it is used: a local variable less. 30
+takes a tenth longer, 200 as long."""
 _PLAIN = {float, int, np.float64}
 _BINARY = {
     **{"add": "+", "subtract": "-", "multiply": "*", "divide": "/"},
@@ -56,7 +57,7 @@ def solve_one(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[st
         M, MU = numbers[_M], numbers[_MU]
         if M != 6 and M != 4:
             return None
-        results = _function(wanted, M == 4, MU == PIVOT, native.library)(*numbers)
+        results = _function(wanted, M == 4, MU == PIVOT)(*numbers)
     except (KeyError, LeftToArrays, ZeroDivisionError, OverflowError):
         return None
     if not math.isfinite(sum(results)):
@@ -82,17 +83,13 @@ def _plain(value: Any) -> float:
 
 @lru_cache(maxsize=256)
 def _function(
-    wanted: tuple[str, ...], point: bool, pivot: bool, machine: object
+    wanted: tuple[str, ...], point: bool, pivot: bool
 ) -> Callable[..., tuple[float, ...]]:
     """The function of the scene's values, in the table's order, that gives the results."""
     table = ExpressionTable()
     scene = {name: table.column(name, varies=True) for name in NAMES}
     impact = Impact(table, scene, pivot, point, infinite=False)
-    results = {name: getattr(impact, name) for name in wanted}
-    if native.library is not None and results:
-        return _Compiled(results, point)
-    source, constants = _written(list(results.values()), point)
-    return _defined(source, constants)
+    return _defined(*_written([getattr(impact, name) for name in wanted], point))
 
 
 def _defined(source: str, constants: Mapping[str, float]) -> Callable[..., tuple[float, ...]]:
@@ -110,37 +107,6 @@ def _defined(source: str, constants: Mapping[str, float]) -> Callable[..., tuple
     return function
 
 
-class _Compiled:
-    """The same function by the compiled machine, which has its own room in every thread."""
-
-    def __init__(self, results: Mapping[str, Expression], point: bool) -> None:
-        checks = [f"def results({', '.join(NAMES)}):", *_checks(point)]
-        self._checked = _defined("\n".join([*checks, f"    return {', '.join(NAMES)}"]), {})
-        shown = {n: e.operands[0] if e.operation == "bits" else e for n, e in results.items()}
-        self._program = Program(shown, ["RESULT"] * len(shown))
-        self._rows = [NAMES.index(name) for name in self._program.columns]
-        self._picked = itemgetter(*self._rows)
-        self._of_thread = threading.local()
-
-    def __call__(self, *numbers: float) -> tuple[float, ...]:
-        scene = self._checked(*numbers)
-        if not hasattr(self._of_thread, "ready"):
-            self._of_thread.ready = self._ready()
-        columns, results, run = self._of_thread.ready
-        columns[:] = self._picked(scene)
-        run()
-        return tuple(results.tolist())
-
-    def _ready(self) -> tuple[Any, Any, Callable[[], int]]:
-        """Room for the columns and the results of one scene, and the call that fills it."""
-        columns, results = np.empty(len(self._rows)), np.empty(len(self._program.results))
-        read, written = (
-            array.ctypes.data + 8 * np.arange(len(array)) for array in (columns, results)
-        )
-        run = self._program.prepared(read, written, 1, self._program.room(), CIRCLE)
-        return columns, results, run
-
-
 def _checks(point: bool) -> list[str]:
     """The lines that look whether the values can be used, and reduce angles as the arrays do."""
     asked = [name for name in NAMES if not (point and name in UNUSED_BY_POINTS)]
@@ -155,21 +121,28 @@ def _checks(point: bool) -> list[str]:
 
 def _written(results: Sequence[Expression], point: bool) -> tuple[str, dict[str, float]]:
     """The lines of the function, and the constants in them by name."""
+    order = in_order(results)
+    uses = Counter(id(operand) for e in order for operand in e.operands)
+    uses.update({id(e): 2 for e in results})
     constants: dict[str, float] = {}
-    place: dict[int, str] = {}
+    text: dict[int, str] = {}
     lines = [f"def results({', '.join(NAMES)}):", *_checks(point)]
-    for number, e in enumerate(in_order(results)):
-        operands = [place[id(operand)] for operand in e.operands]
+    for number, e in enumerate(order):
+        name = f"v{number}"
         if e.operation == "column":
-            place[id(e)] = str(e.value)
-            continue
-        name = place[id(e)] = f"v{number}"
-        if e.operation == "constant":
-            constants[name] = float(e.value)
-            continue
-        lines.append(f"    {name} = {_formula(e.operation, operands)}")
+            text[id(e)] = str(e.value)
+        elif e.operation == "constant":
+            text[id(e)] = repr(e.value) if math.isfinite(e.value) else name
+            constants[name] = e.value
+        else:
+            formula = _formula(e.operation, [text[id(operand)] for operand in e.operands])
+            if uses[id(e)] == 1 and len(formula) < LONGEST_PART:
+                text[id(e)] = f"({formula})"
+            else:
+                lines.append(f"    {name} = {formula}")
+                text[id(e)] = name
     # adding 0.0 clears the sign of a zero, as the arrays do
-    tuple_ = "".join(f"{place[id(e)]}{' + 0.0' if e.dtype == 'float' else ''}, " for e in results)
+    tuple_ = "".join(f"{text[id(e)]}{' + 0.0' if e.dtype == 'float' else ''}, " for e in results)
     lines.append(f"    return ({tuple_})")
     return "\n".join(lines), constants
 

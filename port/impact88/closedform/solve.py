@@ -22,7 +22,7 @@ from ..native.program import Program, addresses, extremes
 from ..processors import processors
 from ..scene import check_mapping
 from ..status import Status
-from .columns import Block, Buffers, Limits, Source, examine, ordinary_kinds, sources
+from .columns import ORDINARY, Block, Buffers, Limits, Source, examine, ordinary_kinds, sources
 from .fused import CIRCLE, fused
 from .impact import Impact
 from .onescene import solve_one
@@ -35,7 +35,6 @@ _NAMED = SCENE.keys() - {"M"}
 _SIX = float(DEFAULT_M)
 _PLAIN = {np.ndarray, np.float64, float, int}
 _ROWS = np.arange(len(RESULTS))
-_ROW = {name: row for row, name in enumerate(SCENE)}
 TILE = 16384
 """Scenes a pass works on. Two arrays fit the second-level cache and all of them the third; numpy's
 cost of starting an operation (half a microsecond) is spread over enough scenes not to matter.
@@ -45,10 +44,11 @@ SHARED_TILE = 4 * TILE
 back; when operations are short the other has not woken up by then, and the threads take turns.
 Measured on two cores: 1.6 times as fast as one with tiles this long, 1.1 times with `TILE`."""
 FEW = 2048
-"""Scenes up to which copying their columns is cheaper than looking at each."""
-HUGE = 1 << 22
-"""Bytes from which numpy asks for huge pages for an array of its own. Below, six results in one
-array are ready in 9 microseconds instead of 2300 (100,000 scenes, called again and again)."""
+"""Scenes up to which copying their columns is cheaper than looking at each; and as many show of
+what kind the next ones are."""
+TOGETHER = 1 << 28
+"""Bytes up to which results are rows of one array, which is had sooner than arrays of their own (6
+instead of 12 ns a scene for the six velocities of a million) but is kept as long as one of them."""
 SHARED_SPAN = 2 * SHARED_TILE
 """Scenes a thread takes at a time."""
 WORTH_A_THREAD = 4 * SHARED_TILE
@@ -114,7 +114,9 @@ def solve(
         check_mapping(columns)
     wanted = _wanted(tuple(out) if outputs is None and out is not None else outputs)
     if out is None:
-        few = solve_one(columns, wanted) or solve_few(columns, wanted)
+        few = solve_one(columns, wanted)
+        if few is None and (threads or 1) == 1:
+            few = solve_plain(columns, wanted)
         if few is not None:
             return few
     results = _solved(columns, wanted, threads, out=out)
@@ -163,13 +165,15 @@ def _solved(
 
 
 def _rooms(names: Sequence[str], shape: tuple[int, ...]) -> dict[str, Array]:
-    """Arrays for results. Small ones are parts of one, which memory is had for far sooner."""
+    """Arrays for results."""
     floats = [name for name in names if name != "STATUS"]
-    if 8 * np.prod(shape, dtype=np.int64) < HUGE:
-        together = np.empty((len(floats), *shape))
-        rooms = {name: together[i, ...] for i, name in enumerate(floats)}
-    else:
-        rooms = {name: np.empty(shape) for name in floats}
+    size = max(1, 8 * int(np.prod(shape, dtype=np.int64)))
+    many = max(1, TOGETHER // size)
+    rooms: dict[str, Array] = {}
+    for at in range(0, len(floats), many):
+        some = floats[at : at + many]
+        together = np.empty((len(some), *shape))
+        rooms |= {name: together[i, ...] for i, name in enumerate(some)}
     return rooms | {name: np.empty(shape, np.uint16) for name in names if name == "STATUS"}
 
 
@@ -197,40 +201,58 @@ def _check_room(
             raise UserError("shares memory with a column or another result", where)
 
 
-def solve_few(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[str, Array] | None:
-    """The results of some scenes by the compiled machine, their columns copied side by side, so
-    that hardly anything is done column by column: `bounds` and root finders make many short calls.
-    None where the scenes are many or have to be looked at."""
+def solve_plain(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[str, Array] | None:
+    """The results of plain columns, all of one kind, by the compiled machine in one call, so that
+    hardly anything is done column by column: `bounds` and root finders make many short calls. None
+    where the columns have to be looked at."""
     if native.library is None or not wanted or not _NAMED <= columns.keys() <= SCENE.keys():
         return None
-    values: list[Any] = [columns.get(name, _SIX) for name in SCENE]
-    arrays = [value for value in values if type(value) is np.ndarray and value.ndim]
-    if not arrays or not _PLAIN.issuperset(map(type, values)):
+    rows: dict[str, int] = {}
+    arrays: list[Array] = []
+    fixed: dict[str, float] = {}
+    for name in SCENE:
+        value: Any = columns.get(name, _SIX)
+        if type(value) is np.ndarray and value.ndim:
+            rows[name] = len(arrays)
+            arrays.append(value)
+        elif type(value) in _PLAIN:
+            fixed[name] = float(value)
+        else:
+            return None
+    shape = arrays[0].shape if arrays else ()
+    count = len(arrays[0]) if len(shape) == 1 else 0
+    if not 1 < count <= WORTH_A_THREAD or any(x.shape != shape for x in arrays):
         return None
-    count = arrays[0].size
-    if not 1 < count <= FEW or any(
-        x.shape != (count,) or x.dtype.kind not in "fiub" for x in arrays
-    ):
+    if count <= FEW:
+        if any(x.dtype.kind not in "fiub" for x in arrays):
+            return None
+        together = np.concatenate(arrays, dtype=np.float64, casting="unsafe")
+        where = together.ctypes.data + 8 * count * _ROWS[: len(arrays)]
+    elif all(x.dtype == np.float64 and x.strides[0] == 8 for x in arrays):
+        where = addresses(arrays)
+    else:
         return None
-    together = np.empty((len(SCENE), count))
-    for row, value in enumerate(values):
-        together[row] = value
-    where = together.ctypes.data + together.strides[0] * _ROWS[: len(SCENE)]
-    least, most = extremes(where, count).T
-    kinds = ordinary_kinds(least, most)
+    least, most = extremes(where, min(count, FEW))
+    fixed.update(zip(rows, least, strict=True))
+    kinds = ordinary_kinds(fixed, dict(zip(rows, most, strict=True)))
     if kinds is None:
         return None
+    limits: Sequence[tuple[int, float, float]] = ()
+    if count > FEW:
+        limits = [
+            (address, *(ORDINARY[name] if low < high else (low, high)))
+            for name, address, low, high in zip(rows, where.tolist(), least, most, strict=True)
+        ]
     program = program_for(kinds, wanted)
     results = np.empty((len(wanted), count))
-    into = results.ctypes.data + results.strides[0] * _ROWS[: len(wanted)]
+    into = results.ctypes.data + 8 * count * _ROWS[: len(wanted)]
     by_name: dict[str, Array] = dict(zip(wanted, results, strict=True))
     if "STATUS" in wanted:
         by_name["STATUS"] = np.empty(count, np.uint16)
         into[wanted.index("STATUS")] = by_name["STATUS"].ctypes.data
-    fixed = dict(zip(SCENE, least.tolist(), strict=True))
-    rows = [_ROW[name] for name in program.columns]
-    program.prepared(where[rows], into, count, program.room(), CIRCLE, fixed)()
-    return by_name
+    read = where[[rows[name] for name in program.columns]]
+    done = program.run(read, into, count, CIRCLE, fixed, limits)
+    return by_name if done == count else None
 
 
 def quantities(
@@ -279,13 +301,13 @@ class _Worker:
     ) -> None:
         count = len(next(iter(results.values()), ()))
         self.tile = min(tile, count)
-        self.block = min(2 * tile, count)
+        self.size = min(2 * tile, count)
         self.sign = sign
         self.given = given
         self.wanted = wanted
         self.results = results
         self.plain = all(source.is_plain for source in given.values())
-        self.buffers = Buffers(self.block)
+        self.buffers = Buffers(self.size)
         self.workspaces: dict[int, Any] = {}
 
     def __call__(self, spans: Iterable[tuple[int, int]]) -> None:
@@ -295,28 +317,33 @@ class _Worker:
                     start = self.solve_block(start, stop)
 
     def solve_block(self, start: int, stop: int) -> int:
-        """Solve the block at ``start``, and with the compiled machine all further scenes before
-        ``stop`` of the same kind; returns where the next one begins."""
-        end = min(start + self.block, stop)
-        values = {
-            name: self.buffers.block(name, source, start, end)
-            for name, source in self.given.items()
-        }
-        block = examine(values)
+        """Solve the block at ``start``, or with the compiled machine all scenes before ``stop`` of
+        the same kind as the first ones; returns where the next one begins."""
+        if native.library is not None and self.plain and stop - start > FEW:
+            block = self.block_of(start, start + FEW)
+            if block.limits is not None:
+                further = {name: source.part(start, stop) for name, source in self.given.items()}
+                done = self.run_program(block, further, start, stop, block.limits)
+                if done > FEW:
+                    return start + done
+        end = min(start + self.size, stop)
+        block = self.block_of(start, end)
         if native.library is None:
             self.run_plan(block, start, end)
         else:
-            if block.limits is not None and self.plain and end < stop:
-                further = {name: source.part(start, stop) for name, source in self.given.items()}
-                done = self.run_program(block, further, start, stop, block.limits)
-                if done:
-                    return start + done
             self.run_program(block, block.varying, start, end, {})
         if block.refused is not None:
             for name, result in self.results.items():
                 refusal = Status.NOT_FINITE if name == "STATUS" else np.nan
                 result[start:end][block.refused] = refusal
         return end
+
+    def block_of(self, start: int, end: int) -> Block:
+        columns = {
+            name: self.buffers.block(name, source, start, end)
+            for name, source in self.given.items()
+        }
+        return examine(columns)
 
     def run_program(
         self,
@@ -328,18 +355,15 @@ class _Worker:
     ) -> int:
         """By the compiled machine; returns how many scenes it has done."""
         program = program_for(block.kinds, self.wanted, self.sign)
-        if id(program) not in self.workspaces:
-            self.workspaces[id(program)] = program.room()
-        return program.prepared(
-            addresses(columns[name] for name in program.columns),
+        where = dict(zip(columns, addresses(columns.values()).tolist(), strict=True))
+        return program.run(
+            np.array([where[name] for name in program.columns], np.int64),
             addresses(array[start:stop] for array in self.results.values()),
             stop - start,
-            self.workspaces[id(program)],
             CIRCLE,
             {name: float(values[0]) for name, values in block.fixed.items()},
-            addresses(columns[name] for name in limits),
-            np.array(list(limits.values()), np.float64),
-        )()
+            [(where[name], *bounds) for name, bounds in limits.items()],
+        )
 
     def run_plan(self, block: Block, start: int, stop: int) -> None:
         """By numpy, a tile at a time."""

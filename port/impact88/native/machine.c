@@ -39,9 +39,6 @@
 /* Values a program may keep at a time. */
 #define PLACES 1024
 
-/* So few scenes do not go through whole strips. */
-#define FEW 8
-
 #define LOOP for (int i = 0; i < lanes; i++)
 #if defined(__GNUC__) && !defined(__clang__)
 #define EACH _Pragma("GCC ivdep") LOOP
@@ -199,15 +196,6 @@ EXPORT CLONES int64_t run(
     double *place[PLACES];
     int64_t odd[STRIP] = {0};
     for (int64_t p = 0; p < places; p++) place[p] = room + p * STRIP;
-    if (count <= FEW && !checks) {
-        for (int64_t k = 0; k < scalar_count; k++)
-            for (int i = 0; i < FEW; i++) place[moving + k][i] = scalars[k];
-        for (int64_t p = 0; p < read; p++)
-            for (int i = 0; i < FEW; i++) place[p][i] = ((double *)given[p])[i < count ? i : 0];
-        perform(steps, length, place, circle, given, 0, 0, odd, FEW);
-        for (int64_t p = read; p < moving; p++) memcpy(given[p], place[p], (size_t)(count * width[p]));
-        return count;
-    }
     for (int64_t k = 0; k < scalar_count; k++)
         for (int i = 0; i < STRIP; i++) place[moving + k][i] = scalars[k];
     perform(steps, once, place, circle, given, 0, 0, odd, STRIP);
@@ -238,20 +226,34 @@ EXPORT CLONES int64_t run(
     return count;
 }
 
-/* The least and the largest of each column (both NaN where one is), and whether all are equal. */
+/* The least and the largest of each column, both NaN where one is. */
 EXPORT CLONES void survey(const double *const *columns, int64_t many, int64_t count, double *found)
 {
+    enum { lanes = 32 }; /* enough for every instruction set to keep several comparisons going */
     for (int64_t k = 0; k < many; k++) {
         const double *x = columns[k];
-        double least = x[0], most = x[0];
-        int64_t odd = 0;
-        for (int64_t i = 0; i < count; i++) {
-            least = x[i] < least ? x[i] : least;
-            most = x[i] > most ? x[i] : most;
-            odd |= x[i] != x[i];
+        double least[lanes], most[lanes];
+        int64_t odd[lanes] = {0}, at = 0;
+        LOOP least[i] = most[i] = x[0];
+        for (; at + lanes <= count; at += lanes)
+            EACH {
+                double y = x[at + i];
+                least[i] = y < least[i] ? y : least[i];
+                most[i] = y > most[i] ? y : most[i];
+                odd[i] |= y != y;
+            }
+        for (; at < count; at++) {
+            least[0] = x[at] < least[0] ? x[at] : least[0];
+            most[0] = x[at] > most[0] ? x[at] : most[0];
+            odd[0] |= x[at] != x[at];
         }
-        found[2 * k] = odd ? NAN : least;
-        found[2 * k + 1] = odd ? NAN : most;
+        for (int i = 1; i < lanes; i++) {
+            least[0] = least[i] < least[0] ? least[i] : least[0];
+            most[0] = most[i] > most[0] ? most[i] : most[0];
+            odd[0] |= odd[i];
+        }
+        found[2 * k] = odd[0] | (x[0] != x[0]) ? NAN : least[0];
+        found[2 * k + 1] = odd[0] | (x[0] != x[0]) ? NAN : most[0];
     }
 }
 

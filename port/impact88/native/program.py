@@ -8,8 +8,8 @@ with that sum, each still rounded by itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, partial
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -22,8 +22,6 @@ Addresses = NDArray[np.int64]
 
 PROJECTIONS = ("sine", "cosine")
 """The two values that sine_and_cosine makes."""
-_NONE = np.empty(0, np.int64)
-_NO_LIMITS = np.empty(0)
 _APART = ("sine_and_cosine", "real_multiply")
 """Operations that must not write over an operand."""
 
@@ -51,7 +49,7 @@ class Program:
     the machine's in ``endings``, such as RESULT; BITS makes whole numbers of 16 bits.
 
     ``columns``: the varying columns it reads; ``scalars``: constants and the names of the columns
-    that do not vary, in the order `run` wants their values.
+    that do not vary, by which `run` finds their values.
     """
 
     def __init__(self, results: Mapping[str, Any], endings: Sequence[str]) -> None:
@@ -85,6 +83,9 @@ class Program:
         self._code = np.array(self._steps, np.int32)
         widths = [8] * len(self.columns) + [2 if ending == "BITS" else 8 for ending in endings]
         self._width = np.array(widths, np.int64)
+        self._code_at, self._width_at = self._code.ctypes.data, self._width.ctypes.data
+        self._values = np.array([0.0 if isinstance(x, str) else x for x in self.scalars], float)
+        self._rooms: list[Array] = []
 
     def _step(self, name: str, *places: int) -> None:
         self._steps.append([self._codes[name], *places, *[0] * (5 - len(places))])
@@ -161,56 +162,57 @@ class Program:
                 fused[id(e)] = ("PRODUCT_PLUS" if plus else "MINUS_PRODUCT"), (right,)
         return fused
 
-    def room(self) -> Array:
-        """Working memory, a set for each thread."""
+    def _room(self) -> Array:
+        """Working memory, for one thread at a time."""
         size = self._taken * native.STRIP
         block = np.empty(size + 8)
         start = -block.ctypes.data % 64 // 8  # at the start of a cache line
-        return block[start : start + size].reshape(self._taken, native.STRIP)
+        return block[start : start + size]
 
-    def prepared(
+    def run(
         self,
         columns: Addresses,
         results: Addresses,
         count: int,
-        room: Array,
         circle: int = 0,
         fixed: Mapping[str, float] = {},
-        checked: Addresses = _NONE,
-        limits: Array = _NO_LIMITS,
-    ) -> Callable[[], int]:
-        """A call that runs it over ``count`` scenes. ``columns``, ``results``: of float64 columns
-        (of uint16 for bits), in the program's order; ``fixed``: the columns that do not vary;
-        ``circle``: where sines come from, see `closedform.fused`.
+        limits: Sequence[tuple[int, float, float]] = (),
+    ) -> int:
+        """Run it over ``count`` scenes. ``columns``, ``results``: of float64 columns (of uint16 for
+        bits), in the program's order; ``fixed``: the columns that do not vary; ``circle``: where
+        sines come from, see `closedform.fused`.
 
-        The call returns how many scenes were done: all, or those before the strip in which one of
-        the columns ``checked`` leaves its ``limits`` (least and most). `room` is kept with it, what
-        the addresses point at is not.
+        Returns how many scenes were done: all, or those before the strip in which a column of
+        ``limits`` (address, least, most) leaves them.
         """
         assert native.library is not None
-        values = np.array([fixed[x] if isinstance(x, str) else x for x in self.scalars], float)
+        values = self._values
+        if fixed:
+            values = np.array([fixed[x] if isinstance(x, str) else x for x in self.scalars], float)
         moving = np.concatenate([columns, results])
-        call = partial(
-            native.library.run,
-            self._code.ctypes.data,
+        checked = np.array([address for address, *_ in limits], np.int64)
+        bounds = np.array([bounds for _, *bounds in limits], np.float64)
+        room = self._rooms.pop() if self._rooms else self._room()
+        done: int = native.library.run(
+            self._code_at,
             self._once,
             len(self._code),
             moving.ctypes.data,
-            self._width.ctypes.data,
+            self._width_at,
             len(columns),
             self._moving,
             values.ctypes.data,
             len(values),
             checked.ctypes.data,
-            limits.ctypes.data,
+            bounds.ctypes.data,
             len(checked),
             count,
             circle,
             room.ctypes.data,
             self._taken,
         )
-        call.kept = self, moving, values, checked, limits, room  # type: ignore[attr-defined]
-        return call
+        self._rooms.append(room)
+        return done
 
 
 @cache
@@ -220,12 +222,13 @@ def _codes() -> dict[str, int]:
     return {name: code for code, name in enumerate(native.library.operations().decode().split())}
 
 
-def extremes(columns: Addresses, count: int) -> Array:
+def extremes(columns: Addresses, count: int) -> tuple[list[float], list[float]]:
     """The least and the largest of ``count`` numbers of each column; both NaN where one is."""
     assert native.library is not None
     found = np.empty((len(columns), 2))
     native.library.survey(columns.ctypes.data, len(columns), count, found.ctypes.data)
-    return found
+    least, most = found.T.tolist()
+    return least, most
 
 
 def addresses(arrays: Iterable[NDArray[np.generic]]) -> Addresses:

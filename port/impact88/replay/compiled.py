@@ -263,6 +263,6 @@ def computed(
     found = np.empty((len(program.results), count))
     fixed = {x: float(columns[x][0]) for x in program.scalars if isinstance(x, str)}
     into = found.ctypes.data + found.strides[0] * np.arange(len(found))
-    program.prepared(addresses(own), into, count, program.room(), fixed=fixed)()
+    program.run(addresses(own), into, count, fixed=fixed)
     results = dict(zip(program.results, found, strict=True))
     return results, results.pop(ODD) != 0
