@@ -9,7 +9,7 @@ populations:
 examples:
   impact88 bench                             the table, about two minutes
   impact88 bench --scenes 300 --quick        a quick look
-  impact88 bench --figure work-precision.pdf --json > bench.json
+  impact88 bench --figure work-precision.pdf --json -o bench.json
   impact88 bench --paths                     what skipping saves, path by path
   impact88 bench --files                     a million rows from file to file
   impact88 bench --sizes                     to ten million scenes (takes 2 GB)

@@ -7,12 +7,12 @@ have "units" and amounts with units ("30 mph"); the program is given base units,
 
 With --vectors it writes labelled test vectors instead, the same on any machine for the same seed:
 casework, edge and failure in turn, or one class. --published writes the vectors that golden/README
-tells the hash of, so that two firms can name the same test. Form: impact88 schema oracle, impact88
+gives the hash of, so that two firms can name the same test. Form: impact88 schema oracle, impact88
 schema vectors. Conventions (axes, signs, units, byte order, bounds, what each class means, and that
 a program that refuses a failure is right): impact88 schema conventions.
 
 examples:
-  impact88 oracle < scenes.jsonl > answers.jsonl
+  impact88 oracle scenes.jsonl -o answers.jsonl
   echo '{"id": 1, "scene": {"E": 0.1, ...}}' | impact88 oracle
   impact88 oracle --vectors 1000 --seed 7 -o vectors.jsonl
   impact88 oracle --vectors 100 --class failure

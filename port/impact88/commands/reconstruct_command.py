@@ -22,7 +22,7 @@ MU is the number of line 280: friction opposes the sliding (line 400). Where the
 are unknown, both signs are tried and every solution that agrees with itself is shown. MUP is the
 signed P_t/P_n instead. Units: any consistent set; angles in degrees, spins in rad per unit of time;
 or values with units, "-25 +- 2 mph", "3091 lb", "3.5 ft", or units = "us" (or metric, chapter, si)
-in the file, for bare numbers: results are then in the same. A yaw inertia nobody measured is
+in the file, for bare numbers: results are then in the same. A yaw inertia that was not measured is
 IA = "estimate +- 20%" (impact88 scene --help says from what).
 PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
 A vehicle that skids to rest: SAF = "skid 62 ft at 0.7 +- .05" is the speed v = sqrt(2 MU g D).

@@ -3,7 +3,7 @@ prints what was checked, counts, hashes and versions: the record of an installat
 
 examples:
   impact88 selfcheck
-  impact88 selfcheck --json > qualification.json
+  impact88 selfcheck --json -o qualification.json
 
 exit status: 0 everything came out as captured; 1 something did not
 """

@@ -7,7 +7,7 @@ to give.
 examples:
   impact88 witness --rom apple2plus.rom
   impact88 witness --rom apple2plus.rom --captures 50 --random 50 --seed 7
-  impact88 witness --rom apple2plus.rom crash.toml --json > witness.json
+  impact88 witness --rom apple2plus.rom crash.toml --json -o witness.json
   impact88 witness --rom apple2plus.rom --captures all --save again
   impact88 witness --rom apple2plus.rom --programs games   every .bas, with its replies in .in
 
