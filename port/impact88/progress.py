@@ -3,10 +3,11 @@ line that is written over."""
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
 from .stderr import note
@@ -20,74 +21,52 @@ class Meter(Protocol):
     def update(self, n: int) -> object: ...
 
 
-class _Silent:
-    def update(self, n: int) -> None:
-        pass
+class _Lines:
+    """Progress on stderr: on a terminal a line that is written over, at most ten times a second;
+    elsewhere nothing, or plain lines now and then, for a log."""
 
-
-class _Line:
-    """One line on stderr, at most ten times a second."""
-
-    def __init__(self, total: int | None, what: str) -> None:
+    def __init__(self, total: int | None, what: str, terminal: bool, lines: bool) -> None:
         self.total = total
         self.what = what
         self.done = 0
-        self._last = 0.0
+        self._terminal = terminal
+        self._wait = 0.1 if terminal else SECONDS_BETWEEN_LINES if lines else math.inf
+        self._last = 0.0 if terminal else time.monotonic()
         self._width = 0
 
     def update(self, n: int) -> None:
         self.done += n
         now = time.monotonic()
-        if now - self._last >= 0.1:
-            self._last = now
-            self._show()
-
-    def _show(self) -> None:
-        if self.total:
-            text = f"{self.what}: {min(100, 100 * self.done // self.total)} %"
-        else:
-            text = f"{self.what}: {self.done:,}"
-        sys.stderr.write("\r" + text.ljust(self._width))
-        sys.stderr.flush()
+        if now - self._last < self._wait:
+            return
+        self._last = now
+        if not self._terminal:
+            note(None, f"{self.what}: {self.done:,} of {self.total:,}")
+            return
+        share = f"{min(100, 100 * self.done // self.total)} %" if self.total else f"{self.done:,}"
+        text = f"{self.what}: {share}"
+        print(f"\r{text.ljust(self._width)}", end="", file=sys.stderr, flush=True)
         self._width = len(text)
 
     def close(self) -> None:
-        sys.stderr.write("\r" + " " * self._width + "\r")
-        sys.stderr.flush()
-
-
-class _Lines:
-    """A line on stderr now and then, for a log."""
-
-    def __init__(self, total: int | None, what: str) -> None:
-        self.total = total
-        self.what = what
-        self.done = 0
-        self._last = time.monotonic()
-
-    def update(self, n: int) -> None:
-        self.done += n
-        if time.monotonic() - self._last >= SECONDS_BETWEEN_LINES:
-            self._last = time.monotonic()
-            note(None, f"{self.what}: {self.done:,} of {self.total:,}")
+        if self._width:
+            print(f"\r{' ' * self._width}\r", end="", file=sys.stderr, flush=True)
 
 
 @contextmanager
 def progress(total: int | None, what: str, unit: str = "", lines: bool = False) -> Iterator[Meter]:
     """A meter for work of ``total`` units (None: unknown). Where stderr is not a terminal it is
     silent, or writes plain ``lines``."""
-    if not sys.stderr.isatty():
-        yield _Lines(total, what) if lines else _Silent()
-        return
-    meter: Any
-    try:
-        from tqdm import tqdm  # type: ignore[import-untyped]
-    except ImportError:
-        meter = _Line(total, what)
-    else:
-        meter = tqdm(
-            total=total, desc=what, unit=unit, unit_scale=True, leave=False, dynamic_ncols=True
-        )
+    terminal = sys.stderr.isatty()
+    meter: Any = None
+    if terminal:
+        with suppress(ImportError):
+            from tqdm import tqdm  # type: ignore[import-untyped]
+
+            meter = tqdm(
+                total=total, desc=what, unit=unit, unit_scale=True, leave=False, dynamic_ncols=True
+            )
+    meter = _Lines(total, what, terminal, lines) if meter is None else meter
     try:
         yield meter
     finally:
