@@ -170,7 +170,7 @@ def test_a_run_has_numbers_and_shows_itself() -> None:
     assert run.floats["KI"] == replayed.floats("KI")[0]
     assert run.floats.keys() == run.reals.keys()
     assert repr(run).startswith("<Run: END; ")
-    assert run._repr_html_().startswith("<pre>")
+    assert run._repr_html_().startswith("<pre ")
     assert "VAX= -13.263" in run._repr_html_()
     assert run._repr_html_()[5:-6].replace("\n", "").isprintable()
     double = impact88.run(impact88.sample(1), "float64")

@@ -1,4 +1,6 @@
-"""What is published works where it is installed: every packaged file, outside the checkout."""
+"""What is published works where it is installed: every packaged file, outside the checkout; and in
+a browser's Python (Pyodide), where node is and IMPACT88_PYODIDE names a folder with npm's package.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from captures import ROOT
+from impact88.cli import main
 
 pytest.importorskip("setuptools", "70.1", reason="older ones build no wheel by themselves")
 
@@ -107,3 +110,57 @@ def test_every_packaged_file_is_used(installed: Path, tmp_path: Path) -> None:
     unused = data - {Path(path) for path in opened}
     assert not {path for path in unused if path.suffix not in DOCUMENTS}
     assert set(pages) == {200}
+
+
+BROWSER = """
+import { createRequire } from "node:module";
+import { pathToFileURL } from "node:url";
+const [npm, site] = process.argv.slice(2);
+const found = createRequire(npm + "/from.js").resolve("pyodide/pyodide.mjs");
+const { loadPyodide } = await import(pathToFileURL(found));
+const quiet = () => {};
+const pyodide = await loadPyodide({ stdout: quiet, stderr: quiet });
+await pyodide.loadPackage("numpy", { messageCallback: quiet, errorCallback: quiet }).catch(quiet);
+pyodide.FS.mkdirTree("/site");
+pyodide.FS.mount(pyodide.FS.filesystems.NODEFS, { root: site }, "/site");
+console.log(pyodide.runPython(`
+import contextlib, importlib.util, io, json, sys
+sys.path.insert(0, "/site")
+from impact88.cli import main
+statuses, texts = {}, {}
+numpy = ["solve", "verify", "selfcheck"] if importlib.util.find_spec("numpy") else []
+asked = {
+    "run": ("run", "--sample", "1"),
+    "basic": ("basic", "/site/loop.bas"),
+    "solve": ("solve", "--sample", "1"),
+    "verify": ("verify", "/site/impact88/legacy/run1-as-printed.txt"),
+    "selfcheck": ("selfcheck",),
+}
+for name in ["run", "basic", *numpy]:
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        statuses[name] = main(asked[name])
+    texts[name] = out.getvalue()
+json.dumps([statuses, texts])`));
+"""
+
+
+def test_in_a_browser(installed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    npm = os.environ.get("IMPACT88_PYODIDE")
+    if not npm or not shutil.which("node"):
+        pytest.skip("IMPACT88_PYODIDE names no folder with npm's pyodide, or there is no node")
+    program = installed / "browser.mjs"
+    program.write_text(BROWSER)
+    (installed / "loop.bas").write_text('10 FOR I = 1 TO 3 : PRINT I / 3; " "; : NEXT\n')
+    done = subprocess.run(
+        ["node", str(program), npm, str(installed)], capture_output=True, text=True, timeout=600
+    )
+    assert done.returncode == 0, done.stderr
+    statuses, texts = json.loads(done.stdout)
+    assert set(statuses.values()) == {0}
+    assert main(["run", "--sample", "1"]) == 0
+    assert texts["run"] == capsys.readouterr().out
+    assert texts["basic"].split() == [".333333333", ".666666667", "1"]
+    if "verify" not in texts:
+        pytest.skip("run and basic are right; numpy could not be had for verify and selfcheck")
+    assert "IDENTICAL" in texts["verify"]
+    assert texts["selfcheck"].rstrip().endswith("PASS")

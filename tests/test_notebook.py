@@ -18,7 +18,7 @@ SCRIPT = "<script>alert('&')</script>"
 
 def shown(value: Any) -> str:
     """The text that the HTML shows, whose only element is one <pre>."""
-    inner = re.fullmatch(r"<pre>([^<>]*)</pre>", value._repr_html_())
+    inner = re.fullmatch(r'<pre style="font-family: monospace">([^<>]*)</pre>', value._repr_html_())
     assert inner
     return unescape(inner[1])
 

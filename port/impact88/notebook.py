@@ -7,4 +7,4 @@ def preformatted(text: str) -> str:
     """A text as a piece of HTML that shows it as it stands."""
     from html import escape
 
-    return f"<pre>{escape(text)}</pre>"
+    return f'<pre style="font-family: monospace">{escape(text)}</pre>'
