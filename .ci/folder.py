@@ -46,7 +46,12 @@ for paper in (legacy / "run1-as-printed.txt", golden / "scans" / "clean-001.png"
         sys.exit(f"folder: {paper.name} is not IDENTICAL")
 
 desk = subprocess.Popen(
-    [program, "desk", "--no-browser"], env=bare, cwd=folder, stdout=subprocess.PIPE, text=True
+    [program, "desk", "--no-browser"],
+    env=bare,
+    cwd=folder,
+    stdout=subprocess.PIPE,
+    stderr=subprocess.DEVNULL,
+    text=True,
 )
 try:
     assert desk.stdout
