@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from impact88.accuracy.reference import exact, relative_error
+from fiftydigits import exact, relative_error
 from impact88.bench import figure, measure, paths, tables
-from impact88.bench.methods import METHODS, prepare, reference, relative_errors
+from impact88.bench.methods import COMPONENTS, METHODS, prepare, reference, relative_errors
 from impact88.bench.populations import BENCHMARK, POPULATIONS, scenes, texts
 from impact88.cli import main
 from impact88.figures import canvas
@@ -68,37 +68,57 @@ def test_tables_and_ratios(rows):
     assert "times as fast as LAPACK on ready-made matrices" in tables.ratios(rows)
 
 
-def test_figure(rows, tmp_path):
-    drawn = figure.work_precision(rows)
+def test_figures(rows, tmp_path):
+    drawn = figure.work_precision(rows, 1e-8)
     assert len([text for text in drawn.texts() if text.role == "x label"]) == 2
+    roles = [item.role for item in drawn.items]
+    assert roles.count("memory roof") == 2
+    drawn = figure.error_distribution(rows)
+    roles = [item.role for item in drawn.items]
+    assert roles.count("bound") == 4
+    assert roles.count("closed-form") == 2 * (40 + 1)  # every scene, and a line through all
     canvas.save(drawn, str(tmp_path / "f.svg"))
 
 
+def test_components():
+    """Each result's error relative to itself, where spins are a small difference, too."""
+    found = measure.components(["casework"], 20, 3)
+    assert {row["population"] for row in found} == {"casework", "casework, EM = 0"}
+    assert len(found) == 2 * len(COMPONENTS)
+    assert all(0 < row["median"] <= row["largest"] < 1e-11 for row in found)
+    assert all(row["over_rounding"] < 4 for row in found)
+    assert "casework, EM = 0" in tables.components(found)
+
+
 def test_command(tmp_path, capsys):
-    picture = tmp_path / "f.svg"
+    picture, errors = tmp_path / "f.svg", tmp_path / "e.svg"
     asked = ["bench", "--populations", "casework", "--scenes", "5", "--repeats", "1", "--quick"]
-    assert main([*asked, "--json", "--figure", str(picture)]) == 0
+    asked += ["--json", "--figure", str(picture), "--errors-figure", str(errors)]
+    assert main(asked) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["seed"] == 1988
-    assert {"processor", "cores", "numpy"} <= set(found["machine"])
+    assert {"processor", "cores", "numpy", "memory_roof"} <= set(found["machine"])
     assert found["results"][0]["scenes_per_second"] > 0
+    assert len(found["components"]) == 2 * len(COMPONENTS)
     assert picture.read_text().startswith("<?xml")
+    assert errors.read_text().startswith("<?xml")
     assert main(["bench", "--scenes", "0"]) == 2
     assert main(["bench", "--populations", "easy"]) == 2
-    assert main(["bench", "--figure", "f.doc"]) == 2
+    assert main(["bench", "--errors-figure", "f.doc"]) == 2
 
 
 def test_paths_and_sizes():
-    by_kind, by_output = paths.paths(2000, 1)
-    assert [path.name for path in by_kind] == list(paths.PATHS)
-    general = by_kind[0].passes
-    assert all(path.passes < general for path in by_kind[1:] if "pivot" not in path.name)
-    assert by_output[-1].passes == max(path.passes for path in by_output)
-    assert "general" in tables.paths(by_kind, by_output)
-    assert "floor" in tables.floor(paths.floor(50_000, 1))
+    kinds = paths.kinds(2000, 1)
+    assert [path["name"] for path in kinds] == list(paths.PATHS)
+    general = kinds[0]["passes"]
+    assert all(path["passes"] < general for path in kinds[1:] if "pivot" not in path["name"])
+    chosen = paths.selections(2000, 1)
+    assert chosen[-1]["passes"] == max(path["passes"] for path in chosen)
+    assert "general" in tables.listing(kinds)
+    assert "six sines" in tables.listing(paths.floor(17_000, 1))
     grown = paths.sizes([1000, 50_000], 1)
-    assert grown[1].extra_bytes < 16e6  # working arrays, not the scenes
-    assert "50,000" in tables.sizes(grown)
+    assert grown[1]["extra_mib"] < 16  # working arrays, not the scenes
+    assert "50,000" in tables.listing(grown)
 
 
 def test_populations_of_the_table_can_be_typed():
@@ -114,8 +134,6 @@ def test_files_are_timed_beside_the_computation(
 ) -> None:
     monkeypatch.setattr("impact88.commands.bench_command.FILE_ROWS", 300)
     assert main(["bench", "--files", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["files"]
-    assert found["rows"] == 300
-    names = [door["name"] for door in found["doors"]]
-    assert names[0] == "computation alone"
-    assert any(name.startswith("CSV to CSV") for name in names)
+    doors = json.loads(capsys.readouterr().out)["files"]
+    assert doors[0]["name"] == "computation alone"
+    assert any(door["name"].startswith("CSV to CSV") for door in doors)

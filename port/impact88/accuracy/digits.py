@@ -44,9 +44,13 @@ def thirty_digits(scene: Mapping[str, str]) -> dict[str, str]:
         }
 
 
-def fifty_digits(scene: Mapping[str, str]) -> dict[str, Any]:
-    """Result name -> mpf; empty when the equations are singular."""
-    texts = {name: text.replace(" ", "") or "0" for name, text in scene.items()}
+def fifty_digits(scene: Mapping[str, str | float]) -> dict[str, Any]:
+    """Result name -> mpf; empty when the equations are singular. ``scene``: decimal texts, or
+    floats with their exact values."""
+    texts = {
+        name: value.replace(" ", "") or "0" if isinstance(value, str) else value
+        for name, value in scene.items()
+    }
     with reference.working(texts):
         t = reference._Terms(texts, None)
         P = reference.impulse(t)
@@ -104,7 +108,7 @@ def _energies(t: Any, P: Any, after: list[Any]) -> dict[str, Any]:
     return values
 
 
-def _critical_friction(texts: Mapping[str, str]) -> dict[str, Any]:
+def _critical_friction(texts: Mapping[str, str | float]) -> dict[str, Any]:
     """MUC, the ratio of tangential to normal impulse when the contact point is a pivot."""
     P = reference.impulse(reference._Terms({**texts, "MU": "-10"}, None))
     return {"MUC": P.tangential / P.normal} if P is not None and P.normal else {}

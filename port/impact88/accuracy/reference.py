@@ -1,25 +1,16 @@
-"""The reference: Equations 13 to 18 in 50 digits, those of mpmath (extra ``oracle``).
+"""The reference: a scene's equations in 50 digits, those of mpmath (extra ``oracle``).
 
-Two ways that share nothing with the closed form of `closedform.impact`: `equations` writes the
-six equations as lines 370 to 560 do and `exact` solves them, or, where a body is infinite, the
-three equations in the impulse that remain. `listing_elimination` runs the listing's own
-elimination in the same 50 digits. Together they split an error (`split`) into
-
-- *pi*: what line 300's 3.14159265 changes in the exact solution,
-- *elimination*: what lines 1000 to 1170 get wrong even in 50 digits (pivots judged by an absolute
-  1E-9, a stale RX), and
-- *arithmetic*: the rest, which is rounding.
+The three equations in the impulse share nothing with the closed form of `closedform.impact`; the
+tests hold them to the six equations of lines 370 to 560.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ..errors import UserError
 from ..names import DEFAULT_M, PIVOT
-from .elimination import ORDER, eliminate, listing_rows
 
 try:
     import mpmath as mpmath  # type: ignore[import-untyped]
@@ -70,12 +61,6 @@ def sine_and_cosine(degrees: Number, pi: Number | None) -> tuple[Number, Number]
     return mpmath.sin(degrees * pi / 180), mpmath.cos(degrees * pi / 180)
 
 
-def listing_pi() -> Number:
-    """The pi of line 300, as the decimal it is written as."""
-    with mpmath.workdps(DIGITS + GUARD):
-        return mpmath.mpf("3.14159265")
-
-
 class _Terms:
     """A scene's numbers in mpmath, and lines 300 to 340 on them. Made at working precision."""
 
@@ -104,34 +89,6 @@ class _Terms:
     def before(self) -> list[Number]:
         """The velocities before the impact, in the order of `ORDER`."""
         return [*(self.g[name] for name in ("UX", "UY", "VX", "VY")), self.WA, self.WB]
-
-
-def equations(scene: Mapping[str, Any], pi: Number | None = None) -> list[list[Number]]:
-    """The rows of lines 370 to 560 (6 of 7 numbers, or 4 of 5 for M = 4) for a scene of texts or
-    numbers, with ``pi`` for pi. Line 510's misreading of MU below -10 is not followed."""
-    with working(scene):
-        return listing_rows(_Terms(scene, pi), mpmath.mpf(0))
-
-
-def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Number] | None:
-    """The six final velocities to 50 digits (name -> mpf), or None if the equations are singular.
-
-    ``scene``: scene name -> decimal text, int or float. M = 4: spins pass through. Infinite bodies
-    are given as ``float("inf")`` and must be at rest.
-    """
-    with working(scene):
-        t = _Terms(scene, pi)
-        if any(mpmath.isinf(t.g[name]) for name in ("MA", "IA", "MB", "IB") if name in t.g):
-            solution = impulse(t)
-            values = None if solution is None else velocities(t, solution)
-        else:
-            matrix = listing_rows(t, mpmath.mpf(0))
-            values = _solve([row[:-1] for row in matrix], [row[-1] for row in matrix])
-        if values is None:
-            return None
-        if t.point:
-            values = [*values[:4], t.g.get("WA", 0), t.g.get("WB", 0)]
-        return dict(zip(ORDER, values, strict=True))
 
 
 def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
@@ -242,70 +199,3 @@ def velocities(t: _Terms, P: Impulse) -> list[Number]:
         (ib * bn * pn, ib * bt * pt, -ib * m),
     ]
     return [total(u, *change) for u, change in zip(t.before(), changes, strict=True)]
-
-
-def listing_elimination(
-    scene: Mapping[str, Any], pi: Number | None = None
-) -> dict[str, Number] | None:
-    """What lines 1000 to 1170 make of the equations in 50 digits; None for ZERO DETERMINANT.
-
-    ``pi``: the listing's 3.14159265 unless given.
-    """
-    with working(scene):
-        t = _Terms(scene, listing_pi() if pi is None else pi)
-        solution = eliminate(listing_rows(t, mpmath.mpf(0)), mpmath.mpf("1e-9"))
-        if solution is None:
-            return None
-        if t.point:
-            solution = [*solution, t.g.get("WA", 0), t.g.get("WB", 0)]
-        return dict(zip(ORDER, solution, strict=True))
-
-
-def relative_error(computed: Mapping[str, Any] | Sequence[Any], true: Mapping[str, Any]) -> float:
-    """The largest relative error of the final velocities: errors of the four velocities by the
-    largest of these four, errors of the two spins by the larger spin. Infinite if not a number."""
-    values = computed if isinstance(computed, Mapping) else dict(zip(ORDER, computed, strict=True))
-    worst = 0.0
-    with mpmath.workdps(DIGITS + GUARD):
-        for group in (ORDER[:4], ORDER[4:]):
-            scale = max(abs(true[name]) for name in group)
-            for name in group:
-                value = values[name]
-                if isinstance(value, float) and not math.isfinite(value):
-                    return math.inf
-                error = abs((number(value) if isinstance(value, float) else value) - true[name])
-                if error:
-                    worst = max(worst, float(error / scale) if scale else math.inf)
-    return worst
-
-
-class Split(NamedTuple):
-    """Relative errors of final velocities, by cause (see the module); NaN where there is none."""
-
-    total: float
-    arithmetic: float
-    elimination: float
-    pi: float
-
-
-def split(scene: Mapping[str, Any], computed: Mapping[str, Any]) -> Split:
-    """Split the error of final velocities that the listing (in any arithmetic) ``computed``.
-
-    The parts need not add up to the total, errors being sizes. ``elimination`` and ``arithmetic``
-    are NaN when the listing's elimination ends with ZERO DETERMINANT even in 50 digits.
-    """
-    true, with_listing_pi = exact(scene), exact(scene, listing_pi())
-    if true is None or with_listing_pi is None:
-        return Split(math.nan, math.nan, math.nan, math.nan)
-    eliminated = listing_elimination(scene)
-    if eliminated is None:
-        arithmetic = elimination = math.nan
-    else:
-        arithmetic = relative_error(computed, eliminated)
-        elimination = relative_error(eliminated, with_listing_pi)
-    return Split(
-        relative_error(computed, true),
-        arithmetic,
-        elimination,
-        relative_error(with_listing_pi, true),
-    )

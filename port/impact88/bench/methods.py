@@ -169,15 +169,20 @@ METHODS: Sequence[Method] = (
 """In the order of the table; the reference itself is measured beside them."""
 
 
-def reference(prepared: Prepared) -> tuple[Floats, Floats]:
-    """The final velocities by `accuracy.reference`, each as the sum of two doubles (hi, lo)."""
-    from ..accuracy.reference import exact
+COMPONENTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "PN", "PT", "PM", "LOSS", "DVA", "MUC")
+"""Results whose errors are told one by one."""
 
-    hi, lo = (np.full((prepared.size, 6), np.nan) for _ in range(2))
+
+def reference(prepared: Prepared, names: Sequence[str] = ORDER) -> tuple[Floats, Floats]:
+    """Results to 50 digits, a column for each of ``names``, each number as the sum of two doubles
+    (hi, lo); NaN where there is none."""
+    from ..accuracy.digits import fifty_digits
+
+    hi, lo = (np.full((prepared.size, len(names)), np.nan) for _ in range(2))
     for i in range(prepared.size):
-        true = exact({name: float(values[i]) for name, values in prepared.columns.items()})
-        if true is not None:
-            for j, name in enumerate(ORDER):
+        true = fifty_digits({name: float(values[i]) for name, values in prepared.columns.items()})
+        for j, name in enumerate(names):
+            if name in true:
                 hi[i, j] = float(true[name])
                 lo[i, j] = float(true[name] - hi[i, j])
     return hi, lo
@@ -185,7 +190,7 @@ def reference(prepared: Prepared) -> tuple[Floats, Floats]:
 
 def relative_errors(computed: Floats, hi: Floats, lo: Floats) -> Floats:
     """Every scene's largest relative error, velocities by the largest velocity, spins by the larger
-    spin (as `accuracy.reference.relative_error`); infinite where there is no answer."""
+    spin; infinite where there is no answer."""
     with np.errstate(all="ignore"):
         error = np.abs((computed - hi) - lo)
         parts = []

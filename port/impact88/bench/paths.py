@@ -1,17 +1,20 @@
-"""What skipping saves: every short path and some selections of results, timed side by side; and how
-the closed form compares with its floor (sines and cosines) and grows with the number of scenes.
+"""What skipping saves: every short path and some selections of results, timed side by side; how the
+closed form compares with its floor (sines and cosines), grows with the number of scenes, and what
+reading and writing files costs beside it.
 
 All on one thread, in processor time: these are comparisons of work, and other programs' turns on
-the machine are no part of it.
+the machine are no part of it. Every function gives rows: dicts of numbers and names.
 """
 
 from __future__ import annotations
 
-import statistics
+import csv
+import os
+import tempfile
 import time
 import tracemalloc
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,13 +23,17 @@ from ..accuracy.elimination import ORDER
 from ..closedform.columns import Buffers, examine, sources
 from ..closedform.degrees import sine_and_cosine
 from ..closedform.solve import TILE, plan_for, solve
-from ..names import RESULTS
-from .measure import enlarged
-from .populations import Columns, scenes
+from ..names import RESULTS, SCENE
+from ..tables import arrow
+from .measure import enlarged, medians
+from .populations import BENCHMARK, Columns, scenes
+
+Row = dict[str, Any]
 
 GENERAL = "general"
 CALLS = 200
 """Calls with one scene that are timed together."""
+SEED = 1988
 
 PATHS: dict[str, dict[str, float]] = {
     GENERAL: {},
@@ -67,18 +74,7 @@ SELECTIONS: dict[str, tuple[str, ...]] = {
 }
 
 
-@dataclass
-class Path:
-    """``passes`` over the scenes, ``nanoseconds`` a scene (median), on one core; ``as_columns``:
-    the same with full columns that hold one value, found to be alike block by block."""
-
-    name: str
-    passes: int
-    nanoseconds: float
-    as_columns: float | None = None
-
-
-def _moving() -> Columns:
+def moving() -> Columns:
     """Casework in which every vehicle spins: nothing to skip."""
     g = scenes("casework", 4096, 1)
     rng = np.random.default_rng(1)
@@ -94,121 +90,148 @@ def passes(columns: Any, outputs: Sequence[str]) -> int:
     return plan_for(block.kinds, tuple(outputs)).passes
 
 
-def clock(work: Callable[[], object]) -> float:
-    """Processor time in seconds."""
-    start = time.process_time()
-    work()
-    return time.process_time() - start
-
-
-def _rounds(works: Sequence[Callable[[], object]], repeats: int) -> list[float]:
-    times: list[list[float]] = [[] for _ in works]
-    for _ in range(repeats):
-        for taken, work in zip(times, works, strict=True):
-            taken.append(clock(work))
-    return [statistics.median(taken) for taken in times]
-
-
-def paths(count: int, repeats: int) -> tuple[list[Path], list[Path]]:
-    """Time all kinds of blocks and selections on ``count`` scenes, one core."""
-    general = enlarged(_moving(), count)
-    kinds: list[dict[str, Any]] = [{**general, **same} for same in PATHS.values()]
-    columns = [
+def kinds(count: int, repeats: int) -> list[Row]:
+    """All kinds of blocks on ``count`` scenes: passes, nanoseconds a scene with scalars and with
+    full columns of one value, and what of the general path's time both save."""
+    general = enlarged(moving(), count)
+    by_scalars: list[dict[str, Any]] = [{**general, **same} for same in PATHS.values()]
+    by_columns = [
         {**general, **{name: np.full(count, float(value)) for name, value in same.items()}}
         for same in PATHS.values()
     ]
-    works = [_solving(k, ORDER) for k in (*kinds, *columns)]
-    times = [1e9 * t / count for t in _rounds(works, repeats)]
-    by_kind = [
-        Path(name, passes(kind, ORDER), scalar, full)
+    times = _nanoseconds([_solving(k, ORDER) for k in (*by_scalars, *by_columns)], count, repeats)
+    return [
+        {
+            "name": name,
+            "passes": passes(kind, ORDER),
+            "nanoseconds": scalar,
+            "saved": 1 - scalar / times[0],
+            "as_columns": full,
+            "saved_as_columns": 1 - full / times[0],
+        }
         for name, kind, scalar, full in zip(
-            PATHS, kinds, times[: len(kinds)], times[len(kinds) :], strict=True
+            PATHS, by_scalars, times[: len(PATHS)], times[len(PATHS) :], strict=True
         )
     ]
+
+
+def selections(count: int, repeats: int) -> list[Row]:
+    """The same for selections of results; what is saved is of the time for all of them."""
+    general = enlarged(moving(), count)
     works = [_solving(general, outputs) for outputs in SELECTIONS.values()]
-    by_output = [
-        Path(name, passes(general, outputs), 1e9 * t / count)
-        for (name, outputs), t in zip(SELECTIONS.items(), _rounds(works, repeats), strict=True)
+    times = _nanoseconds(works, count, repeats)
+    return [
+        {
+            "name": name,
+            "passes": passes(general, outputs),
+            "nanoseconds": taken,
+            "saved": 1 - taken / times[-1],
+        }
+        for (name, outputs), taken in zip(SELECTIONS.items(), times, strict=True)
     ]
-    return by_kind, by_output
+
+
+def floor(count: int, repeats: int) -> list[Row]:
+    """Nanoseconds of the six velocities, against the sines and cosines of three angles that they
+    cannot do without; and of a call with one scene, as plain numbers and as arrays of one."""
+    general = enlarged(moving(), count)
+    angle = general["TA"][:TILE]
+    sine, cosine, *work = (np.empty(TILE) for _ in range(6))
+    many = range(3 * (count // TILE))
+
+    def numpy_sines() -> None:
+        for _ in many:
+            np.sin(angle, out=sine)
+            np.cos(angle, out=cosine)
+
+    def own_sines() -> None:
+        for _ in many:
+            sine_and_cosine(angle, sine, cosine, (work[0], work[1], work[2], work[3]))
+
+    lone = {name: float(values[0]) for name, values in general.items()}
+    one = _solving(lone, ORDER)
+    arrays = _solving({name: np.array([value]) for name, value in lone.items()}, ORDER)
+    works = {
+        "six velocities": (_solving(general, ORDER), count),
+        "six sines and cosines by numpy": (numpy_sines, count),
+        "the same by closedform.degrees": (own_sines, count),
+        "a call with one scene, plain numbers": (lambda: [one() for _ in range(CALLS)], CALLS),
+        "the same as arrays of one": (lambda: [arrays() for _ in range(CALLS)], CALLS),
+    }
+    times = medians([work for work, _ in works.values()], repeats)
+    return [
+        {"name": name, "nanoseconds": 1e9 * taken / size}
+        for (name, (_, size)), taken in zip(works.items(), times, strict=True)
+    ]
+
+
+def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
+    """The six velocities for growing numbers of scenes: seconds, nanoseconds a scene, the same into
+    arrays given again and again (``out``), and MiB allocated beside the results."""
+    rows = []
+    base = moving()
+    for count in counts:
+        columns = enlarged(base, count)
+        room = {name: np.zeros(count) for name in ORDER}
+        into = partial(solve, columns, out=room, threads=1)
+        works = (_solving(columns, ORDER), into)
+        fresh, again = medians(works, repeats if count < 5_000_000 else 1)
+        del room, works, into
+        tracemalloc.start()
+        solve(columns, ORDER, threads=1)
+        extra = tracemalloc.get_traced_memory()[1] - 6 * 8 * count
+        tracemalloc.stop()
+        rows.append(
+            {
+                "scenes": count,
+                "seconds": fresh,
+                "nanoseconds": 1e9 * fresh / count,
+                "nanoseconds_out": 1e9 * again / count,
+                "extra_mib": extra / 2**20,
+            }
+        )
+        del columns
+    return rows
+
+
+def doors(count: int, solve_file: Callable[[str, str], object]) -> list[Row]:
+    """``count`` scenes with every result, in memory and by ``solve_file(from, to)``: seconds of
+    wall and of processor time, and how many times the computation alone."""
+    columns = {
+        name: np.broadcast_to(np.asarray(column, float), (count,))
+        for name, column in scenes(BENCHMARK[0], count, SEED).items()
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        path = {
+            name: os.path.join(folder, name)
+            for name in ("t.csv", "o.csv", "t.parquet", "o.parquet")
+        }
+        with open(path["t.csv"], "w", encoding="utf-8", newline="") as file:
+            rows = csv.writer(file, lineterminator="\n")
+            rows.writerow(SCENE)
+            rows.writerows(zip(*(columns[name].tolist() for name in SCENE), strict=True))
+        parser = "pyarrow" if arrow.available() else "csv of the standard library"
+        works: dict[str, Callable[[], object]] = {
+            "computation alone": lambda: solve(columns),
+            f"CSV to CSV ({parser})": lambda: solve_file(path["t.csv"], path["o.csv"]),
+        }
+        if arrow.available():
+            solve_file(path["t.csv"], path["t.parquet"])
+            works["Parquet to Parquet"] = lambda: solve_file(path["t.parquet"], path["o.parquet"])
+        found: list[Row] = []
+        for name, work in works.items():
+            wall, processor = time.perf_counter(), time.process_time()
+            work()
+            wall, processor = time.perf_counter() - wall, time.process_time() - processor
+            alone = found[0]["processor"] if found else processor
+            times = {"seconds": wall, "processor": processor, "times": processor / alone}
+            found.append({"name": name, **times})
+    return found
 
 
 def _solving(columns: Any, outputs: Sequence[str]) -> Callable[[], object]:
     return lambda: solve(columns, outputs, threads=1)
 
 
-def _solving_into(columns: Any, room: dict[str, Any]) -> Callable[[], object]:
-    return lambda: solve(columns, out=room, threads=1)
-
-
-@dataclass
-class Floor:
-    """Nanoseconds a scene: the six velocities, and six sines and cosines of three angles alone, by
-    numpy and by `closedform.degrees`; and a call of `solve` with one scene, as plain numbers and as
-    arrays of one."""
-
-    solve: float
-    numpy_sines: float
-    own_sines: float
-    one_scene: float
-    array_of_one: float
-
-
-def floor(count: int, repeats: int) -> Floor:
-    """Time the closed form against the sines and cosines it cannot do without, one core."""
-    general = enlarged(_moving(), count)
-    angle = general["TA"][:TILE]
-    out = [np.empty(TILE) for _ in range(6)]
-    tiles = range(count // TILE)
-
-    def numpy_sines() -> None:
-        for _ in tiles:
-            for _ in range(3):
-                np.sin(angle, out=out[0])
-                np.cos(angle, out=out[1])
-
-    def own_sines() -> None:
-        for _ in tiles:
-            for _ in range(3):
-                sine_and_cosine(angle, out[0], out[1], (out[2], out[3], out[4], out[5]))
-
-    times = _rounds([_solving(general, ORDER), numpy_sines, own_sines], repeats)
-    lone = {name: float(values[0]) for name, values in general.items()}
-    one = _solving(lone, ORDER)
-    arrays = _solving({name: np.array([value]) for name, value in lone.items()}, ORDER)
-
-    def calls(work: Callable[[], object]) -> Callable[[], object]:
-        return lambda: [work() for _ in range(CALLS)]
-
-    alone = _rounds([calls(one), calls(arrays)], repeats)
-    return Floor(*(1e9 * t / count for t in times), *(1e9 * t / CALLS for t in alone))
-
-
-@dataclass
-class Size:
-    """How the closed form grows: seconds for ``scenes``, the same into arrays given again and again
-    (``out``), and bytes allocated beside the results."""
-
-    scenes: int
-    seconds: float
-    seconds_out: float
-    extra_bytes: int
-
-
-def sizes(counts: Sequence[int], repeats: int) -> list[Size]:
-    """Time the six velocities for growing numbers of scenes."""
-    out = []
-    base = _moving()
-    for count in counts:
-        columns = enlarged(base, count)
-        room = {name: np.zeros(count) for name in ORDER}
-        works = [_solving(columns, ORDER), _solving_into(columns, room)]
-        seconds, seconds_out = _rounds(works, repeats if count < 5_000_000 else 1)
-        del room, works
-        tracemalloc.start()
-        solve(columns, ORDER, threads=1)
-        extra = tracemalloc.get_traced_memory()[1] - 6 * 8 * count
-        tracemalloc.stop()
-        out.append(Size(count, seconds, seconds_out, extra))
-        del columns
-    return out
+def _nanoseconds(works: Sequence[Callable[[], object]], count: int, repeats: int) -> list[float]:
+    return [1e9 * taken / count for taken in medians(works, repeats)]

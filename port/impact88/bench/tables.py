@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ..plaintable import table
-from .filespeed import Door
 from .measure import Measured
-from .paths import GENERAL, Floor, Path, Size
 from .populations import POPULATIONS
 
 BUSY = 0.5
@@ -30,6 +28,43 @@ def _error(value: float) -> str:
 
 def _times(value: float) -> str:
     return f"{value:.1f}" if value < 99.5 else _error(value)
+
+
+def _share(value: float) -> str:
+    return f"{100 * value:.0f} %"
+
+
+def _whole(value: float) -> str:
+    return f"{value:,.0f}"
+
+
+COLUMNS: dict[str, tuple[str, Callable[[Any], str]]] = {
+    "name": ("", str),
+    "population": ("population", str),
+    "result": ("result", str),
+    "scenes": ("scenes", _whole),
+    "passes": ("passes", _whole),
+    "seconds": ("seconds", "{:.4f}".format),
+    "processor": ("of processors", "{:.2f}".format),
+    "times": ("times the first", "{:.1f}".format),
+    "nanoseconds": ("ns/scene", _whole),
+    "saved": ("saved", _share),
+    "as_columns": ("as columns", _whole),
+    "saved_as_columns": ("saved", _share),
+    "nanoseconds_out": ("with out=", _whole),
+    "extra_mib": ("MiB beside the results", "{:.1f}".format),
+    "median": ("median", _error),
+    "largest": ("largest", _error),
+    "over_rounding": ("/rounding", _times),
+}
+"""Key of a row -> heading and how its values are written."""
+
+
+def listing(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Rows of one kind as a table."""
+    keys = list(rows[0])
+    lines = [[COLUMNS[key][1](row[key]) for key in keys] for row in rows]
+    return "\n".join(table(lines, [COLUMNS[key][0] for key in keys]))
 
 
 def results(rows: Sequence[Measured]) -> str:
@@ -60,7 +95,15 @@ def results(rows: Sequence[Measured]) -> str:
     return "\n".join(parts)
 
 
-def ratios(rows: Sequence[Measured]) -> str:
+def components(rows: Sequence[Mapping[str, Any]]) -> str:
+    """The closed form's errors, result by result."""
+    return (
+        "closed form, each result's error relative to itself; /rounding: the largest, relative to\n"
+        "what rounding every number of the scene to a double does to the result\n" + listing(rows)
+    )
+
+
+def ratios(rows: Sequence[Measured], roof: float | None = None) -> str:
     """What the closed form's aims are measured by."""
     by = {(row.population, row.method): row for row in rows}
     lines = []
@@ -75,6 +118,10 @@ def ratios(rows: Sequence[Measured]) -> str:
         ):
             ratio = by["casework", other].seconds / mine.seconds
             lines.append(f"closed form, one core: {ratio:,.0f} {what}")
+        if roof:
+            lines.append(
+                f"closed form, one core: {mine.seconds / roof:.1f} times what memory alone takes"
+            )
         for other, what in (
             ("lapack-fill", "LAPACK's"),
             ("lapack-changes", "LAPACK's with velocity changes for unknowns"),
@@ -98,78 +145,10 @@ def ratios(rows: Sequence[Measured]) -> str:
     return "\n".join(lines)
 
 
-def paths(by_kind: Sequence[Path], by_output: Sequence[Path]) -> str:
-    """What each short path and each selection of results saves."""
-    whole = next(path for path in by_kind if path.name == GENERAL)
-    lines = [
-        [
-            path.name,
-            str(path.passes),
-            f"{path.nanoseconds:.0f}",
-            f"{100 * (1 - path.nanoseconds / whole.nanoseconds):.0f} %",
-            "" if path.as_columns is None else f"{path.as_columns:.0f}",
-            ""
-            if path.as_columns is None
-            else f"{100 * (1 - path.as_columns / whole.nanoseconds):.0f} %",
-        ]
-        for path in by_kind
-    ]
-    first = table(lines, ["kind of block", "passes", "ns/scene", "saved", "as columns", "saved"])
-    everything = by_output[-1]
-    lines = [
-        [
-            path.name,
-            str(path.passes),
-            f"{path.nanoseconds:.0f}",
-            f"{100 * (1 - path.nanoseconds / everything.nanoseconds):.0f} %",
-        ]
-        for path in by_output
-    ]
-    second = table(lines, ["results asked for", "passes", "ns/scene", "saved"])
-    return "\n".join([*first, "", *second])
-
-
-def floor(times: Floor) -> str:
-    return (
-        f"six velocities: {times.solve:.0f} ns a scene on one core; six sines and cosines alone: "
-        f"{times.numpy_sines:.0f} ns by numpy,\n{times.own_sines:.0f} ns by closedform.degrees "
-        f"({times.solve / times.own_sines:.1f} times that floor)\n"
-        f"six velocities of one scene: {times.one_scene / 1e3:.0f} microseconds a call as plain "
-        f"numbers, {times.array_of_one / 1e3:.0f} as arrays of one"
-    )
-
-
-def sizes(measured: Sequence[Size]) -> str:
-    lines = [
-        [
-            f"{size.scenes:,}",
-            f"{size.seconds:.4f}",
-            f"{1e9 * size.seconds / size.scenes:.0f}",
-            f"{1e9 * size.seconds_out / size.scenes:.0f}",
-            f"{size.extra_bytes / 2**20:.1f}",
-        ]
-        for size in measured
-    ]
-    return "\n".join(
-        table(lines, ["scenes", "seconds", "ns/scene", "with out=", "MiB beside the results"])
-    )
-
-
-def doors(rows: int, found: Sequence[Door]) -> str:
-    """Files beside the computation alone."""
-    alone = found[0].seconds
-    lines = [
-        [d.name, f"{d.seconds:.2f}", f"{d.processor:.2f}", f"{d.seconds / alone:.1f}"]
-        for d in found
-    ]
-    heading = [f"{rows:,} rows, all results", "seconds", "of processors", "times the computation"]
-    return "\n".join(table(lines, heading))
-
-
-def machine(told: dict[str, Any]) -> str:
+def machine(told: Mapping[str, Any]) -> str:
     text = (
         f"{told['processor']}, {told['cores']} cores; Python {told['python']}, numpy "
-        f"{told['numpy']}, impact88 {told['impact88']}"
+        f"{told['numpy']}, impact88 {told['impact88']} ({told['instructions'] or 'numpy alone'})"
     )
     if told["load"] is not None and told["load"] > BUSY:
         text += f"\nthe machine was busy (load {told['load']}): times are longer than they could be"

@@ -22,7 +22,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from dataclasses import asdict
 from importlib.util import find_spec
 from typing import Any
 
@@ -48,6 +47,8 @@ __doc__ = (__doc__ or "").format(
 QUICK = 0.05
 PATH_SCENES = 500_000
 FILE_ROWS = 1_000_000
+COMPONENT_SCENES = 300
+"""Scenes of which every result is compared with 50 digits: two milliseconds each."""
 MOST_SCENES = 10_000_000
 SIZES = (1_000, 10_000, 100_000, 1_000_000, 10_000_000)
 
@@ -76,15 +77,22 @@ ARGUMENTS = (
     argument(
         "--figure", type=OutputFile, metavar="FILE", help="draw error against time: .svg .png .pdf"
     ),
+    argument(
+        "--errors-figure",
+        type=OutputFile,
+        metavar="FILE",
+        help="draw errors against condition, with their bound, and their distribution",
+    ),
 )
 
 
 def main(arguments: argparse.Namespace) -> int:
     """Measure, and print tables or JSON."""
-    if arguments.figure:
-        from ..figures.canvas import check_ending
+    for picture in (arguments.figure, arguments.errors_figure):
+        if picture:
+            from ..figures.canvas import check_ending
 
-        check_ending(arguments.figure)
+            check_ending(picture)
     if arguments.paths or arguments.sizes or arguments.files:
         return _skipping(arguments)
     from ..bench import figure, measure, tables
@@ -106,44 +114,45 @@ def main(arguments: argparse.Namespace) -> int:
             meter,
             QUICK if arguments.quick else 1.0,
         )
-    if arguments.figure:
-        from ..figures.canvas import save
+    few = min(arguments.scenes, COMPONENT_SCENES)
+    by_result = measure.components(populations, few, arguments.seed)
+    for path, drawing in (
+        (arguments.figure, lambda: figure.work_precision(rows, machine["memory_roof"])),
+        (arguments.errors_figure, lambda: figure.error_distribution(rows)),
+    ):
+        if path:
+            from ..figures.canvas import save
 
-        save(figure.work_precision(rows), arguments.figure)
+            save(drawing(), path)
     if arguments.json:
         record = {"machine": machine, "seed": arguments.seed, "results": measure.as_json(rows)}
-        _print_json(record)
+        _print_json({**record, "components": by_result})
     else:
         print(tables.machine(machine), end="\n\n")
         print(tables.results(rows))
-        print("\n" + tables.ratios(rows))
+        print("\n" + tables.components(by_result))
+        print("\n" + tables.ratios(rows, machine["memory_roof"]))
     return 0
 
 
 def _skipping(arguments: argparse.Namespace) -> int:
-    from ..bench import filespeed, measure, paths, tables
+    from ..bench import measure, paths, tables
 
-    record: dict[str, Any] = {"machine": measure.machine()}
-    texts = [tables.machine(record["machine"])]
+    record: dict[str, Any] = {}
+    repeats = arguments.repeats
     if arguments.paths:
-        by_kind, by_output = paths.paths(PATH_SCENES, arguments.repeats)
-        floor = paths.floor(PATH_SCENES, arguments.repeats)
-        record["paths"] = [asdict(path) for path in by_kind]
-        record["outputs"] = [asdict(path) for path in by_output]
-        record["floor"] = asdict(floor)
-        texts += [tables.paths(by_kind, by_output), tables.floor(floor)]
+        record["paths"] = paths.kinds(PATH_SCENES, repeats)
+        record["outputs"] = paths.selections(PATH_SCENES, repeats)
+        record["floor"] = paths.floor(PATH_SCENES, repeats)
     if arguments.files:
-        doors = filespeed.files(FILE_ROWS, _solve_file)
-        record["files"] = {"rows": FILE_ROWS, "doors": [asdict(door) for door in doors]}
-        texts.append(tables.doors(FILE_ROWS, doors))
+        record["files"] = paths.doors(FILE_ROWS, _solve_file)
     if arguments.sizes:
-        grown = paths.sizes(SIZES, arguments.repeats)
-        record["sizes"] = [asdict(size) for size in grown]
-        texts.append(tables.sizes(grown))
+        record["sizes"] = paths.sizes(SIZES, repeats)
+    machine = measure.machine()
     if arguments.json:
-        _print_json(record)
+        _print_json({"machine": machine, **record})
     else:
-        print("\n\n".join(texts))
+        print("\n\n".join([tables.machine(machine), *map(tables.listing, record.values())]))
     return 0
 
 

@@ -1,0 +1,129 @@
+"""The listing's six equations in 50 digits, and what its elimination makes of them.
+
+`exact` shares nothing with `accuracy.reference.impulse` but a scene's terms. `split` divides an
+error into what line 300's pi changes in the exact solution, what lines 1000 to 1170 get wrong even
+in 50 digits, and the rest, which is rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import mpmath
+
+from impact88.accuracy.elimination import ORDER, eliminate, listing_rows
+from impact88.accuracy.reference import (
+    DIGITS,
+    GUARD,
+    _solve,
+    _Terms,
+    impulse,
+    number,
+    velocities,
+    working,
+)
+
+Number = Any
+
+
+def listing_pi() -> Number:
+    """The pi of line 300, as the decimal it is written as."""
+    with mpmath.workdps(DIGITS + GUARD):
+        return mpmath.mpf("3.14159265")
+
+
+def equations(scene: Mapping[str, Any], pi: Number | None = None) -> list[list[Number]]:
+    """The rows of lines 370 to 560 (6 of 7 numbers, or 4 of 5 for M = 4) for a scene of texts or
+    numbers, with ``pi`` for pi. Line 510's misreading of MU below -10 is not followed."""
+    with working(scene):
+        return listing_rows(_Terms(scene, pi), mpmath.mpf(0))
+
+
+def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Number] | None:
+    """The six final velocities to 50 digits (name -> mpf), or None if the equations are singular.
+
+    ``scene``: scene name -> decimal text, int or float. M = 4: spins pass through. Infinite bodies
+    are given as ``float("inf")`` and must be at rest.
+    """
+    with working(scene):
+        t = _Terms(scene, pi)
+        if any(mpmath.isinf(t.g[name]) for name in ("MA", "IA", "MB", "IB") if name in t.g):
+            solution = impulse(t)
+            values = None if solution is None else velocities(t, solution)
+        else:
+            matrix = listing_rows(t, mpmath.mpf(0))
+            values = _solve([row[:-1] for row in matrix], [row[-1] for row in matrix])
+        if values is None:
+            return None
+        if t.point:
+            values = [*values[:4], t.g.get("WA", 0), t.g.get("WB", 0)]
+        return dict(zip(ORDER, values, strict=True))
+
+
+def listing_elimination(
+    scene: Mapping[str, Any], pi: Number | None = None
+) -> dict[str, Number] | None:
+    """What lines 1000 to 1170 make of the equations in 50 digits; None for ZERO DETERMINANT.
+
+    ``pi``: the listing's 3.14159265 unless given.
+    """
+    with working(scene):
+        t = _Terms(scene, listing_pi() if pi is None else pi)
+        solution = eliminate(listing_rows(t, mpmath.mpf(0)), mpmath.mpf("1e-9"))
+        if solution is None:
+            return None
+        if t.point:
+            solution = [*solution, t.g.get("WA", 0), t.g.get("WB", 0)]
+        return dict(zip(ORDER, solution, strict=True))
+
+
+def relative_error(computed: Mapping[str, Any] | Sequence[Any], true: Mapping[str, Any]) -> float:
+    """The largest relative error of the final velocities: errors of the four velocities by the
+    largest of these four, errors of the two spins by the larger spin. Infinite if not a number."""
+    values = computed if isinstance(computed, Mapping) else dict(zip(ORDER, computed, strict=True))
+    worst = 0.0
+    with mpmath.workdps(DIGITS + GUARD):
+        for group in (ORDER[:4], ORDER[4:]):
+            scale = max(abs(true[name]) for name in group)
+            for name in group:
+                value = values[name]
+                if isinstance(value, float) and not math.isfinite(value):
+                    return math.inf
+                error = abs((number(value) if isinstance(value, float) else value) - true[name])
+                if error:
+                    worst = max(worst, float(error / scale) if scale else math.inf)
+    return worst
+
+
+class Split(NamedTuple):
+    """Relative errors of final velocities, by cause (see the module); NaN where there is none."""
+
+    total: float
+    arithmetic: float
+    elimination: float
+    pi: float
+
+
+def split(scene: Mapping[str, Any], computed: Mapping[str, Any]) -> Split:
+    """Split the error of final velocities that the listing (in any arithmetic) ``computed``.
+
+    The parts need not add up to the total, errors being sizes. ``elimination`` and ``arithmetic``
+    are NaN when the listing's elimination ends with ZERO DETERMINANT even in 50 digits.
+    """
+    true, with_listing_pi = exact(scene), exact(scene, listing_pi())
+    if true is None or with_listing_pi is None:
+        return Split(math.nan, math.nan, math.nan, math.nan)
+    eliminated = listing_elimination(scene)
+    if eliminated is None:
+        arithmetic = elimination = math.nan
+    else:
+        arithmetic = relative_error(computed, eliminated)
+        elimination = relative_error(eliminated, with_listing_pi)
+    return Split(
+        relative_error(computed, true),
+        arithmetic,
+        elimination,
+        relative_error(with_listing_pi, true),
+    )
