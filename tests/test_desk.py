@@ -369,7 +369,7 @@ def test_a_scene_file_with_ranges_is_read_again(client: Client) -> None:
     ("data", "problem"),
     [
         (b"MU = 1\nMU = 2", "s.toml, line 2: MU is given twice"),
-        (b"QQ = 1", "s.toml: 'QQ' is not a value of a scene"),
+        (b"QQ = 1", "s.toml: 'QQ' is not a name used here"),
         (b"#" + b" " * 1_000_000, "s.toml: is larger than 1,000,000 bytes"),
         (b"\xff\xfe\x00", "s.toml"),
     ],

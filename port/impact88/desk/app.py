@@ -18,9 +18,12 @@ from werkzeug.exceptions import HTTPException
 
 from ..errors import UserError
 from ..files import packaged_text
+from ..names import SCENE
+from ..reconstruction.knowable import KNOWABLE
 from ..version import __version__
 from . import collision, page, reconstruction
 from .guard import HEADERS, LARGEST_BODY, refusal
+from .uploads import filled_in
 from .workers import Bench, BrokenError, SupersededError
 
 BENCHES = {
@@ -107,6 +110,10 @@ def _addresses(desk: Desk) -> Blueprint:
         desk.warm()  # the page is on its way meanwhile
         return render_template("desk.html", **page.contents())
 
+    @routes.get("/signs.svg")
+    def signs() -> Response:
+        return Response(collision.sign_diagram(), content_type="image/svg+xml")
+
     @routes.post("/judge")
     def judge() -> Any:
         bench = "edit" if request.args.get("bench") == "edit" else "paper"
@@ -156,7 +163,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/scene")
     def scene() -> Any:
-        return collision.read_scene_file(request.get_data(), _name())
+        return filled_in(request.get_data(), _name(), SCENE)
 
     @routes.post("/sample/<int:number>")
     def sample(number: int) -> Any:
@@ -174,7 +181,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/known")
     def read_known() -> Any:
-        return reconstruction.read_known_file(request.get_data(), _name())
+        return filled_in(request.get_data(), _name(), KNOWABLE)
 
     @routes.post("/known/<int:number>")
     def known(number: int) -> Any:

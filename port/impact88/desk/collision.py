@@ -17,15 +17,14 @@ from typing import Any, NamedTuple
 from ..doubles import double, is_number
 from ..emulator.screen import shown_character
 from ..errors import UserError
-from ..files import decode
-from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, quantity
+from ..names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
 from ..plaintable import number
-from ..scene import OWN_AXES, Scene, check_value, entries_of, sample, template, toml_texts
+from ..scene import Scene, check_value, entries_of, in_base_units, sample, template, toml_texts
 from ..schemas import stamped
 from ..uncertainty import uncertain
 from .entries import entries
 from .entries import told as told_units
-from .uploads import small_toml
+from .uploads import OUTLINES, outline_lines
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
@@ -35,10 +34,6 @@ _DIGITS = 12
 """Digits of an exact result, as many as double precision is sure of."""
 _ROUNDING = 1e-14
 """Share of the largest value of its kind below which a result shows as 0: a hundred roundings."""
-_OWN_AXES = frozenset(sum(OWN_AXES.values(), ()))
-"""The contact point in a vehicle's own axes, which the form has as DA PA, DB PB."""
-_WHOSE_BASE = {"us": "chapter", "metric": "si"}
-"""The system whose bare numbers are another's base units."""
 _NOT_SHOWN = ("STATUS",)
 _ANSWER_DIGITS = 4
 """Digits of the answer: more than the inputs of any collision are known to."""
@@ -165,8 +160,11 @@ def _answer(
         alike = [abs(one) for name, one in values.items() if quantity(name).unit == rule]
         least = _ROUNDING * max(filter(math.isfinite, alike), default=0.0)
         shown = [values[name] if not abs(values[name]) <= least else 0.0 for name in names]
-        texts = [number(system.shown(rule, value), _ANSWER_DIGITS) for value in shown]
-        told = [{"name": name, "text": text} for name, text in zip(names, texts, strict=True)]
+        told = [
+            {"name": name, "text": number(value, _ANSWER_DIGITS), "value": value}
+            for name, base in zip(names, shown, strict=True)
+            for value in [system.shown(rule, base)]
+        ]
         rows.append({"words": words, "unit": system.label(rule), "values": told})
     return rows
 
@@ -237,10 +235,24 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
         raise UserError("there is no whole scene to draw")
     scene = Scene(form.texts, source="the form")
     result = beside.solved(scene, [*FINAL_VELOCITIES, "STATUS"])
+    given = {name: values[name] for name in OUTLINES if values.get(name)}
+    outlines = {n: double(t) for n, t in in_base_units(given, "", units or None)[0].items()}
     drawing = scene_drawing(
-        scene, result, title=title or "Scene from above", units=system_of(form.units)
+        scene,
+        result,
+        title=title or "Scene from above",
+        units=system_of(form.units),
+        outlines=outlines,
     )
     return svg(drawing)
+
+
+def sign_diagram() -> str:
+    """Axes, angles and impulses of a scene, as `impact88 figure planar` draws them."""
+    from ..figures.freebody import planar
+    from ..figures.svg import svg
+
+    return svg(planar())
 
 
 def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
@@ -266,20 +278,8 @@ def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
     UserError naming what is wrong."""
     for problem in read(values, units).problems.values():
         raise UserError(problem)
-    return template({name: values.get(name, "").strip() for name in SCENE}, title, units)
-
-
-def read_scene_file(data: bytes, name: str) -> dict[str, Any]:
-    """The ``values``, the ``title`` and the ``units`` of a scene file. Raises UserError naming file
-    and line."""
-    texts = small_toml(data, name)
-    title, units = texts.pop("title", ""), texts.pop("units", "").lower()
-    if _OWN_AXES.intersection(texts) or "estimate" in " ".join(texts.values()):
-        scene = Scene.from_toml_text(decode(data, name), name)
-        units = _WHOSE_BASE.get(scene.units or "", scene.units or "")
-        return {"values": dict(scene), "title": title, "units": units}
-    check_names(texts, SCENE, "value of a scene", name)
-    return {"values": texts, "title": title, "units": units}
+    texts = {name: values.get(name, "").strip() for name in SCENE}
+    return template(texts, title, units) + outline_lines(values)
 
 
 def sample_scene(which: int) -> dict[str, Any]:

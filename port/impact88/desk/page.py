@@ -84,6 +84,6 @@ def contents() -> dict[str, Any]:
         "published": PUBLISHED,
         "systems": SYSTEMS,
         "default_m": DEFAULT_M,
-        "signs": SIGNS,
+        "signs": [re.split("   +", line)[-1] for line in SIGNS.splitlines() if line.strip()],
         "samples": [(number, sample(number).title) for number in SAMPLES],
     }

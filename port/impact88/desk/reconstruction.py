@@ -18,7 +18,7 @@ from ..schemas import stamped
 from ..uncertainty import uncertain
 from .entries import Entries, entries
 from .entries import told as told_units
-from .uploads import small_toml
+from .uploads import OUTLINES, outline_lines
 
 if TYPE_CHECKING:
     from ..uncertainty.uncertain import Uncertain
@@ -28,6 +28,9 @@ DRAWS = 20_000
 """Random draws for the quantiles."""
 _DIGITS = 6
 _DIGITS_OF_A_SPREAD = 3
+_ROUNDING = 1e-10
+"""Share of the largest value of its kind below which a value is shown as 0: values go on with
+twelve digits, and errors are seldom amplified a hundred times."""
 _DIGITS_TO_GO_ON = 12
 """Digits of a value that goes on into another computation."""
 _AMPLIFIED = "error amplified"
@@ -132,15 +135,23 @@ def _row(
         _LOWER: spread.get("lower"),
         _UPPER: spread.get("upper"),
     }
+    alike = [
+        abs(values["values"][n] or 0)
+        for n in values["values"]
+        if quantity(n).unit == quantity(name).unit
+    ]
+    zero = value is not None and abs(value) < _ROUNDING * max(alike)
     return {
         **_what(name, system),
-        "text": _text(value, _DIGITS),
+        "text": _text(0.0 if zero else value, _DIGITS),
+        "value": value,
         "known": name in values["known"],
         "solved": name in values.get("solved_for", _SOUGHT) and name not in values["known"],
         "columns": {
             **{head: _text(one, _DIGITS_OF_A_SPREAD) for head, one in columns.items()},
             **{head: _text(one, _DIGITS) for head, one in bounds.items()},
         },
+        "numbers": {**columns, **bounds},
     }
 
 
@@ -182,22 +193,13 @@ def _scene(texts: Mapping[str, str], values: Mapping[str, float | None]) -> dict
 
 def known_file(values: Mapping[str, str], units: str = "") -> str:
     """What is known as the file that `impact88 reconstruct` reads. Raises UserError."""
-    given = entries(values, units)
+    texts = {name: text.strip() for name, text in values.items() if name not in OUTLINES}
+    given = entries(texts, units)
     for problem in given.problems.values():
         raise UserError(problem)
     for name, text in given.texts.items():
         _read(name, text)
-    texts = {name: text.strip() for name, text in values.items()}
-    return known_template(KNOWABLE, texts, units) + "\n"
-
-
-def read_known_file(data: bytes, name: str) -> dict[str, Any]:
-    """The ``values`` in such a file. Raises UserError naming file and line."""
-    texts = small_toml(data, name)
-    title, units = texts.pop("title", ""), texts.pop("units", "").lower()
-    check_names(texts, KNOWABLE, "name used here", name)
-    values = {entry: text for entry, text in texts.items() if text}
-    return {"values": values, "title": title, "units": units}
+    return known_template(KNOWABLE, texts, units) + "\n" + outline_lines(values)
 
 
 def known_of_sample(which: int) -> dict[str, Any]:

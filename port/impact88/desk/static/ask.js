@@ -120,9 +120,12 @@ export function marked(text) {
   return element("span", {}, ...parts.map((part, place) => (place % 2 ? element("sub", {}, part) : part)));
 }
 
+/** How a unit is written. */
+export const unitWord = (unit) => ({ 1: "", degree: "°", deg: "°", percent: "%" }[unit] ?? unit);
+
 /** What a quantity is, for a table's cell: symbol, meaning, unit. */
 export function what(quantity) {
-  const unit = quantity.unit === "1" ? "" : quantity.unit;
+  const unit = unitWord(quantity.unit);
   return element("span", {}, element("i", {}, marked(quantity.symbol ?? "")), " ", marked(quantity.meaning), " ",
     element("small", {}, unit));
 }
@@ -135,6 +138,37 @@ export function fill(table, name, heads, rows, classOf = () => "") {
       (column ? element("td", {}, cell) : element("th", { scope: "row" }, cell)))));
   const caption = element("caption", { className: "visually-hidden" }, name);
   table.replaceChildren(caption, element("thead", {}, head), element("tbody", {}, ...body));
+}
+
+/** A number as it is shown, and whole, with its name and unit, for other programs. */
+export function amount(text, value, name, unit) {
+  const whole = value === null || value === undefined ? "" : String(value);
+  return element("span", { "data-name": name, "data-value": whole, "data-unit": unit ?? "" }, text);
+}
+
+/**
+ * What `work` gives; while it takes longer than a second, `place` shows what is `doing`, for how long, and a button
+ * that ends it on its bench.
+ */
+export async function watched(place, doing, bench, work) {
+  const began = performance.now();
+  const words = element("span", { role: "status" });
+  const button = element("button", { type: "button" }, "Stop");
+  button.addEventListener("click", () => stop(bench));
+  const show = () => {
+    const seconds = Math.floor((performance.now() - began) / 1000);
+    if (!seconds) return;
+    words.textContent = `${doing}, ${seconds} s `;
+    if (!words.isConnected) place.replaceChildren(element("progress", { "aria-label": doing }), " ", words, button);
+    place.hidden = false;
+  };
+  const timer = setInterval(show, 500);
+  try {
+    return await work;
+  } finally {
+    clearInterval(timer);
+    if (words.isConnected) place.replaceChildren();
+  }
 }
 
 /** A number for a table, to so many significant digits; nothing for none. */

@@ -1,9 +1,10 @@
 // The Collision view: 21 values, answered while one types.
-import { ask, asked, attempt, drawInto, element, fill, newest, page, save, settled, showUnits, shown, stop, tabs, tell, what } from "./ask.js";
+import { amount, ask, asked, attempt, drawInto, element, fill, newest, page, save, settled, showUnits, shown, stop, tabs, tell, unitWord, watched, what } from "./ask.js";
 
 const form = () => page("collision-form");
 const inputs = () => [...form().querySelectorAll("fieldset input")];
-const values = () => Object.fromEntries(inputs().map((input) => [input.name, input.value]));
+let extra = {}; // lengths and widths from a file: drawn, and saved again
+const values = () => ({ ...extra, ...Object.fromEntries(inputs().map((input) => [input.name, input.value])) });
 const question = () => ({ values: values(), title: page("collision-title").value, units: page("collision-units").value });
 const trouble = (error) => tell(page("collision-trouble"), error);
 
@@ -36,17 +37,15 @@ function waitingFor(answer) {
 /** What is asked of a collision, a column for each vehicle; what belongs to both spans them. */
 function showFirst(rows) {
   const table = page("collision-first");
-  const cell = ({ name, text }) => element("span", { "data-name": name }, text);
+  const cell = ({ name, text, value }, unit) => amount(text, value, name, unit);
   fill(table, "Answer", ["what", "A", "B", "unit"], rows.map(({ words, unit, values: [one, other] }) =>
-    [words, cell(one), other ? cell(other) : "", element("small", {}, UNITS[unit] ?? unit)]));
+    [words, cell(one, unit), other ? cell(other, unit) : "", element("small", {}, unitWord(unit))]));
   for (const row of table.tBodies[0].rows) {
     if (row.cells[2].textContent) continue;
     row.cells[2].remove();
     row.cells[1].colSpan = 2;
   }
 }
-
-const UNITS = { 1: "", degree: "°", percent: "%" };
 
 /** The Apple's screen: 24 rows of 40 characters, inverse and flashing ones as such. */
 function showScreen(rows) {
@@ -66,8 +65,10 @@ function showAnswer(answer) {
     .replaceChildren(...answer.warnings.map((text) => element("li", {}, text)));
   page("collision-warnings").hidden = !answer.warnings.length;
   const shownToo = answer.results.some((row) => row.shown);
+  const whole = (row, text) => amount(text, row.value, row.name, row.label);
   fill(page("collision-results"), "All results", ["name", "what", "printed", "exact", ...(shownToo ? ["that is"] : [])],
-    answer.results.map((row) => [row.name, what(row), row.printed, row.exact, ...(shownToo ? [row.shown] : [])]));
+    answer.results.map((row) => [row.name, what(row), row.printed,
+      row.shown ? row.exact : whole(row, row.exact), ...(shownToo ? [row.shown && whole(row, row.shown)] : [])]));
 }
 
 let latest = null;
@@ -92,9 +93,10 @@ function boundsRow([name, bound]) {
     .sort((one, other) => other[1] - one[1])
     .slice(0, 2)
     .map(([input, swing]) => `${input} ${shown(swing, 3)}`);
-  const quantiles = SHARES.map((share) => shown(bound.quantiles[share], 4));
+  const cell = (part, value, digits) => amount(shown(value, digits), value, `${name} ${part}`, bound.unit);
   return [
-    name, what(bound), shown(bound.lower), shown(bound.nominal), shown(bound.upper), ...quantiles, drives.join(", "),
+    name, what(bound), ...["lower", "nominal", "upper"].map((part) => cell(part, bound[part], 4)),
+    ...SHARES.map((share) => cell(share, bound.quantiles[share], 4)), drives.join(", "),
   ];
 }
 
@@ -167,6 +169,8 @@ const answer = newest(async () => {
 
 function load(scene) {
   for (const input of inputs()) input.value = scene.values[input.name] ?? "";
+  extra = scene.extra ?? {};
+  tell(page("collision-remarks"), scene.remarks?.length && { message: scene.remarks.join(" ") });
   page("collision-title").value = scene.title;
   page("collision-units").value = scene.units ?? "";
   answer();
@@ -199,7 +203,8 @@ export function collision() {
   page("collision-save").addEventListener("click", () => doing(async () =>
     save(await ask("scene-file", question()))));
   page("collision-report").addEventListener("click", () => doing(async () => {
-    const response = await ask("case-report/collision", question());
+    const busy = page("collision-busy");
+    const response = await watched(busy, "Writing the report", "bounds", ask("case-report/collision", question()));
     if (response) await save(response);
   }));
   tabs(document.querySelector("#collision .tabs"));

@@ -1,5 +1,5 @@
 // The Paper view: papers, their verdicts, and the text of one of them to be edited beside its scan.
-import { ask, asked, element, fill, page, save, settled, stop, tell } from "./ask.js";
+import { ask, asked, element, fill, page, save, settled, stop, tell, watched } from "./ask.js";
 import { draw as drawMarks, offsetsIn, shifted } from "./marks.js";
 
 /** One paper: its file, its text as it stands on the page, its scan, and what was answered. */
@@ -61,7 +61,8 @@ async function judge(paper, bench) {
   }
   const sent = paper.text;
   try {
-    taken(paper, await asked("judge", paper.body, { name: paper.name, bench }), sent);
+    const answer = asked("judge", paper.body, { name: paper.name, bench });
+    taken(paper, await watched(page("paper-busy"), `Reading ${paper.name}`, bench, answer), sent);
   } catch (error) {
     paper.trouble = error.message;
     showList();
@@ -453,7 +454,7 @@ async function saveReport() {
     const given = papers.filter((paper) => !paper.empty);
     const sent = await Promise.all(given.map(async (paper) => ({ name: paper.name, data: await base64(paper.body) })));
     const words = Object.fromEntries([...document.querySelectorAll(".report input")].map((input) => [input.name, input.value]));
-    const response = await ask("report", { papers: sent, words });
+    const response = await watched(page("paper-busy"), "Writing the report", "edit", ask("report", { papers: sent, words }));
     if (response) await save(response);
   } catch (error) {
     tell(trouble, error);
@@ -498,6 +499,7 @@ export function paper() {
     if (current.scan) URL.revokeObjectURL(current.scan.address);
     papers.splice(at, 1);
     stop("edit");
+    stop("paper");
     choose(papers[Math.min(at, papers.length - 1)] ?? fresh());
   });
   page("paper-add-scan").addEventListener("click", () => page("paper-scan-file").click());

@@ -1,5 +1,5 @@
 // The Reconstruction view: what is known is ticked, the rest is solved for while one types.
-import { ask, asked, attempt, drawInto, element, fill, page, save, settled, showUnits, tell, what } from "./ask.js";
+import { amount, ask, asked, attempt, drawInto, element, fill, page, save, settled, showUnits, tell, watched, what } from "./ask.js";
 
 const form = () => page("reconstruction-form");
 const inputs = () => [...form().querySelectorAll("input[name]")];
@@ -7,8 +7,12 @@ const ticks = () => [...form().querySelectorAll("input[data-for]")];
 const tickOf = (input) => page(`${input.id}-known`);
 const toleranceOf = (input) => page(`${input.id}-tolerance`);
 const WITHIN = /^(.*\S)\s*(?:\+-|±)\s*(\S.*)$/;
+let extra = {}; // lengths and widths from a file: drawn, and saved again
 const question = () => ({ values: values(), units: page("reconstruction-units").value });
 const trouble = (error) => tell(page("reconstruction-trouble"), error);
+
+/** The question with what stands beside the form. */
+const whole = () => ({ ...question(), values: { ...extra, ...values() } });
 
 /** The values that count: those always known, and those ticked. */
 function values() {
@@ -71,7 +75,8 @@ function solutionPart(solution, at, count) {
   }
   const columns = solution.columns;
   const table = (name, rows) => tableOf(name, ["name", "what", "value", ...columns], rows.map((row) =>
-    [row.name, what(row), row.text, ...columns.map((column) => row.columns[column] ?? "")]),
+    [row.name, what(row), amount(row.text, row.value, row.name, row.unit), ...columns.map((column) =>
+      amount(row.columns[column] ?? "", row.numbers[column], `${row.name} ${column}`, row.unit))]),
   (place) => (rows[place].solved ? "solved" : ""));
   parts.push(table("What follows", solution.rows.filter((row) => row.solved || ASKED.includes(row.name))));
   if (solution.adjusted.length) {
@@ -82,8 +87,8 @@ function solutionPart(solution, at, count) {
   if (solution.scene) {
     const picture = element("img", { alt: "" });
     const figure = element("figure", { className: "sheet", hidden: true }, picture);
-    const scene = { values: solution.scene, title: "Reconstructed", units: solution.units };
-    drawInto(picture, scene).then((drawn) => { figure.hidden = !drawn; });
+    const scene = { values: solution.scene, title: "Reconstructed", units: solution.units, extra };
+    drawInto(picture, { ...scene, values: { ...extra, ...solution.scene } }).then((drawn) => { figure.hidden = !drawn; });
     const button = element("button", { type: "button" }, "Open this collision");
     button.addEventListener("click", () => {
       dispatchEvent(new CustomEvent("desk-scene", { detail: scene }));
@@ -106,17 +111,22 @@ const announce = settled(() => {
 }, 1200);
 
 // a newer question ends the one before, so that each is asked at once
+let asking = 0;
 const solve = settled(async () => {
+  const mine = (asking += 1);
   page("reconstruction-waiting").textContent = "Computing …";
   let told;
   try {
-    told = await asked("reconstruct", question());
+    told = await watched(page("reconstruction-busy"), "Computing", "reconstruction", asked("reconstruct", question()));
   } catch (error) {
     page("reconstruction-waiting").textContent = "";
     trouble(error);
     return;
   }
-  if (!told) return;
+  if (!told) { // a newer question says what it finds
+    if (mine === asking) page("reconstruction-waiting").textContent = "Stopped.";
+    return;
+  }
   trouble(null);
   showProblems(told.problems);
   showUnits(form(), told.units);
@@ -138,6 +148,8 @@ function answer() {
 }
 
 function load(given) {
+  extra = given.extra ?? {};
+  tell(page("reconstruction-remarks"), given.remarks?.length && { message: given.remarks.join(" ") });
   for (const input of inputs()) {
     put(input, given.values[input.name] ?? "");
     const tick = tickOf(input);
@@ -176,9 +188,10 @@ export function reconstruction() {
     });
   });
   page("reconstruction-save").addEventListener("click", () => doing(async () =>
-    save(await ask("known-file", question()))));
+    save(await ask("known-file", whole()))));
   page("reconstruction-report").addEventListener("click", () => doing(async () => {
-    const response = await ask("case-report/reconstruction", question());
+    const busy = page("reconstruction-busy");
+    const response = await watched(busy, "Writing the report", "bounds", ask("case-report/reconstruction", whole()));
     if (response) await save(response);
   }));
   page("reconstruction-print").addEventListener("click", () => print());
