@@ -100,7 +100,7 @@ class Notation(NamedTuple):
 
 def parse(text: str) -> Notation:
     """A value or range taken apart. Raises ValueError for what is neither."""
-    words = " ".join(text.translate(_MEANT).split())
+    words = " ".join(text.replace("⁻¹", "^-1").replace("⁻²", "^-2").translate(_MEANT).split())
     if "..." in words:
         raise ValueError(text)
     for kind, (pattern, counts) in _FORMS.items():
