@@ -491,11 +491,9 @@ def test_what_is_known_is_saved_as_the_commands_file(
     known = {**client.post("known/1").json["values"], "VAX": "-13.26 +- 0.5", "UY": "0"}
     saved = client.post("known-file", {"values": known})
     assert saved.status_code == 200
-    assert client.post("known?name=k.toml", saved.data).json == {
-        "values": known,
-        "title": "",
-        "units": "",
-    }
+    read = client.post("known?name=k.toml", saved.data).json
+    assert {name: text for name, text in read.pop("values").items() if text} == known
+    assert read == {"title": "", "units": ""}
     (tmp_path / "known.toml").write_bytes(saved.data)
     printed = own("reconstruct", "known.toml")
     assert printed.rstrip("\n") == reconstruction.answer(known)["solutions"][0]["printed"]

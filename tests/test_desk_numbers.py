@@ -147,10 +147,11 @@ def table(text: str) -> Numbers:
     return {name: (float(cell), unit.rstrip("]")) for name, unit, cell in cells if cell}
 
 
+@pytest.mark.parametrize("case", CASES or [None])
 def test_what_the_page_shows_is_what_the_commands_print(
-    page: Any, tmp_path: Path, capsys: Any
+    page: Any, case: tuple[int, str] | None, tmp_path: Path, capsys: Any
 ) -> None:
-    for number, system in CASES or DEFAULT[page.name]:
+    for number, system in [case] if case else DEFAULT[page.name]:
         values = texts(system, SCENES[number])
         path = tmp_path / "scene.toml"
 
