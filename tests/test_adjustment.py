@@ -20,7 +20,7 @@ from impact88.reconstruction.unknowns import solve_for
 from impact88.scene import Scene, sample
 from impact88.uncertainty.reconstructed import draws, ranges
 from impact88.uncertainty.reconstructedtable import uncertainty
-from impact88.uncertainty.uncertain import Uncertain, fixed, read, skid
+from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 INITIAL = ("UX", "UY", "WA", "VX", "VY", "WB")
@@ -715,14 +715,22 @@ class TestWhatAnEngineerKnows:
             reconstruct({**known, "ELA": 100.0})
 
     def test_skid(self):
-        item = skid("skid 62 at 0.7", "SAF", 32.174)
-        assert item.nominal == pytest.approx(math.sqrt(2 * 0.7 * 32.174 * 62))
-        item = skid("skid 62 +- 2 at 0.6 .. 0.8", "SAF", 32.174)
-        assert item.low == pytest.approx(math.sqrt(2 * 0.6 * 32.174 * 60))
-        assert item.high == pytest.approx(math.sqrt(2 * 0.8 * 32.174 * 64))
-        assert skid("41 +- 2", "SAF", None) is None
+        gravity = 9.80665 / 0.3048
+        item = read("skid 62 at 0.7", "SAF", units="us")
+        assert item.nominal == pytest.approx(math.sqrt(2 * 0.7 * gravity * 62))
+        item = read("skid 62 +- 2 at 0.6 .. 0.8", "SAF", units="us")
+        assert item.low == pytest.approx(math.sqrt(2 * 0.6 * gravity * 60))
+        assert item.high == pytest.approx(math.sqrt(2 * 0.8 * gravity * 64))
         with pytest.raises(UserError, match="needs units"):
-            skid("skid 62 at 0.7", "SAF", None)
+            read("skid 62 at 0.7", "SAF")
+        with pytest.raises(UserError, match="is not a skid"):
+            read("skid 62", "SAF", units="us")
+
+    def test_skid_to_rest_of_a_caller(self):
+        known = {**SECTION_7, "HAF": 116.565, "SAF": "skid 10 ft at 0.7 +- .05", "units": "chapter"}
+        del known["VAX"], known["VAY"]
+        (solution,) = reconstruct(known)
+        assert solution.values["SAF"] == pytest.approx(math.sqrt(1.4 * 9.80665 / 0.3048 * 10))
 
 
 def test_draws_keep_within_all_limits_as_rejection_has_them():

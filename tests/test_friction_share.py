@@ -72,10 +72,27 @@ def test_a_table_has_shares_beside_numbers(tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text(sample(1).to_toml(), encoding="utf-8")
     arguments = ["--scene", str(tmp_path / "s.toml"), "--outputs", "MUP,MUC"]
     assert main(["solve", str(table), "-o", str(out), *arguments]) == 0
-    with np.load(out) as found:
+    with np.load(out) as loaded:
+        found = dict(loaded)
         shares = found["MUP"] / found["MUC"]
         assert shares[[0, 3]] == pytest.approx([0.85, 0.4], rel=1e-12)
         assert found["MUP"][1:3].tolist() == [0.3, -10]
+    # the listing types the number, too
+    assert (
+        main(["solve", str(table), "-o", str(out), *arguments[:2], "--arithmetic=applesoft"]) == 0
+    )
+    with np.load(out) as applesoft:
+        assert applesoft["MUP"] == pytest.approx(found["MUP"], rel=1e-8)
+
+
+def test_a_python_column_has_shares_beside_numbers() -> None:
+    scene = sample(1).numbers()
+    found = solve({**scene, "MU": ["85 %", ".3", -10, "85 %"], "UX": [-29, -29, -29, -60]})
+    alone = solve({**scene, "MU": "85 %", "UX": -60.0})
+    assert found["MUP"][1:3].tolist() == [0.3, -10]
+    assert (found["MUP"] / found["MUC"])[[0, 3]] == pytest.approx(0.85, rel=1e-12)
+    assert all(found[name][3] == alone[name] for name in found)
+    assert float(alone["MUP"]) == abs(float(sample(1).replaced({"MU": "85 %", "UX": "-60"})["MU"]))
 
 
 def test_bounds_of_a_share() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from itertools import combinations
 from typing import Any
 
@@ -20,8 +22,6 @@ from impact88.reconstruction.unknowns import (
     FINAL,
     INITIAL,
     UnsolvableError,
-    generically_solvable,
-    solvable_sets,
 )
 from reference_cases import Case, cases_of
 
@@ -38,6 +38,20 @@ def table_3() -> dict[str, float]:
 def without(values: dict[str, float], *names: str) -> dict[str, float]:
     """``values`` but for ``names``, and for MU: MUP says more."""
     return {name: value for name, value in values.items() if name not in (*names, "MU", "M")}
+
+
+def generically_solvable(unknown: Sequence[str]) -> bool:
+    """Whether the equations determine ``unknown`` for almost every scene: of a random one."""
+    rng = np.random.default_rng(1988)
+    scene = {n: rng.uniform(0.5, 2.0) for n in ("DA", "DB", "MA", "MB", "IA", "IB")}
+    scene |= {n: rng.uniform(-90.0, 90.0) for n in ("GA", "PA", "PB", "TA", "TB")}
+    scene |= {"E": 0.37, "EM": -0.61, "MUP": 0.43}
+    scene |= {n: rng.uniform(-2.0, 2.0) for n in (*INITIAL, *FINAL)}
+    try:
+        solve_for({n: v for n, v in scene.items() if n not in unknown}, unknown)
+    except UnsolvableError:
+        return False
+    return True
 
 
 def residuals(s: dict[str, Any]) -> list[float]:
@@ -130,7 +144,10 @@ def test_what_follows_from_a_solution(case: Case) -> None:
 
 
 def test_640_of_the_924_sets_of_six_velocities_are_generically_solvable() -> None:
-    assert len(solvable_sets()) == 640
+    # IMPACT88_SETS=1 tries all of them
+    every = 1 if os.environ.get("IMPACT88_SETS") else 6
+    sets = list(combinations((*INITIAL, *FINAL), 6))[::every]
+    assert sum(map(generically_solvable, sets)) == {1: 640, 6: 106}[every]
 
 
 @pytest.mark.parametrize("vehicle", ["A", "B"])

@@ -28,21 +28,30 @@ def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
     Beside the entry ``units`` numbers and arrays are in that system, too. Raises UserError.
     """
+    return _in_base(values)[0]
+
+
+def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
+    """The values in base units, and the name of their system."""
     check_mapping(values)
     texts = {name: value for name, value in values.items() if isinstance(value, str)}
     if isinstance(values, Scene) or not texts:
-        return values
+        return values, None
     if "units" in texts:
         scalars = {n: v for n, v in values.items() if type(v) in (int, float)}
         texts |= {name: repr(value).upper() for name, value in scalars.items()}
     found = entries_of(texts, "values")
     kept = {name: value for name, value in values.items() if name not in texts}
     if found.units:
+        from .uncertainty.uncertain import Uncertain
         from .units import system_of
 
-        system = system_of(found.units)
-        kept = {n: in_doubles(n, v) / system.factor(n) for n, v in kept.items()}
-    return {**kept, **found.values}
+        factors = {n: system_of(found.units).factor(n) for n in kept}
+        kept = {
+            n: v.over(factors[n]) if isinstance(v, Uncertain) else in_doubles(n, v) / factors[n]
+            for n, v in kept.items()
+        }
+    return {**kept, **found.values}, found.units
 
 
 def in_doubles(name: str, values: Any) -> Array:
@@ -100,17 +109,20 @@ def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
 
     from .uncertainty.uncertain import Uncertain, fixed, read
 
+    based, units = _in_base(values)
+
     def uncertain(name: str, value: Any) -> Uncertain:
         if isinstance(value, Uncertain):
             return value
-        if isinstance(value, str) and (is_share(value) or any(mark in value for mark in RANGES)):
-            return read(value, name)
+        marks = (*RANGES, "skid")
+        if isinstance(value, str) and (is_share(value) or any(mark in value for mark in marks)):
+            return read(value, name, units=units)
         number = in_doubles(name, value)
         if np.ndim(number):
             raise UserError(f"{name} is an array; expected one number or range")
         return fixed(float(number))
 
-    return {name: uncertain(name, value) for name, value in in_base(values).items()}
+    return {name: uncertain(name, value) for name, value in based.items()}
 
 
 def texts(values: Mapping[str, Any]) -> dict[str, str]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from importlib import import_module
 
 from . import notebook
 from .doubles import double, is_number
@@ -104,8 +103,8 @@ class Scene(Mapping[str, str]):
             raise UserError(missing(absent), source)
         entries = entries or Entries(dict(given), dict(given))
         if is_share(given["MU"]):
-            # a number is computed, by a room above this one; whoever types MU never goes there
-            resolved = import_module(".closedform.share", __package__).resolved
+            from .closedform.share import resolved  # whoever types MU never goes there
+
             checked = {n: check_value(n, text, source) for n, text in given.items() if n != "MU"}
             given["MU"], entries.remarks["MU"] = resolved({**checked, "MU": given["MU"]}, source)
         self._values = {name: check_value(name, given[name], source) for name in SCENE}

@@ -14,83 +14,28 @@ and -1.
 
 from __future__ import annotations
 
-from decimal import Context, Decimal, localcontext
 from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .sinetable import INTEGER_IN_LOW_BITS, POLYNOMIALS, STEP, STEPS, turn
+
 Floats = NDArray[np.float64]
 
-STEPS = 2048
-"""Table entries in a full turn."""
-STEP = 360 / STEPS
-"""45/256 degree: exact, and so is its product with any number below 2**47."""
 LARGEST = 2.0**40
 """Angles beyond this (in degrees) must be taken modulo 360 by the caller first."""
 
-_PI = Decimal("3.14159265358979323846264338327950288419716939937510")
 _QUARTER = STEPS // 4
-# adding this leaves the nearest integer in a double's lowest bits
-INTEGER_IN_LOW_BITS = 1.5 * 2.0**52
+_S0, _S1, _S2, _C1, _C2 = POLYNOMIALS
 
 
 @cache
 def table() -> Floats:
-    """sin of the multiples of `STEP`, a turn and a quarter, so that cos is the same table later."""
-    octant = _QUARTER // 2
-    with localcontext(Context(prec=40)):
-        step = 2 * _PI / STEPS
-        sine, cosine = _small_sine(step), _small_cosine(step)
-        x, y = Decimal(1), Decimal(0)
-        points = []
-        for _ in range(octant + 1):
-            points.append((float(x), float(y)))
-            x, y = x * cosine - y * sine, x * sine + y * cosine
-    rising = [y for _, y in points] + [x for x, _ in reversed(points[:-1])]
-    half = rising + rising[-2:0:-1]
-    turn = np.array(half + [-y for y in half])
-    turn[STEPS // 2] = 0.0
-    both = np.concatenate([turn, turn[:_QUARTER]])
-    both.flags.writeable = False
-    return both
-
-
-def _small_sine(x: Decimal) -> Decimal:
-    term = total = x
-    for n in range(3, 25, 2):
-        term = -term * x * x / (n * (n - 1))
-        total += term
-    return total
-
-
-def _small_cosine(x: Decimal) -> Decimal:
-    term = total = Decimal(1)
-    for n in range(2, 24, 2):
-        term = -term * x * x / (n * (n - 1))
-        total += term
-    return total
-
-
-def _polynomials() -> tuple[float, float, float, float, float]:
-    """Coefficients of sin r = r·(s0 + s1·r² + s2·r⁴) and cos r - 1 = r²·(c1 + c2·r²), r in degrees.
-
-    The series themselves: the first term left out is, at |r| = STEP/2, below 3e-21 of the sine
-    and 2e-20 of the cosine.
-    """
-    with localcontext(Context(prec=40)):
-        radian = _PI / 180
-        return (
-            float(radian),
-            float(-(radian**3) / 6),
-            float(radian**5 / 120),
-            float(-(radian**2) / 2),
-            float(radian**4 / 24),
-        )
-
-
-POLYNOMIALS = _polynomials()
-_S0, _S1, _S2, _C1, _C2 = POLYNOMIALS
+    """`sinetable.turn` as an array."""
+    array = np.array(turn())
+    array.flags.writeable = False
+    return array
 
 
 def sine_and_cosine(
@@ -101,14 +46,14 @@ def sine_and_cosine(
     All are 1-d arrays of one length, ``work`` four more; none may overlap. |angle| at most
     `LARGEST`; an angle that is not finite gives NaN.
     """
-    turn = table()
+    points = table()
     rest, square, small, less = work
     index = square.view(np.int64)
     np.multiply(angle, 1 / STEP, out=small)
     np.add(small, INTEGER_IN_LOW_BITS, out=small)
     np.bitwise_and(small.view(np.int64), STEPS - 1, out=index)
-    turn.take(index, out=sine, mode="clip")
-    turn[_QUARTER:].take(index, out=cosine, mode="clip")
+    points.take(index, out=sine, mode="clip")
+    points[_QUARTER:].take(index, out=cosine, mode="clip")
     np.subtract(small, INTEGER_IN_LOW_BITS, out=small)
     np.multiply(small, STEP, out=small)
     np.subtract(angle, small, out=rest)

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from ..native.formulas import Expression
 from ..native.program import Program
-from . import degrees
+from . import degrees, sinetable
 
 
 class _Circle(ctypes.Structure):
@@ -23,11 +23,11 @@ class _Circle(ctypes.Structure):
 
 _CIRCLE = _Circle(
     degrees.table().ctypes.data,
-    1 / degrees.STEP,
-    degrees.STEP,
-    degrees.INTEGER_IN_LOW_BITS,
-    *degrees.POLYNOMIALS,
-    degrees.STEPS,
+    1 / sinetable.STEP,
+    sinetable.STEP,
+    sinetable.INTEGER_IN_LOW_BITS,
+    *sinetable.POLYNOMIALS,
+    sinetable.STEPS,
 )
 CIRCLE = ctypes.addressof(_CIRCLE)
 """Where the machine finds it."""

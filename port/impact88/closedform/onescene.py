@@ -23,9 +23,9 @@ from ..fields import ANGLES
 from ..names import DEFAULT_M, PIVOT, SCENE
 from ..native.formulas import Expression, ExpressionTable
 from ..native.program import in_order
-from . import degrees
 from .columns import INERTIAS, LARGE_ANGLE, UNUSED_BY_POINTS
 from .impact import Impact
+from .sinetable import sine_and_cosine
 
 NAMES = tuple(SCENE)
 LONGEST_PART = 60
@@ -98,7 +98,7 @@ def _defined(source: str, constants: Mapping[str, float]) -> Callable[..., tuple
         "fmod": math.fmod,
         "isfinite": math.isfinite,
         "LeftToArrays": LeftToArrays,
-        "sine_and_cosine": _sine_and_cosine(),
+        "sine_and_cosine": sine_and_cosine,
         "sqrt": math.sqrt,
         **constants,
     }
@@ -158,27 +158,3 @@ def _formula(operation: str, operands: Sequence[str]) -> str:
         value, slip = operands
         return f"-{value} if {slip} > 0.0 else {value}"
     return f"{operation}({', '.join(operands)})"
-
-
-def _sine_and_cosine() -> Callable[[float], tuple[float, float]]:
-    """`degrees.sine_and_cosine` of one angle: the same operations, one after another."""
-    turn = degrees.table().tolist()
-    quarter = degrees.STEPS // 4
-    last, shift = degrees.STEPS - 1, degrees.INTEGER_IN_LOW_BITS
-    step, per_step = degrees.STEP, 1 / degrees.STEP
-    s0, s1, s2, c1, c2 = degrees.POLYNOMIALS
-
-    def sine_and_cosine(angle: float) -> tuple[float, float]:
-        steps = angle * per_step + shift - shift
-        index = int(steps) & last
-        sine, cosine = turn[index], turn[index + quarter]
-        rest = angle - steps * step
-        square = rest * rest
-        small = ((square * s2 + s1) * square + s0) * rest
-        less = (square * c2 + c1) * square
-        return (
-            sine + (cosine * small + sine * less),
-            cosine + (cosine * less - sine * small),
-        )
-
-    return sine_and_cosine

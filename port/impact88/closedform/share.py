@@ -1,24 +1,25 @@
 """MU as a share of the critical friction: MU = "85 %".
 
 Critical is the friction that just ends the sliding at separation, MUC; the share is of P_t/P_n. MU
-is then what line 280 would hold: the listing turns its sign where gt > 0 (line 400).
+is then what line 280 would hold: the listing turns its sign where gt > 0 (line 400). Of a scene's
+texts it is worked out by Python alone, which a scene does not leave; `closedform.solve.share_typed`
+does the same over arrays.
 """
 
 from __future__ import annotations
 
+import math
+import operator
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from ..doubles import double
 from ..errors import UserError
-from ..names import DEFAULT_M, PIVOT, SCENE
-from .solve import quantities
-
-Floats = NDArray[np.float64]
+from ..names import DEFAULT_M, SCENE
+from ..native.formulas import Expression, ExpressionTable
+from .impact import Impact
+from .sinetable import sine_and_cosine
 
 _SHARE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*%\s*")
 
@@ -29,15 +30,6 @@ def share_of(text: object) -> float | None:
     return float(match[1]) / 100 if match else None
 
 
-def typed_friction(columns: Mapping[str, Any], share: Any) -> Floats:
-    """MU of scenes (columns without MU, as `impact88.solve` takes them) for a share of the critical
-    friction; NaN where no friction ends the sliding."""
-    critical = quantities({**columns, "MU": PIVOT}, ("MUC", "PN", "gt"))
-    possible = critical["PN"] > 0
-    signed = np.where(possible, np.asarray(share) * critical["MUC"], np.nan)
-    return np.asarray(np.where(critical["gt"] > 0, -signed, signed) + 0.0)
-
-
 def resolved(texts: Mapping[str, str], source: str) -> tuple[str, str]:
     """MU's number for a scene whose MU is a share, and how it was found. Raises UserError."""
     share = share_of(texts["MU"])
@@ -45,10 +37,40 @@ def resolved(texts: Mapping[str, str], source: str) -> tuple[str, str]:
         raise UserError(f"MU = {texts['MU']!r} is not a share; expected one such as 85 %", source)
     numbers = {"M": double(DEFAULT_M)}
     numbers |= {name: double(texts[name]) for name in SCENE if name in texts and name != "MU"}
-    mu = float(typed_friction(numbers, share))
-    if not np.isfinite(mu):
+    table = ExpressionTable()
+    columns = {name: table.column(name, varies=True) for name in SCENE}
+    impact = Impact(table, columns, pivot=True, point=numbers["M"] == 4, infinite=False)
+    known: dict[int, Any] = {}
+    try:
+        pn, critical, slip = (_value(e, numbers, known) for e in (impact.PN, impact.MUC, impact.gt))
+    except ArithmeticError:
+        pn = critical = slip = math.nan
+    mu = share * critical
+    if not (pn > 0 and math.isfinite(mu)):
         raise UserError(
             f"MU = {texts['MU']}: no friction ends the sliding here; expected a number", source
         )
-    number = repr(mu).removesuffix(".0").upper()
+    number = repr((-mu if slip > 0 else mu) + 0.0).removesuffix(".0").upper()
     return number, f"MU = {number} is {100 * share:g} % of the critical friction"
+
+
+_OPERATIONS: dict[str, Callable[..., Any]] = {
+    **{"add": operator.add, "subtract": operator.sub, "multiply": operator.mul},
+    **{"divide": operator.truediv, "negative": operator.neg, "absolute": abs, "sqrt": math.sqrt},
+    "sine_and_cosine": lambda angle: sine_and_cosine(math.fmod(angle, 360.0)),
+    **{"sine": operator.itemgetter(0), "cosine": operator.itemgetter(1)},
+}
+
+
+def _value(expression: Expression, columns: Mapping[str, float], known: dict[int, Any]) -> Any:
+    """An expression's value for one scene; ``known``: those worked out before."""
+    if id(expression) not in known:
+        if expression.operation == "column":
+            value: Any = columns[str(expression.value)]
+        elif expression.operation == "constant":
+            value = float(expression.value or 0.0)
+        else:
+            operands = (_value(e, columns, known) for e in expression.operands)
+            value = _OPERATIONS[expression.operation](*operands)
+        known[id(expression)] = value
+    return known[id(expression)]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from .. import native
 from ..errors import UserError
+from ..mappings import in_base, in_doubles
 from ..names import DEFAULT_M, PIVOT, RESULTS, SCENE
 from ..native.formulas import Expression, ExpressionTable
 from ..native.program import Program, addresses, extremes
@@ -27,6 +28,7 @@ from .fused import CIRCLE, fused
 from .impact import Impact
 from .onescene import solve_one
 from .plan import Plan
+from .share import share_of
 
 Array = NDArray[Any]
 
@@ -34,6 +36,9 @@ ALL = tuple(RESULTS)
 _NAMED = SCENE.keys() - {"M"}
 _SIX = float(DEFAULT_M)
 _PLAIN = {np.ndarray, np.float64, float, int}
+_CELLS = {str, list, tuple}
+_FLOATS = np.dtype(np.float64)
+"""Of a column of texts, in which MU may be a share."""
 _ROWS = np.arange(len(RESULTS))
 TILE = 16384
 """Scenes a pass works on. Two arrays fit the second-level cache and all of them the third; numpy's
@@ -68,7 +73,8 @@ def solve(
         columns: scene name -> number or array (see ``impact88.names.SCENE``); all broadcast
             together. Angles in degrees, spins in radians per unit of time. ``MU`` = -10 is the
             pivot; any other MU takes the sign line 400 gives it (changed where gt > 0, kept on a
-            tie). ``M`` is 6 (the default) or 4. Infinite MA, IA, MB or IB make a rigid barrier.
+            tie), or, as a text such as "85 %", that share of the critical friction.
+            ``M`` is 6 (the default) or 4. Infinite MA, IA, MB or IB make a rigid barrier.
         outputs: the result names wanted (``impact88.names.RESULTS``), all of them by default. Only
             what they need is computed.
         threads: how many to use; by default as many as there are processors and work.
@@ -113,6 +119,9 @@ def solve(
     if type(columns) is not dict:
         check_mapping(columns)
     wanted = _wanted(tuple(out) if outputs is None and out is not None else outputs)
+    mu = columns.get("MU")
+    if type(mu) in _CELLS or getattr(mu, "dtype", _FLOATS).kind in "OUS":
+        columns = _with_shares_typed(in_base(columns))
     if out is None:
         few = solve_one(columns, wanted)
         if few is None and (threads or 1) == 1:
@@ -253,6 +262,27 @@ def solve_plain(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[
     read = where[[rows[name] for name in program.columns]]
     done = program.run(read, into, count, CIRCLE, fixed, limits)
     return by_name if done == count else None
+
+
+def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
+    """MU, as line 280 would hold it, of scenes (columns without MU) for a share of the critical
+    friction (`closedform.share`); NaN where no friction ends the sliding."""
+    critical = quantities({**columns, "MU": PIVOT}, ("MUC", "PN", "gt"))
+    with np.errstate(invalid="ignore"):
+        signed = np.where(critical["PN"] > 0, np.asarray(share) * critical["MUC"], np.nan)
+        return np.asarray(np.where(critical["gt"] > 0, -signed, signed) + 0.0)
+
+
+def _with_shares_typed(columns: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Columns whose MU is a share of the critical friction, or has cells that are."""
+    cells = np.asarray(columns["MU"], object)
+    shares = np.array([share_of(cell) for cell in cells.ravel()], np.float64).reshape(cells.shape)
+    is_share = ~np.isnan(shares)
+    if not is_share.any():
+        return columns
+    plain = in_doubles("MU", np.where(is_share, 0.0, cells))
+    others = {name: value for name, value in columns.items() if name != "MU"}
+    return {**others, "MU": np.where(is_share, share_typed(others, shares), plain)}
 
 
 def quantities(

@@ -9,9 +9,6 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..names import PIVOT
 from ..status import Status
 
@@ -100,9 +97,6 @@ def findings(
     }
 
 
-def bits(found: dict[Status, Any]) -> NDArray[np.uint16]:
-    """STATUS of conditions over arrays, which broadcast."""
-    result = np.zeros(np.broadcast_shapes(*(np.shape(condition) for condition in found.values())))
-    for bit, condition in found.items():
-        result = result + condition * float(bit)
-    return np.asarray(result, np.uint16)
+def bits(found: dict[Status, Any]) -> Any:
+    """STATUS of conditions over arrays, which broadcast: integers."""
+    return sum(condition * int(bit) for bit, condition in found.items())

@@ -461,16 +461,10 @@ def note_remarks(entries: Entries, based: str = "") -> None:
 def _within_limits(
     name: str, text: str, source: str, units: str | None, center: float | None = None
 ) -> Uncertain:
-    from ..uncertainty.uncertain import fixed, read, skid
+    from ..uncertainty.uncertain import fixed, read
 
-    if name in ("SAF", "SBF") and text.startswith("skid"):
-        from ..units import gravity_in, system_of
-
-        item = skid(text, f"{source}: {name}", gravity_in(system_of(units)))
-        if item is not None:
-            return item
-    if any(mark in text for mark in RANGES) or is_share(text):
-        return read(text, f"{source}: {name}", center)
+    if any(mark in text for mark in (*RANGES, "skid")) or is_share(text):
+        return read(text, f"{source}: {name}", center, units)
     return fixed(_double(name, text, source))
 
 

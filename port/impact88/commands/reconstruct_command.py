@@ -131,13 +131,8 @@ def _reconstruct(
 ) -> None:
     from ..progress import progress
     from ..reconstruction.adjustment import reconstruct
-    from ..uncertainty.reconstructedtable import (
-        as_json,
-        as_text,
-        completed_values,
-        in_turn,
-        uncertainty,
-    )
+    from ..reconstruction.solutiontable import in_turn
+    from ..uncertainty.reconstructedtable import Measured
 
     try:
         solutions = reconstruct(known)
@@ -151,12 +146,15 @@ def _reconstruct(
     found = []
     for solution in solutions:
         with progress(None, "reconstruct", "impacts") as meter:
-            spread = uncertainty(solution, args.samples, args.seed, wanted, meter.update)
-        found.append((solution, completed_values(solution, args.contact_time), spread, units))
+            found.append(
+                Measured.of(
+                    *(solution, args.samples, args.seed, wanted, args.contact_time, meter.update)
+                )
+            )
     if args.json:
-        print_json("reconstruct", {"solutions": [as_json(*solution) for solution in found]})
+        print_json("reconstruct", {"solutions": [one.as_json(units) for one in found]})
     else:
-        print(in_turn([as_text(*solution) for solution in found]))
+        print(in_turn([one.as_text(units) for one in found]))
 
 
 def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace, units: System) -> None:

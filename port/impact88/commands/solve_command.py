@@ -44,8 +44,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
-from ..closedform.share import share_of, typed_friction
-from ..closedform.solve import solve
+from ..closedform.share import resolved, share_of
+from ..closedform.solve import share_typed, solve
 from ..doubles import is_number
 from ..errors import UserError, quoted
 from ..files import called, replacing
@@ -271,7 +271,7 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
         at = list(found)
         shared = {n: np.broadcast_to(x, (rows.count,))[at] for n, x in columns.items()}
         columns["MU"] = columns["MU"].copy()
-        columns["MU"][at] = typed_friction(shared, list(found.values()))
+        columns["MU"][at] = share_typed(shared, list(found.values()))
         rows.bad[:] = [
             bad for bad in rows.bad if bad.column != "MU" or bad.row - rows.first not in found
         ]
@@ -307,6 +307,11 @@ class _Applesoft:
             for index in np.flatnonzero(points).tolist():
                 if columns[name][index] in (None, "", "NAN"):
                     columns[name][index] = default
+        for index, cell in enumerate(columns["MU"]):
+            if share_of(cell) is not None:
+                scene = {name: column[index] for name, column in columns.items() if name in SCENE}
+                with suppress(UserError, ValueError, TypeError):  # the cell's complaint follows
+                    columns["MU"][index] = resolved(scene, "")[0]
         unread = {bad.row - rows.first for bad in rows.bad}
         try:
             # nearly always all cells can be read, and looking at each takes as long as solving

@@ -6,7 +6,7 @@ What computes is imported on first use: the page is shown before numpy is there.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
@@ -57,7 +57,7 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     problems = given.problems
     for name, text in given.texts.items():
         try:
-            known[name] = _read(name, text)
+            known[name] = _read(name, text, given.units)
         except UserError as error:
             problems[name] = str(error)
     told: dict[str, Any] = {"problems": problems, "waiting": "", "object": None, "solutions": []}
@@ -77,29 +77,23 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
 
 def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dict[str, Any], str]]:
     """Each solution as the command gives it, as an object and as text. Raises UserError."""
-    from ..reconstruction import adjustment, solutiontable, unknowns
-    from ..uncertainty import reconstructedtable
+    from ..reconstruction import adjustment
+    from ..reconstruction.solutiontable import Exact
+    from ..uncertainty.reconstructedtable import Measured
     from ..units import system_of
 
-    units = system_of(named)
+    found: Sequence[Exact | Measured]
     if adjustment.needs_adjustment(known):
-        solutions = []
-        for impact in adjustment.reconstruct(known):
-            spread = reconstructedtable.uncertainty(impact, DRAWS)
-            one = (impact, reconstructedtable.completed_values(impact, None), spread, units)
-            solutions.append((reconstructedtable.as_json(*one), reconstructedtable.as_text(*one)))
-        return solutions
-    numbers = {name: item.nominal for name, item in known.items()}
-    tables = []
-    for solution in unknowns.solve_for(numbers):
-        whole = (numbers, solution, solutiontable.complete(numbers, solution, None), units)
-        tables.append((solutiontable.as_json(*whole), solutiontable.as_text(*whole)))
-    return tables
+        found = [Measured.of(impact, DRAWS) for impact in adjustment.reconstruct(known)]
+    else:
+        found = Exact.all_of({name: item.nominal for name, item in known.items()})
+    units = system_of(named)
+    return [(one.as_json(units), one.as_text(units)) for one in found]
 
 
-def _read(name: str, text: str) -> Uncertain:
+def _read(name: str, text: str, units: str | None) -> Uncertain:
     check_names((name,), KNOWABLE, "name used here", "")
-    return uncertain.read(text, name)
+    return uncertain.read(text, name, units=units)
 
 
 def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, Any]:
@@ -198,8 +192,9 @@ def known_file(values: Mapping[str, str], units: str = "") -> str:
     for problem in given.problems.values():
         raise UserError(problem)
     for name, text in given.texts.items():
-        _read(name, text)
-    return known_template(KNOWABLE, texts, units) + "\n" + outline_lines(values)
+        _read(name, text, given.units)
+    return known_template(KNOWABLE, texts, units) + "
+" + outline_lines(values)
 
 
 def known_of_sample(which: int) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,48 +59,36 @@ _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
 _STARTS = 60
 _NEAR, _FAR = 0.3, 1.0
 """How far apart starts lie, in scaled variables, in turn."""
-_TIGHTENED_AT_LEAST = 4
-_TIGHTENED = 12
-_ENOUGH = 10_000
+_TIGHTENED_AT_LEAST, _TIGHTENED, _ENOUGH = 4, 12, 10_000
 """Of the starts so many with tolerances tightened little by little, up to the second number while
-nothing is found, or something not determined; none follows once the equations have been taken so
-often."""
+nothing is found, or something not determined; none once the equations have been taken so often."""
 _STEPS = 50
-_LONGEST = 2.0
-_LAST = 1e-14
+_LONGEST, _LAST = 2.0, 1e-14
 """The longest and the last step in scaled variables, the last as a share of them."""
-_TIGHTER = 0.1
-_TIGHTEST = 1e-12
+_TIGHTER, _TIGHTEST = 0.1, 1e-12
 """Tolerances are tightened by so much at a time, to so much of an ordinary size at most."""
-_ROUGHLY = (12, 0.1)
-_CLOSELY = (100, 1e-9)
+_ROUGHLY, _CLOSELY = (12, 0.1), (100, 1e-9)
 """Steps of a descent, and the share of the squares below which one gains too little."""
 _CORRECTIONS = 30
 """Of a step's end at most."""
 _HELD = 100.0
 """Conditions count so many times as much as the tightest tolerance."""
-_NEARLY = 1e-3
-"""Where conditions leave over no more, the exact solution is sought."""
+_NEARLY, _HOLDS = 1e-3, 1e-10
+"""What scaled conditions may leave over where the exact solution is sought, and there."""
 _BESIDE = 1e-5
 """Of two ends no farther apart one is followed."""
 _FEW = 8
 """So many ends of steps that may climb are followed, where something is not determined."""
 _CLOSE = 0.5
-"""Of the variables: no longer step leads there."""
-_DIFFERENCE = 1e-6
-"""Of scaled variables: half the distance slopes are compared over, for curvatures."""
-_DOWNWARD = 1e-9
-"""Curvatures up to that are rounding."""
+"""Of the variables: no longer step leads to the exact solution."""
+_DIFFERENCE, _DOWNWARD = 1e-6, 1e-9
+"""Half the distance slopes are compared over, for curvatures; and curvatures that are rounding."""
 _TINY = 1e-30
 """Of a scaled variable: the imaginary step whose derivative has no error."""
 _AT_ONCE = 4096
 """Impacts whose derivatives are taken at once, times the variables: past it copies do not pay."""
-_RANK = 1e-10
-_NO_ROWS = np.zeros((0, 1))
-_OPEN = 1e-7
-"""From this share of its gradient in the null space on, a quantity is not determined."""
-_HOLDS = 1e-10
-"""What scaled conditions may leave over."""
+_RANK, _OPEN = 1e-10, 1e-7
+"""Singular values, and shares of a gradient in the null space, up to that are none."""
 _LIKELY = 4.0
 """Impacts with so many times the least sum of squares are told too."""
 _TOLD_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
@@ -216,7 +204,9 @@ class System:
         for name in self.observations:
             off = self.measured(state, name) - targets[name]
             rows.append(off / standard_deviation(self.known[name]))
-        return np.stack(np.broadcast_arrays(*map(np.atleast_1d, rows))) if rows else _NO_ROWS
+        if not rows:
+            return np.empty((0, 1))
+        return np.stack(np.broadcast_arrays(*map(np.atleast_1d, rows)))
 
     def measured(self, state: State, name: str) -> Any:
         """What an observation is of: an adjusted value that conditions hold, or a quantity."""
@@ -239,17 +229,6 @@ class System:
             return (size - value) / self.speed
         return (state[name] - targets[name]) / self.scale(name)
 
-    def jacobian(
-        self,
-        x: Array,
-        rows: Callable[[State, Mapping[str, Array] | None], Any],
-        data: Mapping[str, Array] | None = None,
-        targets: Mapping[str, Array] | None = None,
-    ) -> NDArray[np.float64]:
-        """Derivatives of ``rows(state, targets)`` over the scaled variables: rows, variables,
-        impacts. ``data`` as for `state`, ``targets`` as for `left`: a column an impact."""
-        return self.linearized(x, rows, data, targets)[1]
-
     def linearized(
         self,
         x: Array,
@@ -257,7 +236,9 @@ class System:
         data: Mapping[str, Array] | None = None,
         targets: Mapping[str, Array] | None = None,
     ) -> tuple[Floats, Floats]:
-        """``rows(state, targets)`` themselves, rows and impacts, and their `jacobian`."""
+        """``rows(state, targets)``, rows and impacts, and their derivatives over the scaled
+        variables: rows, variables, impacts. ``data`` as for `state`, ``targets`` as for `left`, a
+        column an impact."""
         size, count = len(self.variables), x.shape[1]
         if not size:
             values = np.real(rows(self.state(x, data), targets))
@@ -278,11 +259,15 @@ class System:
             parts.append((np.imag(values) / _TINY).reshape(len(values), copies, count))
         return np.real(values[:, :count]), np.concatenate(parts, axis=1)
 
+    def slopes(self, x: Array) -> Floats:
+        """Of what conditions and observations leave over, for one impact."""
+        return self.linearized(x, self.left)[1][:, :, 0]
+
     def gradient(self, x: Array, name: str) -> Floats:
         """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
         if name in self.variables and name not in QUANTITIES:
             return self.scales * (np.array(self.variables) == name)
-        return self.jacobian(x, lambda state, _: np.reshape(state[name], (1, -1)))[0, :, 0]
+        return self.linearized(x, lambda state, _: np.reshape(state[name], (1, -1)))[1][0, :, 0]
 
     # -- one impact
 
@@ -349,7 +334,7 @@ class System:
         residual = rows * self.left(self.state(x))
         squares, damping, idle = _squares(residual), 1e-3, 0
         for _ in range(steps):
-            jacobian = rows * self.jacobian(x, self.left)[:, :, 0]
+            jacobian = rows * self.slopes(x)
             u, s, vt, _ = _decomposed(jacobian)
             while True:
                 inverse = (vt.T * (s / (s * s + damping * s.max(initial=0.0) ** 2))) @ u.T
@@ -419,7 +404,7 @@ class System:
         loose, measured = jacobian[count:], residual[count:]
         multipliers = np.concatenate([-inverse.T @ (loose.T @ measured), measured])
         aside = _DIFFERENCE * np.eye(size)
-        slopes = self.jacobian(np.concatenate([x + aside, x - aside], axis=1), self.left)
+        slopes = self.linearized(np.concatenate([x + aside, x - aside], axis=1), self.left)[1]
         ahead, behind = np.split(np.einsum("r,rik->ik", multipliers, slopes), 2, axis=1)
         curvature = (ahead - behind) / (2 * _DIFFERENCE)
         # the step along what is determined, the adjustments after it, and the multipliers
@@ -522,8 +507,7 @@ def tolerance(item: Uncertain) -> float:
 # -- solutions
 
 
-@dataclass(frozen=True)
-class Adjusted:
+class Adjusted(NamedTuple):
     """One known value: as measured, its tolerance, as adjusted, and by how many tolerances."""
 
     name: str
@@ -586,7 +570,7 @@ class Reconstruction:
     @cached_property
     def helpful(self) -> tuple[str, ...]:
         """Further values that would determine all that is not; none where none would."""
-        jacobian = self.system.jacobian(self.x, self.system.left)[:, :, 0]
+        jacobian = self.system.slopes(self.x)
         _, null = pseudo_inverse(jacobian)
         rows = np.zeros((0, null.shape[1]))
         names: list[str] = []
@@ -603,7 +587,7 @@ class Reconstruction:
     @cached_property
     def _responses(self) -> Floats:
         """Of the scaled variables (rows) to an error of each observation by its deviation."""
-        jacobian = self.system.jacobian(self.x, self.system.left)[:, :, 0]
+        jacobian = self.system.slopes(self.x)
         count = len(self.system.conditions)
         _, free = pseudo_inverse(jacobian[:count])
         if not free.shape[1] or len(jacobian) == count:
@@ -624,29 +608,17 @@ class Reconstruction:
         return product
 
     @within_doubles
-    def covariance(self, names: Sequence[str]) -> Floats:
-        """First-order covariances of quantities that are determined."""
-        responses = self.responses(names)
-        product: Floats = responses @ responses.T
-        return product
-
-    @property
-    def varies(self) -> bool:
-        """Whether anything known has a tolerance."""
-        return bool(self.system.observations)
-
-    @within_doubles
     def deviations(self, names: Sequence[str]) -> dict[str, float]:
         """First-order standard deviations."""
-        variances = np.maximum(np.diag(self.covariance(names)), 0.0)
-        return dict(zip(names, np.sqrt(variances).tolist(), strict=True))
+        sizes = np.sqrt(np.square(self.responses(names)).sum(axis=1))
+        return dict(zip(names, sizes.tolist(), strict=True))
 
     @within_doubles
     def correlations(self, names: Sequence[str]) -> Floats:
         """First-order correlations; nan where a quantity does not vary."""
-        covariance = self.covariance(names)
-        deviations = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        matrix: Floats = covariance / np.outer(deviations, deviations)
+        responses = self.responses(names)
+        units = responses / np.sqrt(np.square(responses).sum(axis=1, keepdims=True))
+        matrix: Floats = units @ units.T
         return matrix
 
     @within_doubles
@@ -702,7 +674,8 @@ def reconstruct(known: Mapping[str, Uncertain | float | str]) -> list[Reconstruc
     elif mu.nominal in (0, PIVOT) and not mu.varies:
         readings = [{**given, "MUP": mu}]
     else:
-        readings = [{**given, "MUP": mu}, {**given, "MUP": _negative(mu)}]
+        turned = replace(mu, nominal=-mu.nominal, low=-mu.high, high=-mu.low)
+        readings = [{**given, "MUP": mu}, {**given, "MUP": turned}]
     found: list[Reconstruction] = []
     failure: UserError | None = None
     # what contradicts itself in one reading of MU's sign may agree in the other
@@ -766,10 +739,6 @@ def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertai
         if name in SPEEDS and item.nominal < 0:
             raise UserError(f"{name} is negative; expected a speed, its course beside it")
     return given
-
-
-def _negative(item: Uncertain) -> Uncertain:
-    return Uncertain(item.kind, -item.nominal, -item.high, -item.low, item.deviation)
 
 
 def _agrees(solution: Reconstruction, mu: float) -> bool:
@@ -878,7 +847,7 @@ class _Found:
         if solution.undetermined:  # from elsewhere it would only come out otherwise
             both = (*self.solutions, solution)
             self.solutions = [min(both, key=lambda one: round(one.squares, 9))]
-        elif not any(_same(solution, other) for other in self.solutions):
+        elif not any(np.abs(x - other.x).max(initial=0.0) < 1e-6 for other in self.solutions):
             self.solutions.append(solution)
 
 
@@ -897,14 +866,10 @@ def _with_tolerances(known: Mapping[str, Uncertain]) -> tuple[Mapping[str, Uncer
     return {**known, **measured}, True
 
 
-def _same(one: Reconstruction, other: Reconstruction) -> bool:
-    return bool(np.abs(one.x - other.x).max(initial=0.0) < 1e-6)
-
-
 def _described(system: System, x: Floats, residual: float, assumed: bool) -> Reconstruction:
     state = system.state(x)
     rest = system.left(state)[:, 0]
-    rows = system.jacobian(x, system.left)[:, :, 0]
+    rows = system.slopes(x)
     _, null = pseudo_inverse(rows)
     count = len(system.conditions)
     rank = rows.shape[1] - null.shape[1]

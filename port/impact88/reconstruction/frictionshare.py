@@ -10,8 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from ..closedform.share import typed_friction
-from ..closedform.solve import solve
+from ..closedform.solve import share_typed, solve
 from ..errors import UserError
 from ..names import DEFAULT_M, SCENE
 from ..uncertainty.uncertain import Uncertain, fixed
@@ -33,7 +32,7 @@ def share_resolved(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertain]
     others = {name: value for name, value in known.items() if name != "MU"}
     scene = {"M": float(DEFAULT_M)} | {n: x.nominal for n, x in others.items() if n in SCENE}
     if len(scene) == len(SCENE) - 1:
-        name, value = "MU", float(typed_friction(scene, item.nominal))
+        name, value = "MU", float(share_typed(scene, item.nominal))
     else:
         name, value = "MUP", _signed(others, item.nominal)
     if value != value:

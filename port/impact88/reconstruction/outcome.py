@@ -165,4 +165,4 @@ def status(geometry: Geometry, given: Mapping[str, Array], condition: Any = 1.0)
             np.asarray(condition),
             sum((given[name] for name in known), np.zeros(())),
         )
-        return bits(findings(*operands))
+        return np.asarray(bits(findings(*operands)), np.uint16)

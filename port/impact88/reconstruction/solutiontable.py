@@ -1,19 +1,24 @@
-"""A solution of the impact equations as a table to read and as JSON to process."""
+"""A solved impact as tables to read and as JSON to process.
+
+`tables` and `numbers` are what solutions of exact values (`unknowns`) and reconstructions with
+tolerances (`uncertainty.reconstructedtable`) have in common: the answer in a few lines, then
+velocities, coefficients, impulse, what follows, remarks.
+"""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Collection, Mapping, Sequence
+from textwrap import wrap
+from typing import Any, NamedTuple
 
 from ..errors import UserError
 from ..names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
 from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..schemas import stamped
 from ..status import sentences
-from ..units import RULES, System, written
-from .answertable import Open, answer
+from ..units import RULES, VELOCITY, System, written
 from .doublerange import within_doubles
 from .impulse import clock, forces
 from .outcome import moment_ratio, outcome
@@ -32,19 +37,28 @@ _TURNING = (
     *("XA", "YA", "XB", "YB", "XAF", "YAF", "XBF", "YBF", "CAX", "CAY", "CBX", "CBY"),
 )
 """What point masses have not, or have twice."""
+_ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}
+"""What a speed on the road is said in beside units that it is not."""
+_SPINS = ("WA", "WB", "WAF", "WBF")
+_SHARE = 0.05
+"""Of a speed's variance: less is not named in the answer."""
+_LEFT, _WIDTH = 16, 104
+"""Characters of the answer's labels and lines."""
 
 
-def complete(
-    known: Mapping[str, float], solution: Solution, contact_time: float | None
-) -> dict[str, float]:
-    """Everything about one solution of a single scene, by name, in the tables' order: what was
-    given, what was found, and what follows (`outcome`; forces for a contact time)."""
-    values = {**known, **{name: float(value) for name, value in solution.values.items()}}
-    return completed(values, contact_time)
+class Spread(NamedTuple):
+    """What is uncertain of a quantity: standard deviation, attained bounds, the shares of its
+    variance by known value."""
+
+    deviation: float
+    lower: float = math.nan
+    upper: float = math.nan
+    drivers: Sequence[tuple[str, float]] = ()
 
 
 def completed(values: dict[str, float], contact_time: float | None) -> dict[str, float]:
-    """One impact's values and what follows from them, in the tables' order."""
+    """One impact's values and what follows from them (`outcome`; forces for a contact time), in the
+    tables' order."""
     following = {name: float(value) for name, value in outcome(values).items()}
     if contact_time is not None and "P" in following:
         following["TF"] = contact_time
@@ -52,59 +66,131 @@ def completed(values: dict[str, float], contact_time: float | None) -> dict[str,
     values = values | following
     if "EM" in values:
         values["RR0"] = float(moment_ratio(values["EM"]))
-    untold = _BARRIERS if math.isinf(values.get("MB", 0.0)) else ()
-    untold = (*untold, *_TURNING) if values.get("M") == 4 else untold
+    untold = _untold(values)
     return {name: values[name] for name in _ORDER if name in values and name not in untold}
 
 
-def warnings(solution: Solution, values: Mapping[str, float], units: System = RULES) -> list[str]:
-    """What a reader must know about a solution of a single scene, in sentences."""
-    lines = []
-    mismatch = float(solution.mismatch)
-    if solution.contradictory:
-        lines.append(
-            "the known values contradict one another: the solution fits them by least squares, "
-            f"root-mean-square mismatch {number(units.shown('length/time', mismatch), 3)} "
-            f"[{units.label('length/time')}]"
-        )
-    worst = {name: float(value) for name, value in solution.amplification.items()}
-    bad = {name: value for name, value in worst.items() if not value < BADLY_CONDITIONED}
-    if bad:
-        names = ", ".join(f"{name} {number(value, 3)} times" for name, value in bad.items())
-        lines.append(f"badly conditioned: errors of the known velocities are amplified ({names})")
-    return lines + sentences(int(values.get("STATUS", 0)), values)
+def _untold(values: Mapping[str, float]) -> tuple[str, ...]:
+    barrier = _BARRIERS if math.isinf(values.get("MB", 0.0)) else ()
+    return (*barrier, *_TURNING) if values.get("M") == 4 else barrier
 
 
-def as_text(
-    known: Mapping[str, float],
-    solution: Solution,
+def tables(
     values: Mapping[str, float],
-    units: System = RULES,
+    known: Collection[str],
+    remarks: Sequence[str],
+    further: Sequence[Sequence[str]],
+    units: System,
+    spreads: Mapping[str, Spread] | None = None,
+    unknown: Sequence[str] | None = None,
+    helpful: Sequence[str] = (),
 ) -> str:
-    """The solution as tables: velocities, coefficients, impulse, consequences, warnings."""
-    remarks = warnings(solution, values, units)
-    velocities = (*VELOCITIES, *FINAL_STATE)
-    missing = [
-        n for n in velocities if n not in values and not (n in _TURNING and values.get("M") == 4)
-    ]
-    if math.isinf(values.get("MB", 0.0)):
-        missing = [name for name in missing if name not in _BARRIERS]
-    blocks: list[list[str]] = [
-        answer(values, {}, Open(missing), len(remarks), units),
-        velocities_table(known, values, units),
-        named_table(("E", "MUP", "EM", "RR0"), known, values, units),
-        named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
-        named_table(("TF", "FA", "FM2", "FM3"), known, values, units),
-        named_table((*CHANGES, "VC", "VS"), known, values, units),
-        named_table(("KI", "KF", "LOSS"), known, values, units),
-        named_table(("CAX", "CAY", "CBX", "CBY"), known, values, units),
-        _conditions(solution),
+    """The answer, the impact in tables, ``further`` tables and remarks; ``spreads`` of SA SB DVA
+    DVB; ``unknown``: what is not determined (by default the velocities without a value), and
+    ``helpful``: further values that would determine it."""
+    if unknown is None:
+        absent = {*VELOCITIES, *FINAL_STATE} - {*values, *_untold(values)}
+        unknown = [name for name in (*VELOCITIES, *FINAL_STATE) if name in absent]
+    blocks = [
+        _answer(values, spreads or {}, unknown, helpful, len(remarks), units),
+        _velocities(known, values, units),
+        _named(("E", "MUP", "EM", "RR0"), known, values, units),
+        _named(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
+        _named(("TF", "FA", "FM2", "FM3"), known, values, units),
+        _named((*CHANGES, "VC", "VS"), known, values, units),
+        _named(("KI", "KF", "EL", "LOSS"), known, values, units),
+        *further,
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
-    for warning in remarks:
-        lines += paragraph(f"! {warning}")
+    for remark in remarks:
+        lines += paragraph(f"! {remark}")
     return "\n".join(lines).rstrip("\n")
 
+
+def numbers(
+    values: Mapping[str, float], known: Collection[str], remarks: Sequence[str], units: System
+) -> dict[str, Any]:
+    """The same for a program."""
+    return {
+        "known": list(known),
+        "values": {n: v for n, v in written(values, units).items() if n != "STATUS"},
+        "units": {n: units.label(quantity(n).unit) for n in values if n != "STATUS"},
+        "status": int(values["STATUS"]) if "STATUS" in values else None,
+        "warnings": remarks,
+    }
+
+
+def in_turn(texts: Sequence[str], note: str = "") -> str:
+    """The solutions one below the other, numbered where there are several."""
+    if len(texts) == 1:
+        return texts[0]
+    total = len(texts)
+    return "\n\n".join(f"SOLUTION {i} OF {total}{note}\n\n{t}" for i, t in enumerate(texts, 1))
+
+
+# -- the answer
+
+
+def _answer(
+    values: Mapping[str, float],
+    spreads: Mapping[str, Spread],
+    unknown: Sequence[str],
+    helpful: Sequence[str],
+    remarks: int,
+    units: System,
+) -> list[str]:
+    vehicles = "A" if math.isinf(values.get("MB", 0.0)) else "AB"
+
+    def size(vehicle: str, name: str) -> str:
+        if name not in values:
+            return f"{vehicle} unknown"
+        unit, shown = units.label(VELOCITY), units.shown(VELOCITY, values[name])
+        text = f"{vehicle} {number(shown, 3)}"
+        if units is not RULES:
+            text += f" {unit}"
+            if road := _ROAD.get(unit):
+                text += f" ({number(shown * road[1], 3)} {road[0]})"
+        if spread := spreads.get(name):
+            deviation, lower, upper = (number(units.shown(VELOCITY, v), 3) for v in spread[:3])
+            text += f", sd {deviation}"
+            text += f", between {lower} and {upper}" if lower and upper else ""
+        return text
+
+    rows = []
+    for vehicle in vehicles:
+        text, course = size(vehicle, name := f"S{vehicle}"), f"H{vehicle}"
+        if values.get(name) and course in values:
+            text += f", heading {number(values[course], 3)}"
+        rows.append(("BEFORE IMPACT", text))
+    for vehicle in vehicles:
+        text, origin = size(vehicle, f"DV{vehicle}"), values.get(f"PDOF{vehicle}", math.nan)
+        if not math.isnan(origin) and f"DV{vehicle}" in values:
+            text += f", force from {clock(origin)} ({number(round(origin), 3)} deg)"
+        rows.append(("DELTA-V", text))
+    if unknown:
+        names = [name for name in unknown if name not in _SPINS]
+        text = ", ".join(["spins", *names] if {*_SPINS} <= {*unknown} else unknown)
+        if helpful:
+            *most, last = helpful
+            text += f": give {', '.join(most)}{' and ' if most else ''}{last}"
+        rows.append(("NOT FOUND", text))
+    for vehicle in vehicles:
+        drivers = spreads[f"S{vehicle}"].drivers if f"S{vehicle}" in spreads else ()
+        named = [f"{name} {100 * share:.0f} %" for name, share in drivers if share >= _SHARE]
+        if named:
+            rows.append(("DEPENDS ON", f"{vehicle}'s speed: {', '.join(named)}"))
+    rows.append(("REMARKS", f"{remarks}, below" if remarks else "none"))
+    lines: list[str] = []
+    before = ""
+    for label, text in rows:
+        first, *more = wrap(text, _WIDTH - _LEFT)
+        lines.append(f"{'' if label == before else label:{_LEFT}}{first}")
+        lines += [f"{'':{_LEFT}}{line}" for line in more]
+        before = label
+    return lines
+
+
+# -- the tables
 
 _ROWS = (
     ("x", "length/time", ("UX", "VAX", "VX", "VBX")),
@@ -117,9 +203,7 @@ _ROWS = (
 )
 
 
-def velocities_table(
-    known: Mapping[str, float], values: Mapping[str, float], units: System = RULES
-) -> list[str]:
+def _velocities(known: Collection[str], values: Mapping[str, float], units: System) -> list[str]:
     """Velocities before and after of both vehicles, in components, sizes and directions."""
     values = written(values, units)
     decimals = {}
@@ -143,11 +227,8 @@ def velocities_table(
     return [*lines, "* solved for"]
 
 
-def named_table(
-    names: tuple[str, ...],
-    known: Mapping[str, float],
-    values: Mapping[str, float],
-    units: System = RULES,
+def _named(
+    names: Sequence[str], known: Collection[str], values: Mapping[str, float], units: System
 ) -> list[str]:
     """Values by name, each with unit and meaning."""
     values = written(values, units)
@@ -183,45 +264,87 @@ def _friction(values: Mapping[str, float]) -> str:
     return text
 
 
-def _conditions(solution: Solution) -> list[str]:
-    """How errors of the known velocities come through."""
-    cells = [f"{name} {number(value, 3)}" for name, value in solution.amplification.items()]
-    return paragraph(
-        "Error amplification (error of the unknown when each known velocity errs independently by "
-        "1; spins times the radius of gyration "
-        f"{number(solution.gyration, 4)}, coefficients times the closing speed): {', '.join(cells)}"
-    )
+# -- solutions of exact values
 
 
-def as_json(
-    known: Mapping[str, float],
-    solution: Solution,
-    values: Mapping[str, float],
-    units: System = RULES,
-) -> dict[str, Any]:
-    """The solution for a program; numbers that do not exist are null."""
-    status = int(values.get("STATUS", 0))
-    whole: dict[str, Any] = plain(
-        {
-            "known": [name for name in values if name in known],
-            "solved_for": list(solution.unknown),
-            "values": {n: v for n, v in written(values, units).items() if n != "STATUS"},
-            "units": {n: units.label(quantity(n).unit) for n in values if n != "STATUS"},
-            "amplification": solution.amplification,
-            "badly_conditioned": solution.badly_conditioned,
-            "mismatch": solution.mismatch * units.shown("length/time", 1.0),
-            "contradictory": solution.contradictory,
-            "status": status if "STATUS" in values else None,
-            "warnings": warnings(solution, values, units),
-        }
-    )
-    return whole
+class Exact(NamedTuple):
+    """A solution of exact values, and everything that follows from it."""
+
+    known: Mapping[str, float]
+    solution: Solution
+    values: dict[str, float]
+
+    @classmethod
+    def all_of(
+        cls,
+        known: Mapping[str, float],
+        wanted: Sequence[str] | None = None,
+        contact_time: float | None = None,
+    ) -> list[Exact]:
+        """Every solution of a single scene. Raises UserError."""
+        return [
+            cls(known, one, completed({**known, **_floats(one.values)}, contact_time))
+            for one in solve_for(known, wanted)
+        ]
+
+    def warnings(self, units: System = RULES) -> list[str]:
+        """What a reader must know, in sentences."""
+        lines = []
+        if self.solution.contradictory:
+            mismatch = units.shown("length/time", float(self.solution.mismatch))
+            lines.append(
+                "the known values contradict one another: the solution fits them by least squares, "
+                f"root-mean-square mismatch {number(mismatch, 3)} [{units.label('length/time')}]"
+            )
+        bad = [
+            f"{name} {number(value, 3)} times"
+            for name, value in self.solution.amplification.items()
+            if not value < BADLY_CONDITIONED
+        ]
+        if bad:
+            lines.append(
+                "badly conditioned: errors of the known velocities are amplified "
+                f"({', '.join(bad)})"
+            )
+        return lines + sentences(int(self.values.get("STATUS", 0)), self.values)
+
+    def as_text(self, units: System = RULES) -> str:
+        """The solution as tables."""
+        errors = [f"{n} {number(value, 3)}" for n, value in self.solution.amplification.items()]
+        conditions = paragraph(
+            "Error amplification (error of the unknown when each known velocity errs independently "
+            "by 1; spins times the radius of gyration "
+            f"{number(self.solution.gyration, 4)}, coefficients times the closing speed): "
+            f"{', '.join(errors)}"
+        )
+        contact = _named(("CAX", "CAY", "CBX", "CBY"), self.known, self.values, units)
+        remarks = self.warnings(units)
+        return tables(self.values, self.known, remarks, [contact, conditions], units)
+
+    def as_json(self, units: System = RULES) -> dict[str, Any]:
+        """The solution for a program; numbers that do not exist are null."""
+        known = [name for name in self.values if name in self.known]
+        whole: dict[str, Any] = plain(
+            {
+                **numbers(self.values, known, self.warnings(units), units),
+                "solved_for": list(self.solution.unknown),
+                "amplification": self.solution.amplification,
+                "badly_conditioned": self.solution.badly_conditioned,
+                "mismatch": self.solution.mismatch * units.shown("length/time", 1.0),
+                "contradictory": self.solution.contradictory,
+            }
+        )
+        return whole
+
+
+def _floats(values: Mapping[str, Any]) -> dict[str, float]:
+    return {name: float(value) for name, value in values.items()}
 
 
 @within_doubles
 def show(
     known: Mapping[str, float],
-    wanted: list[str] | None,
+    wanted: Sequence[str] | None,
     source: str | None,
     contact_time: float | None,
     as_object: bool,
@@ -230,17 +353,14 @@ def show(
     """Print the solutions of one problem, as tables or as one JSON object; ``source`` names where
     the known values come from in errors, ``units`` how values are written."""
     try:
-        solutions = solve_for(known, wanted)
-        tables = [(s, complete(known, s, contact_time)) for s in solutions]
+        solutions = Exact.all_of(known, wanted, contact_time)
     except UserError as error:
         raise UserError(str(error), source) from None
     if as_object:
-        solved = [as_json(known, s, v, units) for s, v in tables]
+        solved = [one.as_json(units) for one in solutions]
         print(json.dumps(stamped("reconstruct", {"solutions": solved}), allow_nan=False))
         return
-    for at, (solution, values) in enumerate(tables):
-        if len(tables) > 1:
-            head = f"SOLUTION {at + 1} OF {len(tables)}: MU is known in size, and both signs agree"
-            fit = " (each a fit of values that contradict one another)"
-            print(f"{chr(10) if at else ''}{head}{fit if solution.contradictory else ''}\n")
-        print(as_text(known, solution, values, units))
+    fit = " (each a fit of values that contradict one another)"
+    note = ": MU is known in size, and both signs agree"
+    note += fit if solutions[0].solution.contradictory else ""
+    print(in_turn([one.as_text(units) for one in solutions], note))

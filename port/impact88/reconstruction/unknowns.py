@@ -22,7 +22,7 @@ they are unknown both signs are tried, and each solution that agrees with its ow
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -153,29 +153,6 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     raise UnsolvableError(problem.reason())
 
 
-def generically_solvable(unknown: Sequence[str], *, seed: int = 1988) -> bool:
-    """Whether Equations 13-18 determine ``unknown`` for almost every scene: the rank of a random
-    scene's equations. All of the names must be among `UNKNOWNS`, the rest counts as known.
-
-    A set that passes can still be undetermined for special values (e = 0, e_m = 0, the pivot).
-    """
-    return _Problem.of(_random_scene(unknown, seed), unknown).determined()
-
-
-def solvable_sets() -> list[tuple[str, ...]]:
-    """The sets of six of the twelve velocities that are generically solvable."""
-    return [s for s in combinations((*INITIAL, *FINAL), 6) if generically_solvable(s)]
-
-
-def _random_scene(unknown: Sequence[str], seed: int) -> dict[str, float]:
-    rng = np.random.default_rng(seed)
-    scene = {n: rng.uniform(0.5, 2.0) for n in ("DA", "DB", "MA", "MB", "IA", "IB")}
-    scene |= {n: rng.uniform(-90.0, 90.0) for n in ("GA", "PA", "PB", "TA", "TB")}
-    scene |= ORDINARY
-    scene |= {n: rng.uniform(-2.0, 2.0) for n in (*INITIAL, *FINAL)}
-    return {name: value for name, value in scene.items() if name not in unknown}
-
-
 @dataclass(frozen=True)
 class _Problem:
     """What is known and wanted, checked; every number an array of one ``shape``.
@@ -258,12 +235,12 @@ class _Problem:
             for n in dict.fromkeys(names)
         }
         sliding = whole(p.sliding for p in parts)
-        agrees = np.ones(self.shape, bool)
+        agrees = np.all([np.isfinite(values[n]) for n in self.wanted], axis=0)
         if "MUP" in values:
             values["MU"] = _typed(values, sliding)
             if must_agree:
-                agrees = (values["MU"] == self.known["MU"]) | np.isnan(sliding)
-        solution = Solution(
+                agrees = agrees & ((values["MU"] == self.known["MU"]) | np.isnan(sliding))
+        return Solution(
             values=values,
             unknown=self.wanted,
             amplification={n: whole(p.amplification[n] for p in parts) for n in self.wanted},
@@ -271,7 +248,6 @@ class _Problem:
             mismatch=whole(p.mismatch for p in parts),
             gyration=whole(p.gyration for p in parts),
         )
-        return replace(solution, agrees=agrees & solution.found)
 
     def _equations(self, block: Mapping[str, Array]) -> Found:
         with np.errstate(all="ignore"):
@@ -286,18 +262,16 @@ class _Problem:
             given["MUP"] = given.pop("MU")
         return _Problem.of(given | changes, wanted)
 
-    def determined(self) -> bool:
-        """Whether all that is wanted is determined in every scene, for some sign of MU."""
-        return any(bool(solution.found.all()) for solution in self.solutions())
-
-    def _alone(self, name: str) -> bool:
-        return self._first([name]).determined()
+    def _determined(self, wanted: Sequence[str], **changes: float) -> bool:
+        """Whether all of ``wanted`` is determined in the first scene, for some sign of MU."""
+        problem = self._first(wanted, **changes)
+        return any(bool(solution.found.all()) for solution in problem.solutions())
 
     def reason(self) -> str:
         """One line saying why the wanted unknowns are not determined in the first scene."""
         if blame := self._coefficient_to_blame() or self._nothing_over_nothing():
             return blame
-        alone = [name for name in self.absent if self._alone(name)]
+        alone = [name for name in self.absent if self._determined([name])]
         hint = f"; {' '.join(alone)} could be found alone" if alone else ""
         count, few = (4, "four") if self.point else (6, "six")
         if len(self.absent) > count:
@@ -326,22 +300,19 @@ class _Problem:
             given["MUP"] = self.friction.flat[0]
         for size in range(1, len(given) + 1):
             for names in combinations(given, size):
-                if self._first(self.wanted, **{n: ORDINARY[n] for n in names}).determined():
+                if self._determined(self.wanted, **{n: ORDINARY[n] for n in names}):
                     return "; and ".join(_blame(n, float(given[n])) for n in names)
         return None
 
     def _nothing_over_nothing(self) -> str | None:
         """A wanted coefficient whose parts are determined but give no quotient."""
-        bad = [
-            name
-            for name in self.wanted
-            if name in COEFFICIENTS and not self._alone(name) and self._made_of_something(name)
-        ]
-        return "; and ".join(_NO_VALUE[name] for name in bad) or None
-
-    def _made_of_something(self, name: str) -> bool:
-        problem = self._first([name])
-        return bool(problem._equations(problem.known).made_of_something.all())
+        bad = []
+        for name in self.wanted:
+            if name in COEFFICIENTS and not self._determined([name]):
+                problem = self._first([name])
+                if problem._equations(problem.known).made_of_something.all():
+                    bad.append(_NO_VALUE[name])
+        return "; and ".join(bad) or None
 
 
 def _typed(values: Mapping[str, Array], sliding: Array) -> Array:

@@ -196,39 +196,36 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
 
 def _inverse(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
     from ..reconstruction.adjustment import reconstruct
-    from ..uncertainty.reconstructedtable import completed_values, uncertainty, warnings
+    from ..uncertainty.reconstructedtable import Measured
     from ..uncertainty.uncertain import read
 
     texts = {n: text for n, text in entries.values.items() if text.strip() and n in KNOWABLE}
     texts.setdefault("M", DEFAULT_M)
     try:
-        found = reconstruct({n: read(text, f"{source}: {n}") for n, text in texts.items()})
+        found = reconstruct(
+            {n: read(t, f"{source}: {n}", units=units.name or None) for n, t in texts.items()}
+        )
     except UserError as error:
         text = str(error)
         raise UserError(text if text.startswith(source) else f"{source}: {text}") from None
     best = found[0]
-    values = completed_values(best, None)
-    wanted = [n for n in INVERSE if n in values and n not in best.system.known]
-    spread = uncertainty(best, samples, seed, wanted)
+    sought = [n for n in INVERSE if n not in best.system.known]
+    whole = Measured.of(best, samples, seed, sought)
+    values, spread = whole.values, whole.spread
+    wanted = [n for n in sought if n in values]
     spreads, drivers = {}, {}
-    for row, name in enumerate(spread.names):
+    for name in spread.names:
         low = high = lower = upper = math.nan
         if spread.draws:
-            drawn = spread.draws.values[name]
-            drawn = drawn[np.isfinite(drawn)]
-            if len(drawn):
-                low, high = np.quantile(drawn, (0.05, 0.95)).tolist()
+            low, high = spread.draws.spread(name, (0.05, 0.95)).quantiles.values()
             lower, upper = spread.ranges[name].lower, spread.ranges[name].upper
         spreads[name] = Spread(float(spread.deviations[name]), low, high, lower, upper)
-        shares = spread.responses[row] ** 2
-        total = float(shares.sum()) or 1.0
-        ranked = np.argsort(-shares, kind="stable")[:DRIVERS].tolist()
         drivers[name] = [
-            f"{best.system.observations[i]} {100 * shares[i] / total:.0f} %"
-            for i in ranked
-            if shares[i] >= 0.005 * total
+            f"{known} {100 * share:.0f} %"
+            for known, share in spread.drivers[name][:DRIVERS]
+            if share >= 0.005
         ]
-    remarks = warnings(best, values, spread, units)
+    remarks = whole.warnings(units)
     if len(found) > 1:
         remarks.append(f"{len(found)} impacts agree with what is known; this is the first of them")
     scene = {n: values[n] for n in SCENE if n in values}

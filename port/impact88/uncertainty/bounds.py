@@ -27,8 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import status
-from ..closedform.share import typed_friction
-from ..closedform.solve import quantities
+from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
 from ..mappings import check_mapping, within_limits
 from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
@@ -267,7 +266,7 @@ class _Box:
         """All inputs, the contact point where its own axes, CX and CY have it."""
         values: dict[str, Array | float] = {**self.known, **columns}
         values = dict(moved(values))
-        return {**values, "MU": typed_friction(values, values["MU"])} if self.share else values
+        return {**values, "MU": share_typed(values, values["MU"])} if self.share else values
 
     def extremes(self, rng: np.random.Generator) -> Extremes:
         """The extremes of the outputs over the box."""

@@ -42,12 +42,12 @@ class Drive:
 
 
 def spread_of(values: Array, quantiles: Sequence[float]) -> Spread:
-    quantile_values = np.quantile(values, list(quantiles)) if quantiles else np.empty(0)
-    return Spread(
-        mean=float(values.mean()),
-        deviation=float(values.std(ddof=1)) if len(values) > 1 else 0.0,
-        quantiles=dict(zip(quantiles, quantile_values.tolist(), strict=True)),
-    )
+    """NaN of no values."""
+    if not len(values):
+        return Spread(float("nan"), float("nan"), dict.fromkeys(quantiles, float("nan")))
+    found = np.quantile(values, list(quantiles)).tolist() if quantiles else []
+    deviation = float(values.std(ddof=1)) if len(values) > 1 else 0.0
+    return Spread(float(values.mean()), deviation, dict(zip(quantiles, found, strict=True)))
 
 
 def ranks(values: Array) -> Array:

@@ -99,13 +99,12 @@ def _forward_solution(values: Mapping[str, Uncertain], source: str) -> dict[str,
             f"({' '.join(missing)} missing)",
             source,
         )
-    from ..closedform.share import typed_friction
-    from ..closedform.solve import solve
+    from ..closedform.solve import share_typed, solve
 
     scene = moved({name: item.nominal for name, item in values.items()})
     friction = values["MU"]
     if friction.share:
-        friction = uncertain.fixed(float(typed_friction(scene, friction.nominal)))
+        friction = uncertain.fixed(float(share_typed(scene, friction.nominal)))
         scene = {**scene, "MU": friction.nominal}
     solved = solve(scene, AFTER)
     if float(solved["MUP"]) == -friction.nominal:

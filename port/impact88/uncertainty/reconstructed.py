@@ -16,6 +16,7 @@ proper (Metropolis, Hastings). Bounds climb from the draws and from points sprea
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -35,6 +36,7 @@ from ..reconstruction.geometry import NAMES as GEOMETRY
 from ..reconstruction.geometry import Geometry
 from ..reconstruction.state import CRUSH, DIRECTIONS, State
 from .ascent import OUTSIDE, climb
+from .draws import Spread, spread_of
 from .uncertain import Uncertain
 
 Floats = NDArray[np.float64]
@@ -67,8 +69,10 @@ LEARNT, UNSEEN = 6, 9
 """before that, while the walls are learnt, and while it forgets its start."""
 PACES = 40
 """Of a chain from one of these places to the next."""
+FREE = 4096
+"""Draws as without walls; with four times as many chains start no better."""
 ENOUGH = 100
-"""Draws inside the walls that chains may start from alone."""
+"""Of them inside the walls that chains may start from alone."""
 NEAR = 1.5
 """No farther from the middle between walls are they learnt: a quotient's pole would spoil them."""
 RIDGE = 1e-9
@@ -88,6 +92,11 @@ class Draws:
     values: dict[str, Floats]
     failed: float
     points: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+
+    def spread(self, name: str, quantiles: Sequence[float]) -> Spread:
+        """Mean, standard deviation and quantiles of those that have a solution."""
+        values = self.values[name]
+        return spread_of(values[np.isfinite(values)], quantiles)
 
 
 @dataclass(frozen=True)
@@ -224,6 +233,18 @@ class _Box:
             n: _cut(known[n], sigmas) if walls else _normal(known[n], adjusted[n])
             for n in (*self.kept, *self.rest)
         }
+        # normal values in standard deviations from their means, 0 for the others
+        self.normals = np.array(
+            [
+                (
+                    (item.low - item.nominal) / item.deviation,
+                    (item.high - item.low) / item.deviation,
+                )
+                if item.kind == "normal"
+                else (0.0, 0.0)
+                for item in self.items.values()
+            ]
+        ).T.reshape(2, -1)
         self.solver = _Solving(solution, {n: v for n, v in known.items() if n not in self.rest})
         self.names = names
         self.ratios = [n for n in names if n in COEFFICIENTS and n not in self.solver.system.known]
@@ -251,8 +272,17 @@ class _Box:
 
     def drawn(self, rng: np.random.Generator, count: int) -> Floats:
         """Points of the box by the coordinates' own distributions."""
-        columns = [self._share(n, self.items[n].draws(rng, count)) for n in self.kept]
-        return np.stack(columns, axis=1) if columns else np.empty((count, 0))
+        points = np.empty((count, len(self.kept)))
+        for i, name in enumerate(self.kept):
+            place, width = self.normals[:, i]
+            if width < 1:  # not a normal value, or hardly a part of one
+                points[:, i] = self._share(name, self.items[name].draws(rng, count))
+                continue
+            drawn = rng.standard_normal(count)
+            while (out := (drawn < place) | (drawn > place + width)).any():
+                drawn[out] = rng.standard_normal(out.sum())
+            points[:, i] = (drawn - place) / width
+        return points
 
     # -- impacts
 
@@ -280,9 +310,11 @@ class _Box:
         usable = usable & np.isfinite(walls).all(axis=1)
         return x, functions, np.where(np.isfinite(walls), walls, -1e9), usable
 
-    def from_nominal(self, u: Floats) -> tuple[Floats, Floats, Floats, Flags]:
-        """As `at`, reached from the nominal impact."""
-        x, state, usable = self.solver(self.data(u), len(u))
+    def from_nominal(
+        self, u: Floats, guess: Floats | None = None
+    ) -> tuple[Floats, Floats, Floats, Flags]:
+        """As `at`, reached from the nominal impact, or from a ``guess`` of each, s x n."""
+        x, state, usable = self.solver(self.data(u), len(u), guess)
         return self._found(u, x, state, usable)
 
     def at(self, u: Floats, guess: Floats) -> tuple[Floats, Floats, Floats, Flags]:
@@ -305,7 +337,7 @@ class _Box:
             still = np.tile(x.astype(complex), k)
             left = np.imag(system.left(system.state(still, moved), moved)) / _TINY
             right = np.broadcast_to(left, (len(left), k * n)).reshape(len(left), k, n)
-            turns = -_solutions_of(jacobian, right.transpose(2, 0, 1))
+            turns = -_solved(jacobian, right.transpose(2, 0, 1))
             still += 1j * _TINY * turns.transpose(1, 2, 0).reshape(len(x), -1)
             functions, walls = (
                 (np.imag(part) / _TINY).reshape(k, n, part.shape[1]).transpose(1, 2, 0)
@@ -382,14 +414,14 @@ class _Box:
     def density(self, u: Floats, walls: Floats, beyond: Floats | float = 0.0) -> Floats:
         """The logarithm of all known values' density, but for a constant; ``beyond``: how far the
         walls are set back."""
-        shares = np.concatenate([u, walls], axis=1)
-        back = np.concatenate([np.zeros(u.shape[1]), np.broadcast_to(beyond, walls.shape[1])])
-        inside = ((shares >= -back) & (shares <= 1 + back)).all(axis=1)
-        whole = np.where(inside, 0.0, -np.inf)
+        inside = (np.abs(u - 0.5) <= 0.5).all(1) & (np.abs(walls - 0.5) <= 0.5 + beyond).all(1)
+        shares = np.clip(np.concatenate([u, walls], axis=1), 0.0, 1.0)
+        place, width = self.normals
+        whole = -0.5 * np.square(place + width * shares).sum(axis=1)
         for i, item in enumerate(self.items.values()):
-            if item.kind != "uniform":
-                whole += _log_density(item, np.clip(shares[:, i], 0.0, 1.0))
-        return whole
+            if item.kind == "triangular":
+                whole += _log_triangle(item, shares[:, i])
+        return np.where(inside, whole, -np.inf)
 
 
 def _near(name: str, value: Floats, nominal: float | None) -> Floats:
@@ -414,11 +446,9 @@ def _normal(item: Uncertain, adjusted: float) -> Uncertain:
     )
 
 
-def _log_density(item: Uncertain, share: Floats) -> Floats:
-    """Of a normal or triangular value so far from limit to limit, but for a constant."""
+def _log_triangle(item: Uncertain, share: Floats) -> Floats:
+    """The logarithm of a triangular density so far from limit to limit, but for a constant."""
     value = item.low + share * (item.high - item.low)
-    if item.kind == "normal":
-        return -0.5 * np.square((value - item.nominal) / item.deviation)
     rise, fall = item.nominal - item.low, item.high - item.nominal
     with np.errstate(divide="ignore", invalid="ignore"):
         up = (value - item.low) / rise if rise else np.ones(len(share))
@@ -436,7 +466,7 @@ def _walked(
         return begin, begin
     chains = -(-count // WALKS)
     # draws as without walls, and points between those inside: out of a corner hardly a step leads
-    free = box.drawn(rng, CHUNK)
+    free = box.drawn(rng, FREE)
     shares = rng.dirichlet(np.ones(4), chains)[:, :, None]
     free = np.concatenate(
         [free, (shares * begin[rng.integers(len(begin), size=(chains, 4))]).sum(axis=1)]
@@ -445,45 +475,58 @@ def _walked(
     inside = usable & np.isfinite(box.density(free, met))
     weights = np.zeros(len(free))
     if inside.any():
-        x, points, level = x[:, inside], free[inside], met[inside]
-        more = box.proper_density(points, x, level) - box.density(points, np.full_like(level, 0.5))
+        points, level = free[inside], met[inside]
+        more = box.proper_density(points, x[:, inside], level)
+        more -= box.density(points, np.full_like(level, 0.5))
         weights[inside] = np.exp(np.nan_to_num(more - more.max(), nan=-np.inf))
     else:
-        weights, free, met = np.ones(len(begin)), begin, box.from_nominal(begin)[2]
-    if (weights[:CHUNK] > 0).sum() >= ENOUGH:
-        weights[CHUNK:] = 0.0
+        free, (x, _, met, usable) = begin, box.from_nominal(begin)
+        weights = np.ones(len(begin))
+    if (weights[:FREE] > 0).sum() >= ENOUGH:
+        weights[FREE:] = 0.0
     weights /= weights.sum()
     u = free[rng.choice(len(free), chains, p=weights)]
-    seen = (np.abs(met - 0.5) < NEAR).all(axis=1)
-    free, met = free[seen], met[seen]
-    center = u[:1]
-    x, _, level, _ = box.from_nominal(center)
-    bends = box.slopes(center, x)[1][0]
-    k = len(box.kept)
+    k, r = len(box.kept), len(box.rest)
     one, other = np.triu_indices(k)
-    model = np.concatenate([level, bends.T, np.zeros((len(one), len(box.rest)))])
+    center = u[:1]
 
     def terms(points: Floats) -> Floats:
         off = points - center
         return np.concatenate([np.ones((len(off), 1)), off, off[:, one] * off[:, other]], axis=1)
 
-    precision = 12 * (np.eye(k) + bends.T @ bends)
-    root = np.linalg.cholesky(np.linalg.inv(precision)).T * 2.4 / np.sqrt(k)
+    def learnt(points: Floats, level: Floats) -> Floats:
+        """Quadratic functions for walls and states, from those met at some points."""
+        matrix = terms(points)
+        square = matrix.T @ matrix
+        square += RIDGE * np.trace(square) / len(square) * np.eye(len(square))
+        return np.asarray(np.linalg.solve(square, matrix.T @ level))
+
+    def near(points: Floats, walls: Floats, x: Floats, usable: Flags) -> tuple[Floats, Floats]:
+        seen = usable & (np.abs(walls - 0.5) < NEAR).all(axis=1)
+        return points[seen], np.hstack([walls, x.T])[seen]
+
+    met_at, met_there = near(free, met, x, usable)
     x, functions, walls, _ = box.from_nominal(u)
+    met_at, met_there = np.vstack([met_at, u]), np.vstack([met_there, np.hstack([walls, x.T])])
+    model = learnt(met_at, met_there)
+    bends = model[1 : k + 1, :r]
+    root = (
+        np.linalg.cholesky(np.linalg.inv(12 * (np.eye(k) + bends @ bends.T))).T * 2.4 / np.sqrt(k)
+    )
     whole, drawn = box.proper_density(u, x, walls), []
-    back = 1.1 * np.abs(walls - terms(u) @ model).max(axis=0)
+    back = 1.1 * np.abs(walls - terms(u) @ model[:, :r]).max(axis=0)
     for walk in range(UNSEEN + WALKS):
-        height = plain = box.density(u, terms(u) @ model, back)
+        height = plain = box.density(u, terms(u) @ model[:, :r], back)
         v = u
         for pace in range(PACES):
             move = rng.standard_normal(v.shape) @ root
             if pace % 2:
                 move *= rng.random(v.shape) < 0.3
             tried = v + move * np.exp(rng.standard_normal((chains, 1)))
-            after = box.density(tried, terms(tried) @ model, back)
+            after = box.density(tried, terms(tried) @ model[:, :r], back)
             moved = -rng.standard_exponential(chains) < after - height
             v, height = np.where(moved[:, None], tried, v), np.where(moved, after, height)
-        x, values, ahead, usable = box.from_nominal(v)
+        x, values, ahead, usable = box.from_nominal(v, (terms(v) @ model[:, r:]).T)
         after = np.where(usable, box.proper_density(v, x, ahead), -np.inf)
         moved = -rng.standard_exponential(chains) < (after - whole) - (height - plain)
         u, walls = np.where(moved[:, None], v, u), np.where(moved[:, None], ahead, walls)
@@ -494,15 +537,10 @@ def _walked(
             if moved.any():
                 of = np.where(moved, np.arange(chains), rng.choice(np.flatnonzero(moved), chains))
                 u, walls, functions, whole = u[of], walls[of], functions[of], whole[of]
-            # the walls as they were met, and how far they are from that
-            near = usable & (np.abs(ahead - 0.5) < NEAR).all(axis=1)
-            points = np.concatenate([free, u, v[near]])
-            level = np.concatenate([met, walls, ahead[near]])
-            matrix = terms(points)
-            square = matrix.T @ matrix
-            square += RIDGE * np.trace(square) / len(square) * np.eye(len(square))
-            model = np.linalg.solve(square, matrix.T @ level)
-            back = 1.1 * np.abs(walls - terms(u) @ model).max(axis=0)
+            points, level = near(v, ahead, x, usable)
+            met_at, met_there = np.vstack([met_at, points]), np.vstack([met_there, level])
+            model = learnt(met_at, met_there)
+            back = 1.1 * np.abs(walls - terms(u) @ model[:, :r]).max(axis=0)
             spread = np.cov(u.T).reshape(k, k) + 1e-6 * np.eye(k)
             root = np.linalg.cholesky(spread).T * 2.4 / np.sqrt(k)
         elif walk >= UNSEEN:
@@ -522,40 +560,26 @@ class _Solving:
         self.x = np.array(
             [np.ravel(adjusted[n])[0] / scale for n, scale in zip(names, scales, strict=True)]
         ).reshape(-1, 1)
-        jacobian = self.system.jacobian(self.x, self.system.left)[:, :, 0]
+        jacobian = self.system.slopes(self.x)
         self.inverse, null = pseudo_inverse(jacobian)
         self.square = jacobian.shape[0] == jacobian.shape[1] and not null.shape[1]
 
-    def __call__(self, data: Mapping[str, Floats], count: int) -> tuple[Floats, State, Flags]:
+    def __call__(
+        self, data: Mapping[str, Floats], count: int, guess: Floats | None = None
+    ) -> tuple[Floats, State, Flags]:
         """The ``count`` impacts, as variables and states, and which of them meet all conditions."""
+        start = np.repeat(self.x, count, axis=1) if guess is None else guess
         geometry = None
         if set(data) & set(GEOMETRY):
             geometry = Geometry.of({**self.system.constants, **data})
         with np.errstate(all="ignore"):
-            if self.system.linear and self.square and set(data) & set(PARAMETERS):
-                x = self._linear(data, geometry)
-                settled = np.asarray(np.isfinite(x).all(axis=0))
-            else:
-                x, settled = self._chords(data, geometry, count)
+            x, settled = self._chords(data, geometry, start)
         return x, self.system.state(x, data, geometry), settled
 
-    def _linear(self, data: Mapping[str, Floats], geometry: Geometry | None) -> Floats:
-        """The conditions are linear in the variables: their matrix, column by column, and right
-        side are what they leave over of unit vectors and of none."""
-        count, size = len(next(iter(data.values()))), len(self.x)
-        none = np.zeros((size, 1))
-        right = np.broadcast_to(self.left(none, data, geometry), (size, count))
-        matrices = np.empty((count, size, size))
-        for i in range(size):
-            unit = none.copy()
-            unit[i] = 1.0
-            matrices[:, :, i] = (self.left(unit, data, geometry) - right).T
-        return -_solved(matrices, right.T).T
-
     def _chords(
-        self, data: Mapping[str, Floats], geometry: Geometry | None, count: int
+        self, data: Mapping[str, Floats], geometry: Geometry | None, start: Floats
     ) -> tuple[Floats, Flags]:
-        x = np.repeat(self.x, count, axis=1)
+        x, count = start, start.shape[1]
         residual = self.left(x, data, geometry)
         left = np.abs(residual).max(axis=0, initial=0.0)
         for more in reversed(range(CHORDS)):
@@ -570,7 +594,7 @@ class _Solving:
         if not settled.all():
             wild = np.broadcast_to(~settled, (count,))
             part = {n: column[wild] for n, column in data.items()}
-            x[:, wild], met = self.newton(part, np.repeat(self.x, wild.sum(), axis=1))
+            x[:, wild], met = self.newton(part, start[:, wild])
             settled = np.broadcast_to(settled, (count,)).copy()
             settled[wild] = met
         return x, np.broadcast_to(settled, (count,))
@@ -596,71 +620,37 @@ class _Solving:
             going, least, idle = going[more], least[more], idle[more]
             if not len(going):
                 break
-            step = _solved(jacobian[:, :, more].transpose(2, 0, 1), residual[:, more].T).T
-            x[:, going] = here[:, more] - np.nan_to_num(step)
+            right = residual[:, more].T[:, :, None]
+            step = _solved(jacobian[:, :, more].transpose(2, 0, 1), right)[:, :, 0]
+            x[:, going] = here[:, more] - np.nan_to_num(step.T)
         over = np.abs(self.left(x, data)).max(axis=0, initial=0.0)
         return x, np.broadcast_to(over <= 100 * SETTLED, (count,))
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats:
-    """The solutions of so many systems of equations; the least ones where a matrix is singular or
-    not square, none (0) where it is not finite."""
-    finite = np.asarray(np.isfinite(matrices).all(axis=(1, 2)))
-    matrices = np.where(finite[:, None, None], matrices, np.eye(*matrices.shape[1:]))
-    right = np.where(finite[:, None], right, 0.0)
+    """The solutions of n systems of equations, n x rows x columns, for several right sides each, n
+    x rows x m; the least ones where a matrix is singular or not square, none (0) where it is not
+    finite."""
+    finite = np.asarray(np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(right).all((1, 2)))
     rows, columns = matrices.shape[1:]
-    if rows > columns:
-        return _least(matrices, right)
-    if rows < columns:  # the least solution lies in the rows' space
-        across = matrices.transpose(0, 2, 1)
-        solution = (across @ _eliminated(matrices @ across, right)[:, :, None])[:, :, 0]
-        missed = np.abs((matrices @ solution[:, :, None])[:, :, 0] - right).max(axis=1)
-        far = ~(missed <= 1e-6 * np.abs(right).max(axis=1))
-    else:
-        solution = _eliminated(matrices, right)
-        size = np.abs(matrices).max(axis=(1, 2), initial=0.0)
-        grown = size * np.abs(solution).max(axis=1, initial=0.0)
-        far = ~(grown <= _GROWS * np.abs(right).max(axis=1, initial=0.0))
+    matrices = np.where(finite[:, None, None], matrices, np.eye(rows, columns))
+    right = np.where(finite[:, None, None], right, 0.0)
+    solution = np.full((len(right), columns, right.shape[2]), np.nan)
+    if rows == columns:
+        with suppress(np.linalg.LinAlgError):  # one is singular
+            solution = np.linalg.solve(matrices, right)
+    grown = np.abs(matrices).max((1, 2), initial=0.0) * np.abs(solution).max((1, 2), initial=0.0)
+    far = ~(grown <= _GROWS * np.abs(right).max((1, 2), initial=0.0))
     if far.any():
-        solution[far] = _least(matrices[far], right[far])
+        solution[far] = np.linalg.pinv(matrices[far], rcond=_SINGULAR) @ right[far]
     return np.asarray(solution, np.float64)
-
-
-def _eliminated(matrices: Floats, right: Floats) -> Floats:
-    """The solutions by elimination, NaN where a matrix is singular: one must not cost the others
-    theirs."""
-    solution = np.full(right.shape, np.nan)
-    try:
-        solution[:] = np.linalg.solve(matrices, right[:, :, None])[:, :, 0]
-    except np.linalg.LinAlgError:
-        regular = np.linalg.slogdet(matrices)[0] != 0  # the same elimination, which raises nothing
-        solution[regular] = np.linalg.solve(matrices[regular], right[regular, :, None])[:, :, 0]
-    return solution
-
-
-def _least(matrices: Floats, right: Floats) -> Floats:
-    """The least solutions, of the equations that a singular matrix leaves."""
-    product: Floats = (np.linalg.pinv(matrices, rcond=_SINGULAR) @ right[:, :, None])[:, :, 0]
-    return product
-
-
-def _solutions_of(matrices: Floats, right: Floats) -> Floats:
-    """The solutions for several right sides, n x rows x k, the least where there are many."""
-    if matrices.shape[1] == matrices.shape[2]:
-        try:
-            return np.asarray(np.linalg.solve(matrices, right))
-        except np.linalg.LinAlgError:
-            pass
-    finite = np.isfinite(matrices).all(axis=(1, 2), keepdims=True)
-    product: Floats = np.linalg.pinv(np.where(finite, matrices, 0.0), rcond=_SINGULAR) @ right
-    return product
 
 
 def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
     """The values with a tolerance that determine the impact, and the redundant rest; the tightest
     first, so that few impacts fall outside the others' limits."""
     system = solution.system
-    jacobian = system.jacobian(solution.x, system.left)[:, :, 0]
+    jacobian = system.slopes(solution.x)
     count = len(system.conditions)
     basis = jacobian[:count]
     order = sorted(
@@ -699,7 +689,7 @@ def _endless(
     if "E" not in system.laws or not known["E"].low <= 0 <= known["E"].high:
         return ()
     nothing = System({**system.known, "E": Uncertain("fixed", 0.0, 0.0, 0.0)}, adjusted=False)
-    _, null = pseudo_inverse(nothing.jacobian(solver.x, nothing.left)[:, :, 0])
+    _, null = pseudo_inverse(nothing.slopes(solver.x))
     if not null.shape[1]:
         return ()
     gradients = {name: nothing.gradient(solver.x, name) for name in names}

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +16,8 @@ from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..plaintable import number, paragraph, plain, table
 from ..reconstruction import adjustment
 from ..reconstruction.adjustment import Reconstruction, standard_deviation, typed_friction
-from ..reconstruction.answertable import Open, Spread, answer
 from ..reconstruction.doublerange import within_doubles
-from ..reconstruction.solutiontable import (
-    CHANGES,
-    completed,
-    named_table,
-    velocities_table,
-)
+from ..reconstruction.solutiontable import Spread, completed, in_turn, numbers, tables
 from ..reconstruction.state import COURSES, FORCES, SPEEDS
 from ..status import sentences
 from ..units import RULES, System, written
@@ -46,12 +40,13 @@ TOO_FAR = 3.0
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """First-order deviations, draws and bounds of some results of one reconstruction."""
+    """First-order deviations, draws and bounds of some results of one reconstruction; ``drivers``:
+    for each the known values that make it uncertain, with their shares of its variance."""
 
     names: tuple[str, ...]
     deviations: dict[str, float]
     correlations: NDArray[np.float64]
-    responses: NDArray[np.float64]
+    drivers: dict[str, list[tuple[str, float]]]
     draws: Draws | None
     ranges: dict[str, Range]
 
@@ -82,13 +77,13 @@ def uncertainty(
     if samples and names and not solution.assumed:
         drawn = draws(solution, names, samples, seed, progress)
         bounds = ranges(solution, names, seed=seed, drawn=drawn, progress=progress)
+    drivers = {}
+    for name, responses in zip(names, solution.responses(names), strict=True):
+        shares = responses**2 / (np.square(responses).sum() or 1.0)
+        ranked = np.argsort(-shares, kind="stable")
+        drivers[name] = [(solution.system.observations[i], float(shares[i])) for i in ranked]
     return Uncertainty(
-        names=tuple(names),
-        deviations=deviations,
-        correlations=solution.correlations(names),
-        responses=solution.responses(names),
-        draws=drawn,
-        ranges=bounds,
+        tuple(names), deviations, solution.correlations(names), drivers, drawn, bounds
     )
 
 
@@ -99,147 +94,228 @@ def _along_an_axis(solution: Reconstruction, name: str) -> bool:
     return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
 
 
-@within_doubles
-def completed_values(solution: Reconstruction, contact_time: float | None) -> dict[str, float]:
-    """Everything that follows from a reconstruction, by name, in the tables' order."""
-    values = dict(solution.values)
-    if "MUP" in values and "UX" in values:
-        values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
-    return completed(values, contact_time)
+class Measured(NamedTuple):
+    """A reconstruction, everything that follows from it, and how uncertain that is."""
 
+    solution: Reconstruction
+    values: dict[str, float]
+    spread: Uncertainty
 
-@within_doubles
-def warnings(
-    solution: Reconstruction,
-    values: Mapping[str, float],
-    spread: Uncertainty,
-    units: System = RULES,
-) -> list[str]:
-    """What a reader must know, in sentences."""
-    lines = []
-    if solution.undetermined:
-        lines.append(f"not determined by what is known: {' '.join(solution.undetermined)}")
-    for name in solution.backwards:
-        what = "is pushed away from" if name in FORCES else "drives backwards along"
-        lines.append(
-            f"{name[-1]} {what} its known {'PDOF' if name in FORCES else 'course'}: {name} = "
-            f"{number(solution.system.nominal[name], 4)} was given, the only impact found has "
-            f"{number(solution.values[name], 4)}"
-        )
-    if solution.against_sign:
-        lines.append(
-            "neither sign of MU is the one that line 400 gives it: no friction that opposes the "
-            "sliding before the impact joins what is known"
-        )
-    if solution.assumed:
-        lines.append(
-            "the known values contradict one another and none has a tolerance: all known "
-            "velocities were given the same one (spins that divided by the radius of gyration, "
-            f"{number(units.shown('length', solution.system.gyration), 4)}"
-            f"{' ' + units.label('length') if units is not RULES else ''}); "
-            "deviations are those of the misfit"
-        )
-    else:
+    @classmethod
+    @within_doubles
+    def of(
+        cls,
+        solution: Reconstruction,
+        samples: int,
+        seed: int = 0,
+        wanted: Sequence[str] | None = None,
+        contact_time: float | None = None,
+        progress: Callable[[int], object] = lambda draws: None,
+    ) -> Measured:
+        """See `uncertainty`, and `solutiontable.completed`."""
+        values = dict(solution.values)
+        if "MUP" in values and "UX" in values:
+            values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
+        spread = uncertainty(solution, samples, seed, wanted, progress)
+        return cls(solution, completed(values, contact_time), spread)
+
+    @within_doubles
+    def warnings(self, units: System = RULES) -> list[str]:
+        """What a reader must know, in sentences."""
+        solution, lines = self.solution, []
+        if solution.undetermined:
+            lines.append(f"not determined by what is known: {' '.join(solution.undetermined)}")
+        for name in solution.backwards:
+            what = "is pushed away from" if name in FORCES else "drives backwards along"
+            lines.append(
+                f"{name[-1]} {what} its known {'PDOF' if name in FORCES else 'course'}: {name} = "
+                f"{number(solution.system.nominal[name], 4)} was given, the only impact found has "
+                f"{number(solution.values[name], 4)}"
+            )
+        if solution.against_sign:
+            lines.append(
+                "neither sign of MU is the one that line 400 gives it: no friction that opposes "
+                "the sliding before the impact joins what is known"
+            )
         far = [a for a in solution.adjusted if abs(a.moved) > TOO_FAR]
-        if far:
+        if solution.assumed:
+            lines.append(
+                "the known values contradict one another and none has a tolerance: all known "
+                "velocities were given the same one (spins that divided by the radius of gyration, "
+                f"{number(units.shown('length', solution.system.gyration), 4)}"
+                f"{' ' + units.label('length') if units is not RULES else ''}); "
+                "deviations are those of the misfit"
+            )
+        elif far:
             moved = ", ".join(f"{a.name} by {number(a.moved, 2)}" for a in far)
             lines.append(f"the measured values contradict one another: moved, tolerances: {moved}")
-    lines += _ill_posed(solution, spread, units)
-    missing = [name for name, bound in spread.ranges.items() if math.isnan(bound.lower)]
-    if missing:
-        lines.append(
-            "no impact was found that lies within the limits of all known values at once: the "
-            "draws are those of normal values with the same standard deviations"
-        )
-    unsearched = [name for name, bound in spread.ranges.items() if not bound.searched]
-    if unsearched:
-        lines.append(
-            "the search for bounds ended before its time; not searched to the end, and perhaps "
-            f"wider: {' '.join(unsearched)}"
-        )
-    if spread.draws and spread.draws.failed:
-        lines.append(f"{100 * spread.draws.failed:.3g} % of the draws have no solution")
-    return lines + sentences(int(values.get("STATUS", 0)), values)
-
-
-def _ill_posed(solution: Reconstruction, spread: Uncertainty, units: System) -> list[str]:
-    """Velocities that the known values hardly determine, with the number and what drives it."""
-    system = solution.system
-    lines = []
-    for row, name in enumerate(spread.names):
-        if name not in VELOCITIES and name not in FINAL_STATE:
-            continue
-        share = spread.deviations[name] / system.scale(name)
-        if share > ILL_POSED:
-            driver, part = _drivers(solution, spread, row)[0]
-            deviation = number(spread.deviations[name] * units.factor(name), 3)
-            deviation += f" {units.unit(name)}".rstrip()
+        lines += self._ill_posed(units)
+        bounds = self.spread.ranges
+        if any(math.isnan(bound.lower) for bound in bounds.values()):
             lines.append(
-                f"ill-posed: {name} has a standard deviation of {deviation}, {100 * share:.0f} % "
-                f"of the largest speed; {100 * part:.0f} % of its variance comes from {driver}"
+                "no impact was found that lies within the limits of all known values at once: the "
+                "draws are those of normal values with the same standard deviations"
             )
-    e = solution.values.get("E")
-    if lines and e and "E" in system.known and abs(e) < ILL_POSED:
-        lines.append(f"E = {number(e, 3)} divides: errors after the impact grow 1/E = {1 / e:.3g}")
-    return lines
+        if unsearched := self.not_searched:
+            lines.append(
+                "the search for bounds ended before its time; not searched to the end, and perhaps "
+                f"wider: {' '.join(unsearched)}"
+            )
+        if self.spread.draws and self.spread.draws.failed:
+            lines.append(f"{100 * self.spread.draws.failed:.3g} % of the draws have no solution")
+        return lines + sentences(int(self.values.get("STATUS", 0)), self.values)
 
+    @property
+    def not_searched(self) -> list[str]:
+        """The results whose bounds may be wider: the search took all it may."""
+        return [name for name, bound in self.spread.ranges.items() if not bound.searched]
 
-def _drivers(solution: Reconstruction, spread: Uncertainty, row: int) -> list[tuple[str, float]]:
-    """The known values that make a result uncertain, with their shares of its variance."""
-    squares = spread.responses[row] ** 2
-    total = squares.sum() or 1.0
-    ranked = np.argsort(-squares, kind="stable")
-    return [(solution.system.observations[i], float(squares[i] / total)) for i in ranked]
+    def _ill_posed(self, units: System) -> list[str]:
+        """Velocities that the known values hardly determine, with the number and what drives it."""
+        system, lines = self.solution.system, []
+        for name in self.spread.names:
+            deviation = self.spread.deviations[name]
+            share = deviation / system.scale(name)
+            if name in (*VELOCITIES, *FINAL_STATE) and share > ILL_POSED:
+                driver, part = self.spread.drivers[name][0]
+                size = f"{number(deviation * units.factor(name), 3)} {units.unit(name)}".rstrip()
+                lines.append(
+                    f"ill-posed: {name} has a standard deviation of {size}, {100 * share:.0f} % of "
+                    f"the largest speed; {100 * part:.0f} % of its variance comes from {driver}"
+                )
+        e = self.solution.values.get("E")
+        if lines and e and "E" in system.known and abs(e) < ILL_POSED:
+            lines.append(
+                f"E = {number(e, 3)} divides: errors after the impact grow 1/E = {1 / e:.3g}"
+            )
+        return lines
 
+    # -- tables
 
-@within_doubles
-def as_text(
-    solution: Reconstruction,
-    values: Mapping[str, float],
-    spread: Uncertainty,
-    units: System = RULES,
-) -> str:
-    """The reconstruction as tables."""
-    known = solution.system.nominal
-    remarks = warnings(solution, values, spread, units)
-    blocks = [
-        answer(
-            values,
-            {name: _answered(solution, spread, name) for name in _ANSWERS if name in spread.names},
-            Open(solution.undetermined, solution.helpful),
-            len(remarks) - bool(solution.undetermined),
-            units,
-        ),
-        velocities_table(known, values, units),
-        named_table(("E", "MUP", "EM", "RR0"), known, values, units),
-        named_table(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
-        named_table(("TF", "FA", "FM2", "FM3"), known, values, units),
-        named_table((*CHANGES, "VC", "VS"), known, values, units),
-        named_table(("KI", "KF", "EL", "LOSS"), known, values, units),
-        _adjustments(solution, units),
-        _spreads(spread, units),
-        _correlations(spread),
-        _driving(solution, spread),
-    ]
-    lines = [line for block in blocks if block for line in (*block, "")]
-    for warning in remarks:
-        lines += paragraph(f"! {warning}")
-    return "\n".join(lines).rstrip("\n")
+    @within_doubles
+    def as_text(self, units: System = RULES) -> str:
+        """The reconstruction as tables."""
+        answered = {}
+        for name in _ANSWERS:
+            if name in self.spread.names:
+                bound = self.spread.ranges.get(name)
+                ends = (bound.lower, bound.upper) if bound else (math.nan, math.nan)
+                drivers = self.spread.drivers[name][:DRIVERS]
+                answered[name] = Spread(self.spread.deviations[name], *ends, drivers)
+        further = [self._adjustments(units), self._spreads(units), *self._connections()]
+        remarks = self.warnings(units)
+        if self.solution.undetermined:  # which the answer says, too
+            further.append(paragraph(f"! {remarks.pop(0)}"))
+        return tables(
+            *(self.values, self.solution.system.nominal, remarks, further, units, answered),
+            *(self.solution.undetermined, self.solution.helpful),
+        )
 
+    def _adjustments(self, units: System) -> list[str]:
+        count = self.solution.redundancy
+        if not count:
+            return []
+        rows = []
+        for a in self.solution.adjusted:
+            factor = units.factor(a.name)
+            item = self.solution.system.known[a.name]
+            half = math.nan if item.kind == "normal" else a.tolerance
+            sizes = [number(factor * size, 3) for size in (half, standard_deviation(item))]
+            cells = [a.name, number(factor * a.measured), *sizes, number(factor * a.adjusted)]
+            rows.append([*cells, f"{a.moved + 0.0:.2f}", units.label(quantity(a.name).unit)])
+        heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
+        return [
+            *table(rows, heading, left=(0, 6)),
+            "A tolerance is the half-width of limits, or the sd of a normal value.",
+            *paragraph(
+                "Adjusted by least squares so that Equations 13 to 18 hold exactly (adjustment of "
+                f"observations with conditions): {count} value{'s' if count > 1 else ''} more than "
+                f"needed, sum of squared adjustments {number(self.solution.squares, 3)} (in "
+                f"standard deviations; about {count} where the tolerances are right)"
+            ),
+        ]
 
-def _answered(solution: Reconstruction, spread: Uncertainty, name: str) -> Spread:
-    bound = spread.ranges.get(name)
-    lower, upper = (bound.lower, bound.upper) if bound else (math.nan, math.nan)
-    drivers = _drivers(solution, spread, spread.names.index(name))[:DRIVERS]
-    return Spread(spread.deviations[name], lower, upper, drivers)
+    def _spreads(self, units: System) -> list[str]:
+        heading = ["result", "first order sd"]
+        if self.spread.draws:
+            heading += ["draws sd", *(f"{100 * share:g} %" for share in QUANTILES)]
+            heading += ["lower bound", "upper bound"]
+        rows = []
+        for name in self.spread.names:
+            factor = units.factor(name)
+            cells = [name, number(factor * self.spread.deviations[name], 3)]
+            if self.spread.draws:
+                drawn, bound = self.spread.draws.spread(name, QUANTILES), self.spread.ranges[name]
+                cells.append(number(factor * drawn.deviation, 3))
+                limits = (*drawn.quantiles.values(), bound.lower, bound.upper)
+                cells += [number(factor * value, 5) for value in limits]
+            rows.append([*cells, units.label(quantity(name).unit)])
+        return table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
 
+    def _connections(self) -> list[list[str]]:
+        """Correlations, and what makes results uncertain."""
+        names = self.spread.names
+        # the unknowns themselves first, courses and speeds are made of them
+        at = [i for i, n in enumerate(names) if n not in SPEEDS and n not in COURSES]
+        at = at[:MOST_CORRELATED]
+        matrix = self.spread.correlations
+        rows = [[names[i], *(f"{matrix[i, k]:.2f}" for k in at if k <= i)] for i in at]
+        correlations = table(rows, ["correlation", *(names[i] for i in at)])
+        driving = [
+            [name, *(f"{n} {100 * share:.0f} %" for n, share in drivers[:DRIVERS] if share >= 5e-3)]
+            for name, drivers in self.spread.drivers.items()
+        ]
+        columns = table(driving, ["uncertain through", *[""] * DRIVERS], left=(0, 1, 2, 3))
+        return [correlations if len(at) > 1 else [], columns if driving else []]
 
-def in_turn(texts: Sequence[str]) -> str:
-    """The solutions one below the other, numbered where there are several."""
-    if len(texts) == 1:
-        return texts[0]
-    total = len(texts)
-    return "\n\n".join(f"SOLUTION {i} OF {total}\n\n{text}" for i, text in enumerate(texts, 1))
+    @within_doubles
+    def as_json(self, units: System = RULES) -> dict[str, Any]:
+        """The reconstruction for a program, in ``units``; numbers that do not exist are null."""
+        solution, spread = self.solution, self.spread
+        whole: dict[str, Any] = plain(
+            {
+                **numbers(self.values, solution.system.known, self.warnings(units), units),
+                "undetermined": solution.undetermined,
+                "adjusted": [
+                    {
+                        "name": a.name,
+                        "measured": a.measured * units.factor(a.name),
+                        "tolerance": a.tolerance * units.factor(a.name),
+                        "adjusted": a.adjusted * units.factor(a.name),
+                        "moved": a.moved,
+                    }
+                    for a in solution.adjusted
+                ],
+                "redundancy": solution.redundancy,
+                "sum_of_squares": solution.squares,
+                "equal_tolerances_assumed": solution.assumed,
+                "uncertainty": {name: self._uncertain(name, units) for name in spread.names},
+                "correlations": {"names": spread.names, "matrix": spread.correlations},
+                "draws_without_solution": spread.draws.failed if spread.draws else None,
+                "not_searched": self.not_searched,
+            }
+        )
+        return whole
+
+    def _uncertain(self, name: str, units: System) -> dict[str, Any]:
+        factor = units.factor(name)
+        whole: dict[str, Any] = {
+            "first_order": self.spread.deviations[name] * factor,
+            "drivers": dict(self.spread.drivers[name]),
+        }
+        if self.spread.draws:
+            drawn, bound = self.spread.draws.spread(name, QUANTILES), self.spread.ranges[name]
+            whole |= {
+                "mean": drawn.mean * factor,
+                "deviation": drawn.deviation * factor,
+                "quantiles": {f"{q:g}": v * factor for q, v in drawn.quantiles.items()},
+                "lower": bound.lower * factor,
+                "upper": bound.upper * factor,
+                "unbounded": unbounded(bound),
+                "at_lower": written(bound.at_lower, units),
+                "at_upper": written(bound.at_upper, units),
+            }
+        return whole
 
 
 class Reconstructions(list[Reconstruction]):
@@ -247,8 +323,7 @@ class Reconstructions(list[Reconstruction]):
 
     def _repr_html_(self) -> str:
         """What `impact88 reconstruct --samples 0` prints, as a notebook shows it."""
-        each = ((one, completed_values(one, None), uncertainty(one, 0)) for one in self)
-        return notebook.preformatted(in_turn([as_text(*one) for one in each]))
+        return notebook.preformatted(in_turn([Measured.of(one, 0).as_text() for one in self]))
 
 
 def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions:
@@ -260,141 +335,3 @@ def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions
     -13.3
     """
     return Reconstructions(adjustment.reconstruct(known))
-
-
-def _adjustments(solution: Reconstruction, units: System) -> list[str]:
-    if not solution.redundancy:
-        return []
-    rows = []
-    for a in solution.adjusted:
-        unit = quantity(a.name).unit
-        item = solution.system.known[a.name]
-        half = math.nan if item.kind == "normal" else a.tolerance
-        sizes = [units.shown(unit, x) for x in (half, standard_deviation(item))]
-        measured, adjusted = (number(units.shown(unit, x)) for x in (a.measured, a.adjusted))
-        cells = [a.name, measured, *(number(size, 3) for size in sizes), adjusted]
-        rows.append([*cells, f"{a.moved + 0.0:.2f}", units.label(unit)])
-    heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
-    lines = table(rows, heading, left=(0, 6))
-    lines += ["A tolerance is the half-width of limits, or the sd of a normal value."]
-    count = solution.redundancy
-    lines += paragraph(
-        "Adjusted by least squares so that Equations 13 to 18 hold exactly (adjustment of "
-        f"observations with conditions): {count} value{'s' if count > 1 else ''} more than needed, "
-        f"sum of squared adjustments {number(solution.squares, 3)} (in standard deviations; about "
-        f"{count} where the tolerances are right)"
-    )
-    return lines
-
-
-def _spreads(spread: Uncertainty, units: System) -> list[str]:
-    if not spread.names:
-        return []
-    heading = ["result", "first order sd"]
-    if spread.draws:
-        heading += ["draws sd", *(f"{100 * share:g} %" for share in QUANTILES)]
-        heading += ["lower bound", "upper bound"]
-    rows = []
-    for name in spread.names:
-        unit = quantity(name).unit
-        factor = units.shown(unit, 1.0)
-        cells = [name, number(factor * spread.deviations[name], 3)]
-        if spread.draws:
-            drawn = spread.draws.values[name]
-            drawn = drawn[np.isfinite(drawn)]
-            quantiles = np.quantile(drawn, QUANTILES) if len(drawn) else [math.nan] * 3
-            cells.append(number(factor * drawn.std() if len(drawn) else math.nan, 3))
-            bound = spread.ranges[name]
-            limits = (*quantiles, bound.lower, bound.upper)
-            cells += [number(factor * value, 5) for value in limits]
-        rows.append([*cells, units.label(unit)])
-    return table(rows, [*heading, "unit"], left=(0, len(heading)))
-
-
-def _correlations(spread: Uncertainty) -> list[str]:
-    # the unknowns themselves first, courses and speeds are made of them
-    first = [n for n in spread.names if n not in SPEEDS and n not in COURSES]
-    names = [n for n in spread.names if n in first[:MOST_CORRELATED]]
-    places = [spread.names.index(name) for name in names]
-    if len(names) < 2:
-        return []
-    rows = [
-        [name, *(f"{spread.correlations[places[i], k]:.2f}" for k in places[: i + 1])]
-        for i, name in enumerate(names)
-    ]
-    return table(rows, ["correlation", *names])
-
-
-def _driving(solution: Reconstruction, spread: Uncertainty) -> list[str]:
-    rows = []
-    for row, name in enumerate(spread.names):
-        shares = [(n, s) for n, s in _drivers(solution, spread, row)[:DRIVERS] if s >= 0.005]
-        rows.append([name, *(f"{source} {100 * share:.0f} %" for source, share in shares)])
-    return table(rows, ["uncertain through", *[""] * DRIVERS], left=(0, 1, 2, 3)) if rows else []
-
-
-@within_doubles
-def as_json(
-    solution: Reconstruction,
-    values: Mapping[str, float],
-    spread: Uncertainty,
-    units: System = RULES,
-) -> dict[str, Any]:
-    """The reconstruction for a program, in ``units``; numbers that do not exist are null."""
-    drawn = spread.draws
-    whole: dict[str, Any] = plain(
-        {
-            "known": list(solution.system.known),
-            "values": {n: v for n, v in written(values, units).items() if n != "STATUS"},
-            "units": {n: units.label(quantity(n).unit) for n in values if n != "STATUS"},
-            "undetermined": list(solution.undetermined),
-            "adjusted": [
-                {
-                    "name": a.name,
-                    "measured": a.measured * units.factor(a.name),
-                    "tolerance": a.tolerance * units.factor(a.name),
-                    "adjusted": a.adjusted * units.factor(a.name),
-                    "moved": a.moved,
-                }
-                for a in solution.adjusted
-            ],
-            "redundancy": solution.redundancy,
-            "sum_of_squares": solution.squares,
-            "equal_tolerances_assumed": solution.assumed,
-            "uncertainty": {
-                name: {
-                    "first_order": spread.deviations[name] * units.factor(name),
-                    "drivers": dict(_drivers(solution, spread, row)),
-                    **(
-                        _drawn(drawn.values[name], spread.ranges[name], units, name)
-                        if drawn
-                        else {}
-                    ),
-                }
-                for row, name in enumerate(spread.names)
-            },
-            "correlations": {"names": list(spread.names), "matrix": spread.correlations},
-            "draws_without_solution": drawn.failed if drawn else None,
-            "status": int(values.get("STATUS", 0)),
-            "warnings": warnings(solution, values, spread, units),
-        }
-    )
-    return whole
-
-
-def _drawn(values: NDArray[np.float64], bound: Range, units: System, name: str) -> dict[str, Any]:
-    factor = units.factor(name)
-    finite = values[np.isfinite(values)] * factor
-    none = not len(finite)
-    return {
-        "mean": math.nan if none else float(finite.mean()),
-        "deviation": math.nan if none else float(finite.std()),
-        "quantiles": {
-            f"{q:g}": math.nan if none else float(np.quantile(finite, q)) for q in QUANTILES
-        },
-        "lower": bound.lower * factor,
-        "upper": bound.upper * factor,
-        "unbounded": unbounded(bound),
-        "at_lower": written(bound.at_lower, units),
-        "at_upper": written(bound.at_upper, units),
-    }

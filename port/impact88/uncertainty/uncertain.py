@@ -60,6 +60,11 @@ class Uncertain:
     deviation: float = 0.0
     share: bool = False
 
+    def over(self, factor: float) -> Uncertain:
+        """The same in other units, all values divided."""
+        nominal, low, high = (value / factor for value in (self.nominal, self.low, self.high))
+        return replace(self, nominal=nominal, low=low, high=high, deviation=self.deviation / factor)
+
     @property
     def varies(self) -> bool:
         """Whether there is anything uncertain about it."""
@@ -146,13 +151,16 @@ def fixed(value: float) -> Uncertain:
     return Uncertain("fixed", value, value, value)
 
 
-def read(text: str, name: str, center: float | None = None) -> Uncertain:
+def read(text: str, name: str, center: float | None = None, units: str | None = None) -> Uncertain:
     """What ``text`` says about the quantity ``name``; see the notation above.
 
     ``center`` is the value ``+- D`` is taken around, and a range's nominal value where it lies
-    inside. Raises UserError naming ``name`` when the text is none of the forms, its limits are in
-    the wrong order, or a number overflows.
+    inside; ``units`` the system whose base units the numbers are in, which a speed after the impact
+    given as a skid needs (`skid`). Raises UserError naming ``name`` when the text is none of the
+    forms, its limits are in the wrong order, or a number overflows.
     """
+    if text.lstrip().startswith("skid") and name.endswith(("SAF", "SBF")):
+        return skid(text, name, units)
     try:
         if is_number(text):
             text = text.replace(" ", "")  # INPUT reads "1 0" as 10
@@ -160,8 +168,8 @@ def read(text: str, name: str, center: float | None = None) -> Uncertain:
         numbers = [double(a.sign + a.parts[0][0]) for a in amounts if a]
     except ValueError:
         raise UserError(f"{text!r} is not an amount; {ACCEPTED}", name) from None
-    units = [unit for a in amounts if a for unit in a.units]
-    shares = bool(units) and set(units) == {"%"} and name.endswith("MU")
+    own = {unit for a in amounts if a for unit in a.units}
+    shares = own == {"%"} and name.endswith("MU")
     if shares:
         numbers = [numbers[0] / 100, *(x if share else x / 100 for x in numbers[1:])]
     elif any(a and (a.units or len(a.parts) > 1) for a in amounts):
@@ -177,13 +185,14 @@ def read(text: str, name: str, center: float | None = None) -> Uncertain:
 _SKID = re.compile(r"skid (.+) at (.+)")
 
 
-def skid(text: str, name: str, gravity: float | None) -> Uncertain | None:
+def skid(text: str, name: str, units: str | None) -> Uncertain:
     """The speed v = √(2 μ g d) at the begin of a skid to rest, of a text "skid D at MU" whose
-    values may have limits; None for another text. ``gravity``: g in the units of D, None where no
-    units are known, which raises UserError, as does what is not positive."""
-    match = _SKID.fullmatch(" ".join(text.split()))
+    values may have limits. ``units``: the system D is in. Raises UserError."""
+    from ..units import gravity_in, system_of
+
+    match, gravity = _SKID.fullmatch(" ".join(text.split())), gravity_in(system_of(units))
     if match is None:
-        return None
+        raise UserError(f"{text!r} is not a skid; expected such as 'skid 62 ft at 0.7'", name)
     if gravity is None:
         raise UserError(f"{text!r} needs units; expected such as 'skid 62 ft at 0.7'", name)
     parts = [read(part, name) for part in match.groups()]
