@@ -193,8 +193,7 @@ def known_file(values: Mapping[str, str], units: str = "") -> str:
         raise UserError(problem)
     for name, text in given.texts.items():
         _read(name, text, given.units)
-    return known_template(KNOWABLE, texts, units) + "
-" + outline_lines(values)
+    return known_template(KNOWABLE, texts, units) + "\n" + outline_lines(values)
 
 
 def known_of_sample(which: int) -> dict[str, Any]:
