@@ -115,65 +115,115 @@ def parts(line: str) -> tuple[tuple[str, str], ...]:
 class _Fit(NamedTuple):
     gain: float
     text: str
-    ends: tuple[int, ...]
 
 
-def _fit(line: str, inked: Floats, blank: Floats) -> _Fit:
-    """The best division of a row of cells into the parts of a line, and where each part ends.
-    ``inked``, ``blank``: what each cell gains when taken for inked or blank, shape (cells,)."""
-    cells = len(inked)
-    filled, emptied = np.r_[0.0, np.cumsum(inked)], np.r_[0.0, np.cumsum(blank)]
-    typed = np.r_[0.0, np.cumsum(np.maximum(inked, _BLANK_IN_REPLY))]
-    best = np.full(cells + 1, -np.inf)
-    best[0] = 0.0
-    back: list[np.ndarray] = []
+def _gains(line: str, inked: Floats, blank: Floats) -> tuple[Floats, list[Floats]]:
+    """How well rows of cells divide into the parts of a line: the best gain of each row, and the
+    gains after each part by the cell it ends before, each of shape (rows, cells + 1). ``inked``,
+    ``blank``: what each cell gains when taken for inked or blank, shape (rows, cells)."""
+    rows, cells = inked.shape
+    edge = np.zeros((rows, 1))
+    filled, emptied, typed = (
+        np.hstack([edge, np.cumsum(values, axis=1)])
+        for values in (inked, blank, np.maximum(inked, _BLANK_IN_REPLY))
+    )
+    best = np.full((rows, cells + 1), -np.inf)
+    best[:, 0] = 0.0
+    after = [best]
     for name, text in parts(line):
-        new = np.full(cells + 1, -np.inf)
-        came = np.zeros(cells + 1, int)
-        gap = not name and not text.strip() and (len(text) > 1 or not back)
-        if name or gap:
-            least, most = NUMBER_LENGTHS if name else _GAPS if len(text) > 1 else (0, 1)
-            run = emptied if gap else filled
-            if name.startswith("REPLY"):
-                (least, most), run = REPLY_LENGTHS, typed
-            for length in range(least, min(most, cells) + 1):
-                value = best[: cells + 1 - length] + run[length:] - run[: cells + 1 - length]
-                better = value > new[length:]
-                new[length:][better] = value[better]
-                came[length:][better] = length
-        else:
-            size = len(text)
-            if size <= cells:
-                value = best[: cells + 1 - size].copy()
-                for offset, char in enumerate(text):
-                    row = blank if char == " " else inked
-                    value += row[offset : offset + cells + 1 - size]
-                new[size:] = value
-                came[size:] = size
-        back.append(came)
+        new = np.full_like(best, -np.inf)
+        lengths = _lengths(name, text, first=len(after) == 1)
+        if lengths:
+            run = emptied if not name else typed if name.startswith("REPLY") else filled
+            start = best - run
+            for length in range(lengths[0], min(lengths[1], cells) + 1):
+                part = new[:, length:]
+                np.maximum(part, start[:, : cells + 1 - length], out=part)
+            new += run
+        elif len(text) <= cells:
+            size = cells + 1 - len(text)
+            value = best[:, :size].copy()
+            for offset, char in enumerate(text):
+                value += (blank if char == " " else inked)[:, offset : offset + size]
+            new[:, len(text) :] = value
         best = new
-    after = np.r_[np.cumsum(blank[::-1])[::-1], 0.0]
-    total = best + after
-    at = int(np.argmax(total))
-    if not np.isfinite(total[at]):
-        return _Fit(-np.inf, line, ())
-    ends = [at]
-    for came in reversed(back):
-        ends.append(ends[-1] - int(came[ends[-1]]))
-    return _Fit(float(total[at]), line, tuple(reversed(ends)))
+        after.append(best)
+    rest = np.hstack([np.cumsum(blank[:, ::-1], axis=1)[:, ::-1], edge])
+    after.append(best + rest)
+    return after[-1].max(axis=1), after
+
+
+def _lengths(name: str, text: str, first: bool) -> tuple[int, int] | None:
+    """The least and most cells of a part; None where it has as many as its text."""
+    if name:
+        return REPLY_LENGTHS if name.startswith("REPLY") else NUMBER_LENGTHS
+    if text.strip() or (len(text) == 1 and not first):
+        return None
+    return _GAPS if len(text) > 1 else (0, 1)
+
+
+def _ends(line: str, inked: Floats, blank: Floats) -> list[int]:
+    """Where the parts of a line end in the best division of one row of cells."""
+    _, after = _gains(line, inked[None], blank[None])
+    ends = [int(np.argmax(after[-1][0]))]
+    cuts = [np.r_[0.0, np.cumsum(v)] for v in (inked, blank, np.maximum(inked, _BLANK_IN_REPLY))]
+    for which, (name, text) in reversed(list(enumerate(parts(line)))):
+        at, before = ends[-1], after[which][0]
+        lengths = _lengths(name, text, first=which == 0) or (len(text), len(text))
+        run = cuts[1 if not name else 2 if name.startswith("REPLY") else 0]
+        starts = np.arange(max(0, at - lengths[1]), at - lengths[0] + 1)
+        ends.append(int(starts[np.argmax(before[starts] - run[starts])]))
+    return ends[::-1]
 
 
 def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     """The printouts on a grid. ``odds``: for each line the log odds that each cell is inked;
     ``tops``: where the lines are, in pitches down the page."""
     first = _margin(odds)
-    candidates = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
-    best: tuple[float, list[Sheet]] = (-np.inf, [])
-    for margin in candidates:
-        gain, sheets = _laid_at(odds, tops, margin)
-        if gain > best[0] + 1e-9:
-            best = (gain, sheets)
-    return best[1]
+    margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
+    keys, rows = [], []
+    for margin in margins:
+        laid = [row[margin:] if margin >= 0 else np.r_[0.0, row] for row in odds]
+        for start, row in enumerate(laid):
+            keys.append((margin, start, 1))
+            rows.append(row)
+            if start + 1 < len(laid) and tops[start + 1] - tops[start] <= 3.2:
+                if len(row) >= WRAP and not np.any(row[WRAP:] > 2):
+                    keys.append((margin, start, 2))
+                    rows.append(np.r_[row[:WRAP], laid[start + 1]])
+    width = max(map(len, rows))
+    padded = np.stack([np.pad(row, (0, width - len(row))) for row in rows])
+    inked, blank = np.clip(padded, -6, 6) / 2, -np.clip(padded, 0, 6) / 2
+    before = [np.r_[0.0, np.cumsum(np.clip(row, 0, None))] for row in odds]
+    lost = np.array(
+        [
+            sum(before[at][max(margin, 0)] for at in range(start, start + used))
+            + (_WRAPPED if used == 2 else 0)
+            for margin, start, used in keys
+        ]
+    )
+    fits: dict[int, dict[tuple[int, int, int], _Fit]] = {margin: {} for margin in margins}
+    for line in range(len(LINES)):
+        texts = VARIANTS.get(line, (LINES[line],))
+        gains = np.stack([_gains(text, inked, blank)[0] for text in texts])
+        which = gains.argmax(axis=0)
+        for row, (margin, start, used) in enumerate(keys):
+            gain = float(gains[which[row], row] - lost[row])
+            fits[margin][start, used, line] = _Fit(gain, texts[which[row]])
+    alone = [float(np.clip(row, 0, 6).sum()) for row in odds]
+    aligned = {m: _aligned(fits[m], len(odds), alone) for m in margins}
+    margin = max(margins, key=lambda one: aligned[one][0])
+    sheets = [Sheet()]
+    for start, used, line in aligned[margin][1]:
+        if used == 0:
+            sheets.append(Sheet())
+            continue
+        fit = fits[margin][start, used, line]
+        row = keys.index((margin, start, used))
+        sheets[-1].gain += fit.gain
+        ends = _ends(fit.text, inked[row], blank[row])
+        _place(sheets[-1], line, Row(start, used, margin, fit.text), ends)
+    return [sheet for sheet in sheets if len(sheet.numbers) >= _FEWEST]
 
 
 def _margin(odds: Sequence[Floats]) -> int:
@@ -182,38 +232,12 @@ def _margin(odds: Sequence[Floats]) -> int:
     return int(np.bincount(starts).argmax()) if starts else 0
 
 
-def _laid_at(odds: Sequence[Floats], tops: Floats, margin: int) -> tuple[float, list[Sheet]]:
-    gains: dict[tuple[int, int, int], _Fit] = {}
-    count = len(odds)
-    rows = [row[margin:] if margin >= 0 else np.r_[np.zeros(-margin), row] for row in odds]
-    before = [float(np.clip(row[: max(margin, 0)], 0, None).sum()) for row in odds]
-    alone = [float(np.clip(row, 0, 6).sum()) for row in odds]
-    for start in range(count):
-        for used in (1, 2):
-            if start + used > count or (used == 2 and tops[start + 1] - tops[start] > 3.2):
-                continue
-            row = rows[start]
-            if used == 2:
-                if len(row) < WRAP or np.any(row[WRAP:] > 2):
-                    continue
-                row = np.r_[row[:WRAP], rows[start + 1]]
-            inked, blank = np.clip(row, -6, 6) / 2, -np.clip(row, 0, 6) / 2
-            for line in range(len(LINES)):
-                texts = VARIANTS.get(line, (LINES[line],))
-                one = max((_fit(text, inked, blank) for text in texts), key=lambda fit: fit.gain)
-                lost = sum(before[start : start + used]) + (_WRAPPED if used == 2 else 0)
-                gains[start, used, line] = one._replace(gain=one.gain - lost)
-    return _aligned(gains, count, margin, alone)
-
-
 def _aligned(
-    gains: dict[tuple[int, int, int], _Fit],
-    count: int,
-    margin: int,
-    alone: Sequence[float],
-) -> tuple[float, list[Sheet]]:
+    gains: dict[tuple[int, int, int], _Fit], count: int, alone: Sequence[float]
+) -> tuple[float, list[tuple[int, int, int]]]:
     """Lines of paper and lines of print side by side; after the last line of print may come the
-    first of another printout."""
+    first of another printout. The total gain, and the lines found: line of the grid, how many of
+    them it takes (0: another printout begins), line of print."""
     last = len(LINES)
     # best[i][j]: i lines of the paper are used, j lines of the print are behind
     best = np.full((count + 1, last + 1), -np.inf)
@@ -243,21 +267,16 @@ def _aligned(
     if not ends:
         return -np.inf, []
     at = (count, max(ends, key=lambda j: float(best[count, j])))
-    total = float(best[at])
-    sheets: list[Sheet] = [Sheet()]
+    total, found = float(best[at]), []
     while at in back:
         i, j, used = back[at]
-        if (j, at[1]) == (last, 0):
-            sheets.append(Sheet())
-        elif used:
-            fit = gains[i, used, j]
-            sheets[-1].gain += fit.gain
-            _place(sheets[-1], j, Row(i, used, margin, fit.text), fit.ends)
+        if (j, at[1]) == (last, 0) or used:
+            found.append((i, used, j))
         at = (i, j)
-    return total, [sheet for sheet in reversed(sheets) if len(sheet.numbers) >= _FEWEST]
+    return total, found[::-1]
 
 
-def _place(sheet: Sheet, line: int, row: Row, ends: tuple[int, ...]) -> None:
+def _place(sheet: Sheet, line: int, row: Row, ends: Sequence[int]) -> None:
     pieces = []
     for (name, text), begin, end in zip(parts(row.text), ends, ends[1:], strict=False):
         pieces.append(Piece(name, text, [row.place(column) for column in range(begin, end)]))
