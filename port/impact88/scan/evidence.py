@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from ..judging.judgement import Verdict
 from .holding import Cell
-from .layout import LINES, OPTIONAL, Sheet
+from .layout import Sheet
 from .scenes import Candidate
 from .typeface import BLANK
 
@@ -53,8 +53,7 @@ def judged(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
     """The verdict on one printout of a page, whose cells were held against its scene."""
     differing = [cell for cell in cells if state(cell) == "differs"]
     doubtful = [cell for cell in cells if state(cell) == "doubtful"]
-    absent = [line for line in range(len(LINES)) if line not in sheet.rows and line not in OPTIONAL]
-    if absent:
+    if not sheet.whole:
         return Judged(
             Verdict.INCOMPLETE, differing, doubtful, "lines of the printout were not found"
         )

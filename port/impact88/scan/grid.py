@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from .ink import Floats, Image, Points, points_of, slopes
@@ -19,6 +20,17 @@ CELL_WIDTH = 16
 SLACK = 2
 """Pixels of picture kept on each side of a cell, for the shifts that are tried."""
 _LEAST_HEIGHT = 5
+_PITCHES = (0.4, 1.15)
+"""The least and greatest pitch, in heights of a line from its capitals' top to its deepest comma:
+those of the given pages have 0.6 to 0.97."""
+_STRETCH = 6 * CELL_WIDTH
+"""Pixels of a line whose height is measured at once."""
+_STRAIN = 0.02
+"""What a pitch of keystone or bow costs of the clarity (0 to 1) it gains: without it a page of
+broken type, in which gaps stand within characters, is bent to fit them; twice as much leaves two of
+the given photographs flat."""
+_STARTS = 5
+"""Places from which the fit of the columns starts."""
 
 
 @dataclass
@@ -76,29 +88,14 @@ def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
 
 
 def _pitch(xs: list[Floats], height: float) -> float:
-    """The pitch: the shortest period at which the lines' ink leaves a gap between any two cells."""
-    periods = height * np.exp(np.arange(np.log(0.38), np.log(1.45), 0.0025))
-    xs = [x[:: len(x) // 1500 + 1] for x in xs]
-    power = np.zeros(len(periods))
-    for x in xs:
-        power += np.abs(np.exp(2j * np.pi * np.outer(1 / periods, x)).sum(axis=1)) ** 2 / len(x)
-    peaks = np.flatnonzero((power >= np.roll(power, 1)) & (power >= np.roll(power, -1)))
-    peaks = peaks[np.argsort(-power[peaks])[:10]]
-    gaps = {float(periods[peak]): _gap(xs, float(periods[peak])) for peak in peaks}
-    least = min(gaps.values())
-    return min(period for period, gap in gaps.items() if gap <= least * 1.4 + 0.06)
-
-
-def _gap(xs: list[Floats], period: float) -> float:
-    """How much ink stands where the folded lines have least, relative to an even spread."""
-    bins = 24
-    total, least = 0.0, 0.0
-    for x in xs:
-        folded = np.bincount((x / period % 1 * bins).astype(int), minlength=bins)[:bins]
-        smooth = folded + np.roll(folded, 1) + np.roll(folded, -1)
-        least += float(smooth.min())
-        total += len(x) * 3 / bins
-    return least / total
+    """The pitch: the period of the gaps between characters. Of the ink itself it is not: most
+    digits have a stroke at each side of their cell."""
+    size, low = 1 << 15, min(float(x.min()) for x in xs)
+    gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
+    power = sum(np.abs(np.fft.rfft(one, size)) ** 2 / one.sum() for one in gaps)
+    first, last = (int(2 * height * part) for part in _PITCHES)
+    chosen = np.arange(size // last, size // max(first, 2) + 1)
+    return float(size / chosen[int(np.argmax(np.asarray(power)[chosen]))] / 2)
 
 
 def _terms(x: Floats, y: Floats, span: float) -> Floats:
@@ -110,13 +107,12 @@ def _terms(x: Floats, y: Floats, span: float) -> Floats:
 def _gaps(x: Floats, pitch: float) -> Floats:
     """Places in a line where no ink stands above another, in the gaps between characters; gaps as
     wide as a blank say nothing of where cells begin."""
-    step = pitch / 24
+    step = max(pitch / 24, 0.5)
     low = x.min()
     counts = np.bincount(((x - low) / step).astype(int)).astype(float)
-    counts = ndimage.uniform_filter1d(counts, 3)
     empty = counts < 0.12 * np.percentile(counts[counts > 0], 80)
     edges = np.flatnonzero(np.diff(np.r_[0, empty.astype(int), 0])).reshape(-1, 2)
-    gaps = [np.arange(start, stop) for start, stop in edges if stop - start < 0.75 * 24]
+    gaps = [np.arange(start, stop) for start, stop in edges if stop - start < 0.75 * pitch / step]
     return low + (np.concatenate(gaps) + 0.5) * step if gaps else np.array([low])
 
 
@@ -126,8 +122,8 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
 
     Sums over stretches of a dozen cells stand for their gaps: a change of the polynomial only turns
     their phases."""
-    sums, places = [], []
-    for x, y in zip(xs, ys, strict=True):
+    sums, places, lines = [], [], []
+    for line, (x, y) in enumerate(zip(xs, ys, strict=True)):
         gaps = _gaps(x, pitch)
         stretch = np.floor(gaps / (12 * pitch)).astype(int)
         for one in np.unique(stretch):
@@ -135,30 +131,53 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
             near = np.abs(x - inside.mean()) < 12 * pitch
             sums.append(np.exp(2j * np.pi * inside / pitch).sum())
             places.append((inside.mean(), y[near].mean() if near.any() else y.mean()))
-    total = np.array(sums)
-    terms = _terms(np.array(places)[:, 0], np.array(places)[:, 1], span)
+            lines.append(line)
+    total, at = np.array(sums), np.array(places)
+    terms = _terms(at[:, 0], at[:, 1], span)
     turn = 2j * np.pi / pitch
-    step = 0.12 * pitch
-    wide = np.arange(-0.09 * span, 0.09 * span, step)
-    narrow = np.arange(-4, 5) * step
-    best = np.zeros(6)
-    # slant and keystone together, then the pitch itself
-    for first, second, one, other in ((2, 1, wide, narrow), (3, 2, wide, narrow)):
-        turned = total * np.exp(turn * best @ terms)
-        left = np.exp(turn * np.outer(one, terms[first]))
-        right = np.exp(turn * np.outer(other, terms[second]))
-        clear = np.abs((left * turned) @ right.T)
-        at = np.unravel_index(int(np.argmax(clear)), clear.shape)
-        best[first] += one[at[0]]
-        best[second] += other[at[1]]
-    weights = np.abs(total)
-    for _ in range(6):
+    # slant, keystone and the pitch itself together: each alone leaves nothing to see of the others
+    step = 0.3 * pitch
+    slants, stretches, keystones, bows = (
+        np.arange(-reach * span, reach * span, width)
+        for reach, width in ((0.1, step), (0.04, step), (0.15, 2 * step), (0.06, 4 * step))
+    )
+    curves = [(keystone, bow) for keystone in keystones for bow in bows - bows.mean()]
+    wide = np.exp(turn * np.outer(slants, terms[2]))
+    narrow = np.exp(turn * np.outer(stretches, terms[1])).T
+    most = float(np.abs(total).sum())
+
+    def strain(keystone: float, bow: float) -> float:
+        return _STRAIN * (abs(keystone) + abs(bow)) / pitch
+
+    clear = np.stack(
+        [
+            np.abs((wide * (total * np.exp(turn * (np.array(c) @ terms[3:5])))) @ narrow) / most
+            - strain(*c)
+            for c in curves
+        ]
+    )
+    found, best = (np.zeros(6), 0.0), -np.inf
+    for _ in range(_STARTS):
+        one = np.unravel_index(int(np.argmax(clear)), clear.shape)
+        clear[tuple(slice(max(0, k - 1), k + 2) for k in one)] = -np.inf
+        first = np.array([0, stretches[one[2]], slants[one[1]], *curves[one[0]], 0])
+        fit = _bent(first, total, terms, pitch)
+        if fit[1] - strain(*fit[0][3:5]) > best:
+            found, best = fit, fit[1] - strain(*fit[0][3:5])
+    return found
+
+
+def _bent(
+    best: Floats, total: NDArray[np.complex128], terms: Floats, pitch: float
+) -> tuple[Floats, float]:
+    """Coefficients refined from ``best``: what is off by a good part of a pitch counts less."""
+    turn, weights = 2j * np.pi / pitch, np.abs(total)
+    for reach in (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2):
         turned = total * np.exp(turn * best @ terms)
         off = np.angle(turned * np.conj(turned.sum())) / (2 * np.pi) * pitch
-        sure = weights * np.exp(-((off / (0.25 * pitch)) ** 2))
-        ridge = np.diag([1e-6, 1e-3, 1e-3, 1e-2, 1e-2, 1e-2]) * sure.sum()
-        fit = np.linalg.solve((terms * sure) @ terms.T + ridge, (terms * sure) @ off)
-        best -= fit
+        sure = weights * np.exp(-((off / (reach * pitch)) ** 2))
+        ridge = np.diag([1e-6, 1e-4, 1e-4, 3e-4, 3e-4, 1e-2]) * sure.sum()
+        best = best - np.linalg.solve((terms * sure) @ terms.T + ridge, (terms * sure) @ off)
     turned = total * np.exp(turn * best @ terms)
     best[0] -= float(np.angle(turned.sum())) / (2 * np.pi) * pitch
     return best, float(np.abs(turned.sum()) / weights.sum())
@@ -181,35 +200,36 @@ def grid_of(ink: Image) -> Grid | None:
     xs, ys = [x[inside] for inside in members], [y[inside] for inside in members]
     pitch = _pitch(xs, height)
     bend, clarity = _bend(xs, ys, pitch, span)
-    upright = [
-        line + bend @ _terms(line, across, span) for line, across in zip(xs, ys, strict=True)
-    ]
-    everything = np.concatenate(upright)
+    across = x + bend @ _terms(x, y, span)
+    everything = across[np.concatenate(members)]
     first = np.floor(np.percentile(everything, 0.2) / pitch) - 1
     last = np.ceil(np.percentile(everything, 99.8) / pitch) + 1
     left = first * pitch
     count = int(last - first)
     scale = CELL_WIDTH / pitch
+    middles = np.array([(top + bottom) / 2 for top, bottom in lines])
+    rise, drifts = _risen(across - left, level, middles, height, scale)
+    middles = middles + drifts[:, 0]
     small = _resized(ink, scale)
     tall = round(1.7 * height * scale)
 
-    rise = np.zeros(6)
-
-    def place(u: Floats, v: Floats) -> tuple[Floats, Floats]:
+    def place(u: Floats, v: Floats, line: int) -> tuple[Floats, Floats]:
         """Where in the picture the point ``u`` across and ``v`` down the levelled page is."""
         x, y = u, v
         for _ in range(5):
             x = u - np.tensordot(bend, _terms(x, y, span), 1)
             y = v + x * (slope + keystone * y / span)
-        y = y + np.tensordot(rise, _terms(u, v, span), 1)
+        t = (u - left) * scale / _STRETCH
+        y = y + np.tensordot(rise, _bows(t, v * scale / _STRETCH), 1)
+        y = y + drifts[line, 1] * t + drifts[line, 2] * t * t
         return x + ink.shape[1] / 2, y + ink.shape[0] / 2
 
-    def sampled(middle: float) -> Image:
+    def sampled(line: int) -> Image:
         u = left + (np.arange(count * CELL_WIDTH + 2 * SLACK) - SLACK + 0.5) / scale
-        v = middle + (np.arange(tall + 2 * SLACK) - SLACK - tall / 2 + 0.5) / scale
+        v = middles[line] + (np.arange(tall + 2 * SLACK) - SLACK - tall / 2 + 0.5) / scale
         # the map bends slowly: it is worked out at every eighth point
         coarse = np.linspace(0, len(u) - 1, len(u) // 8)
-        across, down = place(*np.meshgrid(u[0] + coarse / scale, v[[0, -1]]))
+        across, down = place(*np.meshgrid(u[0] + coarse / scale, v[[0, -1]]), line)
         t = np.linspace(0, 1, len(v))[:, None]
         at_x = np.stack([np.interp(np.arange(len(u)), coarse, row) for row in across])
         at_y = np.stack([np.interp(np.arange(len(u)), coarse, row) for row in down])
@@ -218,62 +238,73 @@ def grid_of(ink: Image) -> Grid | None:
         picture: Image = ndimage.map_coordinates(small, where, order=1, cval=0.0)
         return picture
 
-    middles = np.array([(top + bottom) / 2 for top, bottom in lines])
-    pictures = [sampled(middle) for middle in middles]
-    rise, shifts = _risen(pictures, left, middles, scale, span)
-    middles = middles + shifts
-    pictures = [sampled(middle) for middle in middles]
+    pictures = [sampled(line) for line in range(len(lines))]
     corners = []
-    for middle in middles:
+    for line, middle in enumerate(middles):
         u, v = np.meshgrid(
             left + np.arange(count + 1) * pitch, middle + np.array([-0.5, 0.5]) * 1.3 * height
         )
-        corners.append(np.stack(place(u, v), axis=-1).transpose(1, 0, 2))
+        corners.append(np.stack(place(u, v, line), axis=-1).transpose(1, 0, 2))
     return Grid(pictures, middles / pitch, corners, pitch, clarity)
 
 
+def _bows(u: Floats, v: Floats) -> Floats:
+    """What lines of a bent page have in common: shape (4, ...)."""
+    return np.stack([u, u * v, u * u, u * u * v]) / 10
+
+
 def _risen(
-    pictures: list[Image], left: float, middles: Floats, scale: float, span: float
+    across: Floats, level: Floats, middles: Floats, height: float, scale: float
 ) -> tuple[Floats, Floats]:
-    """What the lines still rise and fall: coefficients of `_terms`, and each line's own shift, in
-    pixels of the picture. Stretches of ten cells are laid on the mean of all."""
-    reach, width = 9, 10 * CELL_WIDTH
-    profiles, places, lines = [], [], []
-    for line, picture in enumerate(pictures):
-        for start in range(0, picture.shape[1] - width // 2, width):
-            profile = picture[:, start : start + width].sum(axis=1).astype(float)
-            if profile.sum() > 2 * CELL_WIDTH:
-                profiles.append(np.pad(profile / np.linalg.norm(profile), reach))
-                places.append((left + (start + width / 2) / scale, middles[line]))
-                lines.append(line)
-    size = len(profiles[0]) - 2 * reach
-    every = np.array(profiles)
+    """How the lines still rise and fall: coefficients of `_bows`, and for each line those of 1, t
+    and t^2 beyond it, t being stretches of `_STRETCH` pixels; in pixels of the picture. The ink of
+    each stretch is laid on the mean of all."""
+    reach = 9
+    half = int(0.85 * height * scale) + reach
+    stretches = np.maximum((across * scale / _STRETCH).astype(int), 0)
+    profiles, places = [], []
+    for line, middle in enumerate(middles):
+        down = np.floor((level - middle) * scale).astype(int) + half
+        near = (down >= 0) & (down < 2 * half)
+        counts = np.zeros((stretches.max() + 1, 2 * half))
+        np.add.at(counts, (stretches[near], down[near]), 1.0)
+        counts = ndimage.uniform_filter1d(counts, 3, axis=1)
+        for stretch in np.flatnonzero(counts[:, reach:-reach].sum(axis=1) > 40):
+            profiles.append(counts[stretch] / np.linalg.norm(counts[stretch]))
+            places.append((line, stretch + 0.5, middle * scale / _STRETCH))
+    every, at = np.array(profiles), np.array(places)
+    lines = at[:, 0].astype(int)
+    size = 2 * half - 2 * reach
     moves = np.zeros(len(every), int)
-    steps = np.arange(2 * reach + 1)
     for _ in range(3):
         mean = np.mean(
             [one[reach + m : reach + m + size] for one, m in zip(every, moves, strict=True)], 0
         )
-        fits = np.stack([every[:, step : step + size] @ mean for step in steps], axis=1)
+        fits = np.stack([every[:, k : k + size] @ mean for k in range(2 * reach + 1)], axis=1)
         moves = np.argmax(fits, axis=1) - reach
     off = moves - np.median(moves)
-    terms = _terms(np.array(places)[:, 0], np.array(places)[:, 1], span)
-    sure = np.ones(len(off))
-    rise = np.zeros(6)
-    for _ in range(5):
-        ridge = np.diag([1e-6, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3]) * sure.sum()
-        rise = np.linalg.solve((terms * sure) @ terms.T + ridge, (terms * sure) @ off)
-        sure = 1 / (1 + ((off - rise @ terms) / 1.5) ** 2)
-    rest = off - rise @ terms
-    own = np.array(
-        [
-            np.average(rest[where], weights=sure[where])
-            if np.any(where := np.array(lines) == line)
-            else 0.0
-            for line in range(len(pictures))
-        ]
-    )
-    return rise / scale, own / scale
+    common = np.vstack([_bows(at[:, 1], at[:, 2]), np.eye(len(middles))[:, lines]])
+    rise = _robust(common, off, 1e-3)
+    off = off - rise @ common
+    own = np.zeros((len(middles), 3))
+    for line in np.unique(lines):
+        of_line = lines == line
+        t = at[of_line, 1]
+        own[line] = _robust(np.stack([np.ones_like(t), t / 10, t * t / 100]), off[of_line], 0.3)
+    own /= [1, 10, 100]
+    own[:, 0] += rise[4:]
+    return rise[:4] / scale, own / scale
+
+
+def _robust(terms: Floats, values: Floats, ridge: float) -> Floats:
+    """Coefficients of ``terms``, shape (terms, values): values far off count less."""
+    sure = np.ones(len(values))
+    fit = np.zeros(len(terms))
+    for _ in range(6):
+        normal = (terms * sure) @ terms.T + ridge * np.eye(len(terms))
+        fit = np.linalg.solve(normal, (terms * sure) @ values)
+        sure = 1 / (1 + ((values - fit @ terms) / 1.5) ** 2)
+    return fit
 
 
 def _resized(ink: Image, scale: float) -> Image:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .grid import Grid
 from .ink import Floats
-from .layout import ANGLES, Place, Sheet, parts
+from .layout import SPACED, Place, Sheet, parts
 from .naming import likeness
 from .scenes import Candidate, Read
 from .typeface import (
@@ -67,7 +67,7 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
                 shown = reply_of(read, name, candidate.scene)
             else:
                 shown = fields.get(name, "") if name else text
-            if line == ANGLES:  # its gaps are what they are
+            if line in SPACED:  # its gaps are what they are
                 column = row.column(piece.places[0]) if piece.places else column
             if not name and not text.strip():
                 shown = BLANK * len(piece.places)

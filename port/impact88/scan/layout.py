@@ -35,11 +35,12 @@ VARIANTS = {
     line: (LINES[line], LINES[line].replace(" :", ": ").replace(",V", ", V").replace(",W", ", W"))
     for line in (0, 1)
 }
+VARIANTS[4] = (LINES[4], " PA      PB      TA      TB      GA")
 """Lines as the chapter has them, too."""
 OPTIONAL = (0, 1, 10, 13, 14)
 """Lines that genuine pages lack: the prompts, the final spins where M = 4, rows of asterisks."""
-ANGLES = 5
-"""The line whose blanks people retype by eye."""
+SPACED = (4, 5)
+"""The lines of the angles, whose blanks people retype by eye."""
 REPLY_LENGTHS, NUMBER_LENGTHS = (5, 42), (1, 15)
 WRAP = 40
 """Columns of the Apple's screen, at which its lines break."""
@@ -96,6 +97,11 @@ class Sheet:
     pieces: dict[int, list[Piece]] = field(default_factory=dict)
     rows: dict[int, Row] = field(default_factory=dict)
     gain: float = 0.0
+
+    @property
+    def whole(self) -> bool:
+        """Whether every line that a printout must have was found."""
+        return all(line in self.rows for line in range(len(LINES)) if line not in OPTIONAL)
 
     @property
     def numbers(self) -> dict[str, Piece]:
@@ -187,10 +193,10 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
         for start, row in enumerate(laid):
             keys.append((margin, start, 1))
             rows.append(row)
-            if start + 1 < len(laid) and tops[start + 1] - tops[start] <= 3.2:
-                if len(row) >= WRAP and not np.any(row[WRAP:] > 2):
-                    keys.append((margin, start, 2))
-                    rows.append(np.r_[row[:WRAP], laid[start + 1]])
+            followed = start + 1 < len(laid) and tops[start + 1] - tops[start] <= 3.2
+            if followed and len(row) >= WRAP and not np.any(row[WRAP:] > 2):
+                keys.append((margin, start, 2))
+                rows.append(np.r_[row[:WRAP], laid[start + 1]])
     width = max(map(len, rows))
     padded = np.stack([np.pad(row, (0, width - len(row))) for row in rows])
     inked, blank = np.clip(padded, -6, 6) / 2, -np.clip(padded, 0, 6) / 2

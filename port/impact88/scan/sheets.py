@@ -16,6 +16,9 @@ from .layout import Sheet, sheets_of
 from .naming import read_numbers
 from .scenes import Candidate, Read, scene_of
 
+_UPRIGHT = 400.0
+"""Gain of a printout that is found the right way up; those of the given pages have 800 to 1,400."""
+
 
 @dataclass
 class Leaf:
@@ -51,16 +54,17 @@ class Looked:
 def looked(grey: Image) -> Looked:
     """All printouts of a page, upright or turned by quarters."""
     ink = ink_of(grey)
-    best: tuple[float, Looked] | None = None
+    best: tuple[float, Grid | None, int, list[Sheet]] = (0.0, None, 0, [])
     for turns in _turns(ink):
         grid = grid_of(np.ascontiguousarray(np.rot90(ink, turns)))
         sheets = sheets_of(grid.odds(), grid.tops) if grid else []
         gain = sum(sheet.gain for sheet in sheets)
-        if grid and sheets and (best is None or gain > best[0]):
-            best = (gain, Looked(grid, turns, _leaves(grid, sheets)))
-            if all(leaf.judged.verdict is not Verdict.INCOMPLETE for leaf in best[1].leaves):
-                break
-    return best[1] if best else Looked(None, 0, [])
+        if gain > best[0]:
+            best = (gain, grid, turns, sheets)
+        if any(sheet.whole and sheet.gain > _UPRIGHT for sheet in sheets):
+            break
+    _, grid, turns, sheets = best
+    return Looked(grid, turns, _leaves(grid, sheets) if grid else [])
 
 
 def _turns(ink: Image) -> list[int]:
