@@ -110,6 +110,7 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     monkeypatch.setattr(sheets, "read_numbers", lambda grid, found: [None, None])
     monkeypatch.setattr(sheets, "scene_of", lambda read: object())
     monkeypatch.setattr(sheets, "held", lambda *given: [])
+    monkeypatch.setattr(sheets, "_mistaken", lambda cells, found: False)
     monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
     leaves = sheets._leaves(None, [None, None])
     expected = Verdict.DIFFERS if beside is Verdict.IDENTICAL else Verdict.INCOMPLETE

@@ -74,6 +74,8 @@ def judged(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
 def state(cell: Cell) -> str:
     """``holds``, ``doubtful`` or ``differs``."""
     limits = THRESHOLDS
+    if cell.cut:
+        return "doubtful" if cell.name and cell.predicted != BLANK else "holds"
     if cell.predicted == BLANK:
         if cell.margin < limits.blank or cell.other in _MARKS:
             return "holds" if cell.margin < limits.differs or not cell.name else "doubtful"

@@ -23,6 +23,7 @@ from .typeface import (
     BLANK,
     NUMERIC,
     READABLE,
+    STRENGTHS,
     Sample,
     Typeface,
     Vectors,
@@ -42,7 +43,8 @@ class Cell:
     as above; ``other``: the nearest other character; ``distance``, ``other_distance``: how far it
     is from the predicted mean and the other's, 1 for what is usual on this page; ``count``,
     ``other_count``: on how many cells those means rest; ``unlike``: whether the prototypes, asked
-    because the predicted character occurs nowhere else, take it for another."""
+    because the predicted character occurs nowhere else, take it for another; ``cut``: whether it
+    lies beyond an edge of the picture."""
 
     sheet: int
     place: Place
@@ -55,6 +57,7 @@ class Cell:
     count: int
     other_count: int
     unlike: bool = False
+    cut: bool = False
 
 
 def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[str, str, Place]]:
@@ -112,18 +115,21 @@ def held(
         for which, (sheet, read, candidate) in enumerate(zip(sheets, reads, found, strict=True))
         for one in predicted(sheet, read, candidate)
     ]
-    # blanks inside labels that stand away from every number say nothing
     names = [character for _, _, character, _ in rows]
+    shown = [grid.shows(*place) for *_, place in rows]
     sample = sample_of(grid, [place for *_, place in rows])
-    typeface = typeface_of(sample, names)
-    apart, _ = distances(sample, typeface.means)
+    typeface = typeface_of(
+        sample, [name if seen else "" for name, seen in zip(names, shown, strict=True)]
+    )
+    apart, strength = distances(sample, typeface.means)
     empty = sample.norms.min(axis=1).astype(float)
     apart = np.column_stack([apart, empty])
+    strength = np.column_stack([strength, np.ones(len(rows))])
     energy = np.r_[np.einsum("mp,mp->m", typeface.means, typeface.means), 0.0]
     between = _between(typeface.means)
     characters = [*typeface.characters, BLANK]
     index = {character: k for k, character in enumerate(characters)}
-    own = np.array([index[name] for name in names])
+    own = np.array([index.get(name, len(characters) - 1) for name in names])
     distance = apart[np.arange(len(rows)), own].copy()
     alone = np.zeros(len(rows), bool)
     for cell in range(len(rows)):
@@ -132,7 +138,11 @@ def held(
             if mean is None:
                 alone[cell] = True
             else:
-                distance[cell] = distances(sample.at(np.array([cell])), mean[None])[0][0, 0]
+                one, ink = distances(sample.at(np.array([cell])), mean[None])
+                distance[cell], strength[cell, own[cell]] = one[0, 0], ink[0, 0]
+    # what is weakly inked is as far from every mean as its ink allows
+    weak = strength[np.arange(len(rows)), own] ** 2
+    distance, apart = distance / weak, apart / weak[:, None]
     usual = np.sqrt(np.maximum(energy[own], 1.0))
     inked = (np.array(names) != BLANK) & ~alone
     relative = distance / usual
@@ -167,18 +177,22 @@ def held(
                 counts[own[cell]],
                 counts[other],
                 bool(unlike[cell]),
+                not shown[cell],
             )
         )
     return cells
 
 
 def _between(means: Vectors) -> Floats:
-    """Squared distances of the means from each other, and from blank paper."""
+    """Squared distances of the means from each other, of whatever strength, and from blank paper:
+    of the two directions the less."""
     whole = np.vstack([means, np.zeros_like(means[:1])]).astype(float)
     inner = whole @ whole.T
-    norms = np.diag(inner)
-    apart: Floats = norms[:, None] + norms[None] - 2 * inner
-    return apart
+    energy = np.diag(inner)
+    strength = np.clip(inner / np.maximum(energy, 1e-6), *STRENGTHS)
+    apart = energy[:, None] - 2 * strength * inner + strength**2 * energy
+    least: Floats = np.minimum(apart, apart.T)
+    return least
 
 
 def _unlike(

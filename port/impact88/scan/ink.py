@@ -40,7 +40,8 @@ def ink_of(grey: Image) -> Image:
     if inked.size < 50:
         return ink
     level = float(np.mean(inked[inked >= _otsu(inked)]))
-    return np.clip(ink / max(level, 0.1), 0, 1.5).astype(np.float32)
+    full: Image = np.clip(ink / max(level, 0.1), 0, 1.5).astype(np.float32)
+    return full
 
 
 def _stretched(values: Floats, at: Floats) -> Floats:

@@ -113,7 +113,8 @@ def read_numbers(grid: Grid, sheets: list[Sheet]) -> list[Read]:
         typeface = typeface_of(sample, names)
         costs = np.full((len(places), len(READABLE)), np.inf)
         columns = [typeface.index(character) for character in READABLE]
-        apart, _ = distances(of_numbers, typeface.means)
+        apart, strength = distances(of_numbers, typeface.means)
+        weak = np.take_along_axis(strength, apart.argmin(axis=1)[:, None], axis=1)[:, 0] ** 2
         for k, column in enumerate(columns):
             if column >= 0:
                 costs[chosen, k] = apart[:, column]
@@ -122,9 +123,7 @@ def read_numbers(grid: Grid, sheets: list[Sheet]) -> list[Read]:
             names[cell] = READABLE[int(costs[cell].argmin())]
     own = costs[chosen].min(axis=1)
     unit = max(float(np.median(own)) * 0.6, 1e-3)
-    costs = (
-        costs - np.where(np.isfinite(costs).any(axis=1), costs.min(axis=1), 0.0)[:, None]
-    ) / unit
+    costs[chosen] = (costs[chosen] - own[:, None]) / (unit * weak[:, None])
     return [
         Read(sheet, {name: costs[part] for index, name, part in numbers if index == which})
         for which, sheet in enumerate(sheets)

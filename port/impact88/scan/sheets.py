@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ..judging.judgement import Verdict
-from .evidence import Judged, judged
+from .evidence import Judged, judged, state
 from .grid import Grid, grid_of
 from .holding import Cell, held
 from .ink import Image, ink_of
-from .layout import Sheet, sheets_of
+from .layout import OPTIONAL, Sheet, sheets_of
 from .naming import read_numbers
 from .scenes import Candidate, Read, scene_of
+from .typeface import BLANK
 
 _UPRIGHT = 400.0
 """Gain of a printout that is found the right way up; those of the given pages have 800 to 1,400."""
@@ -82,6 +84,8 @@ def _leaves(grid: Grid, sheets: list[Sheet]) -> list[Leaf]:
         (sheet, read, one) for sheet, read, one in zip(sheets, reads, found, strict=True) if one
     ]
     cells = held(grid, *zip(*known, strict=True)) if known else []
+    if _mistaken(cells, [sheet for sheet, *_ in known]):
+        cells = held(grid, *zip(*known, strict=True))
     leaves, which = [], 0
     for sheet, read, one in zip(sheets, reads, found, strict=True):
         if one is None:
@@ -98,3 +102,19 @@ def _leaves(grid: Grid, sheets: list[Sheet]) -> list[Leaf]:
                 leaf.judged.verdict = Verdict.INCOMPLETE
                 leaf.judged.reason = "another printout on the page was not read"
     return leaves
+
+
+def _mistaken(cells: Sequence[Cell], sheets: Sequence[Sheet]) -> bool:
+    """Takes from the printouts the lines they may lack whose labels are not what stands there: a
+    foot of the page may be as long as a line of the print."""
+    found = False
+    for which, sheet in enumerate(sheets):
+        own = [cell for cell in cells if cell.sheet == which and not cell.name]
+        for line in [line for line in OPTIONAL if line in sheet.rows]:
+            row = sheet.rows[line]
+            of_line = range(row.start, row.start + row.used)
+            labels = [state(c) for c in own if c.place.line in of_line and c.predicted != BLANK]
+            if labels.count("holds") < 0.5 * len(labels):
+                del sheet.rows[line], sheet.pieces[line]
+                found = True
+    return found

@@ -17,6 +17,8 @@ BLANK = " "
 NUMERIC = "0123456789.-"
 READABLE = f"{NUMERIC},E{BLANK}"
 """What may stand in a number's cell: a reply has commas, a large number an exponent."""
+STRENGTHS = (0.4, 1.3)
+"""Between these the ink of a cell may be as strong as the page's."""
 _SHIFTS = [(y, x) for y in range(2 * SLACK + 1) for x in range(2 * SLACK + 1)]
 
 
@@ -54,15 +56,17 @@ def sample_of(grid: Grid, places: Sequence[Place]) -> Sample:
     return Sample(vectors, np.einsum("nsp,nsp->ns", vectors, vectors), (height, width))
 
 
-def distances(sample: Sample, means: Vectors) -> tuple[Floats, NDArray[np.intp]]:
-    """Squared distance of each cell from each mean at the shift that fits best, and that shift:
-    shapes (cells, means)."""
+def distances(sample: Sample, means: Vectors) -> tuple[Floats, Floats]:
+    """Squared distance of each cell from each mean at the shift and the strength of ink that fit
+    best, and that strength: shapes (cells, means). Ribbons run dry within a line."""
     count, shifts, pixels = sample.vectors.shape
     inner = (sample.vectors.reshape(-1, pixels) @ means.T).reshape(count, shifts, len(means))
-    squared = sample.norms[:, :, None] - 2 * inner + np.einsum("mp,mp->m", means, means)
-    best = np.argmin(squared, axis=1)
-    least = np.take_along_axis(squared, best[:, None, :], axis=1)[:, 0]
-    return np.maximum(least.astype(float), 0.0), best
+    energy = np.maximum(np.einsum("mp,mp->m", means, means), 1e-6)
+    strength = np.clip(inner / energy, *STRENGTHS)
+    squared = sample.norms[:, :, None] - 2 * strength * inner + strength**2 * energy
+    best = np.argmin(squared, axis=1)[:, None, :]
+    least = np.take_along_axis(squared, best, axis=1)[:, 0].astype(float)
+    return np.maximum(least, 0.0), np.take_along_axis(strength, best, axis=1)[:, 0].astype(float)
 
 
 @dataclass
