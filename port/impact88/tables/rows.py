@@ -120,7 +120,7 @@ class Reader:
 
 class Writer:
     """A table being written: the columns ``kept`` of a reader, then the ``results``; ``dropped``
-    columns are not wanted. `write` takes a block, `close` ends the table."""
+    columns are not wanted."""
 
     kind = ""
     """What messages call it, where its columns are those of the first block."""
@@ -145,9 +145,6 @@ class Writer:
     def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         """Write a block whose columns fit."""
         raise NotImplementedError
-
-    def close(self) -> None:
-        """What is left to do after the last block."""
 
 
 class Heading(str):
