@@ -203,7 +203,7 @@ def test_standard_input_and_output(cases, capsys, monkeypatch):
     ("arguments", "told"),
     [
         (["none.csv", "-o", "r.csv"], "none.csv: cannot be read"),
-        (["cases.xls", "-o", "r.csv"], "cannot tell its format"),
+        (["cases.xls", "-o", "r.csv"], "unknown format"),
         (["{cases}", "-o", "r.csv", "--outputs", "VAX,SPEED"], "'SPEED' is not a result"),
         (["{cases}", "-o", "r.csv", "--set", "MX=1"], "--set: 'MX' is not a name used here"),
         (["{cases}", "-o", "r.csv", "--set", "MU=x"], "'x' is not a number"),

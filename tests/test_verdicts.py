@@ -178,7 +178,7 @@ class TestSides:
 
     def test_what_to_turn_round(self):
         one = status.sentences(int(bits(TA=180)))
-        assert any("turn round A" in line for line in one)
+        assert any("reverse A" in line for line in one)
         plane = bits(GA=150)
         assert plane & (Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE) == (
             Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
@@ -186,7 +186,7 @@ class TestSides:
         lines = status.sentences(int(plane))
         assert sum("contact plane" in line for line in lines) == 1
         assert any("GA by 180" in line for line in lines)
-        assert not any("turn round A" in line for line in lines)
+        assert not any("reverse A" in line for line in lines)
 
     def test_staged_collisions_and_point_masses_stand_right(self):
         sides = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE

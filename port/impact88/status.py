@@ -50,11 +50,11 @@ WORDS: dict[Status, str] = {
     Status.SINGULAR: "the equations are singular or nearly so",
     Status.NOT_FINITE: "a value is missing, not finite or not allowed, or a result is not a number",
     Status.A_ON_WRONG_SIDE: (
-        "A's center lies on B's side of the contact plane (A belongs on the +n side): turn round A "
+        "A's center lies on B's side of the contact plane (A belongs on the +n side): reverse A "
         "(TA by 180) or correct PA"
     ),
     Status.B_ON_WRONG_SIDE: (
-        "B's center lies on A's side of the contact plane (B belongs on the -n side): turn round B "
+        "B's center lies on A's side of the contact plane (B belongs on the -n side): reverse B "
         "(TB by 180) or correct PB"
     ),
     Status.EM_OUT_OF_RANGE: (
@@ -76,7 +76,7 @@ _FRICTION = Status.FRICTION_ABOVE_CRITICAL | Status.FRICTION_WRONG_DIRECTION
 _SIDES = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
 _BOTH_SIDES = (
     "each center lies on the other vehicle's side of the contact plane (A belongs on the +n side): "
-    "turn round the plane (GA by 180)"
+    "reverse the plane (GA by 180)"
 )
 
 

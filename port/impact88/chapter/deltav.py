@@ -132,5 +132,5 @@ def described(factor: float) -> str:
     if factor == AS_PRINTED:
         return "Equation 19 as printed, without the factor 2/3 that Table 2 was computed with"
     if factor == AS_USED:
-        return "Equation 19 with the factor 2/3 (not printed, but all of Table 2 has it)"
+        return "Equation 19 with the factor 2/3 (not printed, but Table 2 was computed with it)"
     return f"Equation 19 with the factor {factor:.6g}"

@@ -4,7 +4,7 @@ all of Table 2 was computed and which the printed equation lacks; --as-printed l
 
 Given are MA MB, the speeds SA SB (or UX UY VX VY) and the loss: LOSS in percent, DT as the fraction
 that the chapter writes, EL as energy (of crush); or --like for the range of losses of one category
-of Table 2. With DVA or DVB in place of the loss, the loss they tell. With the velocities after,
+of Table 2. With DVA or DVB in place of the loss, the loss they imply. With the velocities after,
 VAX VAY VBX VBY, the speeds before of an A that came along x and a B along y (Section VII). A scene
 file (impact88 scene) gives masses and velocities; its other values are not used. Units: any
 consistent set.

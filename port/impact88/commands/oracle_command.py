@@ -1,6 +1,6 @@
 """Reads JSON Lines {"id": ..., "scene": {"MA": 143.5, ...}} from a file or standard input, numbers
-or decimal strings, and answers each line with one: the printout; each result as Applesoft has it
-(printed text, five bytes, exact decimal), in double precision, to 30 digits; condition, error
+or decimal strings, and answers each line with one: the printout; each result as Applesoft prints
+and stores it (text, five bytes, exact decimal), in double precision, to 30 digits; condition, error
 bound, STATUS. A line that cannot be used is answered with its number and what is wrong. A scene may
 have "units" and amounts with units ("30 mph"); the program is given base units, and so it answers:
 "units" in the answer names them.

@@ -3,7 +3,7 @@
 {signs}
 A value may have a unit ("-25 mph", "3,091 lb", "6 ft 6 in", "2000 slug ft2"), and the file units =
 "us", "metric", "si" or "chapter" for those that have none. It may be known within limits ("-31 ..
--29 mph", "30 mph +- 5 %"); what takes one value takes the middle, and says so. UX_source = "..."
+-29 mph", "30 mph +- 5 %"); what takes one value takes the middle, with a note. UX_source = "..."
 says where a value comes from, title and case what it belongs to. CAF CAL (forward and to the left
 of A's center of gravity) may stand for DA PA, CBF CBL for DB PB; within limits, bounds and report
 follow them, and reconstruct asks for limits on DA PA. IA = "estimate" has the yaw

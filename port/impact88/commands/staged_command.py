@@ -199,7 +199,7 @@ def _comparison() -> list[str]:
         "Table 2 beside its recomputation: printed value, recomputed value (! differs).",
         "loss in percent; velocity changes dV of vehicles a and b in ft/s:",
         "exp from Table 1's velocities; comp from Equations 13-18 with Table 2's e, e_m, mu;",
-        "pred by Equation 19 with the factor 2/3 (not printed, but all of Table 2 has it).",
+        "pred by Equation 19 with the factor 2/3 (not printed, but Table 2 was computed with it).",
         "",
         *table(rows.values(), ["no.", *(f"{column} " for column in columns)]),
         "",

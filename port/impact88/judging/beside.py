@@ -65,7 +65,7 @@ def _traps(scene: Mapping[str, str]) -> list[str]:
     if value["M"] == 4 and (value["WA"] or value["WB"]):
         traps.append("M = 4 with WA or WB not zero: the KE LOSS printed is wrong")
     if value["MU"] == 10:
-        traps.append("MU = 10, once line 400 flips it, is taken for a pivot's by line 510")
+        traps.append("MU = 10 becomes -10 in line 400, which line 510 takes for a pivot")
     if value["MU"] < -10:
         traps.append("MU below -10: line 510 zeroes a right-hand side that is not a pivot's")
     return traps

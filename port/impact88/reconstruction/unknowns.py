@@ -284,9 +284,9 @@ class _Problem:
             its = {*INITIAL[at : at + 3], *FINAL[at : at + 3]} & {*self.names}
             if its <= {*self.absent}:
                 return (
-                    f"all velocities of {vehicle} are unknown: the other vehicle's tell the whole "
-                    "impulse, which leaves Equation 16 nothing to determine and the common part of "
-                    f"{vehicle}'s velocities before and after open{hint}"
+                    f"all velocities of {vehicle} are unknown: those of the other determine the "
+                    "whole impulse, which leaves Equation 16 nothing to determine and the common "
+                    f"part of {vehicle}'s velocities before and after open{hint}"
                 )
         return (
             f"the equations do not determine {' '.join(self.wanted)} together: some of them are "
@@ -336,21 +336,21 @@ _NO_VALUE = {
 def _blame(name: str, value: float) -> str:
     if name == "E" and value == 0:
         return (
-            "E = 0: Equation 15 then only says that the contact points stay together, so final "
-            "velocities do not tell how fast they approached"
+            "E = 0: Equation 15 then only says that the contact points stay together, so the "
+            "final velocities do not determine how fast they approached"
         )
     if name == "EM" and value == 0:
         return (
-            "EM = 0: Equation 18 then only says that the final spins are equal, so nothing tells "
-            "the moment impulse"
+            "EM = 0: Equation 18 then only says that the final spins are equal, and the "
+            "moment impulse is not determined"
         )
     if name == "MUP" and value == PIVOT:
         return (
-            "MU = -10 (pivot): its condition holds for final velocities only, so nothing tells "
-            "the tangential impulse"
+            "MU = -10 (pivot): its condition holds for final velocities only, and the "
+            "tangential impulse is not determined"
         )
     label = "MU (signed)" if name == "MUP" else name
-    return f"{label} = {value:.6g}: at this very value the unknowns cannot be told apart"
+    return f"{label} = {value:.6g}: at exactly this value the unknowns cannot be separated"
 
 
 def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:

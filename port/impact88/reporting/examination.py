@@ -170,7 +170,7 @@ def verify(
     if result.verdict is Verdict.INCOMPLETE and shown.badly_read and result.differing:
         result.remarks.append(
             f"{len(result.differing)} numbers are read otherwise than the program prints them, and "
-            "the page is too badly read to tell what was altered on it from what was misread"
+            "the page is read too poorly to separate alterations from misreadings"
         )
     apart = [name for name in given or () if _not_printed(result, name)]
     result.findings = [

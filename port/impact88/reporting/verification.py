@@ -239,7 +239,7 @@ def _explained(result: Verification) -> list[str]:
             of_all = f"explains {one.explains} of {result.disagreements}"
             said.append(f"{one.rank}. {wording.cause(one)}; {of_all}")
         else:
-            said.append(f"   or, which this page cannot tell from it: {wording.cause(one)}")
+            said.append(f"   or, which this page cannot distinguish: {wording.cause(one)}")
         before = one.rank
         said += [f"   look at {where}" for where in one.look[:4]]
     return said or [NO_SINGLE_SLIP]

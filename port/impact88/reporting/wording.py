@@ -190,7 +190,7 @@ def given_otherwise(
             otherwise.append(f"{name} {given[name]} (by the page {by_page})")
     if not otherwise:
         return []
-    return [f"given apart otherwise than the page has it, which counts: {'; '.join(otherwise)}"]
+    return [f"given apart and different from the page, which is used: {'; '.join(otherwise)}"]
 
 
 def commas(page: Printout) -> bool:
@@ -212,7 +212,7 @@ def cause(one: Explanation) -> str:
 
 
 _MOST_LINES = 12
-"""Lines that are none of the program's are shown up to this many; a book is not printed again."""
+"""Lines that do not belong to the program's page are shown up to this many."""
 
 
 def left_over(pieces: Sequence[Piece]) -> list[str]:
@@ -226,11 +226,13 @@ def left_over(pieces: Sequence[Piece]) -> list[str]:
     bearing = [piece for piece in lines if piece.beside]
     listed = (bearing + [one for one in lines if not one.beside])[:_MOST_LINES]
     whole = [
-        f"line {piece.line} is none of the program's: {printable(piece.text)}"
+        f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
         for piece in sorted(listed, key=lambda piece: piece.line)
     ]
     if len(lines) > len(listed):
-        whole.append(f"and {len(lines) - len(listed)} more lines that are none of the program's")
+        whole.append(
+            f"and {len(lines) - len(listed)} more lines that do not belong to the program's page"
+        )
     return beside + whole
 
 

@@ -39,7 +39,7 @@ def format_of(path: str, given: str | None) -> str:
         path = path[:-3]
     ending = "." + path.lower().rpartition(".")[2] if "." in path else ""
     if ending not in FORMATS:
-        raise UserError(f"cannot tell its format; expected a name in {' '.join(FORMATS)}", path)
+        raise UserError(f"unknown format; expected a name ending in {' '.join(FORMATS)}", path)
     return FORMATS[ending]
 
 
