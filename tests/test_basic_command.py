@@ -155,7 +155,7 @@ def test_a_missing_file_and_prompt_without_one():
 def test_what_is_not_done_is_said(program):
     done = impact88("basic", program("10 HGR\n"))
     assert (done.returncode, done.stdout) == (1, "\n?SYNTAX ERROR IN 10\n")
-    assert done.stderr == "impact88 basic: HGR is not done here: text only, no machine code\n"
+    assert done.stderr == "impact88 basic: HGR is not supported: text only, no machine code\n"
 
 
 def test_control_c_breaks_a_program(program):

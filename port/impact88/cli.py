@@ -176,7 +176,7 @@ def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
             note(called, f"{package} is not installed; expected: pip install {package}")
             status = UNUSABLE
         except RecursionError:
-            note(called, "the input is nested too deeply; expected a plainer one")
+            note(called, "the input is nested too deeply; expected a simpler one")
             status = UNUSABLE
         except Exception as error:
             if not _lacks_memory(error):
@@ -230,5 +230,5 @@ def _tell_bug(called: str | None, error: Exception, debug: bool) -> None:
     note(
         called,
         f"a bug of impact88, not of your input: {what}{place}"
-        f"{'' if debug else ' (IMPACT88_DEBUG=1 shows the way there)'}",
+        f"{'' if debug else ' (IMPACT88_DEBUG=1 prints the traceback)'}",
     )

@@ -136,7 +136,7 @@ def read_bytes(path: str, limit: int = LARGEST) -> bytes:
     with open_bytes(path) as file:
         data = file.read(limit + 1)
     if len(data) > limit:
-        raise UserError(f"is larger than {limit:,} bytes, the most that is read here", called(path))
+        raise UserError(f"is larger than {limit:,} bytes, the limit here", called(path))
     return data
 
 

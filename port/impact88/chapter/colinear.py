@@ -58,8 +58,8 @@ def colinear_inverse(known: Mapping[str, Any]) -> dict[str, Array]:
     ma, mb, e, mu, *final = _floats(known, FINAL)
     if not e.any():
         raise UserError(
-            "E = 0: the vehicles leave together whatever their approach (Equation 7), so the "
-            "final velocities do not determine the initial ones; expected E above 0"
+            "E = 0: the vehicles move on together however fast they approached (Equation 7), and "
+            "the final velocities do not determine the initial ones; expected E above 0"
         )
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         initial = _equations_9_to_12(ma, mb, 1 / np.where(e == 0, np.nan, e), mu, *final)

@@ -95,7 +95,7 @@ def initial_velocity(change: float, along: float, across: float) -> float:
     if square < 0:
         raise UserError(
             f"a velocity change of {change:.4g} is less than the final velocity {abs(across):.4g} "
-            "across the way the vehicle came"
+            "across its direction of approach"
         )
     root = float(np.sqrt(square))
     return max((along - root, along + root), key=abs)

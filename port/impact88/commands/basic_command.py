@@ -131,7 +131,7 @@ def _interrupts(machine: Applesoft, terminal: Terminal) -> Iterator[None]:
 def main(args: argparse.Namespace) -> int:
     """Run a program, or talk at the prompt."""
     if args.prompt and not args.program:
-        raise UserError("--prompt needs a FILE.bas; without one the prompt comes anyway")
+        raise UserError("--prompt needs FILE.bas; without a file the prompt appears anyway")
     check_slot(args)
     terminal = Terminal(raw=args.raw)
     with ExitStack() as stack:
@@ -213,7 +213,7 @@ def _end_row(terminal: Terminal) -> None:
 
 def _tell_refused(machine: Applesoft) -> None:
     for what in machine.machine.refused:
-        note("basic", f"{what} is not done here: text only, no machine code")
+        note("basic", f"{what} is not supported: text only, no machine code")
 
 
 def _disk_command(machine: Applesoft, line: str) -> bool:

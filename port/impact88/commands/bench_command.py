@@ -22,11 +22,10 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from importlib.util import find_spec
 from typing import Any
 
 from ..bench.populations import BENCHMARK, POPULATIONS
-from ..errors import UserError
+from ..errors import library
 from ..plaintable import plain
 from .options import (
     OUTPUT,
@@ -98,8 +97,7 @@ def main(arguments: argparse.Namespace) -> int:
     from ..bench import figure, measure, tables
     from ..progress import progress
 
-    if find_spec("mpmath") is None:
-        raise UserError("the reference is timed as mpmath; pip install 'impact88[bench]'")
+    library("mpmath", "bench", "the reference")
     machine = measure.machine()
     finite = [name for name in POPULATIONS if name != "barriers"]
     populations = names_given(arguments.populations, finite, "--populations", "population")

@@ -173,7 +173,7 @@ def _evidence(comparison: Comparison) -> Iterator[str]:
         yield ""
         yield (
             f"{cause.says}: explains {cause.explains} of {cause.disagreeing} rows that disagree, "
-            f"gives {cause.fits} of {cause.agreeing} that agree (those looked into)"
+            f"gives {cause.fits} of {cause.agreeing} that agree (of the rows examined)"
         )
         for other in cause.equivalents:
             yield f"  or, the same in this table: {other}"

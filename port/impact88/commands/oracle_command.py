@@ -67,9 +67,9 @@ def main(args: argparse.Namespace) -> int:
     if args.published and (args.vectors is not None or args.only or args.seed):
         raise UserError("--published are vectors already made; expected nothing beside it")
     if args.only and args.vectors is None:
-        raise UserError("--class is of test vectors; expected --vectors N with it")
+        raise UserError("--class is for test vectors; expected --vectors N with it")
     if args.to and args.vectors is None:
-        raise UserError("--to is of test vectors; expected --vectors N with it")
+        raise UserError("--to is for test vectors; expected --vectors N with it")
     if args.kit is not None:
         from ..checking.kit import write_kit
         from ..checking.vectors import PUBLISHED

@@ -95,7 +95,7 @@ def _told(error: Exception) -> Any:
     return {"problem": f"a fault of impact88 {__version__}, not of your input: {detail}"}, 500
 
 
-_REFUSED = {413: f"more than {LARGEST_BODY:,} bytes, the most that is read here"}
+_REFUSED = {413: f"more than {LARGEST_BODY:,} bytes, the limit here"}
 
 
 def _addresses(desk: Desk) -> Blueprint:

@@ -52,7 +52,7 @@ def judged(name: str, data: bytes) -> dict[str, Any]:
 def _examined(name: str, data: bytes) -> Examined:
     name = base_name(name)
     if len(data) > LARGEST_FILE:
-        raise UserError(f"is larger than {LARGEST_FILE:,} bytes, the most that is read here", name)
+        raise UserError(f"is larger than {LARGEST_FILE:,} bytes, the limit here", name)
     return examine_bytes(name, data)
 
 

@@ -27,7 +27,7 @@ def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any
     line.
     """
     if len(data) > LARGEST:
-        raise UserError(f"is larger than {LARGEST:,} bytes, the most that is read here", name)
+        raise UserError(f"is larger than {LARGEST:,} bytes, the limit here", name)
     texts = toml_texts(decode(data, name), name)
     title, units = texts.get("title", ""), texts.get("units", "").lower()
     values = {
