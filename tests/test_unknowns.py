@@ -181,7 +181,7 @@ def test_the_one_value_of_e_that_makes_the_mixed_problem_singular_is_named() -> 
     # point masses, v_a and V_b unknown: (1 + e)(V_a - v_b)n + P_n (1/m_b - e/m_a) = 0
     known = {"M": 4, "MA": 100, "MB": 200, "GA": 20, "MUP": 0.3}
     known |= {"VAX": -5.0, "VAY": 1.0, "VX": 2.0, "VY": 3.0}
-    with pytest.raises(UnsolvableError, match=r"E = 0.5: at this very value"):
+    with pytest.raises(UnsolvableError, match=r"E = 0.5: at exactly this value"):
         solve_for(known | {"E": 0.5})
     (found,) = solve_for(known | {"E": 0.5001})
     assert float(found.worst) > 1000

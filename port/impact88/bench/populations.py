@@ -53,7 +53,8 @@ def _casework(rng: Generator, count: int) -> Columns:
     """Cars as in the chapter's Table 1, feet and slugs."""
 
     def spread(low: float, high: float) -> Floats:
-        return _rounded_to_six(rng.uniform(low, high, count))
+        result: Floats = _rounded_to_six(rng.uniform(low, high, count))
+        return result
 
     def spin() -> Floats:
         return np.where(rng.random(count) < 0.5, 0.0, spread(-2, 2))

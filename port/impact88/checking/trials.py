@@ -86,7 +86,8 @@ def spread(places: NDArray[np.intp], count: int) -> NDArray[np.intp]:
     """At most ``count`` of some places, evenly."""
     if places.size <= count:
         return places
-    return places[np.linspace(0, places.size - 1, count).astype(int)]
+    result: NDArray[np.intp] = places[np.linspace(0, places.size - 1, count).astype(int)]
+    return result
 
 
 class Found(NamedTuple):

@@ -20,7 +20,7 @@ WAITING = 64
 """Connections without a whole request; a browser keeps six, and some pages may be open."""
 
 
-class Channel(HTTPChannel):
+class Channel(HTTPChannel):  # type: ignore[misc]
     """A connection that knows since when it has been sending a request."""
 
     since = 0.0

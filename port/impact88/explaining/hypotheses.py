@@ -185,7 +185,8 @@ class Tables:
         ]
         if not rows:
             return np.zeros(len(every))
-        return np.minimum(rows, _FAR).mean(axis=0)
+        result: np.ndarray = np.minimum(rows, _FAR).mean(axis=0)
+        return result
 
     # --- a unit's rounding undone ---
 

@@ -101,20 +101,24 @@ class Geometry:
     @cached_property
     def an(self) -> Array:
         """Normal lever arm of A: the spin's share in the contact point's normal velocity."""
-        return self.d3 * self.cosine - self.d4 * self.sine
+        result: Array = self.d3 * self.cosine - self.d4 * self.sine
+        return result
 
     @cached_property
     def at(self) -> Array:
-        return -(self.d4 * self.cosine + self.d3 * self.sine)
+        result: Array = -(self.d4 * self.cosine + self.d3 * self.sine)
+        return result
 
     @cached_property
     def bn(self) -> Array:
         """Normal lever arm of B, with the sign it has in the *relative* velocity A minus B."""
-        return self.d1 * self.cosine - self.d2 * self.sine
+        result: Array = self.d1 * self.cosine - self.d2 * self.sine
+        return result
 
     @cached_property
     def bt(self) -> Array:
-        return -(self.d2 * self.cosine + self.d1 * self.sine)
+        result: Array = -(self.d2 * self.cosine + self.d1 * self.sine)
+        return result
 
     @cached_property
     def inverse_mass(self) -> Array:

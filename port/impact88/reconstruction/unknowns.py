@@ -89,13 +89,17 @@ class Solution:
     @property
     def found(self) -> NDArray[np.bool_]:
         """Where all unknowns have a value."""
-        return np.all([np.isfinite(self.values[n]) for n in self.unknown], axis=0)
+        result: NDArray[np.bool_] = np.all(
+            [np.isfinite(self.values[n]) for n in self.unknown], axis=0
+        )
+        return result
 
     @property
     def worst(self) -> Array:
         """The largest amplification of any unknown."""
         zero = np.zeros(np.shape(self.agrees))
-        return np.max([zero, *self.amplification.values()], axis=0)
+        result: Array = np.max([zero, *self.amplification.values()], axis=0)
+        return result
 
     @property
     def badly_conditioned(self) -> NDArray[np.bool_]:
@@ -106,7 +110,8 @@ class Solution:
     def contradictory(self) -> NDArray[np.bool_]:
         """Whether the known values contradict one another beyond rounding."""
         speeds = [np.abs(self.values[n]) for n in (*INITIAL, *FINAL) if n in self.values]
-        return self.mismatch > 1e-9 * np.max(speeds, axis=0)
+        result: NDArray[np.bool_] = self.mismatch > 1e-9 * np.max(speeds, axis=0)
+        return result
 
 
 @within_doubles

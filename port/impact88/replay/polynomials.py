@@ -15,13 +15,13 @@ from .reals import (
     ILLEGAL_QUANTITY,
     OVERFLOW,
     ZERO,
-    Bools,
     Reals,
     constant,
     floor,
     from_number,
     select,
 )
+from .unit import Bools
 
 _LOG = [from_number(c) for c in scalar.LOG_COEFFICIENTS]
 _EXP = [from_number(c) for c in scalar.EXP_COEFFICIENTS]

@@ -56,7 +56,8 @@ class Replay:
     @property
     def zero_determinant(self) -> Bools:
         """The scenes the listing ends with ZERO DETERMINANT."""
-        return self.code == ZERO_DETERMINANT
+        result: Bools = self.code == ZERO_DETERMINANT
+        return result
 
     @property
     def error(self) -> Strings:
@@ -97,7 +98,8 @@ class Replay:
     def present(self, name: str) -> Bools:
         """The scenes that have the result."""
         present = self._unit.reached(statements.ASSIGNED[name]) & (self.code != OTHER_M)
-        return present & self._six if name in ("WAF", "WBF") else present
+        result: Bools = present & self._six if name in ("WAF", "WBF") else present
+        return result
 
     def floats(self, name: str) -> Floats:
         """A result, exactly, as float64; NaN where there is none. Raises KeyError for an unknown
@@ -143,7 +145,8 @@ class Replay:
     def _printed(self, name: str) -> Bools:
         """The scenes in which the program came to print a field."""
         printed = self._unit.reached(statements.PRINTED[name]) & (self.code != OTHER_M)
-        return printed & self._six if name in FINAL_SPINS else printed
+        result: Bools = printed & self._six if name in FINAL_SPINS else printed
+        return result
 
     def _to_print(self, names: list[str]) -> list[Floats]:
         """What PRINT gets for fields, extension included; length 1 where all scenes share it."""

@@ -16,8 +16,8 @@ from .. import native
 from ..applesoft import decimaltext as scalar
 from ..errors import UserError
 from ..native.program import read_numbers, write_numbers
-from .reals import OVERFLOW, Bools, Reals, compare, constant, floor, from_number
-from .unit import Ints, Unit
+from .reals import OVERFLOW, Reals, compare, constant, floor, from_number
+from .unit import Bools, Ints, Unit
 
 Characters = npt.NDArray[np.uint8]
 Strings = npt.NDArray[np.str_]

@@ -146,7 +146,8 @@ def _best_between_walls(
     def room(values: Array, changes: Array) -> Array:
         """The longest share of the changes that leaves values above 0, nearly."""
         shares = np.where(changes < 0, -values / np.where(changes < 0, changes, -1.0), np.inf)
-        return np.minimum(1.0, 0.99 * shares.min(axis=1))[:, None]
+        result: Array = np.minimum(1.0, 0.99 * shares.min(axis=1))[:, None]
+        return result
 
     gap = np.maximum(ceiling - floor, 1e-12)
     over = np.clip(all_rows(step) - floor, 0.1 * gap, gap)
@@ -184,4 +185,5 @@ def _best_between_walls(
             step = step + first * move
             over, under = over + first * d_over, under + first * d_under
             push, pull = push + second * d_push, pull + second * d_pull
-    return np.clip(np.nan_to_num(step * unit), low, high)
+    result: Array = np.clip(np.nan_to_num(step * unit), low, high)
+    return result

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from .. import status
 from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
-from ..mappings import check_mapping, within_limits
+from ..mappings import within_limits
 from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
 from ..reconstruction.contact import MOVES, moved, placed
 from ..reconstruction.model import (
@@ -40,6 +40,7 @@ from ..reconstruction.model import (
     reconstruction_model,
     reconstruction_with_denominators,
 )
+from ..scene import check_mapping
 from .boundstable import Bound, Bounds
 from .draws import drive_of, ranks, spread_of
 from .extremes import CORNERS_IN_FULL, Extremes, Piece, extremes, merged
@@ -313,7 +314,8 @@ class _Box:
 
     def left_out(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
         """Which of the scenes solved carry a warning that excludes them."""
-        return (np.asarray(solved["STATUS"], np.int64) & self.excluded) != 0
+        result: NDArray[np.bool_] = (np.asarray(solved["STATUS"], np.int64) & self.excluded) != 0
+        return result
 
     def warnings_at(self, point: Array) -> tuple[str, ...]:
         """Names of the warnings at one point of the unit cube."""

@@ -57,7 +57,8 @@ def _scene(values: Mapping[str, float], units: System) -> dict[str, float]:
 def _bound(one: Bound, factor: float, units: System) -> Bound:
     scenes = {"at_lower": _scene(one.at_lower, units), "at_upper": _scene(one.at_upper, units)}
     values = ("nominal", "lower", "upper", "corner_lower", "corner_upper")
-    return replace(_times(factor, one, *values), **scenes)
+    scaled: Bound = replace(_times(factor, one, *values), **scenes)
+    return scaled
 
 
 def _spread(one: Spread, factor: float) -> Spread:

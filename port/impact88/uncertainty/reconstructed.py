@@ -453,7 +453,8 @@ def _log_triangle(item: Uncertain, share: Floats) -> Floats:
     with np.errstate(divide="ignore", invalid="ignore"):
         up = (value - item.low) / rise if rise else np.ones(len(share))
         down = (item.high - value) / fall if fall else np.ones(len(share))
-        return np.log(np.clip(np.minimum(up, down), 0.0, 1.0))
+        result: Floats = np.log(np.clip(np.minimum(up, down), 0.0, 1.0))
+        return result
 
 
 def _walked(
@@ -678,7 +679,7 @@ def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
 
 
 def _rank(rows: Floats) -> int:
-    return rows.shape[1] - pseudo_inverse(rows)[1].shape[1]
+    return int(rows.shape[1] - pseudo_inverse(rows)[1].shape[1])
 
 
 def _endless(

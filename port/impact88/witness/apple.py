@@ -71,7 +71,7 @@ class Memory(bytearray):
         if address in STROBE:
             self.key &= 0x7F
         elif address in KEYBOARD:
-            now = self.cycles()
+            now = self.cycles()  # type: ignore[no-untyped-call]
             self._polls = self._polls + 1 if now - self._last_poll < _POLL_CYCLES else 0
             self._last_poll = now
             if self._polls >= _WAITING_POLLS and self.key < 0x80:
