@@ -95,6 +95,7 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.paths or arguments.sizes or arguments.files:
         return _skipping(arguments)
     from ..bench import figure, measure, tables
+    from ..figures.canvas import save
     from ..progress import progress
 
     library("mpmath", "bench", "the reference")
@@ -114,14 +115,10 @@ def main(arguments: argparse.Namespace) -> int:
         )
     few = min(arguments.scenes, COMPONENT_SCENES)
     by_result = measure.components(populations, few, arguments.seed)
-    for path, drawing in (
-        (arguments.figure, lambda: figure.work_precision(rows, machine["memory_roof"])),
-        (arguments.errors_figure, lambda: figure.error_distribution(rows)),
-    ):
-        if path:
-            from ..figures.canvas import save
-
-            save(drawing(), path)
+    if arguments.figure:
+        save(figure.work_precision(rows, machine["memory_roof"]), arguments.figure)
+    if arguments.errors_figure:
+        save(figure.error_distribution(rows), arguments.errors_figure)
     if arguments.json:
         record = {"machine": machine, "seed": arguments.seed, "results": measure.as_json(rows)}
         _print_json({**record, "components": by_result})
