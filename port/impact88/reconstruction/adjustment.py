@@ -266,7 +266,8 @@ class System:
     def gradient(self, x: Array, name: str) -> Floats:
         """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
         if name in self.variables and name not in QUANTITIES:
-            return self.scales * (np.array(self.variables) == name)
+            result: Floats = self.scales * (np.array(self.variables) == name)
+            return result
         return self.linearized(x, lambda state, _: np.reshape(state[name], (1, -1)))[1][0, :, 0]
 
     # -- one impact
