@@ -59,6 +59,9 @@ def fifty_digits(scene: Mapping[str, str | float]) -> dict[str, Any]:
         after = reference.velocities(t, P)
         f = dict(zip(ORDER, after, strict=True))
         f |= _contact_velocities(t, t.before(), "") | _contact_velocities(t, after, "F")
+        for name, suffix, sign in (("VC", "", -1), ("VS", "F", 1)):
+            x, y = (total(f[f"{axis}A{suffix}"], -f[f"{axis}B{suffix}"]) for axis in "XY")
+            f[name] = sign * total(t.c * x, t.s * y)
         f |= _energies(t, P, after)
         ma, mb, *_ = reference.inverses(t)
         size = mpmath.hypot(P.normal, P.tangential)

@@ -605,6 +605,15 @@ class Impact:
         return self.table.root(x * x + y * y)
 
     @cached_property
+    def VC(self) -> Expression:
+        return -self.gn
+
+    @cached_property
+    def VS(self) -> Expression:
+        """By Equation 15."""
+        return self.E * -self.gn
+
+    @cached_property
     def DVA(self) -> Expression:
         return self._size(*self._change_a)
 

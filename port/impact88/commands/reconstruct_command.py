@@ -135,7 +135,8 @@ def _reconstruct(
     from ..uncertainty.reconstructedtable import Measured
 
     try:
-        solutions = reconstruct(known)
+        with progress(None, "reconstruct", "impacts") as meter:
+            solutions = reconstruct(known, meter.update)
     except UserError as error:
         raise UserError(str(error), source_of(args)) from None
     for name in wanted or ():

@@ -47,6 +47,7 @@ from .unknowns import TIE, UnsolvableError, solve_for
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
+Progress = Callable[[int], object]
 
 PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
 """Known values that enter the conditions; the others are quantities a state has."""
@@ -103,7 +104,10 @@ class System:
     (each a variable or a quantity with an observation) or taken as they are (conditions all).
     """
 
-    def __init__(self, known: Mapping[str, Uncertain], adjusted: bool) -> None:
+    def __init__(
+        self, known: Mapping[str, Uncertain], adjusted: bool, progress: Progress = lambda n: None
+    ) -> None:
+        self.progress = progress
         self.known, self.adjusted, self.taken = dict(known), adjusted, 0
         self.nominal = {name: item.nominal for name, item in known.items()}
         self.point = self.nominal.get("M", 6.0) == 4
@@ -240,6 +244,7 @@ class System:
         variables: rows, variables, impacts. ``data`` as for `state`, ``targets`` as for `left`, a
         column an impact."""
         size, count = len(self.variables), x.shape[1]
+        self.progress(count)
         if not size:
             values = np.real(rows(self.state(x, data), targets))
             return values, np.empty((len(values), 0, count))
@@ -657,13 +662,16 @@ def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | Non
 
 
 @within_doubles
-def reconstruct(known: Mapping[str, Uncertain | float | str]) -> list[Reconstruction]:
+def reconstruct(
+    known: Mapping[str, Uncertain | float | str], progress: Progress = lambda impacts: None
+) -> list[Reconstruction]:
     """Every impact found that agrees with what is ``known`` (`KNOWABLE` names; M 6 where left out).
 
     A number is exact, an `Uncertain` known within its tolerance. MU is known in size only: friction
     opposes the sliding (line 400), and each solution that agrees with its own sign is returned; MUP
     is signed. Where exact values contradict one another and none has a tolerance, all known
-    velocities are given the same one (spins divided by the radius of gyration).
+    velocities are given the same one (spins divided by the radius of gyration). ``progress`` is
+    told the impacts looked at.
 
     Raises UserError for names and numbers that cannot be used and for exact values that contradict
     one another beside others with a tolerance, UnsolvableError where nothing unknown is determined.
@@ -683,7 +691,7 @@ def reconstruct(known: Mapping[str, Uncertain | float | str]) -> list[Reconstruc
     for fits in (False, True):
         for reading in readings:
             try:
-                found += _solutions(reading, fits)
+                found += _solutions(reading, fits, progress)
             except UserError as error:
                 failure = error
         agreeing = [s for s in found if mu is None or _agrees(s, mu.nominal)]
@@ -750,10 +758,12 @@ def _agrees(solution: Reconstruction, mu: float) -> bool:
     return typed_friction(solution.system.state(solution.x), signed) == mu
 
 
-def _solutions(known: Mapping[str, Uncertain], fits: bool) -> list[Reconstruction]:
+def _solutions(
+    known: Mapping[str, Uncertain], fits: bool, progress: Progress
+) -> list[Reconstruction]:
     """The impacts nearest to what is known, friction signed; ``fits``: of exact values that
     contradict one another only, else of all others."""
-    begin, at_hand, found = _starts(known)
+    begin, at_hand, found = _starts(known, progress)
     system = found.system
     if found.assumed != fits:
         return []
@@ -792,11 +802,11 @@ def _solutions(known: Mapping[str, Uncertain], fits: bool) -> list[Reconstructio
     return found.solutions
 
 
-def _starts(known: Mapping[str, Uncertain]) -> tuple[Floats, bool, _Found]:
+def _starts(known: Mapping[str, Uncertain], progress: Progress) -> tuple[Floats, bool, _Found]:
     """Where to begin, a column each; whether measured values agree with one another there; and
     what is to be found."""
     rng = np.random.default_rng(1988)
-    plain = System(known, adjusted=False)
+    plain = System(known, adjusted=False, progress=progress)
     loose = any(known[name].varies for name in PARAMETERS if name in known)
     count = 1 if plain.linear and not loose else _STARTS  # one valley, without bends
     spreads = [_FAR if i % 2 else _NEAR for i in range(count)]
@@ -807,7 +817,7 @@ def _starts(known: Mapping[str, Uncertain]) -> tuple[Floats, bool, _Found]:
     assumed = False
     if not at_hand.any():
         known, assumed = _with_tolerances(known)
-    system = System(known, adjusted=True)
+    system = System(known, adjusted=True, progress=progress)
     if at_hand.any():
         state = plain.state(x[:, at_hand])
         begin = np.repeat(system.start(rng, 0.0), at_hand.sum(), axis=1)
