@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 
 from impact88.chapter import deltav
-from impact88.chapter.deltav import AS_PRINTED, AS_USED, delta_v, described
+from impact88.chapter.deltav import (
+    AS_PRINTED,
+    AS_USED,
+    delta_v,
+    described,
+    initial_velocity,
+    loss_of,
+    speeds_before,
+)
 from impact88.chapter.staged import collisions, predicted
+from impact88.errors import UserError
 
 SLIPS = {(6, "b")}
 
@@ -48,3 +57,29 @@ def test_momenta_are_equal_and_arrays_broadcast() -> None:
     assert found["DVA"][0] == 0
     assert np.isnan(found["DVA"][3])
     assert found["DVA"][2] == pytest.approx(np.sqrt(2) * found["DVA"][1])
+
+
+FINALS = {"MA": 96.0, "MB": 145.0, "VAX": -10.0, "VAY": 20.0, "VBX": -20.0, "VBY": 45.0}
+
+
+def test_speeds_before_start_from_equations_13_and_14() -> None:
+    """Section VII: -40.21 and 58.24 ft/s are what momentum gives for these final velocities."""
+    given = {**FINALS, "SA": 10 + 20 * 145 / 96, "SB": 45 + 20 * 96 / 145}
+    found, expected = speeds_before(FINALS, 40.0), speeds_before(given, 40.0)
+    assert found == pytest.approx(expected, rel=1e-12)
+    assert (given["SA"], given["SB"]) == pytest.approx((40.21, 58.24), abs=0.005)
+
+
+def test_a_final_velocity_across_as_large_as_the_change_leaves_one_root() -> None:
+    assert initial_velocity(3.0, 5.0, 3.0) == 5.0
+    with pytest.raises(UserError, match="less than the final velocity 3"):
+        initial_velocity(2.999, 5.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("known", "absent"),
+    [({"MB": 1, "SA": 1, "SB": 1, "DVA": 1}, "MA"), ({"MA": 1, "MB": 1, "SA": 1, "SB": 1}, "DVA")],
+)
+def test_a_loss_names_what_is_missing(known: dict[str, float], absent: str) -> None:
+    with pytest.raises(UserError, match=f"missing {absent} "):
+        loss_of(known)
