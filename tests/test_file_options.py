@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from impact88.cli import COMMANDS, main
-from impact88.commands.options import InputFile, OutputFile, OutputFolder
+from impact88.commands.options import InputFile, InputFolder, OutputFile, OutputFolder
 from test_options import arguments
 
-FILES = (InputFile, OutputFile, OutputFolder)
+FILES = (InputFile, InputFolder, OutputFile, OutputFolder)
 LINKS = {"path": None, "symlink": os.symlink, "hard link": os.link}
 
 
@@ -39,7 +39,7 @@ def called(pair: tuple[str, argparse.Action, argparse.Action]) -> str:
 def test_what_names_a_file_says_whether_it_is_read_or_written(command: str) -> None:
     for action in arguments(command):
         metavar = action.metavar if isinstance(action.metavar, str) else ""
-        if re.search(r"FILE|DIR|CASES|RESULTS|PRINTOUT|THEIRS|SCENE", metavar):
+        if re.search(r"FILE|FOLDER|DIR|CASES|RESULTS|PRINTOUT|THEIRS|SCENE", metavar):
             assert action.type in FILES, f"{command} {metavar}"
 
 

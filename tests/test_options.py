@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import re
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,23 @@ class TestNames:
     def test_no_name_at_all(self) -> None:
         with pytest.raises(UserError, match="no name given"):
             options.names_given([","], ("LOSS",), "--outputs")
+
+
+@pytest.mark.parametrize(
+    ("command", "printed"),
+    [
+        ("reconstruct --sample 1", r"DELTA-V +A 16\.2.*\n +B 24\.2"),
+        ("chapter delta-v --sample 3 --set LOSS=37.4", r"37\.4 +39\.0981 +25\.8856"),
+        ("chapter barrier --sample 1", r"BEFORE IMPACT +A 29, heading 180\nDELTA-V +A 37\.3"),
+    ],
+)
+def test_a_sample_is_known_wherever_a_scene_is_read(
+    command: str, printed: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(command.split()) == 0
+    assert re.search(printed, capsys.readouterr().out)
+    assert main([*command.split(), "crash.toml"]) == 2
+    assert "both given" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("command", ["run", "scene", "bounds"])

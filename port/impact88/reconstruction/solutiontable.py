@@ -71,7 +71,8 @@ def completed(values: dict[str, float], contact_time: float | None) -> dict[str,
 
 
 def _untold(values: Mapping[str, float]) -> tuple[str, ...]:
-    barrier = _BARRIERS if math.isinf(values.get("MB", 0.0)) else ()
+    # a barrier's mass is left out of the values
+    barrier = _BARRIERS if math.isinf(values.get("MB", math.inf)) else ()
     return (*barrier, *_TURNING) if values.get("M") == 4 else barrier
 
 
@@ -139,7 +140,7 @@ def _answer(
     remarks: int,
     units: System,
 ) -> list[str]:
-    vehicles = "A" if math.isinf(values.get("MB", 0.0)) else "AB"
+    vehicles = "A" if math.isinf(values.get("MB", math.inf)) else "AB"
 
     def size(vehicle: str, name: str) -> str:
         if name not in values:
