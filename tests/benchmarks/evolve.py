@@ -1,6 +1,6 @@
 """Scenes as hard for the closed form as evolution makes them: port/impact88/bench/evolved.csv.
 
-    python tests/benchmarks/evolve.py [--lineages 48] [--generations 150] > evolved.csv
+    python tests/benchmarks/evolve.py [--lineages 48] [--generations 150] | head -25 > evolved.csv
 
 Every lineage starts from a scene of some population. A child has some numbers changed: by a
 factor, in the last digits, to a neighbour's, to a quarter turn. It takes its parent's place where

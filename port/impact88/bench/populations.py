@@ -7,7 +7,10 @@ must be exact to be hard have more), so that the same scene can be typed into th
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable
+from functools import cache
+from importlib import resources
 from typing import NamedTuple
 
 import numpy as np
@@ -214,6 +217,18 @@ def pivots(rng: Generator, count: int) -> Columns:
     return {**g, "MU": np.full(count, -10.0)}
 
 
+@cache
+def _evolved() -> Columns:
+    text = resources.files(__package__).joinpath("evolved.csv").read_text("ascii")
+    names, *rows = csv.reader(text.splitlines())
+    return dict(zip(names, np.array(rows, np.float64).T, strict=True))
+
+
+def evolved(rng: Generator, count: int) -> Columns:
+    """What tests/benchmarks/evolve.py found, again and again."""
+    return {name: np.resize(values, count) for name, values in _evolved().items()}
+
+
 POPULATIONS: dict[str, Population] = {
     population.name: population
     for population in (
@@ -229,6 +244,7 @@ POPULATIONS: dict[str, Population] = {
         ),
         Population("barriers", "easy", "one body infinite and at rest", barriers, False),
         Population("quarter-turns", "easy", "all angles multiples of 90 degrees", quarter_turns),
+        Population("evolved", "easy", "evolved to have large errors", evolved, False),
         Population("pivots", "average", "pivots, half of them of extreme masses", pivots, False),
     )
 }

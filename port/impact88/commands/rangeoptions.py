@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from ..errors import UserError
 from ..progress import progress
 from ..stderr import note
-from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
 from .options import (
     ONE_EXPECTED,
     ONE_SCENE,
@@ -27,6 +26,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
+    from ..uncertainty.ranges import Inputs
 
 RANGES = (
     *ONE_SCENE,
@@ -52,6 +52,8 @@ RANGES = (
 def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
     """The inputs the options describe, in base units, and the system they were written in. Raises
     UserError."""
+    from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
+
     if (entries := entries_given(args)) is None:
         raise UserError(ONE_EXPECTED)
     changes = pairs([*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'")
