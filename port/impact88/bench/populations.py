@@ -225,8 +225,10 @@ def _evolved() -> Columns:
 
 
 def evolved(rng: Generator, count: int) -> Columns:
-    """What tests/benchmarks/evolve.py found, again and again."""
-    return {name: np.resize(values, count) for name, values in _evolved().items()}
+    """What tests/benchmarks/evolve.py found, in some order, again and again."""
+    found = _evolved()
+    order = np.resize(rng.permutation(len(found["M"])), count)
+    return {name: values[order] for name, values in found.items()}
 
 
 POPULATIONS: dict[str, Population] = {

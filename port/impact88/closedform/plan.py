@@ -58,45 +58,6 @@ OPERATIONS: dict[str, Callable[..., object]] = {
 """Operation -> the function of its operands and ``out``."""
 
 
-class _Slots:
-    """Allots working arrays; one that is free again is handed out first (it is still in cache).
-
-    ``index``: value -> its place; it holds those that are no working arrays, and is added to.
-    """
-
-    def __init__(self, index: dict[int, int]) -> None:
-        self.dtypes: list[str] = []
-        self._index = index
-        self._first = len(index)
-        self._free: dict[str, list[int]] = {}
-        self._taken: dict[int, int] = {}
-
-    def take(self, value: Expression) -> int:
-        """The place for a value: its own if it has one already (a result), else a working array."""
-        if id(value) not in self._index:
-            self._taken[id(value)] = self._next_free(value.dtype)
-            self._index[id(value)] = self._first + self._taken[id(value)]
-        return self._index[id(value)]
-
-    def _next_free(self, dtype: str) -> int:
-        free = self._free.setdefault(dtype, [])
-        if not free:
-            free.append(len(self.dtypes))
-            self.dtypes.append(dtype)
-        return free.pop()
-
-    def spare(self, dtype: str, count: int) -> list[int]:
-        """Places of ``count`` free working arrays, for the length of one pass."""
-        slots = [self._next_free(dtype) for _ in range(count)]
-        self._free[dtype] += slots
-        return [self._first + slot for slot in slots]
-
-    def give_back(self, value: Expression) -> None:
-        """The value is needed no more; its working array, if it has one, is free."""
-        if id(value) in self._taken:
-            self._free[value.dtype].append(self._taken.pop(id(value)))
-
-
 class Plan:
     """The passes that compute ``results`` (name -> expression).
 
@@ -118,90 +79,86 @@ class Plan:
         """Give every value its place and put the passes in order. A place is an index into what
         `run` lays out: fixed values, columns, results (written where the caller wants them), and
         working arrays, which are shared by values that are not needed at the same time."""
-        self._index = {id(e): i for i, e in enumerate(self._fixed)}
-        self._fixed_steps = [self._fixed_step(e) for e in self._fixed]
+        index = self._index = {id(e): i for i, e in enumerate(self._fixed)}
         for e in tiled:
             if e.operation == "column":
-                self._index[id(e)] = len(self._index)
+                index[id(e)] = len(index)
         self._direct: list[str] = []
         for name, e in self.results.items():
-            if e.varies and id(e) not in self._index:
-                self._index[id(e)] = len(self._index)
+            if e.varies and id(e) not in index:
+                index[id(e)] = len(index)
                 self._direct.append(name)
-        self._slots = slots = _Slots(self._index)
+        first = len(index)
         last_use = {id(operand): e for e in tiled for operand in e.operands}
+        free: dict[str, list[int]] = {dtype: [] for dtype in _DTYPES}
+        working: set[int] = set()
+        self._dtypes: list[str] = []
 
-        def release(e: Expression) -> None:
-            for operand in e.operands:
-                if last_use[id(operand)] is e:
-                    slots.give_back(operand)
+        def working_array(dtype: str) -> int:
+            if not free[dtype]:
+                free[dtype].append(first + len(self._dtypes))
+                self._dtypes.append(dtype)
+            return free[dtype].pop()  # the last one given back is still in cache
+
+        def place(e: Expression) -> int:
+            if id(e) not in index:
+                index[id(e)] = working_array(e.dtype)
+                working.add(id(e))
+            return index[id(e)]
+
+        def release(values: Sequence[Expression], e: Expression) -> None:
+            for value in values:
+                if last_use.get(id(value), e) is e and id(value) in working:
+                    working.discard(id(value))
+                    free[value.dtype].append(index[id(value)])
 
         self._steps: list[tuple[Callable[..., object] | None, tuple[int, ...]]] = []
         for e in tiled:
             if e.operation == "column" or e.operation in PROJECTIONS:
                 continue
-            operands = tuple(self._index[id(operand)] for operand in e.operands)
+            operands = tuple(index[id(operand)] for operand in e.operands)
             if e.operation == "sine_and_cosine":
                 halves = [e.table.half(e, half) for half in PROJECTIONS]
-                places = [slots.take(half) for half in halves]
-                self._steps.append((None, (*operands, *places, *slots.spare("float", 4))))
-                for half in halves:
-                    if id(half) not in last_use:
-                        slots.give_back(half)
+                places = [place(half) for half in halves]
+                spare = [working_array("float") for _ in range(4)]
+                free["float"] += spare
+                self._steps.append((None, (*operands, *places, *spare)))
+                release([*halves, *e.operands], e)
             else:
                 operation = OPERATIONS[e.operation]
                 if isinstance(operation, np.ufunc):
                     # it may write over an operand that nobody needs any more
-                    release(e)
-                self._steps.append((operation, (*operands, slots.take(e))))
-            release(e)
-
-    def _fixed_step(
-        self, e: Expression
-    ) -> tuple[Callable[..., object] | None, Array | str | int | None, tuple[int, ...], Any]:
-        """(operation, payload, places of the operands, dtype) of a value that does not vary; the
-        payload of what is no operation: a constant's array, a column's name, a projection's row, or
-        None for a sine and cosine."""
-        operands = tuple(self._index[id(operand)] for operand in e.operands)
-        if e.operation == "constant":
-            return None, np.array([e.value], dtype=np.float64), (), None
-        if e.operation == "column":
-            return None, str(e.value), (), None
-        if e.operation in PROJECTIONS:
-            return None, PROJECTIONS.index(e.operation), operands, None
-        if e.operation == "sine_and_cosine":
-            return None, None, operands, None
-        return OPERATIONS[e.operation], None, operands, _DTYPES[e.dtype]
+                    release(e.operands, e)
+                self._steps.append((operation, (*operands, place(e))))
+                release(e.operands, e)
 
     def workspace(self, tile: int) -> list[Array]:
         """The working arrays for tiles of up to ``tile`` scenes (one set for each thread)."""
-        return [np.empty(tile, _DTYPES[dtype]) for dtype in self._slots.dtypes]
+        return [np.empty(tile, _DTYPES[dtype]) for dtype in self._dtypes]
 
     def fixed_values(self, columns: Mapping[str, Array]) -> list[Array]:
         """The values that are the same for all scenes of a block, each of length 1.
 
         ``columns``: arrays of length 1 for the columns that do not vary.
         """
-        values: list[Array] = []
-        for operation, payload, operands, dtype in self._fixed_steps:
-            if operation is not None:
-                out: Array = np.empty(1, dtype)
-                operation(*[values[i] for i in operands], out)
-                values.append(out)
-            elif isinstance(payload, str):
-                values.append(columns[payload])
-            elif isinstance(payload, int):
-                # a projection: row 0 or 1 of what sine_and_cosine left
-                values.append(values[operands[0]][payload])
-            elif payload is None:
-                both = np.empty((2, 1))
-                work = np.empty((4, 1))
-                angle = values[operands[0]]
-                sine_and_cosine(angle, both[0], both[1], (work[0], work[1], work[2], work[3]))
-                values.append(both)
+        values: dict[int, Array] = {}
+        for e in self._fixed:
+            operands = [values[id(operand)] for operand in e.operands]
+            if e.operation == "constant":
+                value = np.array([e.value], np.float64)
+            elif e.operation == "column":
+                value = columns[str(e.value)]
+            elif e.operation in PROJECTIONS:
+                value = operands[0][PROJECTIONS.index(e.operation)]
+            elif e.operation == "sine_and_cosine":
+                value, work = np.empty((2, 1)), np.empty((4, 1))
+                both, four = (value[0], value[1]), (work[0], work[1], work[2], work[3])
+                sine_and_cosine(operands[0], *both, four)
             else:
-                values.append(payload)
-        return values
+                value = np.empty(1, _DTYPES[e.dtype])
+                OPERATIONS[e.operation](*operands, value)
+            values[id(e)] = value
+        return list(values.values())
 
     def run(
         self,
