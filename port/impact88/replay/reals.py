@@ -91,9 +91,6 @@ _TOP = np.int64(1 << 52)  # the mantissa's top bit, put back
 _EIGHT, _LAST_BYTE = np.uint64(8), np.uint64(0xFF)
 _BYTE_SHIFTS = [np.uint64(8 * position) for position in range(5)]  # extension first
 
-_minimum = np.minimum.reduce
-_maximum = np.maximum.reduce
-
 # How the bounds on a result's magnitude are kept safe.
 _UP = 1.0 + 2.0**-30  # more than any rounding adds
 _DOWN = 0.9  # less than any cutting off leaves
@@ -251,20 +248,18 @@ class Reals:
         """Look at the values, and apply the rules for exponents out of range where they call for
         it: underflow is zero, overflow an error."""
         v, bits = self.v, self.bits
-        (_, i0), *_ = self._unit().buffers(v.shape)
-        np.bitwise_and(bits, _MAGNITUDE, out=i0)
-        high = float(_maximum(i0, axis=None, initial=0).view(np.float64))
+        sizes = bits & _MAGNITUDE
+        high = float(sizes.max(initial=0).view(np.float64))
         if high >= LARGEST:
             failed = np.abs(v) >= LARGEST
             self._unit().fails(failed, OVERFLOW)
             v[failed] = 0.0
-            np.bitwise_and(bits, _MAGNITUDE, out=i0)
-            high = float(_maximum(i0, axis=None, initial=0).view(np.float64))
+            sizes = bits & _MAGNITUDE
+            high = float(sizes.max(initial=0).view(np.float64))
             self.full = False
         # zeros become the largest unsigned number
-        u0 = i0.view(np.uint64)
-        np.subtract(u0, _ONE, out=u0)
-        low = float((_minimum(u0, axis=None, initial=_TWO_BITS) + _ONE).view(np.float64))
+        least = (sizes.view(np.uint64) - _ONE).min(initial=_TWO_BITS)
+        low = float((least + _ONE).view(np.float64))
         if low < SMALLEST:
             v[np.abs(v) < SMALLEST] = 0.0
             low = SMALLEST
@@ -340,10 +335,6 @@ def select(condition: Any, yes: Reals, no: Reals) -> Reals:
     )
 
 
-def _shape(left: Floats, right: Floats) -> tuple[int, ...]:
-    return left.shape if left.shape == right.shape else np.broadcast(left, right).shape
-
-
 def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
     """left + right, or left + (-right).
 
@@ -360,41 +351,23 @@ def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
     low_left, high_left, low_right, high_right = left.low, left.high, right.low, right.high
     # apart by a factor of more than two: exponents never equal, no leading bits cancelled but one
     apart = low_left > 2 * high_right or low_right > 2 * high_left
-    shape = _shape(left.v, right.v)
-    (_, i0), (f1, i1), (f2, i2), _, _ = (unit or _nowhere()).buffers(shape)
-    v = np.empty(shape)
+    exponents = np.maximum(left.bits & _EXPONENT, right.bits & _EXPONENT)
+    to_units = (_TO_UNITS - exponents).view(np.float64)
+    v, other = np.trunc(left.v * to_units), np.trunc(right.v * to_units)
+    v = v - other if subtract else v + other
     bits = v.view(np.int64)
-
-    np.bitwise_and(left.bits, _EXPONENT, out=i0)
-    np.bitwise_and(right.bits, _EXPONENT, out=i1)
-    np.maximum(i0, i1, out=i0)
-    np.subtract(_TO_UNITS, i0, out=i2)
-    np.multiply(right.v, f2, out=f1)
-    np.multiply(left.v, f2, out=f2)
-    np.trunc(f1, out=f1)
-    np.trunc(f2, out=f2)
-    if subtract:
-        np.subtract(f2, f1, out=v)
-    else:
-        np.add(f2, f1, out=v)
     if not (apart or right.stored):  # two stored operands give an even sum: the unit is lost
-        np.bitwise_xor(left.bits, right.bits, out=i1)
+        unlike = left.bits ^ right.bits
         if subtract:
-            np.bitwise_xor(i1, _SIGN, out=i1)
-        u1 = i1.view(np.uint64)
-        np.right_shift(u1, _52, out=u1)
-        np.subtract(u1, _ONE, out=u1)
-        np.right_shift(u1, _EQUAL_CARRY, out=u1)  # 13 ones where sign and exponent agree, else 0
-        np.add(bits, i1, out=bits)
-    np.bitwise_and(bits, _40_BITS, out=bits)
+            unlike ^= _SIGN
+        signs_and_exponents = unlike.view(np.uint64) >> _52
+        # 13 ones where sign and exponent agree, else 0
+        bits += (signs_and_exponents - _ONE >> _EQUAL_CARRY).view(np.int64)
+    bits &= _40_BITS
     if not apart:
         # normalising takes less than 256 units, the upper 32 bits all clear, for zero
-        np.bitwise_and(bits, _EXPONENT, out=i1)
-        np.subtract(_BELOW_256, i1, out=i1)
-        np.right_shift(i1, 63, out=i1)
-        np.bitwise_and(bits, i1, out=bits)
-    np.subtract(i0, _FROM_UNITS, out=i0)
-    np.multiply(v, i0.view(np.float64), out=v)
+        bits &= _BELOW_256 - (bits & _EXPONENT) >> 63
+    v *= (exponents - _FROM_UNITS).view(np.float64)
 
     high = (high_left + high_right) * _UP
     full = False
@@ -424,32 +397,17 @@ def _multiply(left: Reals, right: Reals) -> Reals:
     unit = left.unit or right.unit
     if not left.high or not right.high:
         return zero(unit)
-    shape = _shape(left.v, right.v)
-    (_, i0), (f1, _), (f2, _), (f3, i3), (_f4, i4) = (unit or _nowhere()).buffers(shape)
-    v = np.empty(shape)
+    signs = left.bits ^ right.bits
+    a, b = np.abs(left.v), np.abs(right.v)
+    v = a * b
     bits = v.view(np.int64)
-
-    np.bitwise_xor(left.bits, right.bits, out=i0)
-    np.abs(left.v, out=f1)
-    np.abs(right.v, out=f2)
-    np.multiply(f1, f2, out=v)
-    np.bitwise_and(right.bits, _UPPER_HALF, out=i3)
-    np.subtract(f2, f3, out=f2)
-    np.multiply(f1, f3, out=f3)
-    np.subtract(f3, v, out=f3)
-    np.multiply(f1, f2, out=f2)
-    np.add(f3, f2, out=f3)  # the exact product less the rounded one
-    np.right_shift(i3, 63, out=i3)
-    np.add(bits, i3, out=bits)
+    upper = (right.bits & _UPPER_HALF).view(np.float64)
+    error = a * upper - v  # the exact product less the rounded one, when the lower half is added
+    error += a * (b - upper)
+    bits += error.view(np.int64) >> 63
     # the parity of the three exponents tells whether the product fell short of the top bit
-    np.bitwise_xor(i0, bits, out=i4)
-    np.right_shift(i4, 39, out=i4)
-    np.bitwise_and(i4, 0x2000, out=i4)
-    np.bitwise_or(i4, 0x1FFF, out=i4)
-    np.bitwise_or(bits, i4, out=bits)
-    np.bitwise_xor(bits, i4, out=bits)
-    np.bitwise_and(i0, _SIGN, out=i0)
-    np.bitwise_or(bits, i0, out=bits)
+    bits &= ~((signs ^ bits) >> 39 & 0x2000 | 0x1FFF)
+    bits |= signs & _SIGN
 
     defects = _defects(right)
     if defects is not None:
@@ -464,7 +422,7 @@ def _multiply(left: Reals, right: Reals) -> Reals:
 
 def _settle_product(result: Reals, left: Reals, right: Reals) -> None:
     """Overflow of a product is judged before it is normalised."""
-    if result.high >= LARGEST / 2 and _maximum(np.abs(result.v), axis=None) >= LARGEST / 2:
+    if result.high >= LARGEST / 2 and np.abs(result.v).max() >= LARGEST / 2:
         exponents = ((left.bits & _EXPONENT) >> 52) + ((right.bits & _EXPONENT) >> 52)
         failed = (exponents >= 384 + 2 * BIAS) & (result.v != 0)
         result._unit().fails(failed, OVERFLOW)
@@ -482,14 +440,12 @@ def _defects(right: Reals) -> Ints | None:
     if right._defects is not False:
         return right._defects  # type: ignore[return-value]
     bits = right.bits
-    (_, i0), *_ = right._unit().buffers(bits.shape)
     defects = []
     # a stored number's byte 0 is zero
     for zeros, below in ((_BYTES_2_3, _BYTES_0_1), (_BYTES_1_2, _BYTE_0))[: 1 + (not right.stored)]:
-        np.bitwise_and(bits, zeros, out=i0)
-        if not _minimum(i0, axis=None):
-            at = np.flatnonzero(i0 == 0)
-            at = at[bits.reshape(-1)[at] & below != 0]
+        clear = bits & zeros == 0
+        if clear.any():
+            at = np.flatnonzero(clear & (bits & below != 0))
             if at.size:
                 defects.append(at)
     right._defects = np.concatenate(defects) if defects else None
@@ -540,34 +496,18 @@ def _divide(left: Reals, right: Reals) -> Reals:
     left = left.rounded()
     if not left.high:
         return zero(unit)
-    shape = _shape(left.v, right.v)
-    (_, i0), (f1, _), (f2, _), (f3, i3), (_f4, i4) = (unit or _nowhere()).buffers(shape)
-    v = np.empty(shape)
+    signs = left.bits ^ right.bits
+    a, b = np.abs(left.v), np.abs(right.v)
+    v = a / b
     bits = v.view(np.int64)
-
-    np.bitwise_xor(left.bits, right.bits, out=i0)
-    np.abs(left.v, out=f1)
-    np.abs(right.v, out=f2)
-    np.divide(f1, f2, out=v)
-    np.bitwise_xor(i0, bits, out=i4)
-    np.right_shift(i4, 52 - 19, out=i4)
-    np.bitwise_or(i4, _mask(20, 63), out=i4)
-    np.bitwise_and(i4, _mask(19, 63), out=i4)
-    np.bitwise_and(bits, i4, out=bits)
-    np.bitwise_and(bits, _UPPER_HALF, out=i3)
-    np.multiply(f3, f2, out=f3)
-    np.subtract(f1, f3, out=f1)
-    np.bitwise_and(bits, _UPPER_HALF, out=i3)
-    np.subtract(v, f3, out=f3)
-    np.multiply(f3, f2, out=f3)
-    np.subtract(f1, f3, out=f1)  # the remainder
-    remainder = f1.view(np.int64)
-    np.right_shift(remainder, 63, out=remainder)
-    np.left_shift(remainder, 19, out=remainder)
-    np.add(bits, remainder, out=bits)
-    np.bitwise_and(bits, i4, out=bits)
-    np.bitwise_and(i0, _SIGN, out=i0)
-    np.bitwise_or(bits, i0, out=bits)
+    kept = (signs ^ bits) >> 52 - 19 & _mask(19, 19) | _mask(20, 63)
+    bits &= kept
+    upper = (bits & _UPPER_HALF).view(np.float64)
+    remainder = a - upper * b
+    remainder -= (v - upper) * b
+    bits += remainder.view(np.int64) >> 63 << 19
+    bits &= kept
+    bits |= signs & _SIGN
 
     high = left.high / right.low * _UP
     low = left.low / right.high * _DOWN

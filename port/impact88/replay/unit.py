@@ -1,4 +1,4 @@
-"""What one block of scenes shares while it is computed: who failed first and where, and scratch.
+"""What one block of scenes shares while it is computed: who failed first, and where.
 
 In the ROM an error ends the program. Over arrays the other scenes go on, so an error is *recorded*:
 each scene keeps the first one in program order, and what it computes after that is never shown.
@@ -15,12 +15,9 @@ import numpy.typing as npt
 
 Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
-Buffers = tuple[tuple[Any, Any], ...]
 
 NEVER = np.int64(2**63 - 1)
 """The record of a scene in which nothing has failed."""
-SCRATCH = 5
-"""Buffers an operation may use at a time."""
 
 _ORDER = 40
 _CLOCK = 24
@@ -52,8 +49,6 @@ class Unit:
         """The scenes that do not run the present statement; their errors are none."""
         self._place: Any = 0
         self._clock = 0
-        self._pool = np.empty((SCRATCH, 0))
-        self._views: dict[tuple[int, ...], Buffers] = {}
 
     def skip(self, skipped: Bools | None) -> None:
         """The scenes that do not run what follows, up to ``skip(None)``."""
@@ -106,21 +101,3 @@ class Unit:
     def reached(self, place: int) -> Bools:
         """The scenes that got past ``place``."""
         return (self.first >> _ORDER) > place
-
-    def buffers(self, shape: tuple[int, ...]) -> Buffers:
-        """Scratch arrays of this shape, each as float64 and as int64 of the same memory.
-
-        They are the same memory at every call: an operation must leave nothing in them.
-        """
-        views = self._views.get(shape)
-        if views is None:
-            size = 1
-            for length in shape:
-                size *= length
-            if self._pool.shape[1] < size:
-                self._pool = np.empty((SCRATCH, size))
-                self._views.clear()
-            floats = [row[:size].reshape(shape) for row in self._pool]
-            views = tuple((row, row.view(np.int64)) for row in floats)
-            self._views[shape] = views
-        return views
