@@ -24,8 +24,11 @@ LEFT_TO_SWEEPS = (
     "fewer decimals",
     "IEEE double, all digits",
     "IEEE double, pi = 3.1416",
+    "IEEE double, exact pi",
     "IEEE double, truncated",
+    "single precision",
     "single precision, rounded",
+    "two wrong inputs",
     "truncated",
     "decimal machines",
 )
@@ -73,7 +76,7 @@ def test_a_cause_is_named_first(name: str) -> None:
 
 
 @pytest.mark.captures
-@pytest.mark.parametrize("name", slippedpages.UNEXPLAINED)
+@pytest.mark.parametrize("name", list(slippedpages.UNEXPLAINED)[: None if printouts.SWEEP else 2])
 def test_what_nothing_single_explains_is_not_explained(name: str) -> None:
     """Unless just what is wrong is put right, number by number."""
     false = []

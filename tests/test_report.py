@@ -18,6 +18,9 @@ from test_printout import SAMPLE
 VOID = {"meta", "br", "hr", "img", "link", "input"}
 
 
+OTHER = SAMPLE.replace("143.5", "96")
+
+
 class Page(HTMLParser):
     """Collects what the tests ask; fails on tags that do not close."""
 
@@ -71,23 +74,24 @@ def test_a_page_says_verdict_columns_and_provenance(tmp_path) -> None:
         assert digest in shown.text
 
 
-def test_a_page_needs_nothing_from_elsewhere() -> None:
-    shown = page(SAMPLE)
+def test_a_page_needs_nothing_from_elsewhere_and_repeats_no_id() -> None:
+    """And it has page numbers, the case, the method, and the same bytes for the same input."""
+    examined = [Examined("-", None, [verify(shown) for shown in read_printouts(SAMPLE + OTHER)])]
+    text = report(examined, case="17/88", examiner="N. N.")
+    shown = Page(text)
     assert {"script", "link", "img", "iframe", "object"}.isdisjoint(shown.tags)
     assert "svg" in shown.tags
     outside = [value for name, value in shown.attributes if name in ("src", "href", "xlink:href")]
     assert all(value and value.startswith("#") for value in outside)
-    assert "@import" not in report([Examined("-", None, [verify(read_printouts(SAMPLE)[0])])])
-    assert not re.search(
-        r"url\((?!#)", report([Examined("-", None, [verify(read_printouts(SAMPLE)[0])])])
-    )
-
-
-def test_ids_are_unique_with_several_printouts() -> None:
-    shown = page(SAMPLE + SAMPLE.replace("143.5", "96"))
+    assert "@import" not in text
+    assert not re.search(r"url\((?!#)", text)
     ids = [value for name, value in shown.attributes if name == "id"]
     assert len(ids) == len(set(ids))
     assert shown.tags.count("pre") == 2
+    assert "counter(pages)" in text
+    for words in ("Case 17/88.", "Examiner: N. N. (as given)", "Method", "does not prove"):
+        assert words in shown.text
+    assert report(examined, case="17/88", examiner="N. N.") == text
 
 
 def test_what_was_read_cannot_inject_markup() -> None:

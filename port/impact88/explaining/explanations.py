@@ -29,20 +29,25 @@ from .predictions import Evidence
 MOST = 6
 """Explanations given at most."""
 NO_SINGLE_SLIP = "no single slip explains this"
-_SLIP = 10.0
-"""Bits of a number misread, and so of one that a cause leaves unexplained (hypotheses.txt)."""
+LABELS_EXCHANGED, LABEL_WRONG = "labels exchanged", "another label"
+_LABEL = 10.0
+"""Bits of wrong labels on numbers that are what the program prints."""
+_LEFT = 14.0
+"""Bits of a number that a cause leaves unexplained: more than of a slip besides (10 to 13.5), so
+that a cause with the slip comes before the one without."""
 _NEARLY_ALL = 0.15
 """An explanation that leaves more than this of what differs is none."""
 _SLIPS_IN_RESULTS = 3
-_MOST_SLIPS = 4
-"""More slips than these are no explanation: nobody makes them all."""
+_MOST_BITS = 50.0
+"""What asks for more is no explanation: four slips of the likelier kinds."""
 _ALIKE = 8.0
 """Causes that leave the same unexplained and ask for no more bits than these more share a rank."""
 _WORSE = 15.0
 """What asks for so many bits more than the best is no cause."""
-_GOOD = 16.0
-"""Up to so many bits nothing further is looked for but what may share the rank; 10 more are given
-where every search costs a second."""
+_GOOD, _MORE = 16.0, 10.0
+"""Up to so many bits nothing further is looked for, and so many more before what takes a second."""
+_LOOKED_AT = {*misprints.KINDS_OF_SLIPS, LABELS_EXCHANGED, LABEL_WRONG}
+"""Kinds of changes that the paper itself can show."""
 _SLIPS_BESIDES, _TWINS, _BY_COPY = 60, 8, 12
 _KINDS = {
     misprints.DIGIT: 10.0,
@@ -68,25 +73,45 @@ the last of them."""
 class Explanation:
     """A cause that would make printed and recomputed agree in ``explains`` of the differing numbers
     and leaves ``remaining`` differences. ``changes``: every printed number it puts right, and where
-    it stands; ``field``, ``printed``, ``would_be``: the first of them. ``look``: where to look on
-    the paper. ``rank``: from 1; explanations that the page cannot tell apart share it."""
+    it stands. ``look``: where to look on the paper. ``rank``: from 1; explanations that the page
+    cannot tell apart share it. ``weight``: the bits it asks for."""
 
     kind: str
-    field: str | None
-    printed: str | None
-    would_be: str | None
+    note: str
+    weight: float
     explains: int
-    remaining: int
-    note: str = ""
+    unexplained: frozenset[str]
     changes: list[dict[str, Any]] = default(default_factory=list)
     look: list[str] = default(default_factory=list)
     rank: int = 1
-    weight: float = 0.0
-    unexplained: frozenset[str] = frozenset()
+
+    @property
+    def remaining(self) -> int:
+        """How many numbers differ still."""
+        return len(self.unexplained)
+
+    @property
+    def field(self) -> str | None:
+        """The first number it puts right."""
+        return self.changes[0]["field"] if self.changes else None
+
+    @property
+    def printed(self) -> str | None:
+        """What stands there."""
+        return self.changes[0]["printed"] if self.changes else None
+
+    @property
+    def would_be(self) -> str | None:
+        """What would stand there."""
+        return self.changes[0]["would_be"] if self.changes else None
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
-        return {n: one for n, one in vars(self).items() if n not in ("weight", "unexplained")}
+        return {
+            "kind": self.kind, "field": self.field, "printed": self.printed,
+            "would_be": self.would_be, "explains": self.explains, "remaining": self.remaining,
+            "note": self.note, "changes": self.changes, "look": self.look, "rank": self.rank,
+        }  # fmt: skip
 
     @property
     def puts_right(self) -> frozenset[tuple[str, str]]:
@@ -128,10 +153,10 @@ def explain(
             reread += doubles
         best = sorted(reread, key=lambda one: one.scored.cost)[:_TWINS]
         causes += work.rereads(list(rereading.twins(best)))
-        if wanting(_GOOD + _SLIP):
+        if wanting(_GOOD + _MORE):
             causes += work.rows(list(tables.searched()))
             causes += work.exchanged_and_slipped(tables.exchanges(), rereading)
-        if wanting(_GOOD + _SLIP):
+        if wanting(_GOOD + _MORE):
             causes += map(work.machine, programs.causes(work.evidence, work.base))
     return _chosen(causes, len(work.base))
 
@@ -209,13 +234,13 @@ class _Work:
         if not wrong:
             return
         exchanged = sorted(one.read for one in wrong) == sorted(one.printed for one in wrong)
-        kind = "labels exchanged" if exchanged else "another label"
+        kind = LABELS_EXCHANGED if exchanged else LABEL_WRONG
         described = [
             _described(kind, one.name, one.read, one.printed, one.line, one.column) for one in wrong
         ]
         unexplained = self.base - {f"label {one.name}" for one in wrong}
         note = "the numbers are what the program prints where they stand"
-        yield self._explanation(kind, note, _SLIP, unexplained, described)
+        yield self._explanation(kind, note, _LABEL, unexplained, described)
 
     def rereads(self, reread: Iterable[Reread]) -> Iterator[Explanation]:
         """Inputs put right, with what results are then still a slip away."""
@@ -309,9 +334,7 @@ class _Work:
         elif any(one.field in self.recovered.apart for one in changes):
             note = "in the inputs given apart"
         kind = " and ".join(dict.fromkeys(change.kind for change in changes))
-        made = self._explanation(kind, note, bits, unexplained, list(map(self._change, changes)))
-        made.look = [change["look"] for change in made.changes if change["look"]]
-        return made
+        return self._explanation(kind, note, bits, unexplained, list(map(self._change, changes)))
 
     def _explanation(
         self,
@@ -321,14 +344,10 @@ class _Work:
         unexplained: frozenset[str],
         changes: list[dict[str, Any]],
     ) -> Explanation:
-        first = changes[0] if changes else dict.fromkeys(("field", "printed", "would_be"))
-        remaining = len(unexplained)
-        return Explanation(
-            kind, first["field"], first["printed"], first["would_be"],
-            len(self.base - unexplained), remaining, note, changes,
-            [change["look"] for change in changes if kind.endswith(("label", "exchanged"))],
-            weight=bits + _SLIP * remaining, unexplained=unexplained,
-        )  # fmt: skip
+        look = [change["look"] for change in changes if change["kind"] in _LOOKED_AT]
+        explains = len(self.base - unexplained)
+        bits += _LEFT * len(unexplained)
+        return Explanation(kind, note, bits, explains, unexplained, changes, look)
 
     def _change(self, change: Change) -> dict[str, Any]:
         name = change.field.removeprefix("reply ")
@@ -389,20 +408,18 @@ def _in_last_places(name: str, printed: str | None, other: str | None) -> bool:
 
 
 def _chosen(explanations: Iterable[Explanation], base: int) -> list[Explanation]:
-    """Those that explain nearly all, the least to believe first; none twice."""
+    """Those that explain nearly all, the least to believe first; none that only adds to a simpler
+    one, or says it again."""
     kept = [
         one
-        for one in explanations
-        if one.explains > 0 and one.remaining <= int(_NEARLY_ALL * base) and _few_slips(one)
+        for one in sorted(explanations, key=lambda one: one.weight)
+        if one.explains > 0
+        and one.remaining <= int(_NEARLY_ALL * base)
+        and one.weight <= _MOST_BITS
     ]
-    kept = [one for one in kept if not any(_completes(other, one) for other in kept)]
-    kept.sort(key=lambda one: one.weight)
     chosen: list[Explanation] = []
     for one in kept:
-        # what only adds to a simpler cause, or says it again, is none of its own
-        if one.weight <= kept[0].weight + _WORSE and not any(
-            _adds_to(one, other) or _same(one, other) for other in chosen
-        ):
+        if one.weight <= kept[0].weight + _WORSE and not any(_adds_to(one, o) for o in chosen):
             chosen.append(one)
     # a misreading that would do is not left out where another machine is named
     shown, others = chosen[:MOST], chosen[MOST:]
@@ -430,33 +447,13 @@ def _ranked(chosen: list[Explanation]) -> list[Explanation]:
     return sorted(chosen, key=lambda one: (one.rank, one.weight))
 
 
-def _few_slips(one: Explanation) -> bool:
-    slips = sum(change["kind"] in misprints.KINDS_OF_SLIPS for change in one.changes)
-    return slips <= _MOST_SLIPS
-
-
-def _completes(one: Explanation, other: Explanation) -> bool:
-    """Whether one puts right what the other does and, slip for slip, what that leaves."""
-    more = len(one.puts_right) - len(other.puts_right)
-    return (
-        bool(other.changes)
-        and one.unexplained < other.unexplained
-        and other.puts_right < one.puts_right
-        and more <= len(other.unexplained - one.unexplained)
-    )
-
-
 def _adds_to(one: Explanation, other: Explanation) -> bool:
-    """Whether one puts right what the other does and more, the same in the same way, or the same
-    numbers in the same way and worse."""
-    if one.kind == other.kind and one.remaining > other.remaining:
-        names = {name for name, _ in one.puts_right}
-        return names == {name for name, _ in other.puts_right} != set()
+    """Whether a cause puts right what a likelier one does and more, or the same numbers in the
+    same way, or says the same."""
     if not other.changes:
-        return False
-    same = other.puts_right == one.puts_right and one.kind == other.kind
-    return same or other.puts_right < one.puts_right
-
-
-def _same(one: Explanation, other: Explanation) -> bool:
-    return (one.kind, one.note, one.puts_right) == (other.kind, other.note, other.puts_right)
+        return not one.changes and (one.kind, one.note) == (other.kind, other.note)
+    if one.kind == other.kind and {n for n, _ in one.puts_right} == {
+        n for n, _ in other.puts_right
+    }:
+        return one.remaining > other.remaining or one.puts_right == other.puts_right
+    return other.puts_right < one.puts_right

@@ -13,11 +13,8 @@ import random
 from collections.abc import Callable, Iterator, Mapping
 from copy import copy
 from decimal import Decimal
-from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ..applesoft import decimaltext
-from ..applesoft.errorcodes import ApplesoftError, division_by_zero, overflow
 from ..fields import ANGLES, FIELDS, INPUTS
 from ..program.arithmetics import APPLESOFT, FLOAT64, Arithmetic
 from ..reading import numerals
@@ -224,10 +221,7 @@ def _other_decimals(page: _Page) -> Iterator[Cause]:
 def _single_causes(
     evidence: Evidence, scene: dict[str, str], spared: frozenset[str]
 ) -> Iterator[Cause]:
-    import numpy as np
-
-    with np.errstate(divide="raise", over="raise", invalid="raise"):
-        runs = [replays.run_whole(scene, single(seed)) for seed in range(_SHAKEN + 1)]
+    runs = [replays.run_whole(scene, single(seed)) for seed in range(_SHAKEN + 1)]
     exact, values = replays.run_whole(scene, "float64")
     (plain, _), *_ = runs
     if exact.ending or any(outcome.ending for outcome, _ in runs):
@@ -271,54 +265,31 @@ def _left_open(name: str, every: list[str | None]) -> Range | None:
     return min(numbers) - spread - unit, max(numbers) + spread + unit
 
 
-@lru_cache(maxsize=_SHAKEN + 1)
-def single(seed: int = 0) -> Arithmetic:
-    """24 bits, as the single-precision BASICs of other machines compute (GW-BASIC, BASICA); with a
-    seed, each number that is stored moved by up to one unit of its last bit, whole ones excepted.
-    """
+def single(seed: int) -> Arithmetic:
+    """Double precision of which every number that is read, stored or looked up keeps 24 bits, as
+    the single-precision BASICs of other machines have them (GW-BASIC, BASICA); with a seed, moved
+    by up to one unit of the last bit, whole numbers excepted."""
     import numpy as np
 
     rng = random.Random(seed)
 
-    def store(x: Any) -> Any:
-        value = float(x)
-        if not seed or value.is_integer() or not math.isfinite(value):
-            return np.float32(value)
-        return np.float32(value * (1 + rng.choice((-1, 0, 1)) * 2.0**-23))
+    def store(x: float) -> float:
+        moved = seed and not x.is_integer()
+        return float(np.float32(x * (1 + rng.choice((-1, 0, 1)) * 2.0**-23) if moved else x))
 
-    def read(text: str, start: int) -> tuple[Any, int]:
+    def read(text: str, start: int) -> tuple[float, int]:
         value, end = FLOAT64.read(text, start)
-        return np.float32(value), end
+        return float(np.float32(value)), end
 
-    return Arithmetic(
-        "single",
-        read=read,
-        LET=store,
-        NEXT=lambda x: x + np.float32(1),
-        INT=lambda x: np.float32(math.floor(float(x))),
-        ABS=abs,
-        SIN=lambda x: store(math.sin(float(x))),
-        COS=lambda x: store(math.cos(float(x))),
-        write=lambda x: _text(float(x)),
-        error=_error,
-        unset=np.float32(0),
-        zero=np.float32(0.0),
-    )
+    def write(x: float) -> str:
+        digits = "0" if x == 0 else f"{x:.{SINGLE_DIGITS - 1}E}"
+        return FLOAT64.write(float(digits))
 
-
-def _error(error: Exception) -> ApplesoftError | None:
-    return division_by_zero() if isinstance(error, FloatingPointError) else FLOAT64.error(error)
-
-
-def _text(value: float) -> str:
-    """A number of seven digits in Applesoft's layout."""
-    if not math.isfinite(value):
-        raise overflow()
-    if value == 0:
-        return "0"
-    mantissa, exponent = f"{abs(value):.{SINGLE_DIGITS - 1}E}".split("E")
-    nine = mantissa.replace(".", "").ljust(9, "0")
-    return decimaltext.lay_out("-" if value < 0 else "", nine, int(exponent) - 8)
+    made = copy(FLOAT64)
+    made._constants = {}
+    made.read, made.LET, made.write = read, store, write
+    made.SIN, made.COS = (lambda x: store(math.sin(x))), (lambda x: store(math.cos(x)))
+    return made
 
 
 # --- the scene as another machine was given it ---

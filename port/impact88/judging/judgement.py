@@ -15,7 +15,7 @@ from typing import Any
 
 from ..fields import ANGLES, FIELDS, FINAL_SPINS
 from ..reading.anglerow import cut_as
-from ..reading.numerals import SIMILAR, Doubt, Match, Region, Spot, compare
+from ..reading.numerals import Doubt, Match, Region, Spot, compare
 from ..reading.printout import Printout, Reading
 from ..recovery.choices import reply_ways, without_mark
 from ..recovery.recovered import Recovered
@@ -353,11 +353,6 @@ def _readers_own(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) ->
     digit read for a digit, and a digit that stands alone is never looked past."""
     swapped = Counter(pair for check in [*checks, *replies] for pair in swapped_digits(check))
     return all(count > 1 for count in swapped.values())
-
-
-def alike(pair: tuple[str, str]) -> bool:
-    """Whether readers take one digit of a pair for the other."""
-    return frozenset(pair) in SIMILAR
 
 
 _MISREADINGS = frozenset((Doubt.LOOK_ALIKE, Doubt.ILLEGIBLE, Doubt.CONTRADICTS))

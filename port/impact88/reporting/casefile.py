@@ -171,7 +171,7 @@ def _pictures(one: Examined, result: Verification) -> Iterator[tuple[Any, ...]]:
     for page in pages_of(one.picture, one.file):
         if page.number in wanted:
             data = BytesIO()
-            Image.fromarray(page.grey).save(data, "PNG", optimize=True)
+            Image.fromarray(page.grey.astype("uint8")).save(data, "PNG", optimize=True)
             height, width = page.grey.shape[:2]
             boxes = [
                 (*cell["box"], cell["state"])

@@ -14,7 +14,7 @@ from ..errors import UserError
 from ..explaining.explanations import explain, explain_copy
 from ..judging import beside
 from ..judging.copies import held_against, in_order
-from ..judging.judgement import FieldCheck, Judged, Status, Verdict, judge
+from ..judging.judgement import Judged, Status, Verdict, judge
 from ..judging.lookingpast import LookingPast
 from ..judging.unseen import unseen
 from ..names import SCENE
@@ -33,16 +33,7 @@ LARGEST_PICTURE = 100_000_000
 BUDGET = 2.0
 """Seconds of processor time for a page; the slowest of 471 given scans takes 1.9."""
 
-__all__ = [
-    "Examined",
-    "FieldCheck",
-    "Status",
-    "Verdict",
-    "Verification",
-    "examine",
-    "verify",
-    "verify_file",
-]
+__all__ = ["Examined", "Verdict", "Verification", "examine", "verify"]
 
 
 def examine(
@@ -71,12 +62,6 @@ def examine_bytes(
     except UserError as error:
         return Examined(path, digest, error=str(error))
     return Examined(path, digest, results, picture=picture)
-
-
-def verify_file(path: str, given: Mapping[str, str] | None = None) -> Iterator[Verification]:
-    """Each printout in a file (``-``: standard input). Raises UserError if it cannot be read."""
-    data = files.read_bytes(path, LARGEST_PICTURE)
-    yield from _verified(path, data, provenance.sha256(data), given)
 
 
 def _verified(
