@@ -27,7 +27,7 @@ from ..recovery import replays
 from ..recovery.choices import Choice, Choices, scene_name, with_opposite_mu
 from ..recovery.rereading import Change
 from ..recovery.search import in_doubles
-from .predictions import Evidence, Range, around, as_printed
+from .predictions import Evidence, Range, around, as_printed, digits_of
 
 _REPLAYED = 40
 """Rows that are replayed, the nearest of some 700."""
@@ -132,7 +132,7 @@ class Tables:
         typed: dict[str, str] = {}
         assumed = dict(self._printed)
         within: dict[str, float] = {}
-        decimals = max((_decimals(self._scene[name]) for name in row.inputs), default=0)
+        most = max(_decimals(self._scene[name]) for name in row.inputs)
         for name, made in row.inputs.items():
             if isinstance(made, ast.Name) and made.id != "x":
                 typed[name] = self._scene[made.id]
@@ -145,7 +145,9 @@ class Tables:
                 return None
             slack = 0.0
             if x and _is_conversion(made):
-                half = 0.5 * 10.0**-decimals
+                # all were rounded to as many decimals, but what fills Applesoft's nine digits
+                own = self._scene[name]
+                half = 0.5 * 10.0 ** -(_decimals(own) if digits_of(own) >= 9 else most)
                 ends = [float(value(made, {**self._values, "x": x + way})) for way in (-half, half)]
                 slack = within[name] = abs(ends[1] - ends[0]) / 2
             typed[name] = _shortest(found, 0.0 if in_full else slack)
