@@ -111,7 +111,9 @@ class Tables:
         return [
             one
             for row in table()
-            if row.bits < 20 and all(isinstance(made, ast.Name) for made in row.inputs.values())
+            if row.inputs
+            and row.bits < 20
+            and all(isinstance(made, ast.Name) for made in row.inputs.values())
             for one in [self._made(row)]
             if one
             and one.changes
