@@ -46,8 +46,8 @@ def quoted(value: object) -> str:
 class UserError(ValueError):
     """Input that cannot be used: one line saying what is wrong, where, and what is expected.
 
-    The command line prints the message on stderr and leaves with status 2; nobody ever sees a
-    traceback for it. ``where`` is the place (file, row, field), put in front when given.
+    The command line prints the message on stderr and ends with status 2, without a
+    traceback. ``where`` is the place (file, row, field), put in front when given.
 
     >>> try:
     ...     impact88.sample(1).replaced({"MU": "much"})

@@ -237,13 +237,13 @@ def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[An
 
 
 def _beside(target: str) -> str:
-    """A name nobody has, in the folder of ``target``; at most 255 bytes if that one has."""
+    """An unused name in the folder of ``target``; at most 255 bytes if that one has."""
     folder, name = os.path.split(target)
     return os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
 
 
 def _private(path: str, flags: int) -> int:
-    """Open a file that must not be there yet, for nobody but its owner."""
+    """Open a file that must not be there yet, for its owner only."""
     return os.open(path, flags | os.O_EXCL, 0o600)
 
 

@@ -103,7 +103,7 @@ class Scene(Mapping[str, str]):
             raise UserError(missing(absent), source)
         entries = entries or Entries(dict(given), dict(given))
         if is_share(given["MU"]):
-            from .closedform.share import resolved  # whoever types MU never goes there
+            from .closedform.share import resolved  # needed for a share only
 
             checked = {n: check_value(n, text, source) for n, text in given.items() if n != "MU"}
             given["MU"], entries.remarks["MU"] = resolved({**checked, "MU": given["MU"]}, source)

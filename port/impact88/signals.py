@@ -1,8 +1,8 @@
 """How a command may be ended from outside: control-C, and the signals that ask it to leave.
 
 SIGTERM (kill, a shutdown) and SIGHUP (the terminal went away) would end Python on the spot, with
-half-written files left beside their names. Here they become exceptions, so that whoever has begun
-something can take it back. A second control-C while that happens changes nothing.
+half-written files left beside their names. Here they become exceptions, so that unfinished
+work is undone. A second control-C while that happens changes nothing.
 """
 
 from __future__ import annotations

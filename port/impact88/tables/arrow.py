@@ -1,6 +1,6 @@
 """Where pyarrow is met (extra ``arrow``): columns that stay in its memory, and its readers' errors.
 
-A column of texts is never made a Python string a cell unless somebody looks at the cells.
+Cells of a column of texts become Python strings only when they are looked at.
 """
 
 from __future__ import annotations
