@@ -115,3 +115,14 @@ def test_a_workbook(tmp_path: Path, capsys: Any) -> None:
     book = openpyxl.load_workbook(tmp_path / "t.xlsx")
     assert book.sheetnames[:2] == ["Answer", "Inputs as given"]
     assert book["Answer"]["C2"].value == pytest.approx(27.4, abs=0.05)
+
+
+def test_a_sample_and_changed_values(tmp_path: Path, capsys: Any) -> None:
+    page = tmp_path / "case.html"
+    asked = ["report", "-o", str(page), "--samples", "0"]
+    assert main([*asked, "--sample", "1", "--set", "MU=.5"]) == 0
+    text = page.read_text("utf-8")
+    assert "changed with --set" in text
+    assert "44.4" in text  # percent of the kinetic energy, as in the guide
+    assert main(asked) == 2
+    assert "expected one scene" in capsys.readouterr().err

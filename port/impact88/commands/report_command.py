@@ -16,6 +16,7 @@ examples:
   impact88 report crash.toml -o case.html
   impact88 report crash.toml -o case.html --case 24-117 --paper a4 --seed 7
   impact88 report after.toml -o case.html --csv tables.csv --xlsx tables.xlsx
+  impact88 report crash.toml -o case.html --set MU=.5    a value changed
 
 exit status: 0 written; 2 bad input
 """
@@ -25,12 +26,24 @@ from __future__ import annotations
 import argparse
 import csv
 
-from ..files import called, decode, read_bytes, replacing
-from ..scene import TOML_LIMIT, entries_of, toml_texts
-from .options import UNITS, InputFile, OutputFile, argument, draws, note_remarks
+from ..errors import UserError
+from ..files import decode, read_bytes, replacing
+from ..scene import SOURCE, TOML_LIMIT, entries_of, sample, toml_texts
+from .options import (
+    KNOWN,
+    ONE_EXPECTED,
+    OutputFile,
+    argument,
+    draws,
+    note_remarks,
+    pairs,
+    sample_option,
+    source_of,
+)
 
 ARGUMENTS = (
-    argument("file", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"),
+    *KNOWN,
+    sample_option(),
     argument(
         "-o", "--output", type=OutputFile, required=True, metavar="FILE.html", help="the page"
     ),
@@ -45,7 +58,6 @@ ARGUMENTS = (
     *draws(20_000),
     argument("--csv", type=OutputFile, metavar="FILE", help="write the tables as CSV"),
     argument("--xlsx", type=OutputFile, metavar="FILE", help="write the tables as a workbook"),
-    UNITS,
 )
 
 
@@ -54,8 +66,15 @@ def main(args: argparse.Namespace) -> int:
     from ..report.findings import report
     from ..report.tablefiles import as_rows, write_workbook
 
-    data, source = read_bytes(args.file, TOML_LIMIT), called(args.file)
-    entries = entries_of(toml_texts(decode(data, source), source), source, args.units)
+    source = source_of(args)
+    if source is None or bool(args.scene) == bool(args.sample):
+        raise UserError(ONE_EXPECTED)
+    scene = sample(args.sample).to_toml().encode() if args.sample else b""
+    data = scene or read_bytes(args.scene, TOML_LIMIT)
+    texts = toml_texts(decode(data, source), source)
+    for name, text in pairs(args.set, "--set", "NAME=VALUE, such as --set MU=.5").items():
+        texts |= {name: text, name + SOURCE: "changed with --set"}
+    entries = entries_of(texts, source, args.units)
     note_remarks(entries)
     made = report(
         entries,
