@@ -9,7 +9,7 @@ cuts it to a quarter.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -103,6 +103,46 @@ def climb(
         # nothing is promised any more
         reach[who[promised <= least[who]]] = 0.0
     return u, x, functions, reach < LAST_REACH
+
+
+def extremes_of(
+    ground: Landscape,
+    points: Array,
+    functions: Array,
+    groups: Sequence[NDArray[np.intp]],
+    starts: int,
+    gain: float,
+    states: Callable[[Array], Array],
+    taken: Callable[[int], bool] = lambda points: True,
+) -> tuple[Array, Array, Flags]:
+    """The lowest values of m functions, negated, then the highest: how high (nan where there is no
+    value), the coordinates there, and whether the climb came to its end.
+
+    Climbers start from the best ``starts`` of each group of the ``points``, given by number, where
+    the functions are known; ``gain``: of a function's range, not worth a step; ``states`` from
+    which points are reached.
+    """
+    count = functions.shape[1]
+    number, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
+    height = below_all(functions[:, number] * sense)
+    first = np.concatenate(
+        [group[np.argsort(-height[group], axis=0, kind="stable")[:starts]] for group in groups]
+    )
+    most = height.max(axis=0)
+    least = gain * np.maximum(np.nan_to_num(most + np.roll(most, count), neginf=0.0), 0.0)
+    begin = points[first.reshape(-1)]
+    number, sense, least = (np.tile(each, len(first)) for each in (number, sense, least))
+    u, _, reached, ended = climb(ground, begin, states(begin), number, sense, least, taken)
+    final = below_all(reached[np.arange(len(u)), number] * sense).reshape(first.shape)
+    winner, every = final.argmax(axis=0), np.arange(2 * count)
+    best = final[winner, every]
+    at: Array = u.reshape(*first.shape, points.shape[1])[winner, every]
+    return np.where(np.isneginf(best), np.nan, best), at, ended.reshape(first.shape)[winner, every]
+
+
+def below_all(height: Array) -> Array:
+    """Heights, those that are no number below all others."""
+    return np.where(np.isfinite(height), height, -np.inf)
 
 
 def _height(functions: Array, walls: Array, number: NDArray[np.intp], sense: Array) -> Array:

@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .ascent import OUTSIDE, climb
+from .ascent import OUTSIDE, below_all, extremes_of
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -106,25 +106,16 @@ def extremes(
     points = np.concatenate(groups)
     values = ground.values(points)
     count = values.shape[1]
-    # one row per extreme sought: the function's number and +1 to climb it, -1 to climb down
-    number, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
-    height = _below_all(values[:, number] * sense)
-    starts = _best_of_each(groups, height)
-    most = height.max(axis=0)
-    least = LEAST_GAIN * np.maximum(np.nan_to_num(most + np.roll(most, count), neginf=0.0), 0.0)
-    begin = points[starts].reshape(starts.size, coordinates)
-    number, sense = np.tile(number, len(starts)), np.tile(sense, len(starts))
-    ends, _, reached, _ = climb(
-        ground, begin, np.empty((0, len(begin))), number, sense, np.tile(least, len(starts))
+    ends = np.cumsum([len(group) for group in groups])
+    numbers = np.split(np.arange(len(points)), ends[:-1])
+    highest, at, _ = extremes_of(
+        *(ground, points, values, numbers, STARTS, LEAST_GAIN),
+        lambda begin: np.empty((0, len(begin))),
     )
-    final = _below_all(reached[np.arange(len(ends)), number] * sense).reshape(len(starts), -1)
-    winner, every = final.argmax(axis=0), np.arange(2 * count)
-    highest = final.max(axis=0)
-    at: Array = ends.reshape(*starts.shape, coordinates)[winner, every]
     if np.isnan(values[:, : piece.size]).any() and coordinates:
         at, highest = ground.stepped(at, highest, rng)
-    highest = np.where(np.isneginf(highest), np.nan, highest)
-    corner = height[: len(groups[0])].max(axis=0)
+    corners = np.hstack([-values[: len(groups[0])], values[: len(groups[0])]])
+    corner = below_all(corners).max(axis=0)
     corner = np.where(np.isneginf(corner), np.nan, corner)
     found = Extremes(
         lower=-highest[:count],
@@ -225,9 +216,9 @@ class _Ground:
             tried = np.clip(at[:, None] + aside, 0.0, 1.0)
             values = self.values(tried.reshape(-1, at.shape[1])).reshape(*tried.shape[:2], -1)
             own = values[every, :, every % count] * np.where(every < count, -1.0, 1.0)[:, None]
-            height = _below_all(own)
+            height = below_all(own)
             choice = height.argmax(axis=1)
-            better = height[every, choice] > highest
+            better = height[every, choice] > below_all(highest)
             at = np.where(better[:, None], tried[every, choice], at)
             highest = np.where(better, height[every, choice], highest)
         return at, highest
@@ -268,18 +259,6 @@ def _seek_poles(piece: Piece, j: int, found: Extremes, start: Array, end: Array)
             for function in np.flatnonzero(endless.any(axis=0)).tolist():
                 bound[function] = sign * np.inf
                 at[function] = places[1][endless[:, function].argmax()]
-
-
-def _best_of_each(groups: Sequence[Array], height: Array) -> NDArray[np.intp]:
-    """The numbers of the `STARTS` highest points of each group of points."""
-    first = 0
-    starts = []
-    for group in groups:
-        last = first + len(group)
-        order = np.argsort(-height[first:last], axis=0, kind="stable")[:STARTS]
-        starts.append(first + order)
-        first = last
-    return np.concatenate(starts)
 
 
 def _surface(
@@ -325,7 +304,3 @@ def _spread_out(coordinates: int, count: int, rng: np.random.Generator) -> Array
     """A Latin hypercube: each coordinate visits every one of its ``count`` strata once."""
     strata = rng.permuted(np.tile(np.arange(count), (coordinates, 1)), axis=1).T
     return (strata + rng.random(strata.shape)) / count
-
-
-def _below_all(height: Array) -> Array:
-    return np.where(np.isfinite(height), height, -np.inf)

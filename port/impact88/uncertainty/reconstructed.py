@@ -35,7 +35,7 @@ from ..reconstruction.adjustment import (
 from ..reconstruction.geometry import NAMES as GEOMETRY
 from ..reconstruction.geometry import Geometry
 from ..reconstruction.state import CRUSH, DIRECTIONS, State
-from .ascent import OUTSIDE, climb
+from .ascent import OUTSIDE, climb, extremes_of
 from .draws import Spread, spread_of
 from .uncertain import Uncertain
 
@@ -174,27 +174,12 @@ def ranges(
         [box.from_nominal(points[i : i + CHUNK])[1] for i in range(0, len(points), CHUNK)]
     )
     count = functions.shape[1]
-    number, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
-    height = np.where(np.isfinite(functions), functions, np.nan)[:, number] * sense
-    height = np.where(np.isnan(height), -np.inf, height)
-    # the best of each part of the points: climbers that stand apart
+    # of each part of the points the best: climbers that stand apart
     parts = [np.arange(i, len(points), STARTS) for i in range(min(STARTS, len(points)))]
-    first = np.concatenate([part[height[part].argmax(axis=0)] for part in parts])
-    number, sense = np.tile(number, len(parts)), np.tile(sense, len(parts))
-    span = np.nanmax(height, axis=0, initial=-np.inf) + np.nanmax(-height, axis=0, initial=-np.inf)
-    with np.errstate(all="ignore"):
-        finite = np.where(np.isfinite(functions), functions, np.nan)
-        span = np.nan_to_num(np.nanmax(finite, axis=0) - np.nanmin(finite, axis=0))
-    start = points[first]
-    u, _, reached, ended = climb(
-        box, start, box.from_nominal(start)[0], number, sense, LEAST_GAIN * span[number], budget
+    extreme, at, done = extremes_of(
+        *(box, points, functions, parts, 1, LEAST_GAIN),
+        *(lambda start: box.from_nominal(start)[0], budget),
     )
-    final = reached[np.arange(len(u)), number] * sense
-    final = np.where(np.isnan(final), -np.inf, final).reshape(len(parts), -1)
-    winner = final.argmax(axis=0)
-    extreme = np.where(np.isinf(final.max(axis=0)), np.nan, final.max(axis=0))
-    at = u.reshape(len(parts), 2 * count, -1)[winner, np.arange(2 * count)]
-    done = ended.reshape(len(parts), -1)[winner, np.arange(2 * count)]
     lower, upper = -extreme[:count], extreme[count:]
     endless = set(_endless(box.solver, solution.system.known, names))
     # what divides a coefficient takes both signs
