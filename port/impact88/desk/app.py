@@ -13,7 +13,16 @@ import threading
 from base64 import b64decode
 from typing import Any, TypeGuard
 
-from flask import Blueprint, Flask, Response, abort, render_template, request
+from flask import (
+    Blueprint,
+    Flask,
+    Response,
+    abort,
+    get_template_attribute,
+    render_template,
+    request,
+)
+from jinja2 import ChoiceLoader, PackageLoader
 from werkzeug.exceptions import HTTPException
 
 from ..errors import UserError
@@ -62,7 +71,9 @@ def application(desk: Desk, port: int, token: str) -> Flask:
     """The WSGI application that answers for ``desk`` at 127.0.0.1:``port``, below ``token``."""
     app = Flask(__name__, static_url_path=f"/{token}/static")
     app.config["MAX_CONTENT_LENGTH"] = LARGEST_BODY
-    app.add_template_filter(page.symbol)
+    app.jinja_env.filters |= page.FILTERS
+    packages = (__package__ or "", "impact88.report")
+    app.jinja_loader = ChoiceLoader([PackageLoader(name) for name in packages])
 
     @app.before_request
     def refuse() -> Response | None:
@@ -132,7 +143,11 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/collision")
     def collision_answer() -> Any:
-        return collision.answer(_texts("values"), _units())
+        told = collision.answer(_texts("values"), _units())
+        if "answer" in told:
+            told["first"] = get_template_attribute("answers.html", "first")(told["answer"])
+            told["all"] = get_template_attribute("answers.html", "results")(told["results"])
+        return told
 
     @routes.post("/figure")
     def figure() -> Response:
@@ -142,7 +157,9 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/bounds")
     def bounds() -> Any:
-        return asked("bounds", "bounds_answer", values=_texts("values"), units=_units())
+        found = asked("bounds", "bounds_answer", values=_texts("values"), units=_units())
+        table = get_template_attribute("answers.html", "bounds")
+        return {"found": found, "table": table(found)}
 
     @routes.post("/scene-file")
     def scene_file() -> Response:
@@ -171,7 +188,9 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
-        return asked("reconstruction", "answer", values=_texts("values"), units=_units())
+        told = asked("reconstruction", "answer", values=_texts("values"), units=_units())
+        tables = get_template_attribute("answers.html", "solutions")
+        return {**told, "tables": tables(told["solutions"])}
 
     @routes.post("/known-file")
     def known_file() -> Response:

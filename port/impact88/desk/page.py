@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from markupsafe import Markup, escape
 
 from ..names import DEFAULT_M, Quantity, quantity
+from ..plaintable import number
 from ..scene import SAMPLES, SIGNS, sample
 from ..version import __version__
 
@@ -70,6 +72,27 @@ def symbol(text: str) -> Markup:
         for place, piece in enumerate(pieces)
     )
     return Markup("").join(marked)
+
+
+def unit(label: str) -> str:
+    """How a unit is written."""
+    return {"1": "", "degree": "°", "deg": "°", "percent": "%"}.get(label, label)
+
+
+def digits(value: float | None, count: int) -> str:
+    """A number of a table; nothing for none."""
+    return "" if value is None else number(value, count)
+
+
+def drivers(bound: Mapping[str, Any]) -> str:
+    """The two inputs that move a result most, each with how far."""
+    swings = {n: (d["highest"] or 0) - (d["lowest"] or 0) for n, d in bound["drives"].items()}
+    least = 1e-9 * abs((bound["upper"] or 0) - (bound["lower"] or 0))
+    ranked = sorted(swings.items(), key=lambda entry: -entry[1])[:2]
+    return ", ".join(f"{name} {number(swing, 3)}" for name, swing in ranked if swing > least)
+
+
+FILTERS = {"symbol": symbol, "unit": unit, "digits": digits, "drivers": drivers}
 
 
 def contents() -> dict[str, Any]:

@@ -105,6 +105,7 @@ def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, 
     return {
         "printed": printed,
         "rows": rows,
+        "first": [row for row in rows if row["solved"] or row["name"] in _ASKED],
         "columns": [name for name in named if any(row["columns"].get(name) for row in rows)],
         "adjusted": [
             _adjusted(one, system) for one in values.get("adjusted", ()) if values["redundancy"]
@@ -149,6 +150,8 @@ def _row(
     }
 
 
+_ASKED = ("DVA", "DVB", "LOSS")
+"""Shown with what was solved for."""
 _SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
 
 

@@ -114,22 +114,6 @@ export async function save(response) {
   setTimeout(() => URL.revokeObjectURL(address), 60_000);
 }
 
-/** A text with symbols as a piece of the page: what follows "_" is a subscript. */
-export function marked(text) {
-  const parts = text.split(/_([A-Za-z0-9]+)/);
-  return element("span", {}, ...parts.map((part, place) => (place % 2 ? element("sub", {}, part) : part)));
-}
-
-/** How a unit is written. */
-export const unitWord = (unit) => ({ 1: "", degree: "°", deg: "°", percent: "%" }[unit] ?? unit);
-
-/** What a quantity is, for a table's cell: symbol, meaning, unit. */
-export function what(quantity) {
-  const unit = unitWord(quantity.unit);
-  return element("span", {}, element("i", {}, marked(quantity.symbol ?? "")), " ", marked(quantity.meaning), " ",
-    element("small", {}, unit));
-}
-
 /** Fill a table named `name`: `heads` are texts, `rows` lists of texts or nodes; the first cell heads its row. */
 export function fill(table, name, heads, rows, classOf = () => "") {
   const head = element("tr", {}, ...heads.map((text) => element("th", { scope: "col" }, text)));
@@ -138,12 +122,6 @@ export function fill(table, name, heads, rows, classOf = () => "") {
       (column ? element("td", {}, cell) : element("th", { scope: "row" }, cell)))));
   const caption = element("caption", { className: "visually-hidden" }, name);
   table.replaceChildren(caption, element("thead", {}, head), element("tbody", {}, ...body));
-}
-
-/** A number as it is shown, and whole, with its name and unit, for other programs. */
-export function amount(text, value, name, unit) {
-  const whole = value === null || value === undefined ? "" : String(value);
-  return element("span", { "data-name": name, "data-value": whole, "data-unit": unit ?? "" }, text);
 }
 
 /**

@@ -1,5 +1,5 @@
 // The Collision view: 21 values, answered while one types.
-import { amount, ask, asked, attempt, drawInto, element, fill, newest, page, save, settled, showUnits, shown, stop, tabs, tell, unitWord, watched, what } from "./ask.js";
+import { ask, asked, attempt, drawInto, element, newest, page, save, settled, showUnits, shown, stop, tabs, tell, watched } from "./ask.js";
 
 const form = () => page("collision-form");
 const inputs = () => [...form().querySelectorAll("fieldset input")];
@@ -34,19 +34,6 @@ function waitingFor(answer) {
   return parts.join(" ");
 }
 
-/** What is asked of a collision, a column for each vehicle; what belongs to both spans them. */
-function showFirst(rows) {
-  const table = page("collision-first");
-  const cell = ({ name, text, value }, unit) => amount(text, value, name, unit);
-  fill(table, "Answer", ["what", "A", "B", "unit"], rows.map(({ words, unit, values: [one, other] }) =>
-    [words, cell(one, unit), other ? cell(other, unit) : "", element("small", {}, unitWord(unit))]));
-  for (const row of table.tBodies[0].rows) {
-    if (row.cells[2].textContent) continue;
-    row.cells[2].remove();
-    row.cells[1].colSpan = 2;
-  }
-}
-
 /** The Apple's screen: 24 rows of 40 characters, inverse and flashing ones as such. */
 function showScreen(rows) {
   page("collision-apple").replaceChildren(...rows.map((runs) => element("span", { className: "row" },
@@ -57,18 +44,14 @@ function showAnswer(answer) {
   page("collision-answer").hidden = false;
   page("collision-signs").hidden = true;
   page("collision-more-signs").hidden = false;
-  showFirst(answer.answer);
+  page("collision-first").innerHTML = answer.first;
   page("collision-screen").textContent = answer.page;
   showScreen(answer.screen);
   for (const note of document.querySelectorAll("#collision .nominal")) note.hidden = !answer.ranges.length;
   page("collision-warnings").querySelector("ul")
     .replaceChildren(...answer.warnings.map((text) => element("li", {}, text)));
   page("collision-warnings").hidden = !answer.warnings.length;
-  const shownToo = answer.results.some((row) => row.shown);
-  const whole = (row, text) => amount(text, row.value, row.name, row.label);
-  fill(page("collision-results"), "All results", ["name", "what", "printed", "exact", ...(shownToo ? ["that is"] : [])],
-    answer.results.map((row) => [row.name, what(row), row.printed,
-      row.shown ? row.exact : whole(row, row.exact), ...(shownToo ? [row.shown && whole(row, row.shown)] : [])]));
+  page("collision-results").innerHTML = answer.all;
 }
 
 let latest = null;
@@ -83,28 +66,8 @@ const draw = newest(async () => {
   picture.parentElement.classList.toggle("stale", !await drawInto(picture, question()));
 });
 
-const SHARES = ["0.05", "0.95"]; // of the quantiles, those there is room for
-
-function boundsRow([name, bound]) {
-  const width = Math.abs((bound.upper ?? 0) - (bound.lower ?? 0));
-  const drives = Object.entries(bound.drives)
-    .map(([input, drive]) => [input, (drive.highest ?? 0) - (drive.lowest ?? 0)])
-    .filter(([, swing]) => swing > 1e-9 * width)
-    .sort((one, other) => other[1] - one[1])
-    .slice(0, 2)
-    .map(([input, swing]) => `${input} ${shown(swing, 3)}`);
-  const cell = (part, value, digits) => amount(shown(value, digits), value, `${name} ${part}`, bound.unit);
-  return [
-    name, what(bound), ...["lower", "nominal", "upper"].map((part) => cell(part, bound[part], 4)),
-    ...SHARES.map((share) => cell(share, bound.quantiles[share], 4)), drives.join(", "),
-  ];
-}
-
-function showBounds(found) {
-  const shares = SHARES.map((share) => `${shown(100 * share, 3)} %`);
-  fill(page("collision-bounds-table"), "Bounds",
-    ["name", "what", "lower", "nominal", "upper", ...shares, "driven by"],
-    Object.entries(found.outputs).map(boundsRow));
+function showBounds({ found, table }) {
+  page("collision-bounds-table").innerHTML = table;
   const warned = Object.entries(found.warnings).map(([name, share]) => `${shown(100 * share, 3)} % ${name}`);
   page("collision-bounds-note").textContent =
     `Lower and upper: extremes over all ranges, attained, sought in ${found.evaluations.toLocaleString("en")} scenes. `

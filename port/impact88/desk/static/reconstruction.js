@@ -1,5 +1,5 @@
 // The Reconstruction view: what is known is ticked, the rest is solved for while one types.
-import { amount, ask, asked, attempt, drawInto, element, fill, page, save, settled, showUnits, tell, watched, what } from "./ask.js";
+import { ask, asked, attempt, drawInto, page, save, settled, showUnits, tell, watched } from "./ask.js";
 
 const form = () => page("reconstruction-form");
 const inputs = () => [...form().querySelectorAll("input[name]")];
@@ -58,50 +58,16 @@ function showAtFields(solutions) {
   }
 }
 
-function tableOf(name, heads, rows, classOf) {
-  const table = element("table", {});
-  fill(table, name, heads, rows, classOf);
-  return element("div", { className: "scroll", tabIndex: 0, role: "region", "aria-label": name }, table);
-}
-
-const ASKED = ["DVA", "DVB", "LOSS"]; // shown with what was solved for
-
-function solutionPart(solution, at, count) {
-  const parts = [];
-  if (count > 1) parts.push(element("h2", {}, `Solution ${at + 1} of ${count}`));
-  if (solution.warnings.length) {
-    parts.push(element("div", { className: "warnings" }, element("h2", {}, "Warnings"),
-      element("ul", {}, ...solution.warnings.map((text) => element("li", {}, text)))));
-  }
-  const columns = solution.columns;
-  const table = (name, rows) => tableOf(name, ["name", "what", "value", ...columns], rows.map((row) =>
-    [row.name, what(row), amount(row.text, row.value, row.name, row.unit), ...columns.map((column) =>
-      amount(row.columns[column] ?? "", row.numbers[column], `${row.name} ${column}`, row.unit))]),
-  (place) => (rows[place].solved ? "solved" : ""));
-  parts.push(table("What follows", solution.rows.filter((row) => row.solved || ASKED.includes(row.name))));
-  if (solution.adjusted.length) {
-    parts.push(element("h2", {}, "What was measured, and how it was adjusted"),
-      tableOf("Adjusted", ["name", "what", "measured", "±", "adjusted", "moved, tolerances"], solution.adjusted.map((row) =>
-        [row.name, what(row), row.measured, row.tolerance, row.adjusted, row.moved])));
-  }
-  if (solution.scene) {
-    const picture = element("img", { alt: "" });
-    const figure = element("figure", { className: "sheet", hidden: true }, picture);
-    const scene = { values: solution.scene, title: "Reconstructed", units: solution.units, extra };
-    drawInto(picture, { ...scene, values: { ...extra, ...solution.scene } }).then((drawn) => { figure.hidden = !drawn; });
-    const button = element("button", { type: "button" }, "Open this collision");
-    button.addEventListener("click", () => {
-      dispatchEvent(new CustomEvent("desk-scene", { detail: scene }));
-      location.hash = "#collision";
-    });
-    // the drawing comes later: what stands above it does not move
-    parts.push(element("p", { className: "over" }, button), figure);
-  }
-  parts.push(element("details", {}, element("summary", {}, "All that follows"),
-    table("All that follows", solution.rows.filter((row) => !row.known))));
-  parts.push(element("details", {}, element("summary", {}, "As impact88 reconstruct prints it"),
-    element("pre", { className: "plain", tabIndex: 0, role: "region", "aria-label": "As printed" }, solution.printed)));
-  return element("div", { className: "solution" }, ...parts);
+/** The drawing of a solution, and a button that takes it over to the Collision view. */
+function finish(part, solution, units) {
+  if (!solution.scene) return;
+  const scene = { values: solution.scene, title: "Reconstructed", units, extra };
+  drawInto(part.querySelector("img"), { ...scene, values: { ...extra, ...solution.scene } })
+    .then((drawn) => { part.querySelector("figure").hidden = !drawn; });
+  part.querySelector("button").addEventListener("click", () => {
+    dispatchEvent(new CustomEvent("desk-scene", { detail: scene }));
+    location.hash = "#collision";
+  });
 }
 
 let latest = [];
@@ -137,8 +103,9 @@ const solve = settled(async () => {
   showAtFields(told.solutions);
   if (!whole) return;
   page("reconstruction-answer").hidden = false;
-  page("reconstruction-answer").replaceChildren(...told.solutions.map((solution, at) =>
-    solutionPart({ ...solution, units: told.units.name }, at, told.solutions.length)));
+  page("reconstruction-answer").innerHTML = told.tables;
+  page("reconstruction-answer").querySelectorAll(".solution").forEach((part, at) =>
+    finish(part, told.solutions[at], told.units.name));
   announce();
 }, 200);
 
