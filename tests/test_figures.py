@@ -91,9 +91,16 @@ def overlaps(drawing: Drawing) -> list[tuple[str, str]]:
     return [(a[0], b[0]) for a, b in combinations(boxes, 2) if a[1].overlaps(b[1])]
 
 
+def within(page: Box, box: Box) -> bool:
+    return (
+        page.left <= box.left and box.right <= page.right
+        and page.bottom <= box.bottom and box.top <= page.top
+    )  # fmt: skip
+
+
 def off_page(drawing: Drawing) -> list[str]:
     page = Box(0, -drawing.height, drawing.width, 0)
-    texts = [text.text for text in drawing.texts() if not page.contains(text_box(text))]
+    texts = [text.text for text in drawing.texts() if not within(page, text_box(text))]
     paths = [
         item.role
         for item in drawing.items

@@ -34,7 +34,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
 from ..names import RESULTS
-from ..scene import Scene, numbers_of
+from ..scene import Scene, entries_in, numbers_of
 from .options import (
     MOVE,
     SWEEP,
@@ -162,8 +162,12 @@ def _barrier(args: argparse.Namespace) -> Drawing:
     # as heavy as a drawing needs it: an infinite mass has no outline
     wall = {"MB": 1e9 * known["MA"], "IB": 1e9 * known["IA"]}
     scene = {**BARRIER, **known, **wall}
-    drawing = scene_drawing(scene, result | still, title="Barrier", units=system_of(units))
-    return drawing
+    outlines = {}
+    if args.scene and args.scene != "-":
+        outlines = entries_in(args.scene, args.units, True).outlines
+    return scene_drawing(
+        scene, result | still, title="Barrier", units=system_of(units), outlines=outlines
+    )
 
 
 def _swept(args: argparse.Namespace) -> Drawing:

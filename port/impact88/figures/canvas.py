@@ -29,9 +29,8 @@ def import_matplotlib() -> None:
     """
     if sys.modules.get("matplotlib") is not None:
         return
-    settings = {"MPLBACKEND": "agg", "MATPLOTLIBRC": os.devnull}
-    before = {name: os.environ.get(name) for name in settings}
-    os.environ.update(settings)
+    before = dict(os.environ)
+    os.environ |= {"MPLBACKEND": "agg", "MATPLOTLIBRC": os.devnull}
     try:
         # the current folder's file comes before all others
         with _quiet(), contextlib.chdir(os.path.dirname(__file__)):
@@ -41,11 +40,8 @@ def import_matplotlib() -> None:
             "PNG and PDF need matplotlib, which is not installed; pip install 'impact88[plot]'"
         ) from None
     finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+        os.environ.clear()
+        os.environ |= before
 
 
 @contextlib.contextmanager

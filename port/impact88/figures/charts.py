@@ -12,7 +12,7 @@ from ..errors import UserError
 from ..names import PIVOT, quantity
 from ..scene import numbers_of
 from ..status import Status
-from ..units import RULES, System, system_of
+from ..units import System, system_of
 from .axes import Panel, key, span
 from .drawing import (
     BLACK,
@@ -101,7 +101,7 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
         bound, quantiles = result.bounds[name], result.spreads[name].quantiles
         heights, edges = np.histogram(draws, BINS)
         heights = heights * (100 / len(draws))
-        upper = top - (28.5 + ROW * tallest) * row - _TOP
+        upper = top - (30 + ROW * tallest) * row - _TOP
         left = _LEFT + column * wide - 3 * column
         box = Box(left, upper - 18, left + wide - _LEFT + (1 if column else -1), upper)
         panel = Panel(
@@ -119,7 +119,7 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
             panel.mark(end, 0.03 * panel.y.high, "D", role="bound")
     rows = -(-len(names) // columns)
     y = key(
-        *(drawing, top - (28.5 + ROW * tallest) * rows - 1, ("nominal", BLACK, ())),
+        *(drawing, top - (30 + ROW * tallest) * rows - 1, ("nominal", BLACK, ())),
         *(("5 % and 95 %", VERMILION, _DASHED), ("bounds", BLACK, "D")),
     )
     drawing.height = 2 - y
@@ -173,14 +173,12 @@ def friction_sweep(scene: Any) -> Drawing:
     ``scene``: from none to beyond the critical coefficient, at which the sliding ends.
 
     More friction than that would reverse the sliding, which friction cannot do: shaded. Raises
-    UserError when a value of the scene is not a number.
+    UserError when a value of the scene is no number.
     """
     from ..closedform.solve import solve
 
     values: dict[str, Any] = numbers_of(scene)
-    units = system_of(getattr(scene, "units", None))
-    speed = units.shown("length/time", 1.0)
-    signed = solve({**values, "MU": PIVOT}, ["MUC", "PN", "PT"])
+    signed = solve({**values, "MU": PIVOT}, ["MUC"])
     # as one would type it: line 400 turns the sign of what is typed where gt > 0
     sign = float(np.sign(solve({**values, "MU": 1.0}, ["MUP"])["MUP"]))
     critical = sign * float(signed["MUC"])
@@ -188,96 +186,93 @@ def friction_sweep(scene: Any) -> Drawing:
     limit = critical if np.isfinite(critical) and 0 < critical <= WIDEST_SWEEP else 0.0
     reach = min(max(1.0, 1.3 * limit, 1.2 * own), WIDEST_SWEEP)
     low = min(0.0, 1.2 * own)  # a scene whose friction drives the sliding shows itself
-    friction = np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP)
-    results = solve({**values, "MU": friction}, ["LOSS", "DVA", "DVB", "STATUS"])
-    for name in ("LOSS", "DVA", "DVB"):
-        check_drawable(results[name], name)
     faults = Status.FRICTION_ABOVE_CRITICAL | Status.FRICTION_WRONG_DIRECTION
-    beyond = (results["STATUS"] & np.uint16(faults)) != 0
-    here = {name: float(value) for name, value in solve(values, ["LOSS", "DVA", "DVB"]).items()}
-    change = "ΔV" if units is RULES else f"ΔV, {units.label('length/time')}"
-    told = f"Energy lost {short(here['LOSS'])} %, {change} of A {short(speed * here['DVA'])}, "
-    told += f"of B {short(speed * here['DVB'])} at a friction coefficient of {short(own)}."
-    drawing = Drawing(COLUMN, "Energy loss and ΔV against friction", told)
-    top = drawing.heading() - _TOP
-    x = (float(friction[0]), float(friction[-1]))
-    loss = span([*results["LOSS"], 0.0, here["LOSS"]])
-    upper = Panel(
-        drawing, Box(_LEFT, top - 30, COLUMN - 3, top), x, loss, "", "kinetic energy lost, %"
+    return _along(
+        scene,
+        "MU",
+        np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP),
+        [["LOSS"], ["DVA", "DVB"]],
+        own,
+        faults,
+        ("Energy loss and ΔV against friction", "friction coefficient as typed (MU)"),
+        ("pivot" if values["MU"] == PIVOT else "this scene", "not admissible"),
+        limit,
     )
-    changes = speed * np.concatenate([results["DVA"], results["DVB"]])
-    top -= 30 + 11.5
-    label = "friction coefficient as typed (MU)"
-    box = Box(_LEFT, top - 30, COLUMN - 3, top)
-    lower = Panel(drawing, box, x, (0.0, span(changes)[1]), label, change)
-    upper.line(x, [0, 0], GREY, 0.2)
-    upper.line(friction, results["LOSS"], role="LOSS")
-    for name, colour, dash in (("DVA", BLUE, ()), ("DVB", VERMILION, _DASHED)):
-        lower.line(friction, speed * results[name], colour, dash=dash, role=name)
-    if x[0] <= own <= x[1]:
-        upper.mark(own, here["LOSS"])
-        lower.mark(own, speed * here["DVA"], colour=BLUE)
-        lower.mark(own, speed * here["DVB"], colour=VERMILION)
-    entries: list[tuple[str, str, Any]] = [("ΔV_a", BLUE, ()), ("ΔV_b", VERMILION, _DASHED)]
-    entries.append(("pivot" if values["MU"] == PIVOT else "this scene", BLACK, "o"))
-    if limit:
-        entries.append((f"critical: {short(critical)}", BLACK, _DOTTED))
-    if beyond.any():
-        entries.append(("not admissible", _UNPHYSICAL, None))
-    for panel in (upper, lower):
-        _shade(panel, friction, beyond)
-        if limit:
-            panel.rule(critical, dash=_DOTTED, role="critical")
-    drawing.height = 2 - key(drawing, box.bottom - 11.5, *entries)
-    return drawing
 
 
 def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]) -> Drawing:
     """Results of a scene along one of its values, one panel each; shaded where a bit of STATUS says
     that the impact is unphysical. Raises UserError for more results than fit a page."""
+    _check_count(outputs)
+    units = system_of(getattr(scene, "units", None))
+    titles = (f"Results against {quantity(name).meaning}", _label(name, units))
+    own, words = numbers_of(scene)[name], ("this scene", "unphysical: see STATUS")
+    groups = [[output] for output in outputs]
+    return _along(scene, name, np.asarray(values), groups, own, ~0, titles, words)
+
+
+def _along(
+    scene: Any,
+    name: str,
+    axis: Any,
+    groups: Sequence[Sequence[str]],
+    own: float,
+    faults: int,
+    titles: tuple[str, str],
+    words: tuple[str, str],
+    limit: float = 0.0,
+) -> Drawing:
+    """Results along a value, a panel for each of the ``groups``: the scene's ``own`` marked, where
+    STATUS has ``faults`` shaded, a line at ``limit``; ``words`` for what is marked and shaded."""
     from ..closedform.solve import solve
 
-    _check_count(outputs)
     numbers: dict[str, Any] = numbers_of(scene)
     units = system_of(getattr(scene, "units", None))
-    axis, shown = np.asarray(values), units.factor(name)
-    results = solve({**numbers, name: axis}, [*outputs, "STATUS"])
-    faulty = results["STATUS"] != 0
-    check_drawable(axis, name)
-    here = {output: float(value) for output, value in solve(numbers, outputs).items()}
-    within = min(values) <= numbers[name] <= max(values)
-    told = [
-        f"{_label(output, units)}: {short(here[output] * units.factor(output))}." for output in here
-    ]
-    title = f"Results against {quantity(name).meaning}"
-    drawing = Drawing(COLUMN, title, "In this scene: " + " ".join(told))
-    top = drawing.heading() - _TOP
-    x = (float(axis[0] * shown), float(axis[-1] * shown))
+    outputs = [output for group in groups for output in group]
+    factors = {output: units.factor(output) for output in (name, *outputs)}
+    found = solve({**numbers, name: axis}, [*outputs, "STATUS"])
+    faulty = (found["STATUS"] & np.uint16(faults & 0xFFFF)) != 0
     for output in outputs:
-        check_drawable(results[output], output)
-        factor = units.factor(output)
-        box = Box(_LEFT, top - 24, COLUMN - 3, top)
-        own = [here[output] * factor] if within else []
-        y = span([*(results[output] * factor), *own])
-        label = _label(name, units) if output == outputs[-1] else ""
-        panel = Panel(drawing, box, x, y, label, _label(output, units))
-        panel.line(axis * shown, results[output] * factor, BLUE, role=output)
-        if own:
-            panel.mark(numbers[name] * shown, own[0])
-        _shade(panel, axis * shown, faulty)
+        check_drawable(found[output], output)
+    check_drawable(axis, name)
+    axis, own = axis * factors[name], own * factors[name]
+    here = {n: float(value) * factors[n] for n, value in solve(numbers, outputs).items()}
+    told = " ".join(f"{_label(output, units)}: {short(here[output])}." for output in outputs)
+    drawing = Drawing(COLUMN, titles[0], f"In this scene: {told}")
+    top = drawing.heading() - _TOP
+    entries: list[tuple[str, str, Any]] = []
+    for group in groups:
+        box = Box(_LEFT, top - 27, COLUMN - 3, top)
+        values = {output: found[output] * factors[output] for output in group}
+        y = span([x for output in group for x in (*values[output], here[output])])
+        if len(group) > 1:  # sizes
+            y = (0.0, y[1])
+        label = _label(group[0], units)
+        if len(group) > 1:
+            label = f"ΔV,{label.rpartition(',')[2]}"
+        below = titles[1] if group == groups[-1] else ""
+        panel = Panel(drawing, box, (float(axis[0]), float(axis[-1])), y, below, label)
+        if y[0] < 0 < y[1]:
+            panel.line(axis[[0, -1]], [0, 0], GREY, 0.2)
+        for output, colour, dash in zip(group, (BLUE, VERMILION), ((), _DASHED), strict=False):
+            panel.line(axis, values[output], colour, dash=dash, role=output)
+            if len(group) > 1:
+                entries.append((quantity(output).symbol, colour, dash))
+            if axis.min() <= own <= axis.max():
+                panel.mark(own, here[output], colour=colour if len(group) > 1 else BLACK)
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], faulty.astype(int), [0]])))
+        for first, last in edges.reshape(-1, 2):
+            panel.shade(axis[first], axis[last - 1], _UNPHYSICAL)
+        if limit:
+            panel.rule(limit, dash=_DOTTED, role="critical")
         top = box.bottom - 11.5
-    entries: list[tuple[str, str, Any]] = [("this scene", BLACK, "o")]
+    entries.append((words[0], BLACK, "o"))
+    if limit:
+        entries.append((f"critical: {short(limit)}", BLACK, _DOTTED))
     if faulty.any():
-        entries.append(("unphysical: see STATUS", _UNPHYSICAL, None))
-    drawing.height = 2 - key(drawing, box.bottom - 11.5, *entries)
+        entries.append((words[1], _UNPHYSICAL, None))
+    drawing.height = 2 - key(drawing, top, *entries)
     return drawing
-
-
-def _shade(panel: Panel, axis: Any, faulty: Any) -> None:
-    """Shade the stretches of the horizontal axis where ``faulty`` holds."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], faulty.astype(int), [0]])))
-    for first, last in edges.reshape(-1, 2):
-        panel.shade(axis[first], axis[last - 1], _UNPHYSICAL)
 
 
 def figure_5() -> Drawing:

@@ -107,15 +107,6 @@ class Box(NamedTuple):
             and other.bottom < self.top
         )
 
-    def contains(self, other: Box) -> bool:
-        """Whether ``other`` lies inside."""
-        return (
-            self.left <= other.left
-            and self.bottom <= other.bottom
-            and other.right <= self.right
-            and other.top <= self.top
-        )
-
 
 class View(NamedTuple):
     """Where points of a plan are on paper."""
@@ -129,17 +120,6 @@ class View(NamedTuple):
     def all(self, points: Iterable[complex]) -> tuple[complex, ...]:
         """Several points on paper."""
         return tuple(self.origin + self.scale * point for point in points)
-
-
-def fitted(points: Sequence[complex], frame: Box) -> View:
-    """The view that shows ``points`` as large as ``frame`` allows, in its middle."""
-    box = extent(points)
-    scale = min(frame.width / box.width, frame.height / box.height)
-    return View(_middle(frame) - scale * _middle(box), scale)
-
-
-def _middle(box: Box) -> complex:
-    return complex(box.left + box.right, box.bottom + box.top) / 2
 
 
 def check_drawable(values: Iterable[float], name: str) -> None:

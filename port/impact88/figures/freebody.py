@@ -25,49 +25,25 @@ _MOMENT = 3.4
 
 def colinear() -> Drawing:
     """Figure 2: direct colinear impact, no rotation."""
-    drawing = Drawing(
-        d.COLUMN,
-        "Free bodies, direct colinear impact",
+    from ..scene import sample
+
+    angles = dict.fromkeys(("GA", "TA", "TB", "PA", "PB", "UY", "VY"), "0")
+    drawing = planar(sample(2).replaced({**angles, "VX": "10"}), velocities=True)
+    drawing.title = "Free bodies, direct colinear impact"
+    drawing.description = (
         "Two vehicles pulled apart, with the impulse components P_n and P_t on each, opposite "
-        "in direction, and the normal and tangential axes.",
-        45.0,
+        "in direction, and the normal and tangential axes."
     )
-    items, labels = drawing.items, list[Label]()
-    middle, half = 42.5 - 25j, 11 + 4.25j
-    for name, side in (("B", -1), ("A", 1)):
-        center, colour, low = middle + 24.5 * side, COLOURS[name], name.lower()
-        corners = (half, half.conjugate(), -half, -half.conjugate())
-        body = tuple(center + corner for corner in corners)
-        items.append(Path(body, colour, 0.45, fill=TINTS[name], role=name))
-        items.append(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE))
-        labels.append(Label(center, 1j, name, 10, colour, True))
-        # impulses act on the face in contact: on A along n and t, on B against them
-        face, sign = center - side * half.real, "" if name == "A" else "−"
-        normal, tangent = (face - 9 * side, face), (face, face + 8j * side)
-        for symbol, ends, at, towards in (
-            ("n", normal, normal[0], -1j * side),
-            ("t", tangent, tangent[1], 1j * side),
-        ):
-            items += d.arrow(*ends, IMPULSE, 0.8, head=2.6, role="impulse")
-            text, role = f"{sign}P_{symbol}", "impulse label"
-            labels.append(Label(at, towards, text, 8, IMPULSE, True, role))
-        # velocities stand below the vehicle
-        base, (_, width, dash, head) = center - 1j * (half.imag + 3), ARROWS["before"]
-        items += d.arrow(base, base - 8 * side, colour, width, dash, head, "velocity")
-        labels.append(Label(base, side, f"v_{{{low}n}}, v_{{{low}t}}", colour=colour))
-    origin = middle - 4 + 13j
-    for along, name in ((1, "n"), (1j, "t")):
-        end = origin + 8 * along
-        items += d.arrow(origin, end, d.BLACK, 0.35, head=1.8, role=f"{name} axis")
-        labels.append(Label(end, along, name))
     note = "m (V − v) = impulse, for each vehicle along n and t"
-    items.append(Text(42.5 - 42.8j, note, anchor="middle", colour=d.GREY, role="note"))
-    place(drawing, labels, Box(0.8, -39.5, drawing.width - 0.8, -0.4))
+    drawing.height += 3
+    at = complex(drawing.width / 2, 1.5 - drawing.height)
+    drawing.items.append(Text(at, note, anchor="middle", colour=d.GREY, role="note"))
     return drawing
 
 
-def planar(scene: Any = None) -> Drawing:
-    """Figure 3: planar impact; distances, angles and impulses of a scene's two vehicles.
+def planar(scene: Any = None, velocities: bool = False) -> Drawing:
+    """Figure 3: planar impact; distances, angles and impulses of a scene's two vehicles, with the
+    ``velocities`` before or without.
 
     Raises UserError when a value of the scene is missing or no number.
     """
@@ -101,6 +77,14 @@ def planar(scene: Any = None) -> Drawing:
     for vehicle in shapes.vehicles:
         moved = View(at(apart[vehicle.name]), scale)
         _body(drawing.items, labels, shapes, vehicle, moved, scale * size)
+        if velocities:
+            low, (_, width, dash, head) = vehicle.name.lower(), ARROWS["before"]
+            side = -0.9j if vehicle.name == "A" else 0.9j  # where P_t is not
+            base = moved(vehicle.center + side * vehicle.width)
+            end = base + 8 * vehicle.before.velocity / vehicle.before.speed
+            colour = COLOURS[vehicle.name]
+            drawing.items += d.arrow(base, end, colour, width, dash, head, "velocity")
+            labels.append(Label(base, base - end, f"v_{{{low}n}}, v_{{{low}t}}", colour=colour))
     _plane(drawing.items, labels, shapes, at.origin, scale * size)
     page = Box(0.6, 0.4 - drawing.height, drawing.width - 0.6, -0.4)
     draw_axes(drawing, page)

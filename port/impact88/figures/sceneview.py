@@ -407,7 +407,7 @@ def _notes(shapes: Plan, units: System) -> list[str]:
             length = short(units.shown(_LENGTH, vehicle.length))
             width = with_unit(vehicle.width, _LENGTH, units)
             first.append(f"{vehicle.name} drawn as measured, {length} by {width}.")
-    assumed = [v.name for v in shapes.vehicles if v.name not in shapes.measured]
+    assumed = [v.name for v in shapes.bodies if v.name not in shapes.measured]
     if assumed:
         whose = "Outlines" if len(assumed) == 2 else f"Outline of {assumed[0]}"
         first.append(f"{whose} from I/m, L/W = 2.6: not measured.")
