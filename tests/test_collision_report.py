@@ -86,6 +86,15 @@ def test_the_answer_is_what_the_commands_say(tmp_path: Path, capsys: Any) -> Non
     assert found[8] == expected["unit"] == "mph"
 
 
+def test_friction_as_a_share_is_that_of_the_other_commands(tmp_path: Path, capsys: Any) -> None:
+    written(tmp_path, {**SCENE, "MU": "50 %"}, "--csv", str(tmp_path / "t.csv"))
+    rows = list(csv.reader((tmp_path / "t.csv").open(encoding="utf-8")))
+    found = next(row[2] for row in rows if row[:1] == ["DVA"])
+    capsys.readouterr()
+    assert main(["solve", str(tmp_path / "case.toml"), "--outputs", "DVA", "--results-only"]) == 0
+    assert float(found) == pytest.approx(float(capsys.readouterr().out.split()[-1]), abs=0.06)
+
+
 def test_the_same_input_gives_the_same_bytes_and_no_file_is_missed(
     tmp_path: Path, capsys: Any
 ) -> None:

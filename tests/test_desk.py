@@ -341,6 +341,28 @@ def test_units_are_the_commands_units(client: Client, tmp_path: Path, own: Own) 
     assert list(wrong["problems"]) == ["MA"]
 
 
+def test_friction_as_a_share_of_the_critical_one_is_the_commands(tmp_path: Path, own: Own) -> None:
+    values = {**sample(1), "MU": "50 %"}
+    told = collision.answer(values)
+    (tmp_path / "scene.toml").write_text("".join(f'{n} = "{t}"\n' for n, t in values.items()))
+    assert told["page"] == own("run", "scene.toml")
+    assert "50 % of the critical friction" in told["remarks"][0]
+
+
+def test_what_was_estimated_is_said_and_outlines_are_kept(client: Client) -> None:
+    """Lengths and widths are drawn, and saved again."""
+    lines = [f'{n} = "{t}"' for n, t in sample(1).items() if n != "IA"]
+    text = "\n".join([*lines, 'IA = "estimate"', "LA = 15", "BA = 6"])
+    read = client.post("scene?name=s", text.encode()).json
+    assert float(read["values"]["IA"]) == pytest.approx(143.5 * (15**2 + 6**2) / 12, rel=1e-3)
+    assert "is estimated: MA (LA² + BA²)/12" in read["remarks"][0]
+    asked = {"values": {**read["values"], **read["extra"]}, "title": "", "units": ""}
+    assert "A drawn as measured, 15 by 6." in client.post("figure", asked).get_data(as_text=True)
+    assert b'LA = "15"' in client.post("scene-file", asked).data
+    known = client.post("known?name=k", text.encode()).json
+    assert known["values"]["IA"] == read["values"]["IA"]
+
+
 def test_a_contact_point_in_a_vehicles_own_axes_is_worked_out(client: Client) -> None:
     text = "".join(f'{n} = "{t}"\n' for n, t in sample(1).items() if n not in ("DA", "PA"))
     read = client.post("scene?name=s", (text + "CAF = 3\nCAL = 4\n").encode()).json

@@ -19,7 +19,16 @@ from ..emulator.screen import shown_character
 from ..errors import UserError
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
 from ..plaintable import number
-from ..scene import Scene, check_value, entries_of, in_base_units, sample, template, toml_texts
+from ..scene import (
+    Scene,
+    check_value,
+    entries_of,
+    in_base_units,
+    is_share,
+    sample,
+    template,
+    toml_texts,
+)
 from ..schemas import stamped
 from ..uncertainty import uncertain
 from .entries import entries
@@ -57,7 +66,7 @@ _ANSWER = (
 class Form(NamedTuple):
     """The form as read: the ``texts`` for the program and the ``entries`` they were made of, in the
     base units of the system ``units``; the names given as ``ranges``; what is wrong: ``problems``
-    by name, and the names still ``missing``."""
+    by name, and the names still ``missing``; how entries were understood: ``remarks``."""
 
     texts: dict[str, str]
     entries: dict[str, str]
@@ -65,6 +74,7 @@ class Form(NamedTuple):
     ranges: list[str]
     problems: dict[str, str]
     missing: list[str]
+    remarks: list[str]
 
     @property
     def whole(self) -> bool:
@@ -81,7 +91,7 @@ def warm() -> None:
 def read(values: Mapping[str, str], units: str = "") -> Form:
     """The form's texts; ``units``: the system of bare numbers, or nothing."""
     given = entries({name: values.get(name, "") for name in SCENE}, units)
-    form = Form({}, given.texts, given.units, [], given.problems, [])
+    form = Form({}, given.texts, given.units, [], given.problems, [], [])
     for name in SCENE:
         if name not in given.texts:
             if name not in given.problems:
@@ -92,6 +102,14 @@ def read(values: Mapping[str, str], units: str = "") -> Form:
             form.texts[name] = _number_text(name, text, form.ranges)
         except UserError as error:
             form.problems[name] = str(error)
+    if form.whole and is_share(form.texts["MU"]):
+        try:
+            scene = Scene(form.texts)
+        except UserError as error:
+            form.problems["MU"] = str(error)
+        else:
+            form.texts["MU"] = scene["MU"]
+            form.remarks.append(scene.entries.remarks["MU"])
     return form
 
 
@@ -101,6 +119,8 @@ def _number_text(name: str, text: str, ranges: list[str]) -> str:
         item = uncertain.read(text, name)
         if item.varies:
             ranges.append(name)
+        if item.share:
+            return f"{number(100 * item.nominal, _NOMINAL_DIGITS)} %"
         text = number(item.nominal, _NOMINAL_DIGITS)
     check_value(name, text, "")
     if name == "M" and double(text) not in (4, 6):
@@ -125,6 +145,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
         "problems": form.problems,
         "missing": form.missing,
         "ranges": form.ranges,
+        "remarks": form.remarks,
         "units": told_units(form.units),
     }
     if form.whole:
