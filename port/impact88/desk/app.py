@@ -13,15 +13,8 @@ import threading
 from base64 import b64decode
 from typing import Any, TypeGuard
 
-from flask import (
-    Blueprint,
-    Flask,
-    Response,
-    abort,
-    get_template_attribute,
-    render_template,
-    request,
-)
+import flask
+from flask import Blueprint, Flask, Response, abort, request
 from jinja2 import ChoiceLoader, PackageLoader
 from werkzeug.exceptions import HTTPException
 
@@ -119,7 +112,7 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.get("/")
     def whole_page() -> str:
         desk.warm()  # the page is on its way meanwhile
-        return render_template("desk.html", **page.contents())
+        return flask.render_template("desk.html", **page.contents())
 
     @routes.get("/signs.svg")
     def signs() -> Response:
@@ -143,35 +136,34 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/collision")
     def collision_answer() -> Any:
-        told = collision.answer(_texts("values"), _units())
+        told = collision.answer(**_form())
         if "answer" in told:
-            told["first"] = get_template_attribute("answers.html", "first")(told["answer"])
-            told["all"] = get_template_attribute("answers.html", "results")(told["results"])
+            told["first"] = flask.get_template_attribute("answers.html", "first")(told["answer"])
+            told["all"] = flask.get_template_attribute("answers.html", "results")(told["results"])
         return told
 
     @routes.post("/figure")
     def figure() -> Response:
-        return Response(
-            collision.figure(_texts("values"), _title(), _units()), content_type="image/svg+xml"
-        )
+        drawn = collision.figure(**_form(), title=_text("title"))
+        return Response(drawn, content_type="image/svg+xml")
 
     @routes.post("/bounds")
     def bounds() -> Any:
-        found = asked("bounds", "bounds_answer", values=_texts("values"), units=_units())
-        table = get_template_attribute("answers.html", "bounds")
+        found = asked("bounds", "bounds_answer", **_form())
+        table = flask.get_template_attribute("answers.html", "bounds")
         return {"found": found, "table": table(found)}
 
     @routes.post("/scene-file")
     def scene_file() -> Response:
-        text = collision.scene_file(_texts("values"), _title(), _units())
+        text = collision.scene_file(**_form(), title=_text("title"))
         return _saved(text, "application/toml", "scene.toml")
 
     @routes.post("/case-report/<view>")
     def case_report(view: str) -> Response:
         if view == "collision":
-            text, name = collision.scene_file(_texts("values"), _title(), _units()), "scene.toml"
+            text, name = collision.scene_file(**_form(), title=_text("title")), "scene.toml"
         elif view == "reconstruction":
-            text, name = reconstruction.known_file(_texts("values"), _units()), "known.toml"
+            text, name = reconstruction.known_file(**_form()), "known.toml"
         else:
             abort(404)
         return _saved(
@@ -188,15 +180,13 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
-        told = asked("reconstruction", "answer", values=_texts("values"), units=_units())
-        tables = get_template_attribute("answers.html", "solutions")
+        told = asked("reconstruction", "answer", **_form())
+        tables = flask.get_template_attribute("answers.html", "solutions")
         return {**told, "tables": tables(told["solutions"])}
 
     @routes.post("/known-file")
     def known_file() -> Response:
-        return _saved(
-            reconstruction.known_file(_texts("values"), _units()), "application/toml", "known.toml"
-        )
+        return _saved(reconstruction.known_file(**_form()), "application/toml", "known.toml")
 
     @routes.post("/known")
     def read_known() -> Any:
@@ -242,8 +232,9 @@ def _name() -> str:
     return request.args.get("name", "the file")[:200]
 
 
-def _title() -> str:
-    return _text("title")
+def _form() -> dict[str, Any]:
+    """A form's ``values``, texts by name, and its ``units``. Raises UserError."""
+    return {"values": _texts("values"), "units": _units()}
 
 
 def _units() -> str:

@@ -9,7 +9,6 @@ What computes is imported on first use: the page is shown before numpy is there.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from itertools import groupby
 from typing import Any, NamedTuple
@@ -31,7 +30,7 @@ from ..scene import (
 )
 from ..schemas import stamped
 from ..uncertainty import uncertain
-from .entries import entries
+from .entries import entries, without_rounding
 from .entries import told as told_units
 from .uploads import OUTLINES, outline_lines
 
@@ -172,19 +171,16 @@ def _answer(
     system = system_of(units)
     given = {name: double(text) for name, text in scene.items()}
     found = {name: one["double"] for name, one in results.items() if one["double"] is not None}
-    values = completed(given | found, None)
+    values = without_rounding(completed(given | found, None), _ROUNDING)
     rows = []
     for words, *names in _ANSWER:
         if not values.keys() >= set(names):
             continue
         rule = quantity(names[0]).unit
-        alike = [abs(one) for name, one in values.items() if quantity(name).unit == rule]
-        least = _ROUNDING * max(filter(math.isfinite, alike), default=0.0)
-        shown = [values[name] if not abs(values[name]) <= least else 0.0 for name in names]
+        shown = {name: system.shown(rule, values[name]) for name in names}
         told = [
             {"name": name, "text": number(value, _ANSWER_DIGITS), "value": value}
-            for name, base in zip(names, shown, strict=True)
-            for value in [system.shown(rule, base)]
+            for name, value in shown.items()
         ]
         rows.append({"words": words, "unit": system.label(rule), "values": told})
     return rows
@@ -216,16 +212,12 @@ def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[d
     from ..units import system_of
 
     system = system_of(units)
-    values = {name: one["double"] for name, one in results.items() if one["double"] is not None}
-
-    def exact(name: str) -> float:
-        """The double; 0 where it is no more than the rounding of others of its kind."""
-        alike = [abs(v) for n, v in values.items() if RESULTS[n].unit == RESULTS[name].unit]
-        return values[name] if abs(values[name]) > _ROUNDING * max(alike) else 0.0
+    found = {name: one["double"] for name, one in results.items() if one["double"] is not None}
+    values = without_rounding(found, _ROUNDING)
 
     def shown(name: str) -> str:
         label = system.unit(name)
-        return f"{number(exact(name) * system.factor(name))} {label}" if label else ""
+        return f"{number(values[name] * system.factor(name))} {label}" if label else ""
 
     return [
         {
@@ -234,9 +226,9 @@ def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[d
             "meaning": quantity.meaning,
             "unit": quantity.unit,
             "printed": results[name]["printed"] or "",
-            "exact": number(exact(name), _DIGITS),
+            "exact": number(values[name], _DIGITS),
             "shown": shown(name),
-            "value": exact(name) * system.factor(name),
+            "value": values[name] * system.factor(name),
             "label": system.unit(name),
         }
         for name, quantity in RESULTS.items()

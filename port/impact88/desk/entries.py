@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ..errors import UserError
-from ..names import CHAPTER, RESULTS, SCENE
+from ..names import CHAPTER, RESULTS, SCENE, quantity
 from ..scene import in_base_units
 
 UNITS = "units"
@@ -58,4 +59,17 @@ def told(units: str | None) -> dict[str, Any]:
         "name": units or "",
         "base": base_of(system),
         "labels": {rule: system.label(rule) for rule in sorted(rules)},
+    }
+
+
+def without_rounding(values: Mapping[str, float], share: float) -> dict[str, float]:
+    """The values, 0 for those that are at most so small a share of the largest of their kind."""
+    largest: dict[str, float] = {}
+    for name, value in values.items():
+        rule = quantity(name).unit
+        if math.isfinite(value):
+            largest[rule] = max(largest.get(rule, 0.0), abs(value))
+    return {
+        name: 0.0 if abs(value) <= share * largest.get(quantity(name).unit, 0.0) else value
+        for name, value in values.items()
     }

@@ -16,7 +16,7 @@ from ..reconstruction.knowable import KNOWABLE
 from ..scene import known_template, sample
 from ..schemas import stamped
 from ..uncertainty import uncertain
-from .entries import Entries, entries
+from .entries import Entries, entries, without_rounding
 from .entries import told as told_units
 from .uploads import OUTLINES, outline_lines
 
@@ -100,7 +100,10 @@ def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, 
     from ..units import system_of
 
     system = system_of(given.units)
-    rows = [_row(name, value, values, system) for name, value in values["values"].items()]
+    found = values["values"]
+    exact = {name: value for name, value in found.items() if value is not None}
+    shown = without_rounding(exact, _ROUNDING)
+    rows = [_row(name, value, shown.get(name), values, system) for name, value in found.items()]
     named = (_DEVIATION, "5 %", "95 %", _LOWER, _UPPER, _AMPLIFIED)
     return {
         "printed": printed,
@@ -116,7 +119,11 @@ def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, 
 
 
 def _row(
-    name: str, value: float | None, values: Mapping[str, Any], system: System
+    name: str,
+    value: float | None,
+    shown: float | None,
+    values: Mapping[str, Any],
+    system: System,
 ) -> dict[str, Any]:
     spread = values.get("uncertainty", {}).get(name, {})
     quantiles = spread.get("quantiles", {})
@@ -130,15 +137,9 @@ def _row(
         _LOWER: spread.get("lower"),
         _UPPER: spread.get("upper"),
     }
-    alike = [
-        abs(values["values"][n] or 0)
-        for n in values["values"]
-        if quantity(n).unit == quantity(name).unit
-    ]
-    zero = value is not None and abs(value) < _ROUNDING * max(alike)
     return {
         **_what(name, system),
-        "text": _text(0.0 if zero else value, _DIGITS),
+        "text": _text(shown, _DIGITS),
         "value": value,
         "known": name in values["known"],
         "solved": name in values.get("solved_for", _SOUGHT) and name not in values["known"],
