@@ -142,8 +142,7 @@ def report(
 
 
 def _forward(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
-    from ..closedform.share import typed_friction
-    from ..closedform.solve import solve
+    from ..closedform.solve import share_typed, solve
     from ..reconstruction.solutiontable import completed
     from ..uncertainty.bounds import bounds
     from ..uncertainty.ranges import read_inputs
@@ -151,7 +150,7 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
     inputs = read_inputs(entries.values, {}, "forward", source)
     nominal = moved({name: item.nominal for name, item in inputs.values.items()})
     if inputs.values["MU"].share:
-        nominal["MU"] = typed_friction(nominal, nominal["MU"])
+        nominal["MU"] = share_typed(nominal, nominal["MU"])
     results = {name: float(value) for name, value in solve(nominal).items()}
     values = completed({**{n: float(v) for n, v in nominal.items()}, **results}, None)
     spreads: dict[str, Spread] = {}
