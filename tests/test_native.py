@@ -42,10 +42,9 @@ def assert_same_bits(compiled, alone):
 
 
 @pytest.mark.parametrize("name", POPULATIONS)
-@pytest.mark.parametrize("count", [2, 127, FEW, FEW + 1, 2 * TILE + 5])
+@pytest.mark.parametrize("count", [2, FEW, FEW + 1])
 def test_every_result_of_every_population(name, count):
-    columns = enlarged(scenes(name, min(count, FEW), 11), count)
-    assert_same_bits(*both(columns, threads=1))
+    assert_same_bits(*both(enlarged(scenes(name, min(count, 500), 11), count), threads=1))
 
 
 def odd(count: int, seed: int) -> dict[str, np.ndarray]:
@@ -73,7 +72,7 @@ def odd(count: int, seed: int) -> dict[str, np.ndarray]:
     return columns
 
 
-@pytest.mark.parametrize("count", [60, 5000, 100_000])
+@pytest.mark.parametrize("count", [60, 127, 5000, 100_000])
 def test_scenes_of_all_kinds_among_each_other(count):
     assert_same_bits(*both(odd(count, count)))
 
@@ -116,8 +115,8 @@ def test_selections():
 
 
 def test_threads_and_room_of_the_callers():
-    columns = odd(400_000, 2)
-    room = {name: np.empty(400_000) for name in SIX}
+    columns = odd(280_000, 2)
+    room = {name: np.empty(280_000) for name in SIX}
     alone = both(columns, SIX, threads=2)[1]
     assert_same_bits(impact88.solve(columns, out=room, threads=2), alone)
 
@@ -140,7 +139,7 @@ REPLAYED = (
     "em-half",
     "pivots",
 )
-SCENES = int(os.environ.get("IMPACT88_REPLAY_SCENES", "0")) or 4000
+SCENES = int(os.environ.get("IMPACT88_REPLAY_SCENES", "0")) or 1500
 
 
 @pytest.mark.parametrize("name", REPLAYED)

@@ -28,7 +28,7 @@ from impact88.replay.unit import Unit
 
 pytestmark = pytest.mark.usefixtures("both_machines")
 
-AGAINST_THE_PORT = int(os.environ.get("IMPACT88_REPLAY_SCENES") or 300)
+AGAINST_THE_PORT = int(os.environ.get("IMPACT88_REPLAY_SCENES") or 180)
 LEFT_IN_VARIABLES = ("KI", "KF", "XA", "YA", "XB", "YB")
 
 
@@ -380,9 +380,9 @@ def test_blocks_and_threads_change_nothing(awkward: list[dict[str, Any]]) -> Non
     for block in (25, 100):
         same(whole, replay_scenes(scenes, threads=1, block=block), scenes.size)
     many = scenes._replace(
-        values={name: np.resize(v, 20000) for name, v in scenes.values.items()},
-        size=20000,
-        first=np.resize(scenes.first, 20000),
+        values={name: np.resize(v, 16400) for name, v in scenes.values.items()},
+        size=16400,
+        first=np.resize(scenes.first, 16400),
     )
     one, two = (replay_scenes(many, threads=threads) for threads in (1, 2))
     assert one.code.tolist() == two.code.tolist()
