@@ -29,7 +29,7 @@ MARKS = {
 WIDTH = 174.0
 """Millimetres: two columns."""
 _ACROSS = 3
-_TIMES, _ERRORS = (1e-8, 2e-2), (1e-17, 1e4)
+_TIMES, _ERRORS = (1e-9, 2e-2), (1e-17, 1e4)
 
 
 def work_precision(rows: Sequence[Measured], roof: float) -> Drawing:
@@ -54,7 +54,7 @@ def work_precision(rows: Sequence[Measured], roof: float) -> Drawing:
         label = "relative error of the final velocities" if column == 0 else ""
         panel = Panel(
             *(drawing, box, _TIMES, _ERRORS, "time per scene, s", label),
-            x_ticks=powers(1e-8, 1e-2, 2),
+            x_ticks=powers(1e-9, 1e-2, 2),
             y_ticks=powers(1e-15, 1e3, 3)[::3],
             log=True,
             grid=True,
