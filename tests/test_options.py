@@ -13,7 +13,10 @@ from impact88.cli import COMMANDS, main
 from impact88.commands import options
 from impact88.errors import UserError
 
-WITH_SET = "run --sample 1|solve cases.csv|compare cases.csv|reconstruct|barrier|colinear|delta-v"
+WITH_SET = (
+    "run --sample 1|solve cases.csv|compare cases.csv|reconstruct|barrier|colinear|delta-v|staged|"
+    "report --sample 1 -o page.html"
+)
 
 
 def arguments(command: str) -> list[argparse.Action]:
