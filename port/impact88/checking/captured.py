@@ -1,13 +1,16 @@
-"""The captures' own form: a captured call, run or program done again here, to be held against it.
+"""The captures of the real machine: read, and their own form of what is done again here.
 
-The captures of the real machine write results in a certain way and leave some things open (what
-bytes stand in a zero). This room knows that way, for `selfcheck` and for the tests.
+A folder of captures is laid out as golden/: arithmetic/, programs/, scenes and fuzz. They leave
+some things open, such as what bytes stand in a zero.
 """
 
 from __future__ import annotations
 
+import gzip
+import json
 from collections import deque
 from collections.abc import Callable, Mapping
+from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 from ..applesoft import decimaltext, functions, real
@@ -18,6 +21,9 @@ if TYPE_CHECKING:
 
 PLENTY = 3_000_000
 """Statements that no captured program needs."""
+SCENES, PROGRAMS, FUZZ, ARITHMETIC = "scenes", "programs", "fuzz", "arithmetic"
+ENDINGS = ("bas", "in", "out", "scr")
+"""Of a program's files: itself, the replies, what is displayed, the screen at the end."""
 
 _BINARY: Mapping[str, Callable[[real.Number, real.Number], real.Number]] = {
     "add": real.add,
@@ -39,6 +45,39 @@ _UNARY: Mapping[str, Callable[[real.Number], real.Number]] = {
     "tan": functions.tangent,
     "atn": functions.arc_tangent,
 }
+
+
+def golden() -> Any:
+    """The packaged folder of captures."""
+    return resources.files("impact88.golden")
+
+
+def rows(folder: Any, name: str) -> list[dict[str, Any]]:
+    """The captured scenes, or fuzz."""
+    data = gzip.decompress(folder.joinpath(f"{name}.jsonl.gz").read_bytes()).decode()
+    return list(map(json.loads, data.splitlines()))
+
+
+def calls(folder: Any) -> dict[str, list[list[str]]]:
+    """The captured calls of the arithmetic, by file: operation, operands, extension, result."""
+    files = sorted(folder.joinpath(ARITHMETIC).iterdir(), key=lambda one: str(one.name))
+    return {
+        file.name.partition(".")[0]: [
+            row.split("\t") for row in gzip.decompress(file.read_bytes()).decode().splitlines()
+        ]
+        for file in files
+        if file.name.endswith(".tsv.gz")
+    }
+
+
+def programs(folder: Any) -> dict[str, dict[str, str]]:
+    """The captured programs by name: their texts by ending."""
+    found: dict[str, dict[str, str]] = {}
+    for file in sorted(folder.joinpath(PROGRAMS).iterdir(), key=lambda one: str(one.name)):
+        name, _, ending = file.name.rpartition(".")
+        if ending in ENDINGS:
+            found.setdefault(name, {})[ending] = file.read_bytes().decode("latin-1")
+    return {name: texts for name, texts in found.items() if "bas" in texts}
 
 
 def call(operation: str, first: str, second: str, extension: str) -> str:

@@ -7,12 +7,9 @@ files when it qualifies an installation.
 
 from __future__ import annotations
 
-import gzip
-import json
 import time
 from collections.abc import Callable, Iterator
-from importlib import resources
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from ..fields import FIELDS, outcome_fields
 from ..names import SCENE
@@ -22,17 +19,6 @@ from ..scene import sample
 from . import captured
 
 GOLDEN_RUNS = {1: "run1", 2: "run2", 3: "table3"}
-
-
-class Folder(Protocol):
-    """A folder of captures: a `pathlib.Path`, or a packaged one."""
-
-    @property
-    def name(self) -> str: ...
-
-    def joinpath(self, *names: str) -> Any: ...
-
-    def iterdir(self) -> Iterator[Any]: ...
 
 
 class Check(NamedTuple):
@@ -56,9 +42,9 @@ Counted = Iterator[tuple[str, bool]]
 """What was compared, and whether it was right."""
 
 
-def checks(folder: Folder | None = None) -> Iterator[Check]:
-    """All checks, one after the other. ``folder``: other captures than the packaged ones."""
-    golden = folder or resources.files("impact88.golden")
+def checks(folder: Any = None) -> Iterator[Check]:
+    """All checks, one after the other. ``folder``: a path to other captures than the packaged."""
+    golden = folder or captured.golden()
     for name, (compared, cases) in CHECKS.items():
         start = time.perf_counter()
         total = right = 0
@@ -96,24 +82,14 @@ def record(checks: list[Check]) -> dict[str, Any]:
 # --- what is compared ----------------------------------------------------------------------------
 
 
-def _lines(golden: Any, name: str) -> Iterator[dict[str, Any]]:
-    data = gzip.decompress(golden.joinpath(f"{name}.jsonl.gz").read_bytes()).decode()
-    for line in data.splitlines():
-        yield json.loads(line)
-
-
 def _arithmetic(golden: Any) -> Counted:
-    for file in sorted(golden.joinpath("arithmetic").iterdir(), key=lambda one: one.name):
-        if not file.name.endswith(".tsv.gz"):
-            continue
-        for row in gzip.decompress(file.read_bytes()).decode().splitlines():
-            operation, first, second, extension, result = row.split("\t")
-            got = captured.call(operation, first, second, extension)
-            yield row, got == captured.result(result)
+    for several in captured.calls(golden).values():
+        for row in several:
+            yield "\t".join(row), captured.call(*row[:4]) == captured.result(row[4])
 
 
 def _port(golden: Any) -> Counted:
-    for row in _lines(golden, "scenes"):
+    for row in captured.rows(golden, captured.SCENES):
         ported = run(row["scene"], dos=False)
         same = ported.printout == row["printout"]
         variables = captured.left_behind(ported.reals, ported.A)
@@ -123,7 +99,7 @@ def _port(golden: Any) -> Counted:
 def _replay(golden: Any) -> Counted:
     from ..replay import replay
 
-    rows = list(_lines(golden, "scenes"))
+    rows = captured.rows(golden, captured.SCENES)
     replayed = replay({name: [row["scene"][name] for row in rows] for name in SCENE})
     printed = {name: replayed.printed(name).tolist() for name in FIELDS}
     for index, row in enumerate(rows):
@@ -132,20 +108,12 @@ def _replay(golden: Any) -> Counted:
 
 
 def _programs(golden: Any) -> Counted:
-    files = {file.name: file for file in golden.joinpath("programs").iterdir()}
-    for name in sorted(files):
-        if name.endswith(".bas"):
-            stem = name.removesuffix(".bas")
-            texts = [
-                files[one].read_bytes().decode("latin-1") if one in files else ""
-                for one in (name, f"{stem}.in", f"{stem}.out")
-            ]
-            yield stem, captured.displayed(texts[0], texts[1]) == texts[2]
-    for row in _lines(golden, "fuzz"):
-        yield (
-            row["name"],
-            captured.displayed(row["program"], row["keyboard"], blanks=False) == row["output"],
-        )
+    for name, texts in captured.programs(golden).items():
+        shown = captured.displayed(texts["bas"], texts.get("in", ""))
+        yield name, shown == texts.get("out", "")
+    for row in captured.rows(golden, captured.FUZZ):
+        shown = captured.displayed(row["program"], row["keyboard"], blanks=False)
+        yield row["name"], shown == row["output"]
 
 
 def _published(golden: Any) -> Counted:
@@ -161,7 +129,8 @@ def _closed_form(golden: Any) -> Counted:
     from ..accuracy import errorbound
     from ..closedform.solve import solve
 
-    rows = [row for row in _lines(golden, "scenes") if row["scene"]["M"] == "6"]
+    rows = captured.rows(golden, captured.SCENES)
+    rows = [row for row in rows if row["scene"]["M"] == "6"]
     g = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
     with np.errstate(all="ignore"):
         solved = {name: column.astype(float) for name, column in solve(g).items()}

@@ -89,8 +89,8 @@ ARGUMENTS = (
 def main(args: argparse.Namespace) -> int:
     """Hear the witness, and print what it says."""
     jobs = _jobs(args)
+    from ..witness.hearing import record
     from ..witness.image import read_image
-    from ..witness.record import record
     from ..witness.session import Session
 
     image = read_image(args.rom, args.any_rom)

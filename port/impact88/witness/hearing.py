@@ -9,11 +9,14 @@ its capture and the arithmetic here.
 from __future__ import annotations
 
 import difflib
+from collections import Counter
 from collections.abc import Iterator
+from importlib import metadata
 from typing import Any, NamedTuple
 
 from ..applesoft.console import Console
 from ..checking import captured
+from ..checking.captured import ARITHMETIC, FUZZ, PROGRAMS, SCENES
 from ..checking.selfcheck import GOLDEN_RUNS
 from ..emulator.machine import TooManyStatements
 from ..fields import FIELDS, outcome_fields
@@ -21,9 +24,11 @@ from ..files import packaged_bytes
 from ..names import SCENE
 from ..program import emulated
 from ..program.run import run
+from ..reporting import provenance
 from ..scene import Scene, sample
 from .apple import Lost
-from .packaged import ARITHMETIC, FUZZ, OWN, PROGRAMS, SCENES, Case
+from .image import Image
+from .packaged import OWN, Case
 from .session import Finished, Session
 
 CAPTURE, PORT, EMULATOR, REPLAY, PUBLISHED = "capture", "port", "emulator", "replay", "published"
@@ -70,7 +75,7 @@ def hear(session: Session, case: Case) -> Heard:
         return hear_scene(session, case.name, Scene(case.data["scene"]), case.data)
     if case.kind == ARITHMETIC:
         return _hear_call(session, case)
-    return _hear_own_program(session, case) if case.kind == OWN else _hear_program(session, case)
+    return _hear_program(session, case)
 
 
 # --- scenes --------------------------------------------------------------------------------------
@@ -152,55 +157,48 @@ def _replayed_apart(rom: Finished, scene: Scene) -> Iterator[Difference]:
 
 
 def _hear_program(session: Session, case: Case) -> Heard:
-    blanks = case.kind == PROGRAMS
-    if blanks:
-        program, keys, expected = (case.data.get(ending, "") for ending in ("bas", "in", "out"))
-    else:
-        program, keys, expected = (case.data[part] for part in ("program", "keyboard", "output"))
+    """A program, held against its capture, if it has one, and the emulator: all that is displayed,
+    and the screen at the end. One that does not come to an end is a difference."""
+    data, fuzz = case.data, case.kind == FUZZ
+    program, keys = (
+        (data["program"], data["keyboard"]) if fuzz else (data["bas"], data.get("in", ""))
+    )
     before = session.apple.instructions
-    rom = session.run_program(program, keys, blanks=blanks)
-    others = {CAPTURE: expected, EMULATOR: captured.displayed(program, keys, blanks=blanks)}
-    differences = [
-        Difference(who, "displayed", rom, other) for who, other in others.items() if other != rom
-    ]
-    if case.kind == FUZZ:
-        return Heard(FUZZ, case.name, tuple(others), differences, {**case.data, "output": rom})
-    done = {**case.data, "out": rom, "instructions": session.apple.instructions - before}
-    if "scr" in case.data:
-        done["scr"] = session.apple.screen_text()
-        if done["scr"] != case.data["scr"]:
-            differences.append(Difference(CAPTURE, "screen", done["scr"], case.data["scr"]))
-    return Heard(PROGRAMS, case.name, tuple(others), differences, done)
-
-
-def _hear_own_program(session: Session, case: Case) -> Heard:
-    """A program without a capture, in both: all that is displayed, and the screen at the end. One
-    that does not come to an end is a difference."""
-    program, keys = case.data["bas"], case.data["in"]
-    differences = []
+    rom, differences = {"displayed": "", "screen": ""}, []
+    others: dict[str, dict[str, str]] = {}
+    if fuzz:
+        others[CAPTURE] = {"displayed": data["output"]}
+    elif case.kind == PROGRAMS:
+        others[CAPTURE] = {"displayed": data.get("out", "")}
+        others[CAPTURE] |= {"screen": data["scr"]} if "scr" in data else {}
+    others[EMULATOR] = {}
     try:
-        rom, screen = session.run_program(program, keys), session.apple.screen_text()
+        rom["displayed"] = session.run_program(program, keys, blanks=not fuzz)
+        rom["screen"] = session.apple.screen_text()
+        machine, shown = captured.session(program, keys, blanks=not fuzz)
+        others[EMULATOR]["displayed"] = shown.replace("\0", "")
+        if case.kind == OWN:
+            others[EMULATOR]["screen"] = machine.screen_text()
     except Lost as lost:
-        rom, screen = session.apple.take_output(), ""
+        rom["displayed"] = session.apple.take_output()
+        others.clear()
         differences.append(Difference(EMULATOR, "the ROM", str(lost), "not compared"))
-    else:
-        try:
-            machine, shown = captured.session(program, keys)
-        except TooManyStatements:
-            allowed = f"no end after {captured.PLENTY:,} statements"
-            differences.append(Difference(EMULATOR, "the emulator", "came to an end", allowed))
-        else:
-            compared = (
-                ("displayed", rom, shown.replace("\0", "")),
-                ("screen", screen, machine.screen_text()),
-            )
-            differences += [
-                Difference(EMULATOR, what, one, other)
-                for what, one, other in compared
-                if one != other
-            ]
-    done = {**case.data, "out": rom, "scr": screen, "instructions": session.apple.instructions}
-    return Heard(OWN, case.name, (EMULATOR,), differences, done)
+    except TooManyStatements:
+        allowed = f"no end after {captured.PLENTY:,} statements"
+        differences.append(Difference(EMULATOR, "the emulator", "came to an end", allowed))
+    differences += [
+        Difference(who, what, rom[what], text)
+        for who, other in others.items()
+        for what, text in other.items()
+        if text != rom[what]
+    ]
+    compared = tuple(others or (EMULATOR,))
+    if fuzz:
+        return Heard(FUZZ, case.name, compared, differences, {**data, "output": rom["displayed"]})
+    done = {**data, "out": rom["displayed"], "instructions": session.apple.instructions - before}
+    if case.kind == OWN or "scr" in data:
+        done["scr"] = rom["screen"]
+    return Heard(case.kind, case.name, compared, differences, done)
 
 
 def _hear_call(session: Session, case: Case) -> Heard:
@@ -217,3 +215,44 @@ def _hear_call(session: Session, case: Case) -> Heard:
     ]
     capture = [operation, first, second, extension, rom]
     return Heard(ARITHMETIC, case.name, tuple(others), differences, capture)
+
+
+# --- the record -----------------------------------------------------------------------------------
+
+TOLD = 100
+"""Cases with differences that a record holds in full."""
+
+
+def record(image: Image, heard: list[Heard], seconds: float) -> dict[str, Any]:
+    """The object `impact88 witness --json` prints."""
+    cases, comparisons, failing = Counter[str](), Counter[str](), Counter[str]()
+    for one in heard:
+        cases[one.kind] += 1
+        comparisons.update(f"{one.kind}, {who}" for who in one.compared)
+        failing.update({f"{one.kind}, {difference.who}" for difference in one.differences})
+    wrong = [one for one in heard if one.differences]
+    return {
+        "passed": bool(heard) and not wrong,
+        "versions": {**provenance.versions(), "py65": metadata.version("py65")},
+        "hashes": {
+            "rom_sha1": image.sha1,
+            "listing": provenance.listing_hash(),
+            "captures": provenance.captures_hash(),
+        },
+        "rom": "Apple II Plus" if image.known else "unknown",
+        "cases": dict(cases),
+        "comparisons": {
+            name: {"total": total, "right": total - failing[name]}
+            for name, total in comparisons.items()
+        },
+        "differing_cases": len(wrong),
+        "differences": [
+            {
+                "kind": one.kind,
+                "name": one.name,
+                "differences": [difference._asdict() for difference in one.differences],
+            }
+            for one in wrong[:TOLD]
+        ],
+        "seconds": round(seconds, 1),
+    }

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import gzip
-import json
-from collections.abc import Iterator
-from functools import cache
-from importlib import resources
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+from ..checking import captured
+from ..checking.captured import ARITHMETIC, FUZZ, PROGRAMS, SCENES
 from ..errors import UserError
 from ..files import read_bytes
-from .routines import OPERATIONS
 
-SCENES, PROGRAMS, FUZZ, ARITHMETIC = "scenes", "programs", "fuzz", "arithmetic"
 ALL = "all"
 OWN = "own programs"
 PROGRAM_LIMIT = 1_000_000
@@ -35,26 +30,25 @@ class Case(NamedTuple):
 def cases(count: int | None, seed: int = 0) -> list[Case]:
     """Captures, drawn evenly from scenes, programs and the routines of the arithmetic, none twice;
     all of them for ``count`` None."""
+    golden = captured.golden()
+    scenes = [Case(SCENES, row["id"], row) for row in captured.rows(golden, SCENES)]
+    programs = [Case(PROGRAMS, *one) for one in captured.programs(golden).items()]
+    programs += [Case(FUZZ, row["name"], row) for row in captured.rows(golden, FUZZ)]
+    calls = [
+        [Case(ARITHMETIC, f"{operation}-{place:04d}", row) for place, row in enumerate(rows)]
+        for operation, rows in captured.calls(golden).items()
+    ]
     if count is None:
-        return [*_scenes(), *_programs(), *_fuzz()] + [
-            case for operation in OPERATIONS for case in _calls(operation)
-        ]
+        return sum(calls, scenes + programs)
     rng = Random(seed)
-    programs = [*_programs(), *_fuzz()]
-    decks = [rng.sample(_scenes(), len(_scenes())), rng.sample(programs, len(programs))]
-    routines = rng.sample(OPERATIONS, len(OPERATIONS))
+    rng.shuffle(calls)
+    for deck in (scenes, programs, *calls):
+        rng.shuffle(deck)
     drawn: list[Case] = []
-    used: set[tuple[str, int]] = set()
     for turn in range(count):
-        deck = turn % 3
-        if deck < 2 and decks[deck]:
-            drawn.append(decks[deck].pop())
-            continue
-        calls = _calls(operation := routines[turn // 3 % len(routines)])
-        place = rng.randrange(len(calls))
-        if (operation, place) not in used:
-            used.add((operation, place))
-            drawn.append(calls[place])
+        decks = (scenes, programs, calls[turn // 3 % len(calls)])
+        deck = decks[turn % 3] or decks[2]
+        drawn += [deck.pop()] if deck else []
     return drawn
 
 
@@ -86,53 +80,3 @@ def _own_program(path: Path) -> Case:
 def _text(path: Path) -> str:
     text = read_bytes(str(path), limit=PROGRAM_LIMIT).decode("latin-1")
     return text.replace("\r\n", "\n").replace("\r", "\n")
-
-
-def _golden() -> Any:
-    return resources.files("impact88.golden")
-
-
-def _rows(name: str) -> list[Case]:
-    text = gzip.decompress(_golden().joinpath(f"{name}.jsonl.gz").read_bytes()).decode()
-    rows = map(json.loads, text.splitlines())
-    return [Case(name, row.get("id") or row["name"], row) for row in rows]
-
-
-@cache
-def _scenes() -> list[Case]:
-    return _rows(SCENES)
-
-
-@cache
-def _fuzz() -> list[Case]:
-    return _rows(FUZZ)
-
-
-@cache
-def _programs() -> list[Case]:
-    files = {file.name: file for file in _golden().joinpath(PROGRAMS).iterdir()}
-    programs = []
-    for name in sorted(name.removesuffix(".bas") for name in files if name.endswith(".bas")):
-        texts = {
-            ending: files[f"{name}.{ending}"].read_bytes().decode("latin-1")
-            for ending in ("bas", "in", "out", "scr")
-            if f"{name}.{ending}" in files
-        }
-        programs.append(Case(PROGRAMS, name, texts))
-    return programs
-
-
-@cache
-def _calls(operation: str) -> list[Case]:
-    data = _golden().joinpath(ARITHMETIC, f"{operation}.tsv.gz").read_bytes()
-    rows = gzip.decompress(data).decode().splitlines()
-    return [
-        Case(ARITHMETIC, f"{operation}-{place:04d}", row.split("\t"))
-        for place, row in enumerate(rows)
-    ]
-
-
-def program_index() -> Iterator[list[str]]:
-    """The rows of programs/index.tsv, its heading first."""
-    for line in _golden().joinpath(PROGRAMS, "index.tsv").read_text("utf-8").splitlines():
-        yield line.split("\t")

@@ -7,12 +7,11 @@ import json
 import os
 from collections.abc import Iterable
 
+from ..checking.captured import ARITHMETIC, ENDINGS, FUZZ, PROGRAMS, SCENES, golden
 from ..errors import UserError
 from ..files import replacing
 from .hearing import Heard
-from .packaged import ARITHMETIC, FUZZ, OWN, PROGRAMS, SCENES, program_index
-
-_ENDINGS = ("bas", "in", "out", "scr")
+from .packaged import OWN
 
 
 def save(folder: str, heard: Iterable[Heard]) -> None:
@@ -20,53 +19,37 @@ def save(folder: str, heard: Iterable[Heard]) -> None:
 
     Raises UserError when a place cannot be written to.
     """
-    kinds: dict[str, list[Heard]] = {}
+    files: dict[str, list[str]] = {}
+    index: dict[str, str] = {}
     for one in heard:
-        kinds.setdefault(one.kind, []).append(one)
-    _make(folder)
-    for kind in (SCENES, FUZZ):
-        if kind in kinds:
-            lines = [json.dumps(one.capture) for one in kinds[kind]]
-            _write_gzip(os.path.join(folder, f"{kind}.jsonl.gz"), lines)
-    if ARITHMETIC in kinds:
-        _make(os.path.join(folder, ARITHMETIC))
-        calls: dict[str, list[str]] = {}
-        for one in kinds[ARITHMETIC]:
-            calls.setdefault(one.capture[0], []).append("\t".join(one.capture))
-        for operation, rows in calls.items():
-            _write_gzip(os.path.join(folder, ARITHMETIC, f"{operation}.tsv.gz"), rows)
-    if OWN in kinds:
-        _write_texts(os.path.join(folder, PROGRAMS), kinds[OWN])
-    if PROGRAMS in kinds:
-        _save_programs(os.path.join(folder, PROGRAMS), kinds[PROGRAMS])
-
-
-def _save_programs(folder: str, heard: list[Heard]) -> None:
-    _write_texts(folder, heard)
-    counts = {one.name: str(one.capture["instructions"]) for one in heard}
-    heading, *rows = program_index()
-    with replacing(os.path.join(folder, "index.tsv")) as file:
-        for row in [heading, *([*row[:-1], counts[row[0]]] for row in rows if row[0] in counts)]:
-            file.write("\t".join(row) + "\n")
-
-
-def _write_texts(folder: str, heard: list[Heard]) -> None:
-    _make(folder)
-    for one in heard:
-        for ending in _ENDINGS:
-            if one.capture.get(ending):
-                with replacing(os.path.join(folder, f"{one.name}.{ending}"), "wb") as file:
-                    file.write(one.capture[ending].encode("latin-1"))
-
-
-def _make(folder: str) -> None:
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"cannot be made: {error.strerror or error}", folder) from None
-
-
-def _write_gzip(path: str, lines: list[str]) -> None:
-    """Lines, compressed; the same lines give the same bytes on every day."""
-    with replacing(path, "wb") as file:
-        file.write(gzip.compress("".join(f"{line}\n" for line in lines).encode(), mtime=0))
+        if one.kind in (SCENES, FUZZ):
+            files.setdefault(f"{one.kind}.jsonl.gz", []).append(json.dumps(one.capture))
+        elif one.kind == ARITHMETIC:
+            name = os.path.join(ARITHMETIC, f"{one.capture[0]}.tsv.gz")
+            files.setdefault(name, []).append("\t".join(one.capture))
+        else:
+            for ending in ENDINGS:
+                if one.capture.get(ending):
+                    name = os.path.join(PROGRAMS, f"{one.name}.{ending}")
+                    files[name] = [one.capture[ending]]
+            if one.kind != OWN:
+                index[one.name] = str(one.capture["instructions"])
+    if index:
+        text = golden().joinpath(PROGRAMS, "index.tsv").read_text("utf-8")
+        heading, *rows = (line.split("\t") for line in text.splitlines())
+        kept = [[*row[:-1], index[row[0]]] for row in rows if row[0] in index]
+        files[os.path.join(PROGRAMS, "index.tsv")] = [
+            "\t".join(row) + "\n" for row in (heading, *kept)
+        ]
+    for name, lines in files.items():
+        path = os.path.join(folder, name)
+        try:
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+        except OSError as error:
+            raise UserError(f"cannot be made: {error.strerror or error}", folder) from None
+        with replacing(path, "wb") as file:
+            if name.endswith(".gz"):  # the same lines give the same bytes on every day
+                text = "".join(f"{line}\n" for line in lines)
+                file.write(gzip.compress(text.encode(), mtime=0))
+            else:
+                file.write("".join(lines).encode("latin-1"))
