@@ -29,7 +29,7 @@ from ..closedform.solve import solve
 from ..doubles import double, doubles
 from ..equations.bounded import running_errors
 from ..equations.evaluation import Run
-from ..equations.spelling import IMPULSES, spellings
+from ..equations.spelling import A_IMPULSE, IMPULSES, spellings
 from ..errors import quoted
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..tables.rows import Rows, one_per_row
@@ -47,8 +47,6 @@ EQUATIONS = {
     "18": "moment",
 }
 """Number and subject."""
-_FORM = "equations with A's impulse"
-"""The spelling in which each equation can be violated alone: none takes another for granted."""
 _ROUNDING = 1e-13
 """Of the sum of an equation's terms, for evaluating it."""
 _NOTHING = re.compile(
@@ -84,6 +82,8 @@ class Case:
 
     names: tuple[str, ...]
     scene: Floats
+    before: Floats
+    after: Floats
     values: Floats
     units: Floats
     ours: Floats
@@ -99,8 +99,13 @@ class Case:
 
     @property
     def columns(self) -> dict[str, Floats]:
-        """The scenes by name."""
-        return dict(zip(SCENE, self.scene, strict=True))
+        """The scenes by name, and those of the rows before and after."""
+        beside = {"": self.scene, "before_": self.before, "after_": self.after}
+        return {
+            f"{row}{name}": column
+            for row, columns in beside.items()
+            for name, column in zip(SCENE, columns, strict=True)
+        }
 
     def of(self, name: str) -> int:
         """Which of the results has a name."""
@@ -171,9 +176,12 @@ def _case(
         undecided = (sliding <= spent["gt"].errors) & (scene["MU"] != PIVOT) & (scene["MU"] != 0)
     per_unit = np.fmax(best, finite)
     alike = None if rtol is None else np.full(best.size, rtol)
+    columns = np.stack([scene[name] for name in SCENE])
     case = Case(
         tuple(theirs),
-        np.stack([scene[name] for name in SCENE]),
+        columns,
+        np.roll(columns, 1, -1),
+        np.roll(columns, -1, -1),
         np.stack([values for values, _ in theirs.values()]),
         np.stack([units for _, units in theirs.values()]),
         np.stack([ours[name] for name in theirs]),
@@ -233,12 +241,12 @@ def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Flo
 def violated(case: Case) -> dict[str, Bools]:
     """Which of Equations 13 to 18 their results violate: number -> rows.
 
-    The equations are evaluated on the results as they were given: no solution of ours comes in. One
-    is violated when its two sides differ by more than the digits written, and rounding, allow.
-    Empty when the table lacks a final velocity (point masses keep their spins, given or not). A
-    scene with a missing number violates nothing.
+    The equations are evaluated on the results as they were given, in a spelling in which none takes
+    another for granted: no solution of ours comes in. One is violated when its two sides differ by
+    more than the digits written, and rounding, allow. Empty when the table lacks a final velocity
+    (point masses keep their spins, given or not). A missing number violates nothing.
     """
-    spelling, scene = spellings()[_FORM], case.columns
+    spelling, scene = spellings()[A_IMPULSE], case.columns
     point = scene["M"] == 4
     missing = set(spelling.unknown) - set(case.names)
     if missing - ({"WAF", "WBF"} if point.all() else set()):

@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
-from ..closedform.solve import solve
-from ..equations.edits import variants
+from ..equations.edits import MEASURED, variants
 from ..equations.evaluation import Run
 from ..equations.otherprogram import Program
 from ..equations.spelling import LISTING, spellings
@@ -49,7 +48,8 @@ _LARGE = 1e-5
 """Differences below this share of their size are no pair of mistakes."""
 _NEED, _NEED_NAMED, _NEED_PAIR = 22.0, 10.0, 32.0
 """Bits that a cause must get right: some ten more than one of 30,000 edits, one less than one of
-500 known alternatives, and as many as one pair of 30,000 edits in different equations."""
+500 known alternatives, and as many as one pair of 30,000 edits in different equations, or an edit
+with a number of its own."""
 _BITS_A_ROW = 40.0
 _CLOSE = 1e-9
 """Results this close, as a share of their size, are the same program's."""
@@ -153,7 +153,9 @@ def _evidence(explained: Bools, bits: Floats, choices: Bools) -> float:
 
 
 def _need(program: Program) -> float:
-    return _NEED_PAIR if len(program.edits) > 1 else _NEED_NAMED if program.named else _NEED
+    if len(program.edits) > 1 or program.edits[0].rank == MEASURED:
+        return _NEED_PAIR
+    return _NEED_NAMED if program.named else _NEED
 
 
 def _sample(judge: Judge, clear: Bools) -> NDArray[np.intp]:
@@ -162,7 +164,7 @@ def _sample(judge: Judge, clear: Bools) -> NDArray[np.intp]:
     kinds = np.stack(
         [
             *(g["MU"] == -10, g["M"] == 4, g["MU"] == 0, (g["WA"] == 0) & (g["WB"] == 0)),
-            *(solve(g, ["MUP"])["MUP"] == g["MU"], (g["DA"] == 0) & (g["DB"] == 0)),
+            *(Program().results(g)["MUP"] == g["MU"], (g["DA"] == 0) & (g["DB"] == 0)),
         ]
     )
     kind = (kinds * 2 ** np.arange(len(kinds))[:, None]).sum(0)

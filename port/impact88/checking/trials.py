@@ -15,11 +15,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..equations.edits import CONVENTION, Edit, edits_of, edits_on, readings, variants
+from ..equations.edits import CONVENTION, Edit, edits_of, edits_on, measured, readings, variants
 from ..equations.evaluation import Columns, Run, chunks, value
 from ..equations.otherprogram import Program
-from ..equations.spelling import IMPULSES, LISTING, SHOWN, Spelling, expression, spellings
-from ..names import FINAL_VELOCITIES
+from ..equations.spelling import (
+    A_IMPULSE,
+    IMPULSES,
+    LISTING,
+    SHOWN,
+    Spelling,
+    expression,
+    spellings,
+)
+from ..names import FINAL_VELOCITIES, SCENE
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -75,6 +83,12 @@ class Judge:
         """Some rows of those not explained yet, and some that agree."""
         right = spread(np.flatnonzero(~self.wrong), _FIRST_RIGHT)
         return self.part(np.concatenate([spread(np.flatnonzero(unexplained), wrong), right]))
+
+    def with_finals(self, wrong: int = 30) -> Judge:
+        """By the final velocities: some rows that have all of them."""
+        few = self.of(FINAL_VELOCITIES).few(self.wrong, wrong)
+        given = np.all([np.isfinite(column) for column in few.theirs.values()], axis=0)
+        return few.part(np.flatnonzero(given))
 
     @property
     def has_velocities(self) -> bool:
@@ -178,15 +192,14 @@ def pairs(judge: Judge, alone: Sequence[Found], few: bool) -> Iterator[list[Prog
         if unexplained.any():
             yield _second(judge, unexplained, one.program)
     if not few:
+        yield list(_measured(judge))
         yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
 
 
 def _apart(judge: Judge) -> Iterator[list[Program]]:
     yield list(_by_outputs(judge))
     if judge.has_velocities:
-        finals = judge.of(FINAL_VELOCITIES).few(judge.wrong, _FEW)
-        given = np.all([np.isfinite(column) for column in finals.theirs.values()], axis=0)
-        yield list(_by_equations(finals.part(np.flatnonzero(given)), judge))
+        yield list(_by_equations(judge.with_finals(_FEW), judge))
 
 
 def _second(judge: Judge, unexplained: Bools, first: Program) -> list[Program]:
@@ -221,6 +234,44 @@ def _two_readings(judge: Judge) -> Iterator[Program]:
             yield Program((first[place], other))
 
 
+def _measured(judge: Judge) -> Iterator[Program]:
+    """Programs in which one column of the scene, or one result, is that times a number, or that
+    number: found by least squares of what their velocities leave of the equations."""
+    ours = Program().results(judge.scene)
+    for name, theirs in judge.theirs.items():
+        ratio = float(np.nanmedian((theirs / ours[name])[judge.wrong]))
+        for digits in _DIGITS:
+            yield Program((measured(name, "x*k", float(f"{ratio:.{digits}g}")),))
+    if not judge.has_velocities:
+        return
+    faults = _Faults(spellings()[A_IMPULSE], judge.with_finals(), "A")
+    forms = [(name, how) for name in SCENE if name != "M" for how in ("x*k", "k + 0*x")]
+    scene = faults.scene
+    k = np.array([0.9 if how == "x*k" else np.mean(scene[name]) + 0.1 for name, how in forms])
+    for _ in range(_STEPS):
+        moved = k * (1 + 1e-6) + 1e-12
+        both = [
+            measured(name, how, float(number)).sides
+            for several in (k, moved)
+            for (name, how), number in zip(forms, several, strict=True)
+        ]
+        here, there = np.split(faults.residuals(both), 2)
+        slope = (there - here) / (moved - k)[:, None]
+        k = k - np.nan_to_num((slope * here).sum(1) / (slope * slope).sum(1))
+    fitted = [(name, how, float(x)) for (name, how), x in zip(forms, k, strict=True)]
+    left = np.abs(faults.residuals([measured(*one).sides for one in fitted]))
+    for place in np.argsort(np.median(left, axis=1), kind="stable")[:_FIRSTS]:
+        for digits in _DIGITS:
+            name, how, number = fitted[place]
+            yield Program((measured(name, how, float(f"{number:.{digits}g}")),))
+
+
+_STEPS = 8
+"""Of Newton's method: enough for all that is linear in the number, or nearly."""
+_DIGITS = (3, 5, 8)
+"""That a number is measured to: the fewest that explain the rows are kept."""
+
+
 # --- by equations --------------------------------------------------------------------------------
 
 _IMPULSES = {
@@ -229,7 +280,7 @@ _IMPULSES = {
 }
 """The impulses by what they change of A or of B."""
 _ALONG = {"Pn": "c*Px + s*Py", "Pt": "c*Py - s*Px", "T": "Pm"}
-_WITHOUT_IMPULSES = (LISTING, "equations with A's impulse")
+_WITHOUT_IMPULSES = (LISTING, A_IMPULSE)
 
 
 def _by_equations(judge: Judge, whole: Judge) -> Iterator[Program]:
@@ -259,7 +310,7 @@ class _Faults:
     changes of A or of B."""
 
     def __init__(self, spelling: Spelling, judge: Judge, how: str) -> None:
-        self.spelling, self.size = spelling, judge.wrong.size
+        self.spelling, self.size, self.scene = spelling, judge.wrong.size, judge.scene
         names = Run(spelling, judge.scene).names
 
         def clamped(theirs: Columns) -> Run:
@@ -288,6 +339,13 @@ class _Faults:
         residuals = {**self.start.residuals, **self.start.edited(several).residuals}
         found = [np.broadcast_to(self._holds(*one), len(several)) for one in residuals.items()]
         return np.asarray(len(found) - np.sum(found, axis=0))
+
+    def residuals(self, several: Sequence[Mapping[str, Any]]) -> Floats:
+        """What each of some edits leaves of the equations, all rows of all, by what is allowed."""
+        found = {**self.start.residuals, **self.start.edited(several).residuals}
+        shape = (len(several), self.size)
+        parts = [np.broadcast_to(left / self.limits[key], shape) for key, left in found.items()]
+        return np.nan_to_num(np.concatenate(parts, -1), posinf=0.0, neginf=0.0)
 
     def found(self, edits: Sequence[Edit]) -> Iterator[tuple[Edit, frozenset[str]]]:
         """The edits that mend equations and break none, and what they mend. An equation that one

@@ -11,7 +11,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import NamedTuple
 
+import numpy as np
+
 from ..names import SCENE
+from .evaluation import Columns
 from .spelling import (
     IMPULSES,
     LISTING,
@@ -30,7 +33,7 @@ from .spelling import (
     written,
 )
 
-MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE = range(6)
+MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE, MEASURED = range(7)
 """How likely an edit is: of those that compute the same, the likeliest is named."""
 CONDITIONS = ("point", "pivot", "stick")
 """Names that are true or false."""
@@ -240,6 +243,15 @@ def _count_shown(spelling: Spelling) -> int:
     return sum(one.target.startswith(SHOWN) for one in spelling.statements)
 
 
+def measured(name: str, how: str, number: float) -> Edit:
+    """A column of the scene, or a result, that a number found by measuring stands in: ``how`` it
+    does, an expression in the column x and the number k."""
+    place = {"x": ast.Name(f"{TYPED}{name}" if name in SCENE else name), "k": ast.Constant(number)}
+    key = name if name in SCENE else f"{SHOWN}{name}"
+    says = written(name, (renamed(expression(how), {**place, "x": ast.Name(name)}),))
+    return Edit("", {key: (renamed(expression(how), place),)}, MEASURED, f"{says} (measured)")
+
+
 # --- conventions and models ----------------------------------------------------------------------
 
 
@@ -265,6 +277,8 @@ def written_out(lines: Iterable[str]) -> Iterator[str]:
 
 
 _AS_TYPED = {name: ast.Name(f"{TYPED}{name}") for name in SCENE}
+_NEXT = ("before", "after")
+"""Rows whose columns a program may take for its own."""
 
 
 def _reading(line: str) -> Edit:
@@ -272,11 +286,24 @@ def _reading(line: str) -> Edit:
     scene, _, results = rest.partition(";;")
     sides: dict[str, Sides] = {}
     for name, made in assigned(scene):
-        sides[name] = (renamed(made, {**_AS_TYPED, "x": _AS_TYPED[name]}),)
+        beside = {row: ast.Name(f"{TYPED}{row}_{name}") for row in _NEXT}
+        sides[name] = (renamed(made, {**_AS_TYPED, **beside, "x": _AS_TYPED[name]}),)
     for name, made in assigned(results):
         sides[f"{SHOWN}{name}"] = (renamed(made, {"x": ast.Name(name)}),)
     rank = RARE_CONVENTION if says.startswith("~") else CONVENTION
     return Edit("", sides, rank, says.lstrip("~ "))
+
+
+def with_rows_beside(scene: Columns) -> Columns:
+    """Scenes (columns of n) with the columns of the rows before and after."""
+    if "before_E" in scene:
+        return scene
+    beside = {
+        f"{row}_{name}": np.roll(scene[name], step)
+        for row, step in zip(_NEXT, (1, -1), strict=True)
+        for name in SCENE
+    }
+    return {**scene, **beside}
 
 
 def assigned(text: str) -> Iterator[tuple[str, ast.expr]]:

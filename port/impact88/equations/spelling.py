@@ -15,7 +15,7 @@ Kin = Mapping[str, tuple[str, ...]]
 Sides = tuple[ast.expr, ...]
 
 FIRST, LAST = "reading", "results"
-LISTING, IMPULSES = "listing", "contact impulses"
+LISTING, IMPULSES, A_IMPULSE = "listing", "contact impulses", "equations with A's impulse"
 TYPED, SHOWN = "typed_", "shown_"
 """Before a column's name: as the table has it; before a result's: as the program shows it."""
 
