@@ -6,7 +6,7 @@ Each scene is judged by its own condition. A result agrees
   (`accuracy.errorbound`);
 * *to the digits claimed* when it is the exact value rounded to the digits it is written with;
 * *as elimination does* when it is no farther off than the usual ways allow in double precision in
-  this scene. Elimination is as good as the condition number of the 6 by 6 matrix as it stands, not
+  this scene. Elimination is as good as the condition number of a 6 by 6 matrix as it stands, not
   scaled: its error is below unit roundoff times that number times the largest unknown (measured on
   the vectors: at most 0.03 of it). Contact impulses in closed form have a running error bound.
 
@@ -24,12 +24,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
-from ..accuracy.elimination import fill
 from ..closedform.solve import solve
 from ..doubles import double, doubles
 from ..equations.bounded import running_errors
 from ..equations.evaluation import Run
-from ..equations.spelling import A_IMPULSE, IMPULSES, spellings
+from ..equations.spelling import A_IMPULSE, IMPULSES, LISTING, spellings
 from ..errors import quoted
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..tables.rows import Rows, one_per_row
@@ -166,7 +165,7 @@ def _case(
     spent = running_errors(spellings()[IMPULSES], scene)
     with np.errstate(all="ignore"):
         largest = np.nanmax(np.abs([ours[name] for name in FINAL_VELOCITIES]), 0, initial=0.0)
-        eliminated = plain_condition(scene) * largest
+        eliminated = _condition(scene) * largest
         shares = [
             np.fmax(eliminated, np.broadcast_to(spent[name].errors, largest.shape)) / sizes[name]
             for name in FINAL_VELOCITIES
@@ -194,19 +193,19 @@ def _case(
     return case, np.flatnonzero(undecided)
 
 
-def plain_condition(scene: Columns) -> Floats:
-    """The condition numbers (largest row sum) of the listing's matrices as they stand; infinite
-    where there is no finite one. Point masses are bodies without arms that nothing turns."""
-    point = scene["M"] == 4
-    alone = {"DA": 0.0, "DB": 0.0, "EM": 1.0, "IA": 1.0, "IB": 1.0}
-    changed = {name: np.where(point, value, scene[name]) for name, value in alone.items()}
-    matrix, _ = fill({**scene, **changed})
-    usable = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
-    signs, _ = np.linalg.slogdet(np.where(usable[:, None, None], matrix, np.eye(6)))
-    usable = usable & (signs != 0)
-    inverse = np.linalg.inv(np.where(usable[:, None, None], matrix, np.eye(6)))
-    condition = np.abs(matrix).sum(2).max(1) * np.abs(inverse).sum(2).max(1)
-    return np.where(usable & np.isfinite(condition), condition, np.inf)
+def _condition(scene: Columns) -> Floats:
+    """The larger condition number (largest row sum) of the two 6 by 6 matrices as they stand, the
+    listing's and the one with A's impulse; infinite where there is no finite one."""
+    largest = np.zeros(scene["M"].size)
+    for title in (LISTING, A_IMPULSE):
+        matrix = Run(spellings()[title], scene).system({})[0][0]
+        usable = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
+        matrix[~usable] = np.eye(6)
+        usable &= np.linalg.slogdet(matrix)[0] != 0
+        matrix[~usable] = np.eye(6)
+        condition = np.abs(matrix).sum(2).max(1) * np.abs(np.linalg.inv(matrix)).sum(2).max(1)
+        largest = np.fmax(largest, np.where(usable & np.isfinite(condition), condition, np.inf))
+    return largest
 
 
 def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Floats]:

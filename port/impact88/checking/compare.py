@@ -387,7 +387,11 @@ def _explain(kept: Sequence[_Kept], comparison: Comparison) -> None:
     written = [scene for one in kept for scene in one.texts]
     diagnosis = diagnose(joined([one.case for one in kept]).part(places), wrong[places], written)
     comparison.equations = diagnosis.equations
-    comparison.evidence = diagnosis.evidence
+    rows = comparison.differences
+    comparison.evidence = [
+        one._replace(parts={says: rows[place].row for says, place in one.parts.items()})
+        for one in diagnosis.evidence
+    ]
     comparison.programs = diagnosis.programs
     comparison.differences = [
         row._replace(cause=cause)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
-from ..equations.edits import MEASURED, variants
+from ..equations.edits import MEASURED, RARE_CONVENTION, variants
 from ..equations.evaluation import Run
 from ..equations.otherprogram import Program
 from ..equations.spelling import LISTING, spellings
@@ -42,6 +42,10 @@ IN_THESE_ROWS = ", in these rows only"
 """Behind a cause that rows that agree refute."""
 
 _WRONG_SAMPLE, _RIGHT_SAMPLE = 45, 30
+_DEEPER = 2
+"""Mistakes that are looked for in what others leave, one after the other."""
+_MOST = 0.8
+"""The share of what is left that such a one explains; one row is enough for a known convention."""
 _SEVERAL = 3
 """Causes that a table of several programs' rows may have."""
 _LARGE = 1e-5
@@ -68,7 +72,8 @@ _EQUIVALENTS = 4
 
 class Cause(NamedTuple):
     """A cause: what is said of it, how many of the rows that disagree it explains and of those that
-    agree it fits, of how many each, and what would do the same."""
+    agree it fits, of how many each, and what would do the same; where it is several mistakes, each,
+    and the first row that shows it."""
 
     says: str
     explains: int
@@ -76,6 +81,7 @@ class Cause(NamedTuple):
     fits: int
     agreeing: int
     equivalents: list[str]
+    parts: dict[str, int]
 
 
 @dataclass
@@ -139,10 +145,22 @@ def _by_search(
             causes[explained] = says
             same = [other.program.says for other in others[:_EQUIVALENTS]]
             a, b, c, d = (int(x.sum()) for x in (explained, whole.wrong, fits & right, right))
-            result.evidence.append(Cause(says, a, b, c, d, same))
+            parts = _parts(program, whole, explained)
+            result.evidence.append(Cause(says, a, b, c, d, same, parts))
             result.programs.append(program)
         if result.evidence:
             return
+
+
+def _parts(program: Program, judge: Judge, explained: Bools) -> dict[str, int]:
+    """What is wrong with a program in several ways: each, and the first row that shows it."""
+    parts = {}
+    for edit in program.edits if len(program.edits) > 1 else ():
+        without = Program(tuple(one for one in program.edits if one is not edit))
+        shows = explained & ~run(without, judge).rows
+        if shows.any():
+            parts[edit.text] = int(np.argmax(shows))
+    return parts
 
 
 def _evidence(explained: Bools, bits: Floats, choices: Bools) -> float:
@@ -189,25 +207,39 @@ _Chosen = tuple[Program, Sequence[Found]]
 
 def _explanations(judge: Judge, off: Floats) -> Iterator[list[_Chosen]]:
     """Lists of programs that together explain a table, the simplest first."""
-    with progress(6, "look for the cause") as meter:
+    with progress(7, "look for the cause") as meter:
         meter.update(0)
         reduced = judge.of(_telling(judge))
         alone = singles(reduced, reduced.wrong)
         meter.update(1)
-        single = [one for one in alone[:1] if one.whole(judge.wrong)]
-        left = judge.wrong & ~single[0].rows if single else judge.wrong
-        # what a single mistake leaves may be another's: a branch that few rows take
-        if left.any() and (single or np.median(off[judge.wrong]) > _LARGE):
-            for programs in pairs(reduced, alone, bool(single)):
+        if alone and alone[0].whole(judge.wrong):
+            yield [_best(_deepened(alone, reduced), judge)]
+        elif np.median(off[judge.wrong]) > _LARGE:
+            for programs in pairs(reduced, alone):
                 found = ranked([run(program, reduced) for program in programs], judge.wrong)
-                if single:
-                    found = [one for one in found if not (judge.wrong & ~one.rows).any()]
                 if found and found[0].whole(judge.wrong):
-                    yield [_best(found, judge)]
+                    yield [_best(_deepened(found, reduced), judge)]
                 meter.update(1)
-        if single:
-            yield [_best(alone, judge)]
         yield _several(alone, judge)
+
+
+def _deepened(found: Sequence[Found], judge: Judge) -> Sequence[Found]:
+    """With what the best leaves looked into: another mistake's, of a branch that few rows take."""
+    for _ in range(_DEEPER):
+        left = judge.wrong & ~found[0].rows
+        if not left.any():
+            break
+        more = [
+            one
+            for one in singles(judge, left, found[0].program)
+            if one.whole(judge.wrong)
+            and one.explains(left) >= _MOST * left.sum()
+            and (one.explains(left) > 1 or one.program.edits[-1].rank <= RARE_CONVENTION)
+        ]
+        if not more:
+            break
+        found = more
+    return found
 
 
 def _telling(judge: Judge) -> list[str]:

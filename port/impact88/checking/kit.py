@@ -7,60 +7,28 @@ any machine for the same seed; ``KIT.json`` tells seed, version and hashes.
 
 from __future__ import annotations
 
+import ast
 import csv
 import hashlib
 import io
 import json
 import os
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from importlib import resources
-from random import Random
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from .. import schemas
+from ..equations.spelling import IMPULSES, SHOWN, parts, spellings
 from ..errors import UserError
 from ..files import replacing
-from ..names import FINAL_VELOCITIES, SCENE
-from ..schemas import stamped
+from ..names import RESULTS, SCENE
 from ..version import __version__
-from .oracle import look_up
-from .vectors import FAILURE, casework, vectors
+from .vectors import vectors
 
-VERSION = 2
-"""Of the vectors' own form: 2 has flags, expect and comment, and negative masses and inertias."""
-ANSWER, REFUSE, EITHER = "answer", "refuse", "either"
 HEAD = ("id", "class", "expect", "flags")
-_NEGATIVE = ("MA", "MB", "IA", "IB")
-
-
-def kit_vectors(count: int, seed: int, reference: bool = True) -> Iterator[dict[str, Any]]:
-    """``count`` test vectors, and one for each mass and inertia that is negative."""
-    yield from map(asked, vectors(count, seed, reference))
-    rng = Random(f"{seed} negative")
-    for place, name in enumerate(_NEGATIVE):
-        scene = casework(rng)
-        scene[name] = f"-{scene[name]}"
-        head = {"id": f"{seed}-{count + place:06d}", "class": FAILURE, "label": f"{name} negative"}
-        (answer,) = look_up([scene], reference)
-        yield asked(stamped("vectors", {**head, "scene": scene, **answer}))
-
-
-def asked(vector: dict[str, Any]) -> dict[str, Any]:
-    """A vector with what is asked of a program by it (``expect``), flags, and a comment."""
-    solvable = all(vector["results"][name]["double"] is not None for name in FINAL_VELOCITIES)
-    expect = ANSWER if vector["class"] != FAILURE else EITHER if solvable else REFUSE
-    ending = vector["ending"]
-    comment = (
-        f"{vector['label']}; the 1988 program {f'ends with {ending}' if ending else 'answers'}"
-    )
-    head = {name: vector[name] for name in ("id", "class", "label")}
-    return {
-        **head,
-        "expect": expect,
-        "flags": vector["status"],
-        "comment": comment,
-        **{name: value for name, value in vector.items() if name not in head},
-    }
 
 
 def flat(found: Iterable[dict[str, Any]]) -> Iterator[str]:
@@ -76,32 +44,108 @@ def flat(found: Iterable[dict[str, Any]]) -> Iterator[str]:
         yield out.getvalue()
 
 
-def write_kit(folder: str, count: int, seed: int) -> list[str]:
-    """Write the kit into a folder, which is made where it is not there; the names of its files.
-    Raises UserError where the folder cannot be written to."""
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"cannot be made: {error.strerror or error}", folder) from None
-    found = list(kit_vectors(count, seed))
-    lines = "".join(json.dumps(one, ensure_ascii=False) + "\n" for one in found)
-    files = {
+def write_kit(place: str, count: int, seed: int) -> list[str]:
+    """Write the kit into a folder, which is made where it is not there, or into one archive (.zip);
+    the names of its files. Raises UserError where the place cannot be written to."""
+    found = list(vectors(count, seed))
+    texts = {
         "vectors.csv": "".join(flat(found)),
-        "vectors.jsonl": lines,
+        "vectors.jsonl": "".join(json.dumps(one, ensure_ascii=False) + "\n" for one in found),
         "vectors.schema.json": schemas.text("vectors"),
         "conventions.md": schemas.text(schemas.CONVENTIONS),
     }
     for runner in resources.files(__package__).joinpath("kit").iterdir():
-        files[runner.name.removesuffix(".txt")] = runner.read_text(encoding="utf-8")
+        texts[runner.name.removesuffix(".txt")] = runner.read_text(encoding="utf-8")
+    files = {name: text.encode() for name, text in texts.items()}
+    with suppress(ImportError):
+        files["impact.xlsx"] = workbook(found)
     about = {
-        "kit": f"vectors/{VERSION}",
+        "kit": f"vectors/{schemas.NUMBERS['vectors']}",
         "impact88": __version__,
         "seed": seed,
         "vectors": len(found),
-        "sha256": {name: hashlib.sha256(text.encode()).hexdigest() for name, text in files.items()},
+        "sha256": {name: hashlib.sha256(data).hexdigest() for name, data in files.items()},
     }
-    files["KIT.json"] = json.dumps(about, indent=1) + "\n"
-    for name, text in files.items():
-        with replacing(os.path.join(folder, name), "wb") as file:
-            file.write(text.encode())
+    files["KIT.json"] = (json.dumps(about, indent=1) + "\n").encode()
+    if place.lower().endswith(".zip"):
+        with replacing(place, "wb") as file, ZipFile(file, "w", ZIP_DEFLATED) as archive:
+            for name, data in files.items():
+                archive.writestr(ZipInfo(name, _DAY), data, ZIP_DEFLATED)
+        return sorted(files)
+    try:
+        os.makedirs(place, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"cannot be made: {error.strerror or error}", place) from None
+    for name, data in files.items():
+        with replacing(os.path.join(place, name), "wb") as file:
+            file.write(data)
     return sorted(files)
+
+
+_MOMENT = rb"\d{4}-\d\d-\d\dT[\d:]{8}Z"
+_DAY = (1988, 1, 1, 0, 0, 0)
+"""Of the files in an archive, so that the same kit gives the same bytes."""
+
+
+def workbook(found: Sequence[dict[str, Any]]) -> bytes:
+    """The vectors as a spreadsheet whose formulas answer them: the contact impulses, a column a
+    statement; scenes and results on one sheet, what lies between on another. Raises ImportError
+    where openpyxl is missing."""
+    from openpyxl import Workbook
+    from openpyxl.utils import get_column_letter
+
+    book = Workbook()
+    statements = [one for one in spellings()[IMPULSES].statements if one.target not in SCENE]
+    statements = [one for one in statements if not one.target.startswith(SHOWN)]
+    results = [one.target for one in statements if one.target in RESULTS]
+    between = [one.target for one in statements if one.target not in RESULTS]
+    sheets = {"vectors": [*HEAD, *SCENE, *results], "between": between}
+    places: dict[str, tuple[str, str]] = {}
+    for title, heads in sheets.items():
+        sheet = book.create_sheet(title)
+        sheet.append(heads)
+        places.update((name, (title, get_column_letter(i))) for i, name in enumerate(heads, 1))
+    book.remove(book.worksheets[0])
+    for row, vector in enumerate(found, 2):
+        cells = {name: f"{title}!{letter}{row}" for name, (title, letter) in places.items()}
+        head = [vector["id"], vector["class"], vector["expect"], " ".join(vector["flags"])]
+        book["vectors"].append([*head, *(float(vector["scene"][name]) for name in SCENE)])
+        bodies = ",".join(cells[name] for name in ("MA", "MB", "ia", "ib"))
+        for one in statements:
+            text = _formula(one.sides[0], cells)
+            if one.target == "Pn":
+                text = f"IF(MIN({bodies})<=0,NA(),{text})"
+            elif one.target in results:  # none where there are no final velocities
+                text += f"+0*{cells['Pn']}"
+            title, letter = places[one.target]
+            book[title][f"{letter}{row}"] = f"={text}"
+    whole, out = io.BytesIO(), io.BytesIO()
+    book.save(whole)
+    with ZipFile(whole) as pages, ZipFile(out, "w") as archive:
+        for name in pages.namelist():
+            data = re.sub(_MOMENT, b"1988-01-01T00:00:00Z", pages.read(name))
+            archive.writestr(ZipInfo(name, _DAY), data, ZIP_DEFLATED)
+    return out.getvalue()
+
+
+def _formula(node: ast.expr, cells: Mapping[str, str]) -> str:
+    """An expression in a spreadsheet's language."""
+    if isinstance(node, ast.Name):
+        return "PI()" if node.id == "pi" else cells[node.id]
+    if isinstance(node, ast.Constant):
+        return repr(node.value)
+    if isinstance(node, ast.UnaryOp):
+        return f"(-{_formula(node.operand, cells)})"
+    if isinstance(node, ast.Call):
+        return _FORMULAS[node.func.id].format(*(_formula(one, cells) for one in node.args))  # type: ignore[attr-defined]
+    (_, _, left), (_, _, right) = parts(node)
+    operator = node.op if isinstance(node, ast.BinOp) else node.ops[0]  # type: ignore[attr-defined]
+    return f"({_formula(left, cells)}{_OPERATORS[type(operator)]}{_formula(right, cells)})"
+
+
+_OPERATORS: dict[type, str] = {
+    **{ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "^"},
+    **{ast.Eq: "=", ast.Gt: ">", ast.Lt: "<"},
+}
+_FORMULAS = {"where": "IF({},{},{})", "hypot": "SQRT({0}*{0}+{1}*{1})", "sin": "SIN({})"}
+_FORMULAS["cos"] = "COS({})"

@@ -181,25 +181,18 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
 
 
 @np.errstate(all="ignore")
-def pairs(judge: Judge, alone: Sequence[Found], few: bool) -> Iterator[list[Program]]:
-    """Programs with two mistakes, by stages. ``alone``: what explains rows alone; ``few``: it
-    leaves few of them, look by rows only."""
-    if not few:
-        yield from _apart(judge)
+def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
+    """Programs with two mistakes, by stages. ``alone``: what explains rows alone."""
+    yield list(_by_outputs(judge))
+    if judge.has_velocities:
+        yield list(_by_equations(judge.with_finals(_FEW), judge))
     enough = [one for one in alone if one.explains(judge.wrong) >= _SHARE * judge.wrong.sum()]
     for one in [one for one in enough if one.stands(judge.wrong)][:_FIRSTS]:
         unexplained = judge.wrong & ~one.rows
         if unexplained.any():
             yield _second(judge, unexplained, one.program)
-    if not few:
-        yield list(_measured(judge))
-        yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
-
-
-def _apart(judge: Judge) -> Iterator[list[Program]]:
-    yield list(_by_outputs(judge))
-    if judge.has_velocities:
-        yield list(_by_equations(judge.with_finals(_FEW), judge))
+    yield list(_measured(judge))
+    yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
 
 
 def _second(judge: Judge, unexplained: Bools, first: Program) -> list[Program]:

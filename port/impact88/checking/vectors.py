@@ -2,7 +2,8 @@
 
 Three classes, mixed evenly: ``casework`` (scenes as reports hold them), ``edge`` (one limit or
 special case each), ``failure`` (the 1988 program stops, or goes wrong without a word). The label
-says which case. Seed and number give the same scene on any machine, and no scene comes twice.
+says which case, ``expect`` what is asked of a program. Seed and number give the same vector on any
+machine, and no scene comes twice.
 """
 
 from __future__ import annotations
@@ -15,13 +16,14 @@ from typing import Any
 
 from ..doubles import doubles_of
 from ..files import packaged_bytes
-from ..names import SCENE
+from ..names import FINAL_VELOCITIES, SCENE
 from ..schemas import stamped
 from .oracle import BATCH, look_up
 
 Texts = dict[str, str]
 
 CLASSES = CASEWORK, EDGE, FAILURE = "casework", "edge", "failure"
+ANSWER, REFUSE, EITHER = "answer", "refuse", "either"
 
 PUBLISHED, PUBLISHED_SEED = 1000, 1988
 
@@ -37,12 +39,24 @@ def vectors(
         answers = look_up([scene for _, (_, _, scene) in batch], reference)
         for (index, (kind, label, scene)), answer in zip(batch, answers, strict=True):
             head = {"id": f"{seed}-{index:06d}", "class": kind, "label": label}
-            yield stamped("vectors", {**head, "scene": scene, **answer})
+            asked = _asked(kind, label, answer)
+            yield stamped("vectors", {**head, **asked, "scene": scene, **answer})
+
+
+def _asked(kind: str, label: str, answer: dict[str, Any]) -> dict[str, Any]:
+    """What is asked of a program by a vector, its flags, and a comment."""
+    solvable = all(answer["results"][name]["double"] is not None for name in FINAL_VELOCITIES)
+    ending = answer["ending"]
+    return {
+        "expect": ANSWER if kind != FAILURE else EITHER if solvable else REFUSE,
+        "flags": answer["status"],
+        "comment": f"{label}; the 1988 program {f'ends with {ending}' if ending else 'answers'}",
+    }
 
 
 def published() -> str:
     """The vectors that are packaged, an object a line: the first `PUBLISHED` of seed
-    `PUBLISHED_SEED`, as they were when they were published."""
+    `PUBLISHED_SEED`."""
     import gzip
 
     return gzip.decompress(packaged_bytes("impact88.golden", "vectors.jsonl.gz")).decode("utf-8")
@@ -125,6 +139,10 @@ Case = Callable[[Random, Texts], Texts]
 
 def _fixed(**values: str) -> Case:
     return lambda rng, scene: values
+
+
+def _negative(name: str) -> Case:
+    return lambda rng, scene: {name: f"-{scene[name]}"}
 
 
 def _same_velocity(rng: Random, scene: Texts) -> Texts:
@@ -218,5 +236,6 @@ FAILURES: dict[str, Case] = {
     "stale pivot row": _sliding(_STALE),
     "singular friction": _sliding(_SINGULAR, "WA", "WB"),
     "same velocity": _same_velocity,
+    **{f"{name} negative": _negative(name) for name in ("MA", "MB", "IA", "IB")},
 }
 """Label -> what makes a casework scene that failure, or invites it."""

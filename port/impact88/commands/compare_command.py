@@ -175,6 +175,8 @@ def _evidence(comparison: Comparison) -> Iterator[str]:
             f"{cause.says}: explains {cause.explains} of {cause.disagreeing} rows that disagree, "
             f"gives {cause.fits} of {cause.agreeing} that agree (of the rows examined)"
         )
+        for says, row in cause.parts.items():
+            yield f"  row {row} shows: {says}"
         for other in cause.equivalents:
             yield f"  or, the same in this table: {other}"
 

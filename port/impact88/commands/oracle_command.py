@@ -53,7 +53,8 @@ ARGUMENTS = (
         "--kit",
         type=OutputFolder,
         metavar="DIR",
-        help="write vectors, conventions and programs that answer them, in five languages",
+        help="write vectors, conventions and programs that answer them, in five languages and a "
+        "spreadsheet, into a folder or one archive (KIT.zip)",
     ),
     flag("--published", "write the published vectors"),
     UNITS,
@@ -77,12 +78,12 @@ def main(args: argparse.Namespace) -> int:
         for name in write_kit(args.kit, args.vectors or PUBLISHED, args.seed):
             print(name)
         return 0
-    if args.to == "csv":
-        from ..checking.kit import asked, flat
+    named_csv = (args.output or "").lower().endswith(".csv") and args.to is None
+    if args.vectors is not None and (args.to == "csv" or named_csv):
+        from ..checking.kit import flat
         from ..checking.vectors import vectors
 
-        found = vectors(args.vectors, args.seed, False, args.only)
-        sys.stdout.writelines(flat(map(asked, found)))
+        sys.stdout.writelines(flat(vectors(args.vectors, args.seed, False, args.only)))
         return 0
     counts = {"answered": 0, "refused": 0}
     if args.published:

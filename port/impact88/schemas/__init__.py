@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 NUMBERS = {
     "run": 1,
     "oracle": 1,
-    "vectors": 1,
+    "vectors": 2,
     "compare": 1,
     "verify": 2,
     "selfcheck": 1,
