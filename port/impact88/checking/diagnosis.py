@@ -44,7 +44,7 @@ IN_THESE_ROWS = ", in these rows only"
 _WRONG_SAMPLE, _RIGHT_SAMPLE = 45, 30
 _DEEPER = 2
 """Mistakes that are looked for in what others leave, one after the other."""
-_MOST = 0.8
+_MOST = 0.5
 """The share of what is left that such a one explains; one row is enough for a known convention."""
 _SEVERAL = 3
 """Causes that a table of several programs' rows may have."""
