@@ -338,7 +338,8 @@ class _Faults:
         found = {**self.start.residuals, **self.start.edited(several).residuals}
         shape = (len(several), self.size)
         parts = [np.broadcast_to(left / self.limits[key], shape) for key, left in found.items()]
-        return np.nan_to_num(np.concatenate(parts, -1), posinf=0.0, neginf=0.0)
+        whole = np.concatenate(parts, -1)
+        return np.where(np.isfinite(whole), whole, 0.0)
 
     def found(self, edits: Sequence[Edit]) -> Iterator[tuple[Edit, frozenset[str]]]:
         """The edits that mend equations and break none, and what they mend. An equation that one

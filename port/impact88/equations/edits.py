@@ -11,10 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import NamedTuple
 
-import numpy as np
-
 from ..names import SCENE
-from .evaluation import Columns
+from .evaluation import BESIDE
 from .spelling import (
     IMPULSES,
     LISTING,
@@ -277,8 +275,6 @@ def written_out(lines: Iterable[str]) -> Iterator[str]:
 
 
 _AS_TYPED = {name: ast.Name(f"{TYPED}{name}") for name in SCENE}
-_NEXT = ("before", "after")
-"""Rows whose columns a program may take for its own."""
 
 
 def _reading(line: str) -> Edit:
@@ -286,24 +282,12 @@ def _reading(line: str) -> Edit:
     scene, _, results = rest.partition(";;")
     sides: dict[str, Sides] = {}
     for name, made in assigned(scene):
-        beside = {row: ast.Name(f"{TYPED}{row}_{name}") for row in _NEXT}
+        beside = {row: ast.Name(f"{TYPED}{row}_{name}") for row in BESIDE}
         sides[name] = (renamed(made, {**_AS_TYPED, **beside, "x": _AS_TYPED[name]}),)
     for name, made in assigned(results):
         sides[f"{SHOWN}{name}"] = (renamed(made, {"x": ast.Name(name)}),)
     rank = RARE_CONVENTION if says.startswith("~") else CONVENTION
     return Edit("", sides, rank, says.lstrip("~ "))
-
-
-def with_rows_beside(scene: Columns) -> Columns:
-    """Scenes (columns of n) with the columns of the rows before and after."""
-    if "before_E" in scene:
-        return scene
-    beside = {
-        f"{row}_{name}": np.roll(scene[name], step)
-        for row, step in zip(_NEXT, (1, -1), strict=True)
-        for name in SCENE
-    }
-    return {**scene, **beside}
 
 
 def assigned(text: str) -> Iterator[tuple[str, ast.expr]]:

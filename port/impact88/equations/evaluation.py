@@ -22,6 +22,8 @@ Columns = Mapping[str, Any]
 Changes = Mapping[str, Sequence[Any]]
 """Key of a statement -> its sides, written otherwise or as values."""
 
+BESIDE = {"before": 1, "after": -1}
+"""Rows whose columns a program may take for its own, and how far columns are rolled for them."""
 AT_ONCE = 60_000
 """Scenes times edits that are computed together, to bound the memory."""
 
@@ -75,6 +77,7 @@ class Outcome(NamedTuple):
 
 class Run:
     """A spelling run on scenes (columns of n), as it stands: ``names`` and ``residuals``, (1, n).
+    Columns of the rows beside (``before_UX``) are those of the scenes beside where none are given.
 
     ``clamped``: name -> values to go on with in place of what is computed; the difference of the
     two is a residual, and so is that of an equation's sides.
@@ -87,6 +90,12 @@ class Run:
             f"{TYPED}{name}": np.atleast_2d(np.asarray(column, float))
             for name, column in scene.items()
         }
+        if f"{TYPED}before_M" not in self.names:
+            self.names |= {
+                f"{TYPED}{row}_{name}": np.roll(self.names[f"{TYPED}{name}"], step, -1)
+                for row, step in BESIDE.items()
+                for name in scene
+            }
         self.size = max(column.shape[-1] for column in self.names.values())
         self._own: list[Any] = [None] * len(spelling.statements)
         basis = np.eye(len(spelling.unknown) + 1)[1:, :, None, None]

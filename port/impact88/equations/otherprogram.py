@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .edits import MODEL, RARE_CONVENTION, Edit, with_rows_beside
+from .edits import MODEL, RARE_CONVENTION, Edit
 from .evaluation import Columns, Run
 from .spelling import LISTING, SHOWN, Spelling, spellings
 
@@ -45,7 +45,7 @@ class Program(NamedTuple):
 
     def results(self, scene: Columns) -> dict[str, Any]:
         """All that the program shows for scenes (columns of n), by name."""
-        names = Run(self.spelling, with_rows_beside(scene)).names
+        names = Run(self.spelling, scene).names
         size = max(np.size(column) for column in scene.values())
         return {
             name.removeprefix(SHOWN): np.broadcast_to(column, (1, size))[0]
