@@ -215,6 +215,10 @@ EDGES: dict[str, Case] = {
     "ten digits typed": lambda rng, scene: {
         name: f"{rng.uniform(1000, 99999):.5f}" for name in ("IA", "IB")
     },
+    "masses below 1": lambda rng, scene: {
+        name: f"{rng.uniform(0.05, 0.95):.4f}" for name in ("MA", "MB", "IA", "IB")
+    },
+    "point mass without inertias": _fixed(M="4", DA="0", DB="0", WA="0", WB="0", IA="0", IB="0"),
 }
 """Label -> what makes a casework scene that edge."""
 
@@ -236,6 +240,7 @@ FAILURES: dict[str, Case] = {
     "stale pivot row": _sliding(_STALE),
     "singular friction": _sliding(_SINGULAR, "WA", "WB"),
     "same velocity": _same_velocity,
+    "MB is zero": _fixed(MB="0"),
     **{f"{name} negative": _negative(name) for name in ("MA", "MB", "IA", "IB")},
 }
 """Label -> what makes a casework scene that failure, or invites it."""
