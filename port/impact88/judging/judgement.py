@@ -127,7 +127,7 @@ def field_checks(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
 
 def explained(reading: Reading, text: str) -> Match:
     """How a reading is explained by what the program prints."""
-    return compare(reading.region, text, reading.cut, reading.sign_free, reading.closing)
+    return compare(reading.region, text, reading.cut, reading.sign_free)
 
 
 def _locate(check: FieldCheck, reading: Reading) -> None:

@@ -13,12 +13,16 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..fields import ANGLES
+from .channel import UNSEEN
 from .glyphs import Gap, Page
-from .template import INSERTED, LETTER_LOST, REPLY_A, REPLY_B, WRONG, Label, as_letter, template
+from .template import INSERTED, LETTER_LOST, REPLY_A, REPLY_B, Label, as_letter, template
 
 PROMPTS = (REPLY_A, REPLY_B)
 _LETTERS = 2
 """One letter for one (E) is no word: on clean scans E is read L."""
+_REACH = 0.7
+"""From this cost on a label is none that a reader made of its own: one letter read so less than
+once in 600."""
 READERS = 3
 """So many other marks of an optical reader, and a label that contradicts is the reader's doing: of
 15,300 labels of given scans 373 read as other words, 7 of them on pages of fewer marks."""
@@ -187,13 +191,13 @@ def _state(one: _Read) -> LabelState:
     others = _others(one.name)
     other = min(_distance(text, one.read) for text in others if text != one.printed)
     if one.name in PROMPTS:
-        return LabelState.CONTRADICTORY if other < own - WRONG else LabelState.DAMAGED
+        return LabelState.CONTRADICTORY if other < own - UNSEEN else LabelState.DAMAGED
     if len(one.read + one.printed) <= _LETTERS:
         return LabelState.DAMAGED
     if _only_lost(one.printed, one.read) and one.read not in others:
         return LabelState.DAMAGED
     word = one.read.isascii() and one.read.isalpha()
-    if other < own or (word and own >= WRONG):
+    if other < own or (word and own >= _REACH):
         return LabelState.CONTRADICTORY
     return LabelState.DAMAGED
 

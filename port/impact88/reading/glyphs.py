@@ -28,34 +28,6 @@ _GLYPHS = {
     "µ": "M",
 }
 
-LOOK_ALIKES: dict[str, str] = {
-    **dict.fromkeys("OQØ©®°", "0"),
-    **dict.fromkeys("DCU", "06"),
-    **dict.fromkeys("@", "0869"),
-    **dict.fromkeys("I|![]", "1"),
-    **dict.fromkeys("L/\\JT", "17"),
-    "Z": "2",
-    "S": "589",
-    "$": "58",
-    "B": "863",
-    "&": "86",
-    "R": "82",
-    "G": "609",
-    "P": "9",
-    "Y": "79",
-    "F": "7",
-    "A": "4",
-    "H": "4",
-    **dict.fromkeys("()", "01"),
-    **dict.fromkeys("{}<>", "1"),
-    **dict.fromkeys("~_=\u00ad¬«^", "-"),
-    **dict.fromkeys(",·•‧∙․:;'`´’‘", "."),
-    '"': "-",
-    "“": "-",
-    "”": "-",
-}
-"""Glyph that stands in no number -> the digits and signs it is read for."""
-
 NUMERIC = frozenset("0123456789.-+E")
 """The glyphs numbers are made of."""
 

@@ -14,7 +14,7 @@ import re
 import unicodedata
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from .. import files
@@ -25,19 +25,16 @@ from . import glyphs, numerals
 from . import plaintext as pasted
 from .alignment import Aligned, Budget, align
 from .anglerow import cut_in_five
+from .channel import printed_for
 from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
-from .glyphs import Gap, Glyph, Page
-from .margins import begun_within, cut_after, cut_before
-from .numerals import Cut, Region
+from .glyphs import Gap, Page
+from .numerals import Region
 from .template import REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
-
 FRAGMENT = 6
 """A piece with fewer numbers than this is a fragment."""
-
-
 BADLY_READ = 17
 """So many letters and numbers misread, asterisks included: of the given scans that differ 58 of 88
 readings of genuine pages have as many, and 2 of 84 of pages with an altered digit."""
@@ -46,15 +43,10 @@ _PART = 15
 MACHINE_READ = 3
 """So many letters of labels misread, and a machine read the page: people do not type PE for PB."""
 _TYPED = frozenset("0123456789.,-+EOILQ?")
-
 _SLOT_COMMAND = re.compile(r"PR#[0-9]")
 """What line 610 prints where no DOS takes it for a command."""
 _PROMPT_LETTERS, _MOST_ANGLES = 25, 4
 _NEXT_TO_NUMBERS = ("%", "(", ")", "=")
-_CLOSINGS = {"LOSS": "%", "YAF": ")", "YBF": ")"}
-"""Fields that a sign follows."""
-_CLOSING_DIGITS = {"%": "479825", ")": "1379"}
-"""The digits those signs are read as."""
 _OF_PROMPT = 4
 """Glyphs of ``Wa ?`` that are read into the reply at most."""
 _MOST_STARS = 7
@@ -68,10 +60,9 @@ class Reading:
 
     ``text``: what it is taken for, ``?`` for illegible glyphs; ``line``, ``column`` (from 1),
     ``start``, ``stop`` (offsets in the text): where it stands; ``region``: its glyphs;
-    ``alternatives``: other numbers it may be; ``cut``: where the text ends right at it, so that
-    more of it may have stood there; ``sign_free``: a minus before it may be the label's own sign,
-    damaged; ``closing``: digits that the bracket or percent sign after it, not itself read, is read
-    as."""
+    ``alternatives``: other numbers it may be; ``cut``: whether the text ends right at it, so that
+    more of it may have stood there; ``sign_free``: whether a minus before it may be the label's own
+    sign, damaged."""
 
     text: str
     line: int
@@ -80,9 +71,8 @@ class Reading:
     stop: int
     region: Region
     alternatives: tuple[str, ...] = ()
-    cut: Cut = Cut.NONE
+    cut: bool = False
     sign_free: bool = False
-    closing: str = ""
 
     @property
     def clean(self) -> bool:
@@ -90,9 +80,10 @@ class Reading:
         return numerals.clean(self.region) is not None
 
     @property
-    def legible(self) -> bool:
-        """Whether every character was read."""
-        return glyphs.ILLEGIBLE not in self.text
+    def typed(self) -> bool:
+        """Whether a person may have typed it so: in one piece, with O for 0 and l for 1 at worst"""
+        whole = all(glyph.joined for glyph in self.region[1:])
+        return whole and all(glyph.char in _TYPED for glyph in self.region)
 
 
 class Piece(NamedTuple):
@@ -131,9 +122,12 @@ class Printout:
     transcript shows them; ``angles``: ways to cut the row of five angles with what each costs, the
     likeliest first, where blanks alone do not tell, and ``angle_row`` its glyphs then; ``ending``:
     ``ZERO DETERMINANT`` or an Applesoft error as printed, with its line; ``ended``: whether
-    anything of the last row of asterisks is there; ``left_over``: text that belongs nowhere;
-    ``remarks``: what could not be read, and where; ``misread_letters``: how many letters of labels
-    and asterisks were read as others; ``page``: the whole text as glyphs.
+    anything of the last row of asterisks is there; ``spin_line``: whether anything of the final
+    spins is; ``left_over``: text that belongs nowhere; ``remarks``: what could not be read, and
+    where; ``labels``: how each number is named; ``notes``: what was normalised or passed over;
+    ``unread``: why the text was not read to its end; ``misread_letters``: how many letters of
+    labels and asterisks were read as others; ``taken``: the
+    lines that are its own; ``page``: the whole text as glyphs.
     """
 
     line: int
@@ -165,10 +159,8 @@ class Printout:
     def marks(self) -> int:
         """How many marks of an optical reader its numbers bear: foreign glyphs and blanks within
         them, specks beside them."""
-        damaged = sum(not _typed_so(reading) for reading in self.fields.values())
-        return damaged + sum(
-            piece.beside and not piece.whole and len(piece.text) <= 3 for piece in self.left_over
-        )
+        specks = (one.beside and not one.whole and len(one.text) <= 3 for one in self.left_over)
+        return sum(not reading.typed for reading in self.fields.values()) + sum(specks)
 
     @property
     def machine_read(self) -> bool:
@@ -187,10 +179,6 @@ class Printout:
         """Whether any of the final WA, WB line is there, read or not: then M = N."""
         return self.spin_line or any(name in self.fields for name in FINAL_SPINS)
 
-    def place(self, offset: int) -> tuple[int, int]:
-        """Line and column, counted from 1, of an offset in the text."""
-        return self.page.place(offset) if self.page else (self.line, self.column)
-
     @property
     def fragment(self) -> bool:
         """Whether it holds too few numbers to be called a printout."""
@@ -200,6 +188,10 @@ class Printout:
     def fragment_of_run(self) -> bool:
         """Whether nothing of the results is there, and no message that says why."""
         return self.ending is None and not any(name in self.fields for name in _RESULTS)
+
+    def place(self, offset: int) -> tuple[int, int]:
+        """Line and column, counted from 1, of an offset in the text."""
+        return self.page.place(offset) if self.page else (self.line, self.column)
 
     def reading(self, region: Region) -> Reading | None:
         """A part of the row of angles as a number; None when it is none."""
@@ -238,21 +230,21 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     page = Page(pasted.unwrapped(text))
     budget = Budget()
     shown = [printout for part in _parts(page, budget) for printout in part]
+    reason = ""
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
         reason = f"what follows line {line}, column {column} was not read: there is too much of it"
         if not shown:
             raise UserError(f"no printout of the program in what was read of it; {reason}", where)
-        shown[-1].unread = reason
-    if shown:
-        _keep_other_lines(page, shown)
-        shown[0].notes += _left_out(text, page.text)
     if not shown:
         raise UserError(
             "no printout of the program in it; expected text with labels such as "
             "MA= ... MB= ... VAX= ... VAY= ...",
             where,
         )
+    shown[-1].unread = reason
+    _keep_other_lines(page, shown)
+    shown[0].notes += _left_out(text, page.text)
     return shown
 
 
@@ -268,48 +260,39 @@ _LABEL_WORDS = frozenset(
 
 def _keep_other_lines(page: Page, printouts: Sequence[Printout]) -> None:
     """Every line that is none of the program's, whole: with the printout above it, or with the
-    first. Where it holds a number, or one of the program's labels, it may bear on the page."""
+    first; and what stands on a line of the page before or after all that was taken for the page's.
+    Where a line holds a number, or one of the program's labels, it may bear on the page."""
     taken = {line for one in printouts for line in one.taken}
-    place = 0
+    stop = -1
     for number, text in enumerate(page.text.split("\n"), 1):
-        start, place = place, place + len(text) + 1
-        words = text.split()
+        start, stop = stop + 1, stop + 1 + len(text)
         if number in taken:
-            _keep_ends(number, start, text, printouts)
+            there = [one for one in printouts if one.start < stop and start < one.stop]
+            if there:
+                _keep_text(page, there[0], start, there[0].start)
+                _keep_text(page, there[-1], there[-1].stop, stop)
             continue
-        plain = glyphs.squeeze(text)
-        if not plain or _SLOT_COMMAND.fullmatch(plain):
-            continue
+        above = [one for one in printouts if one.line <= number]
         bears = any(map(str.isdigit, text)) or any(
             part in _LABEL_WORDS or (len(part) > 2 and part.upper() in _LABEL_WORDS)
             for part in re.split(r"[^A-Za-z]+", text)
         )
-        above = [one for one in printouts if one.line <= number]
-        column = text.index(words[0]) + 1 if words else 1
-        (above or printouts)[-1 if above else 0].left_over.append(
-            Piece(" ".join(words), number, column, start, start + len(text), bears, True)
-        )
+        _keep_text(page, (above or printouts)[-1 if above else 0], start, stop, bears, True)
     for one in printouts:
         one.left_over.sort(key=lambda piece: piece.start)
         one.notes += _normalised(page.text[one.start : one.stop])
 
 
-def _keep_ends(number: int, start: int, text: str, printouts: Sequence[Printout]) -> None:
-    """What stands on a line of the page before or after all that was taken for the page's."""
-    stop = start + len(text)
-    there = [one for one in printouts if one.start < stop and start < one.stop]
-    if not there:
-        return
-    first, last = there[0], there[-1]
-    for one, begin, end in ((first, start, first.start), (last, last.stop, stop)):
-        piece = text[max(begin - start, 0) : max(end - start, 0)]
-        plain = glyphs.squeeze(piece)
-        if plain and not _SLOT_COMMAND.fullmatch(plain):
-            begin += len(piece) - len(piece.lstrip())
-            column = begin - start + 1
-            one.left_over.append(
-                Piece(" ".join(piece.split()), number, column, begin, begin + len(piece), True)
-            )
+def _keep_text(
+    page: Page, shown: Printout, start: int, stop: int, beside: bool = True, whole: bool = False
+) -> None:
+    """A stretch of text as left over, unless nothing shows there."""
+    text = page.text[start:stop] if start < stop else ""
+    plain = glyphs.squeeze(text)
+    if plain and not _SLOT_COMMAND.fullmatch(plain):
+        begin = start + len(text) - len(text.lstrip())
+        place = page.place(begin)
+        shown.left_over.append(Piece(" ".join(text.split()), *place, begin, stop, beside, whole))
 
 
 def _normalised(text: str) -> list[str]:
@@ -317,8 +300,8 @@ def _normalised(text: str) -> list[str]:
     count = Counter(
         unicodedata.name(char, f"U+{ord(char):04X}").lower().replace("u+0000", "NUL")
         for char in text
-        if not char.isspace()
-        and (char > "~" or char < " ")
+        if not " " <= char <= "~"
+        and not char.isspace()
         and glyphs.plain_glyphs(char) != char.upper()
     )
     kinds = ", ".join(f"{number} {name}" for name, number in sorted(count.items()))
@@ -333,12 +316,9 @@ def _left_out(text: str, unwrapped: str) -> list[str]:
         for number, (one, other) in enumerate(pairs, 1)
         if any(map(str.isalpha, one)) and not other.strip()
     ]
-    if not lines:
-        return []
     what = "1 line is" if len(lines) == 1 else f"{len(lines)} lines are"
-    return [
-        f"{what} markup or lines of a BASIC program, and not read: the first is line {lines[0]}"
-    ]
+    what += " markup or lines of a BASIC program, and not read: the first is line "
+    return [f"{what}{lines[0]}"] if lines else []
 
 
 # --- where a run ended ---------------------------------------------------------------------------
@@ -350,8 +330,7 @@ def _loosely(words: str) -> str:
     """A pattern for printed words without their blanks, letters that look like digits either way"""
     return "".join(
         "['’`]?" if letter == "'" else _LOOSE.get(letter, re.escape(letter))
-        for letter in words
-        if letter != " "
+        for letter in words.replace(" ", "")
     )
 
 
@@ -392,8 +371,7 @@ def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
                 continue
             shown[-1].ending = _ending(match)
             begin, shown[-1].stop = page.span(match.start(), match.end())
-            lines = {page.place(begin)[0], page.place(shown[-1].stop - 1)[0]}
-            shown[-1].taken |= lines
+            shown[-1].taken |= {page.place(begin)[0], page.place(shown[-1].stop - 1)[0]}
             start = match.end()
         yield shown
 
@@ -407,16 +385,14 @@ class _Reader:
         self._start = base + aligned.start
         self._states = aligned.states
         self._slots = {name: (base + i, base + j) for name, (i, j) in aligned.slots.items()}
+        self._worded: set[int] = set()
         self._part_labels()
         start, stop = page.span(self._start, base + aligned.stop)
         self._printout = Printout(*page.place(start), start, stop, page=page)
-        self._lines = set(aligned.lines)
-        self._begun_within = begun_within(page, self._start, self._states)
 
     def _part_labels(self) -> None:
         """A word that stands apart from the number before it, and is joined to the next by its
         equals sign, is no part of either."""
-        self._worded: set[int] = set()
         for first, sign in words_before(self._page, self._slots).values():
             self._worded.update(range(first, sign))
             for name, (start, stop) in self._slots.items():
@@ -433,18 +409,17 @@ class _Reader:
                 self._read_number(name, start, stop)
         if not self._worth_telling():
             return None
-        if self._letters(SPINS) < 2:
-            for name in FINAL_SPINS:  # a footer, a page number
-                shown.fields.pop(name, None)
-                self._slots.pop(name, None)
+        shown.spin_line = self._letters((SPINS,)) >= 2
+        for name in () if shown.spin_line else FINAL_SPINS:  # a footer, a page number
+            shown.fields.pop(name, None)
+            self._slots.pop(name, None)
         for name in (REPLY_A, REPLY_B):
             if name in self._slots:
                 self._read_reply(name, self._slots[name][0])
         if any(name in self._slots for name in ANGLES):
             self._read_angles()
-        self._cut_at_margins()
-        shown.ended = STARS[1] in self._lines
-        shown.spin_line = self._letters(SPINS) >= 2
+        lines = template().line
+        shown.ended = any(lines[state] == STARS[1] for state in self._states)
         self._keep_left_over()
         read = {name: self._slots[name] for name in shown.fields if name in self._slots}
         marks = shown.marks if len(shown.fields) >= _PART else READERS
@@ -452,23 +427,21 @@ class _Reader:
         shown.misread_letters = self._misread_letters()
         return shown
 
-    def _letters(self, line: int | None = None) -> int:
-        """How many letters of labels were read as they are printed, in one line or all."""
+    def _letters(self, lines: Sequence[int] = ()) -> int:
+        """How many letters of labels were read as they are printed, in some lines or all."""
         page = template()
         return sum(
             self._glyphs[self._start + index].char == page.letters.get(state)
             for index, state in enumerate(self._states)
-            if state and (line is None or page.line[state] == line)
+            if state and (not lines or page.line[state] in lines)
         )
 
     def _misread_letters(self) -> int:
-        """Letters of labels, and asterisks, read as other letters or figures; and lines whose first
-        letters were not read, as where a margin is cut off."""
+        """Letters of labels, and asterisks, read as other letters or figures."""
         page = template()
-        count = sum(self._begun_within)
         wrong = {one.name for one in self._printout.mislabelled}
         others = {state for one in page.labels if one.name in wrong for state in one.states}
-        before = 0
+        count = before = 0
         for index, state in enumerate(self._states):
             letter = "" if state in others else page.letters.get(state, "")
             glyph = self._glyphs[self._start + index]
@@ -479,64 +452,36 @@ class _Reader:
 
     def _worth_telling(self) -> bool:
         """Whether a label and its number, or a prompt, was read."""
-        if self._letters(0) + self._letters(1) >= _PROMPT_LETTERS:
+        if self._letters((0, 1)) >= _PROMPT_LETTERS:
             return True
         shown = self._printout.fields
         numbers = {name for name, one in shown.items() if any(map(str.isdigit, one.text))}
-        angles = numbers & set(ANGLES)
-        if len(angles) < _MOST_ANGLES:
-            numbers -= angles
-        labelled = sum(self._label_letters(name) >= 1 for name in numbers)
+        if len(numbers & set(ANGLES)) < _MOST_ANGLES:
+            numbers -= set(ANGLES)
+        labelled = sum(map(self._labelled, numbers))
         letters = self._letters()
         return (labelled >= 1 and letters >= 4) or (labelled >= 2 and letters >= 3)
 
-    def _label_letters(self, name: str) -> int:
-        """How many letters right before a number were read as its label's."""
+    def _labelled(self, name: str) -> bool:
+        """Whether a letter right before a number was read as its label's."""
         page = template()
         place = self._slots[name][0] - self._start - 1
-        found = 0
-        while place >= 0 and self._states[place] in page.letters:
-            letter = page.letters[self._states[place]]
-            found += letter.isalpha() and self._glyphs[self._start + place].char == letter
+        while place >= 0 and (letter := page.letters.get(self._states[place])):
+            if letter.isalpha() and self._glyphs[self._start + place].char == letter:
+                return True
             place -= 1
-        return found if name not in ANGLES else 1
+        return name in ANGLES
 
     def _remark(self, name: str, message: str, index: int) -> None:
         place = self._page.place(self._page.span(index, index + 1)[0])
         self._printout.remarks.append(Remark(name, message, *place))
-
-    def _cut_at_margins(self) -> None:
-        """Numbers at an edge that cut lines off may have lost digits there."""
-        page, fields = self._page, self._printout.fields
-        before = cut_before(self._begun_within)
-        after = cut_after(page, self._start, self._states)
-        for name, reading in [*fields.items()] if before or after else []:
-            cut = reading.cut
-            following = self._slots[name][1]
-            ends = following == len(self._glyphs) or self._glyphs[following].gap is Gap.LINE
-            if before and reading.region[0].gap is Gap.LINE:
-                cut |= Cut.BEFORE
-            if after and ends and page.place(reading.stop - 1)[1] >= after:
-                cut |= Cut.AFTER
-            fields[name] = replace(reading, cut=cut)
-
-    def _closing(self, name: str) -> str:
-        """The digits that the glyph after a field is read as, where that glyph is lost although
-        others of its kind were read."""
-        mark = _CLOSINGS.get(name)
-        if mark is None:
-            return ""
-        page = template()
-        read = {page.slot_before.get(state) for state in self._states} & set(_CLOSINGS)
-        return "" if name in read or not read else _CLOSING_DIGITS[mark]
 
     def _read_number(self, name: str, start: int, stop: int) -> None:
         before = start - 1 - self._start
         sign = template().letters.get(self._states[before]) if before >= 0 else None
         unsigned = sign != "=" or self._glyphs[start - 1].char != "="
         region = tuple(self._glyphs[start:stop])
-        sign_free = unsigned and name not in ANGLES
-        reading = _reading(self._page, region, sign_free, self._closing(name)) if region else None
+        reading = _reading(self._page, region, unsigned and name not in ANGLES) if region else None
         if reading is None:
             shown = self._page.shown(start, stop)
             self._remark(name, f"{_quoted(shown)}: expected a number", start)
@@ -546,11 +491,8 @@ class _Reader:
     def _read_angles(self) -> None:
         names = [name for name in ANGLES if name in self._slots]
         shown = self._printout
-        plain = names == list(ANGLES) and all(
-            name in shown.fields and shown.fields[name].clean for name in names
-        )
-        parted = all(self._glyphs[self._slots[name][0]].gap for name in names[1:])
-        if plain and parted:
+        clean = all(name in shown.fields and shown.fields[name].clean for name in ANGLES)
+        if clean and all(self._glyphs[self._slots[name][0]].gap for name in ANGLES[1:]):
             return
         start = min(self._slots[name][0] for name in names)
         stop = max(self._slots[name][1] for name in names)
@@ -571,10 +513,9 @@ class _Reader:
                 break
             stop += 1
         names = REPLIES["A" if name == REPLY_A else "B"]
-        parts = _reply_parts(list(self._glyphs[start:stop]))
-        printed = [self._printout.text(field_name) for field_name in names]
-        parts = _comma_for_point(self._glyphs[start:stop], parts, printed) or parts
-        before = self._glyphs[start - 1].char != "?" and _before_reply(parts, printed)
+        parts = _reply_parts(tuple(self._glyphs[start:stop]))
+        printed = self._printout.text(names[0])
+        before = self._glyphs[start - 1].char != "?" and _before_reply(parts[0], printed)
         if before:
             what = _quoted(numerals.plain(parts[0][:before]))
             self._remark("", f"reply: {what} before the first number", start)
@@ -584,112 +525,91 @@ class _Reader:
             self._remark("", f"reply: {_quoted(extra)} after the third number", start)
             parts = parts[: len(names)]
         if len(parts) != len(names):
-            shown = _quoted(self._page.shown(start, stop))
             if parts != [()]:
+                shown = _quoted(self._page.shown(start, stop))
                 self._remark("", f"reply {shown} is not three numbers", start)
             return
         for field_name, region in zip(names, parts, strict=True):
-            if not region:
-                continue
-            begin, end = region[0].offset, region[-1].offset + 1
-            text = numerals.clean(region)
-            ways = [way for way, _ in numerals.candidates(region, 6)]
-            if text is None and not ways:
-                continue
-            text = text or ways.pop(0)
-            self._printout.replies[field_name] = Reading(
-                text, *self._page.place(begin), begin, end, region, tuple(ways)
-            )
+            reading = _reading(self._page, region) if region else None
+            if reading is not None and glyphs.ILLEGIBLE not in reading.text:
+                self._printout.replies[field_name] = reading
 
     def _keep_left_over(self) -> None:
         """Runs of glyphs between lines or put into labels, on the lines of the page; and which
-        glyphs those lines have (`_keep_other_lines` keeps the others)."""
+        lines those are (`_keep_other_lines` keeps the others)."""
         page = template()
-        between = set(page.between.tolist()) | {0}
+        between = {*page.between.tolist(), 0}
         lines: dict[int, list[int]] = {}
         for index in range(self._start, self._start + len(self._states)):
             lines.setdefault(self._page.place(self._glyphs[index].offset)[0], []).append(index)
         numbers = {index for span in self._slots.values() for index in range(*span)}
-        numbered = {number for number, line in lines.items() if numbers & set(line)}
         taken: set[int] = set()
         for number, line in lines.items():
-            if number not in numbered and not self._is_of_the_page(line):
+            numbered = not numbers.isdisjoint(line)
+            if not numbered and not self._is_of_the_page(line):
                 continue
             taken.add(number)
             run: list[int] = []
-            for index in line:
-                state = self._states[index - self._start]
-                again = index > self._start and state == self._states[index - 1 - self._start]
-                letter = page.letters.get(state)
-                digit = letter in _NEXT_TO_NUMBERS and self._glyphs[index].char.isdigit()
-                again = again and not (page.line[state] < 2 and self._glyphs[index].char in "_{}")
-                loose = state in between or (letter is not None and (again or digit))
-                if loose and index not in self._worded:
+            for index in [*line, -1]:
+                if index >= 0 and index not in self._worded and self._loose(index, between):
                     run.append(index)
                 elif run:
-                    self._keep(run, numbered)
+                    start, stop = self._page.span(run[0], run[-1] + 1)
+                    _keep_text(self._page, self._printout, start, stop, numbered)
                     run = []
-            if run:
-                self._keep(run, numbered)
         self._printout.taken = frozenset(taken)
+
+    def _loose(self, index: int, between: set[int]) -> bool:
+        """Whether a glyph belongs to no number and no label."""
+        page = template()
+        at = index - self._start
+        state, char = self._states[at], self._glyphs[index].char
+        letter = page.letters.get(state)
+        if state in between or letter is None:
+            return state in between
+        again = (
+            at > 0
+            and state == self._states[at - 1]
+            and not (page.line[state] < 2 and char in "_{}")
+        )
+        return again or (letter in _NEXT_TO_NUMBERS and char.isdigit())
 
     def _is_of_the_page(self, line: Sequence[int]) -> bool:
         """Whether a line on which no number stands is one of the program's: half of it are letters
         as it prints them, or it is a row of asterisks, however they were read."""
-        letters, lines = template().letters, template().line
+        page = template()
         states = [self._states[index - self._start] for index in line]
-        chars = [self._glyphs[index].char for index in line]
-        exact = sum(letters.get(state) == char for state, char in zip(states, chars, strict=True))
-        stars = all(lines[state] in STARS for state in states)
+        pairs = zip(states, (self._glyphs[index].char for index in line), strict=True)
+        exact = sum(page.letters.get(state) == char for state, char in pairs)
+        stars = all(page.line[state] in STARS for state in states)
         count = self._page.glyphs_on(line[0])
         return 2 * exact >= count or (stars and count <= _MOST_STARS)
 
-    def _keep(self, run: list[int], numbered: set[int]) -> None:
-        start, stop = self._page.span(run[0], run[-1] + 1)
-        line, column = self._page.place(start)
-        text = self._page.shown(run[0], run[-1] + 1)
-        if _SLOT_COMMAND.fullmatch(glyphs.squeeze(text)):
-            return
-        self._printout.left_over.append(Piece(text, line, column, start, stop, line in numbered))
 
-
-def _typed_so(reading: Reading) -> bool:
-    """Whether a person may have typed a number so: in one piece, with O for 0 and l for 1 at
-    worst."""
-    whole = all(glyph.joined for glyph in reading.region[1:])
-    return whole and all(glyph.char in _TYPED for glyph in reading.region)
-
-
-def _reading(
-    page: Page, region: Region, sign_free: bool = False, closing: str = ""
-) -> Reading | None:
+def _reading(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
     """A region of a page as a number, None when nothing of one is there."""
     begin, end = region[0].offset, region[-1].offset + 1
     text = numerals.clean(region)
     ways: list[str] = []
     if text is None:
-        ways = [way for way, _ in numerals.candidates(region, 4, sign_free)]
-        text = illegibly(region) if not ways or _foreign_inside(region) else ways[0]
+        ways = [way for way, _ in numerals.candidates(region, 6, sign_free)]
+        text = _illegibly(region) if not ways or _foreign_inside(region) else ways[0]
     if text is None:
         return None
-    last = end == len(page.text) and region[-1].offset == page.glyphs[-1].offset
-    cut = Cut.AFTER if last else Cut.NONE
-    line, column = page.place(begin)
-    return Reading(text, line, column, begin, end, region, tuple(ways[1:]), cut, sign_free, closing)
+    cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
+    return Reading(text, *page.place(begin), begin, end, region, tuple(ways[1:]), cut, sign_free)
 
 
 def _foreign_inside(region: Region) -> bool:
     """Whether a glyph that looks like no figure stands within a number."""
-    figures = [place for place, glyph in enumerate(region) if glyph.char.isdigit()]
-    if not figures:
-        return False
+    figures = [place for place, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
     return any(
-        glyph.char not in glyphs.NUMERIC and glyph.char not in glyphs.LOOK_ALIKES and glyph.joined
+        glyph.char not in glyphs.NUMERIC and not printed_for(glyph.char) and glyph.joined
         for glyph in region[figures[0] + 1 : figures[-1] + 1]
     )
 
 
-def illegibly(region: Region) -> str | None:
+def _illegibly(region: Region) -> str | None:
     """A region in which nothing reads as a number, its foreign glyphs as illegible; None when
     there is nothing left."""
     text = "".join(
@@ -699,74 +619,34 @@ def illegibly(region: Region) -> str | None:
     return text if any(map(str.isdigit, text)) or text in ("?", "??", "???") else None
 
 
-def _reply_parts(glyphs_: list[Glyph]) -> list[Region]:
-    """The glyphs of a reply, parted at its commas."""
-    text = numerals.plain(glyphs_)
-    for word in ("REENTER", "EXTRAIGNORED"):
-        place = text.rfind(word)
-        if place >= 0 and word == "REENTER":
-            glyphs_ = glyphs_[place + len(word) :]
-        elif place >= 0:
-            glyphs_ = glyphs_[: max(0, place - 1)]
-        text = numerals.plain(glyphs_)
-    place = text.find("PR#")
-    if place >= 0:
-        glyphs_ = glyphs_[:place]
-    while glyphs_ and glyphs_[0].char == "?":
-        glyphs_ = glyphs_[1:]
-    parts: list[list[Glyph]] = [[]]
-    index = 0
-    while index < len(glyphs_):
-        glyph = glyphs_[index]
-        twice = glyph.char == "?" and glyphs_[index + 1 : index + 2]
-        if twice and glyph.gap is Gap.LINE and glyphs_[index + 1].char == "?":
-            parts.append([])
-            index += 2
-            continue
-        if glyph.char in ",;":
-            parts.append([])
-        else:
-            parts[-1].append(glyph)
-        index += 1
-    return [tuple(part) for part in parts]
+def _reply_parts(region: Region) -> list[Region]:
+    """The glyphs of a reply, parted at its commas, or where INPUT asked for more; after what it
+    refused, before what it ignored."""
+    text = numerals.plain(region)
+    begin = max(text.rfind("REENTER") + len("REENTER"), 0) if "REENTER" in text else 0
+    stops = (text.find(word, begin) for word in ("?EXTRAIGNORED", "PR#"))
+    region = region[begin : min([stop for stop in stops if stop >= 0], default=len(text))]
+    while region and region[0].char == "?":
+        region = region[1:]
+    parts: list[Region] = [()]
+    for place, glyph in enumerate(region):
+        asked = glyph.char == "?" and numerals.plain(region[place : place + 2]) == "??"
+        if glyph.char in ",;" or (asked and glyph.gap is Gap.LINE):
+            parts.append(())
+        elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
+            parts[-1] += (glyph,)
+    return parts
 
 
-def _comma_for_point(
-    glyphs_: Sequence[Glyph], parts: Sequence[Region], printed: Sequence[str | None]
-) -> list[Region]:
-    """The parts of a reply with two of them as one number whose point was read as a comma, where
-    all are then what is printed below; else none."""
-    if len(parts) != len(printed) + 1 or not all(parts):
-        return []
-    for place in range(len(printed)):
-        one, other = parts[place : place + 2]
-        whole = tuple(
-            glyph for glyph in glyphs_ if one[0].offset <= glyph.offset <= other[-1].offset
-        )
-        joined = [*parts[:place], whole, *parts[place + 2 :]]
-        texts = [numerals.plain(part).replace(",", ".") for part in joined]
-        if all(map(_reads_as, texts, printed)):
-            return joined
-    return []
-
-
-def _before_reply(parts: Sequence[Region], printed: Sequence[str | None]) -> int:
+def _before_reply(first: Region, printed: str | None) -> int:
     """How many glyphs of a prompt whose mark was not read stand before the first number of a reply,
     where that is then what is printed below; a reply never outranks a printed number."""
-    first = parts[0]
+    value = numerals.value_of(printed or "")
+    if value is None:
+        return 0
+    text = numerals.plain(first)
     places = range(1, min(_OF_PROMPT, len(first) - 1) + 1)
-    whole = numerals.plain(first)
-    return next((at for at in places if printed[0] and _same(whole[at:], printed[0])), 0)
-
-
-def _same(text: str, printed: str) -> bool:
-    return (value := numerals.value_of(printed)) is not None and value == numerals.value_of(text)
-
-
-def _reads_as(text: str, printed: str | None) -> bool:
-    """Whether a part of a reply, the prompt's mark before it or not, is a printed number."""
-    value = numerals.value_of(printed) if printed else None
-    return value is not None and value in map(numerals.value_of, (text, text[1:]))
+    return next((at for at in places if numerals.value_of(text[at:]) == value), 0)
 
 
 def _quoted(text: str) -> str:

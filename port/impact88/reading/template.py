@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..fields import ANGLES
-from .glyphs import LOOK_ALIKES, NUMERIC
+from .channel import UNSEEN, label_cost, printed_for
+from .glyphs import NUMERIC
 
 Floats = NDArray[np.float64]
 
@@ -79,22 +80,14 @@ SPINS = 14
 STARS = (11, 15)
 """The rows of asterisks."""
 
-_LETTERS = {
-    "A": "4", "B": "8ERSP3", "C": "G(", "D": "0OU", "E": "F8BZ", "F": "EP", "G": "C6S", "H": "NKM",
-    "I": "1L|!TJ[]", "K": "XHR", "L": "I1|", "M": "NHWR", "N": "MHW", "O": "0QDC", "P": "FRB",
-    "R": "KBP", "S": "58$", "T": "7IY1", "U": "VWJOL", "V": "UYW\\Y", "W": "VMUHN", "X": "KH%*Y",
-    "Y": "V¥4X", "Z": "27", "*": "KX#REHSOQALI¥J", "=": "-~:SEZ52FGR_>«", "(": "/{[C<¢6",
-    ")": "/}]>J3", "?": "729P1", "%": "¥X#9$&478", ":": ".;,", ",": ".;'",
-}  # fmt: skip
-"""Letter of a label -> what it is read as."""
-
 _MISS = {"=": 0.45, "(": 0.25, ")": 0.25, "%": 0.3, "*": 0.25, ":": 0.2, ",": 0.2, "?": 0.3}
 """What it costs to miss a glyph of a label; other letters `LETTER_LOST`."""
 LETTER_LOST = 0.65
 """Of letters that nobody leaves out."""
 _LOOSE = 0.25
 """The same for words that retyped pages leave out (INITIAL, KE before LOSS, the prompts)."""
-ALIKE, WRONG, _DIGIT = 0.35, 1.1, 1.4
+_FIGURE = 0.3
+"""What a figure costs more where a letter of a label is wrong."""
 INSERTED = 1.0
 _SLOT_ALIKE, _SLOT_LETTER, _SLOT_OTHER, _SLOT_EQUALS = 0.3, 0.55, 0.9, 1.6
 _BETWEEN, _BETWEEN_DIGIT, _BETWEEN_SIGN = 0.5, 0.9, 0.4
@@ -139,9 +132,7 @@ class Template(NamedTuple):
     ``unlabelled`` (gap by state): of a number without its label's last glyph; ``miss``: of passing
     without a glyph. ``between``: the states before the lines; ``absent``: of missing each line;
     ``closes``: whether text may end after a state. ``line``: where a state belongs; ``slots``:
-    state -> field name; ``letters``: state -> a label's letter; ``slot_before``: state of a sign
-    that closes a number -> that number's field;
-    ``always``: states of letters that nobody leaves out; ``labels``: what names each number.
+    state -> field name; ``letters``: state -> a label's letter; ``labels``: what names each number.
     """
 
     enter: Floats
@@ -156,8 +147,6 @@ class Template(NamedTuple):
     line: list[int]
     slots: dict[int, str]
     letters: dict[int, str]
-    slot_before: dict[int, str]
-    always: frozenset[int]
     labels: tuple[Label, ...]
 
 
@@ -235,16 +224,6 @@ def template() -> Template:
         [number for _, _, number in kinds],
         {state: name for state, (kind, name, _) in enumerate(kinds) if kind == "slot"},
         {state: name for state, (kind, name, _) in enumerate(kinds) if kind in ("letter", "loose")},
-        {
-            state: kinds[state - 1][1]
-            for state, (kind, name, _) in enumerate(kinds)
-            if name in ("%", ")") and kinds[state - 1][0] == "slot"
-        },
-        frozenset(
-            state
-            for state, (kind, name, _) in enumerate(kinds)
-            if kind == "letter" and name not in _MISS
-        ),
         tuple(_labels()),
     )
 
@@ -278,7 +257,7 @@ def _in_slot(char: str) -> float:
         return 0.2 if char == "E" else 0.08
     if char == "=":
         return _SLOT_EQUALS
-    if char in LOOK_ALIKES:
+    if printed_for(char):
         return _SLOT_LETTER if char.isalpha() and char not in "OQLISBZ" else _SLOT_ALIKE
     return _SLOT_OTHER
 
@@ -292,12 +271,11 @@ def _between(char: str) -> float:
 
 def as_letter(letter: str, char: str) -> float:
     """The cost of reading a letter of a label as a glyph."""
-    if letter == char:
-        return 0.0
     if letter == "=" and char in "-~_":
         return _MISS["="] + 0.2  # rather the number's sign, the label's own glyph missing
-    if char in _LETTERS.get(letter, ""):
-        return ALIKE + (1.25 if letter == "=" and char.isdigit() else 0.0)
+    cost = label_cost(letter, char)
     if letter == "*" and not char.isdigit():
-        return ALIKE + 0.15
-    return _DIGIT if char.isdigit() else WRONG
+        return min(cost, 0.5)
+    if not char.isdigit():
+        return cost
+    return cost + (1.25 if letter == "=" and cost < UNSEEN else _FIGURE * (cost == UNSEEN))

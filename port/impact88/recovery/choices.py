@@ -1,12 +1,12 @@
 """What each input may have been: the texts its glyphs can be read as, and what was typed for them.
 
 A printed field says most, a reply at the prompt bears it out or speaks where the field is lost.
-What a clean number says is never doubted here; misreadings of clean digits are `explain`'s.
+What a clean number says is not doubted here; misreadings of clean digits are `rereading`'s.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from ..doubles import double
@@ -15,30 +15,35 @@ from ..reading.numerals import candidates, value_of
 from ..reading.printout import Printout, Reading
 from ..scene import VALUE_LIMIT
 from .misprints import opposite
-from .typedtext import stored_and_printed, texts_that_print
+from .typedtext import stored_and_printed
 
 STAND_IN = "1.7"
 """Put in place of an input nothing tells of."""
-_MOST = 40
-_ROWS = 400
-_OTHER_BITS = 0.02
-_FLIPPED = 0.001
+_MOST, _ROWS = 40, 400
+"""Texts of one input, and cuts of the row of angles, that are tried."""
 _REPLY_DISAGREES = 1.0
 _NO_FIELD = 0.8
+"""What it costs that a printed number is not what the reply says, and that only a reply says it."""
 _PROMPT_MARK = "7291?P"
 """What the prompt's question mark is read as."""
 
 
-class Choice(NamedTuple):
-    """One way to take an input (or the row of angles): the scene's texts, the printed texts assumed
-    by field name, and what it costs to believe."""
+class Column(NamedTuple):
+    """What an input, or the row of angles, may be: the fields, and the texts that may be printed
+    for them (``typed``: that may have been typed), each with what it costs, cheapest first."""
 
-    typed: dict[str, str]
-    printed: dict[str, str]
-    cost: float
+    names: tuple[str, ...]
+    options: list[tuple[tuple[str, ...], float]]
+    typed: bool = False
 
 
-Choices = list[list[Choice]]
+class Choices(NamedTuple):
+    """What each input may have been; ``typed``: by field, what was typed for a printed text, where
+    a reply or a scene file says so; ``missing``: the scene's values nothing tells of."""
+
+    columns: list[Column]
+    typed: dict[str, dict[str, str]]
+    missing: list[str]
 
 
 def scene_name(name: str) -> str:
@@ -57,118 +62,62 @@ def mu_turned(typed: str, printed: str) -> bool:
     return (double(typed) < 0) != printed.startswith("-")
 
 
-def choices_of(
-    shown: Printout, given: Mapping[str, str] | None = None
-) -> tuple[Choices, list[str]]:
-    """What each input may have been, cheapest first, and the inputs nothing tells of.
-
-    ``given``: texts of inputs known from elsewhere (a scene file)."""
+def choices_of(shown: Printout, given: Mapping[str, str] | None = None) -> Choices:
+    """What each input may have been. ``given``: texts of inputs known from elsewhere (a scene
+    file)."""
     given = given or {}
-    choices: Choices = []
-    missing: list[str] = []
+    choices = Choices([], {}, [])
     joint = bool(shown.angles) and not any(name in given for name in ANGLES)
+    if joint:
+        choices.columns.append(Column(ANGLES, shown.angles[:_ROWS]))
     for name in INPUTS:
-        scene = scene_name(name)
         if name in ANGLES and joint:
-            if name == ANGLES[0]:
-                rows = shown.angles[:_ROWS]
-                choices.append([_row(texts, cost) for texts, cost in rows])
             continue
-        if scene in given and name not in shown.fields:
-            choices.append([Choice({scene: given[scene]}, {}, 0.0)])
-            continue
-        options = input_choices(name, shown)
+        scene = scene_name(name)
+        ways, typed = _ways(name, shown)
         if scene in given:
-            options = _given_first(options, scene, given[scene])
-        if not options:
-            missing.append(scene)
-            options = [Choice({scene: STAND_IN}, {}, 0.0)]
-        if scene == "MU":
-            options = _either_sign(options)
-        choices.append(options)
-    choices.append([Choice({"M": text}, {}, cost) for text, cost in _ms(shown, given)])
-    return choices, missing
-
-
-def _given_first(options: list[Choice], name: str, text: str) -> list[Choice]:
-    seen = stored_and_printed(text, name in ANGLES)
-    for option in options:
-        if seen and seen[1] in option.printed.values():
-            return [Choice({name: text}, option.printed, option.cost)]
-    return options or [Choice({name: text}, {}, 0.0)]
-
-
-def _either_sign(options: list[Choice]) -> list[Choice]:
-    """MU typed with either sign: line 400 may have changed it before it was printed."""
-    both = []
-    for option in options:
-        both.append(option)
-        if (other := flipped(option)) != option:
-            both.append(other)
-    return sorted(both, key=lambda choice: choice.cost)
-
-
-def flipped(choice: Choice) -> Choice:
-    """A choice of MU with the other sign typed; the same where it has none."""
-    for typed in with_opposite_mu(choice.typed):
-        return choice._replace(typed=typed, cost=choice.cost + _FLIPPED)
-    return choice
-
-
-def _ms(shown: Printout, given: Mapping[str, str]) -> list[tuple[str, float]]:
-    """What M may have been: 6 where the final spins are printed, else what the results say."""
+            printed = (stored_and_printed(given[scene], name in ANGLES) or ("", ""))[1]
+            if name in shown.fields and printed in ways:
+                ways, typed = {printed: ways[printed]}, {printed: given[scene]}
+            elif name not in shown.fields or not ways:
+                ways, typed = {given[scene]: 0.0}, {given[scene]: given[scene]}
+        if not ways:
+            choices.missing.append(scene)
+            ways = {STAND_IN: 0.0}
+        options = sorted(ways.items(), key=lambda way: way[1])[:_MOST]
+        choices.columns.append(Column((name,), [((text,), cost) for text, cost in options]))
+        choices.typed[name] = typed
     if "M" in given:
-        return [(given["M"], 0.0)]
-    if shown.has_final_spins:
-        return [("6", 0.0)]
-    return [("4", 0.0), ("6", 0.5)] if shown.ended else [("4", 0.0), ("6", 0.1)]
+        ms = {given["M"]: 0.0}
+    else:
+        ms = {"6": 0.0} if shown.has_final_spins else {"4": 0.0, "6": 0.5 if shown.ended else 0.1}
+    choices.columns.append(Column(("M",), [((text,), cost) for text, cost in ms.items()], True))
+    return choices
 
 
-def _row(texts: Sequence[str], cost: float) -> Choice:
-    typed = {
-        name: (texts_that_print(text, True) or (text,))[0]
-        for name, text in zip(ANGLES, texts, strict=True)
-    }
-    return Choice(typed, dict(zip(ANGLES, texts, strict=True)), cost)
-
-
-def printed_ways(reading: Reading) -> dict[str, float]:
-    """The printed texts a reading may be, with what each costs."""
-    if reading.clean:
-        ways = dict(candidates(reading.region, 1, False))
-        return ways or ({} if value_of(reading.text) is None else {reading.text: 0.0})
-    return dict(candidates(reading.region, _MOST, reading.sign_free))
-
-
-def input_choices(name: str, shown: Printout) -> list[Choice]:
-    """What one input may have been, cheapest first; empty when nothing tells."""
-    angle = name in ANGLES
-    scene = scene_name(name)
-    reading = shown.fields.get(name)
-    reply = shown.replies.get(name)
+def _ways(name: str, shown: Printout) -> tuple[dict[str, float], dict[str, str]]:
+    """The texts that may be printed for an input, with what each costs; and what was typed for
+    those that its reply bears out."""
+    reading, reply = shown.fields.get(name), shown.replies.get(name)
     answers = reply_ways(reply) if reply is not None else []
-    ways = printed_ways(reading) if reading is not None else {}
-    choices: list[Choice] = []
-    for text, cost in ways.items():
-        same = [(typed, price) for typed, printed, price in answers if printed == text]
-        if same:
-            typed, price = min(same, key=lambda way: way[1])
-            choices.append(Choice({scene: typed}, {name: text}, cost + 0.3 * price))
+    ways = dict(candidates(reading.region, _MOST, reading.sign_free)) if reading else {}
+    if reading and reading.clean:
+        ways = dict([*ways.items()][:1])
+        if not ways and value_of(reading.text) is not None:
+            ways = {reading.text: 0.0}
+    own = frozenset(ways)
+    typed: dict[str, str] = {}
+    for text in own if answers else ():
+        ways[text] += _REPLY_DISAGREES
+    for answer, printed, price in sorted(answers, key=lambda way: way[2]):
+        if printed in typed:
             continue
-        texts = texts_that_print(text, angle)
-        strange = 0.0 if texts else 0.7
-        disagrees = _REPLY_DISAGREES if answers else 0.0
-        typed = (texts or (text,))[0]
-        choices.append(Choice({scene: typed}, {name: text}, cost + strange + disagrees))
-    if reading is None or not reading.clean:
-        known = {choice.printed.get(name) for choice in choices}
-        for typed, printed, price in answers:
-            if printed not in known:
-                printed_too = {name: printed} if reading is not None else {}
-                cost = _NO_FIELD + price + (_REPLY_DISAGREES if choices else 0.0)
-                choices.append(Choice({scene: typed}, printed_too, cost))
-    choices.sort(key=lambda choice: choice.cost)
-    return choices[:_MOST]
+        if printed in own:
+            ways[printed] += 0.3 * price - _REPLY_DISAGREES
+        elif reading is None or not reading.clean:
+            ways[printed] = _NO_FIELD + price + (_REPLY_DISAGREES if own else 0.0)
+        typed[printed] = answer
+    return ways, typed
 
 
 def without_mark(reply: Reading) -> Reading | None:
@@ -183,36 +132,14 @@ def without_mark(reply: Reading) -> Reading | None:
 def reply_ways(reply: Reading) -> list[tuple[str, str, float]]:
     """What was typed at a prompt, what it then prints, and what it costs to believe. The prompt's
     own question mark may have been read as a digit before the number."""
-    ways = {reply.text: 0.0} if reply.clean else dict(candidates(reply.region, 8))
-    rest = without_mark(reply)
-    if rest is not None:
-        others = {rest.text: 0.0} if rest.clean else dict(candidates(rest.region, 8))
-        for text, cost in others.items():
-            ways.setdefault(text, cost + 0.5)
-    readings = []
-    for text, cost in ways.items():
-        seen = stored_and_printed(text)
-        if seen is not None and len(text) <= VALUE_LIMIT:
-            readings.append((text, seen[1], cost))
-    return readings
-
-
-def other_bits(scene: Mapping[str, str], assumed: Mapping[str, str]) -> Choices:
-    """For each input of a scene the texts that print the same and enter with other bits."""
-    choices: Choices = []
-    for name, typed in scene.items():
-        texts = [typed]
-        field = "MUP" if name == "MU" else name
-        printed = assumed.get(field)
-        if printed is not None and name != "M":
-            others = list(texts_that_print(printed, name in ANGLES))
-            if name == "MU" and mu_turned(typed, printed):
-                others = [opposite(text) for text in others]
-            seen = stored_and_printed(typed, name in ANGLES)
-            for text in others:
-                if seen and (stored_and_printed(text, name in ANGLES) or seen)[0] != seen[0]:
-                    texts.append(text)
-        choices.append(
-            [Choice({name: text}, {}, _OTHER_BITS * rank) for rank, text in enumerate(texts)]
-        )
-    return choices
+    ways: dict[str, float] = {}
+    for one, cost in ((reply, 0.0), (without_mark(reply), 0.5)):
+        if one is not None:
+            texts = {one.text: 0.0} if one.clean else dict(candidates(one.region, 8))
+            for text, price in texts.items():
+                ways.setdefault(text, cost + price)
+    return [
+        (text, seen[1], cost)
+        for text, cost in ways.items()
+        if len(text) <= VALUE_LIMIT and (seen := stored_and_printed(text)) is not None
+    ]

@@ -1,12 +1,12 @@
 """Recovering the scene of a printout: the one whose page explains the paper at the least cost.
 
-What each input may have been comes from `ways`, the trying from `search`. Inputs that nothing tells
-of are given stand-ins, and only what does not depend on them is kept for comparison.
+What each input may have been comes from `choices`, the trying from `search`. Inputs that nothing
+tells of are given stand-ins, and only what does not depend on them is kept for comparison.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ..fields import ANGLES, INPUTS
@@ -14,12 +14,12 @@ from ..names import SCENE
 from ..reading.glyphs import ILLEGIBLE
 from ..reading.printout import Printout
 from . import replays
-from .choices import STAND_IN, Choices, choices_of, scene_name
+from .choices import choices_of, scene_name
 from .search import Scored, Search
 
-_STAND_INS = (STAND_IN, "230", "-41000")
-"""Values put in place of a missing input: a field that prints the same with each of them does not
-depend on it."""
+_STAND_INS = ("230", "-41000")
+"""Values put in place of a missing input, besides the first: a field that prints the same with each
+of them does not depend on it."""
 _UNCONVINCING = 3
 """What had to be guessed, a row of angles or a number of which no character is legible, counts as
 missing when more results than this differ."""
@@ -30,17 +30,14 @@ class Recovered:
     """The scene a printout shows. ``scene`` holds stand-ins for the values in ``missing``;
     ``assumed`` the printed texts it goes with, by field; ``outcome`` is what the replay prints,
     without fields that depend on missing values; ``wrong`` names what it leaves unexplained;
-    ``choices`` is what each input may have been; ``m_unknown``: whether M = 4 explains the page as
-    well as 6 does; ``row_in_doubt``: whether the row of angles was not read
-    for certain and no way to read it explains the page."""
+    ``m_unknown``: whether M = 4 explains the page as well as 6 does; ``row_in_doubt``: whether the
+    row of angles was not read for certain and no way to read it explains the page."""
 
     scene: dict[str, str]
     assumed: dict[str, str]
     outcome: replays.Outcome
     missing: list[str]
     wrong: frozenset[str]
-    cost: float
-    choices: Choices
     search: Search
     m_unknown: bool = False
     row_in_doubt: bool = False
@@ -61,32 +58,29 @@ class Recovered:
 
 def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovered:
     """The scene whose page explains the printout best. ``given``: inputs known from elsewhere."""
-    choices, missing = choices_of(shown, given)
-    search = Search(shown)
-    best = search.best(choices)
+    choices = choices_of(shown, given)
+    search = Search(shown, choices.typed)
+    best = search.best(choices.columns)
+    lost = set(choices.missing)
     unconvincing = len(best.wrong) > _UNCONVINCING
-    if unconvincing:
-        lost = {*missing, *(set(_blind(shown)) - set(given or ()))}
-        missing = [name for name in map(scene_name, INPUTS) if name in lost]
-    in_doubt = bool(shown.angles) and unconvincing
-    outcome = best.outcome
-    if missing:
-        outcome = _independent_of(missing, best.scene, outcome)
-    recovered = Recovered(
-        best.scene, best.assumed, outcome, missing, best.wrong, best.cost, choices, search
+    if unconvincing:  # how many characters marks for the illegible stand for nobody knows
+        lost |= {
+            scene_name(name)
+            for name in set(INPUTS) & set(shown.fields)
+            if all(glyph.char == ILLEGIBLE for glyph in shown.fields[name].region)
+        } - set(given or ())
+    missing = [name for name in map(scene_name, INPUTS) if name in lost]
+    outcome = _independent_of(missing, best.scene, best.outcome) if missing else best.outcome
+    return Recovered(
+        best.scene,
+        best.assumed,
+        outcome,
+        missing,
+        best.wrong,
+        search,
+        not missing and _other_m_explains(shown, best),
+        bool(shown.angles) and unconvincing and not lost & set(ANGLES),
     )
-    recovered.m_unknown = not missing and _other_m_explains(recovered, best)
-    recovered.row_in_doubt = in_doubt and not set(missing) & set(ANGLES)
-    return recovered
-
-
-def _blind(shown: Printout) -> Iterator[str]:
-    """The inputs in whose place nothing but marks for the illegible stands: how many characters
-    they stand for nobody knows."""
-    for name in INPUTS:
-        reading = shown.fields.get(name)
-        if reading and all(glyph.char == ILLEGIBLE for glyph in reading.region):
-            yield scene_name(name)
 
 
 def without_angles(recovered: Recovered) -> Recovered:
@@ -96,11 +90,11 @@ def without_angles(recovered: Recovered) -> Recovered:
     return replace(recovered, missing=missing, outcome=outcome, m_unknown=False, row_in_doubt=False)
 
 
-def _other_m_explains(recovered: Recovered, best: Scored) -> bool:
+def _other_m_explains(shown: Printout, best: Scored) -> bool:
     """Whether the other M would print the same but for the final spins."""
-    if recovered.search.shown.has_final_spins or recovered.search.shown.ending:
+    if shown.has_final_spins or shown.ending:
         return False
-    if not any(name in recovered.search.shown.fields for name in ("VAX", "VAY", "VBX", "VBY")):
+    if not any(name in shown.fields for name in ("VAX", "VAY", "VBX", "VBY")):
         return True
     scene = {**best.scene, "M": "6" if best.scene["M"] == "4" else "4"}
     fields = replays.run_once(scene).fields
@@ -115,7 +109,7 @@ def _independent_of(
     missing: list[str], scene: Mapping[str, str], outcome: replays.Outcome
 ) -> replays.Outcome:
     """The outcome's fields that are the same whatever the missing inputs are."""
-    others = [{**scene, **dict.fromkeys(missing, value)} for value in _STAND_INS[1:]]
+    others = [{**scene, **dict.fromkeys(missing, value)} for value in _STAND_INS]
     fields = dict(outcome.fields)
     for other in replays.run_all(others):
         fields = {name: text for name, text in fields.items() if other.fields.get(name) == text}

@@ -1,18 +1,15 @@
-"""Searching for the scene a printout comes from: choices for each input, tried by what they print.
+"""Searching for the scene a printout comes from: texts for each input, tried by what they print.
 
-Each input has a few printed texts its glyphs may have been, with what each costs to believe. A
-combination is screened in double precision (kinetic energy first, which few inputs enter, then all
-results), and the best of them are replayed in the Apple's own arithmetic. What a scene costs is
-what its inputs cost to believe plus what every printed result then costs.
+Each input has a few texts that the page may show, with what each costs to believe. Combinations are
+screened in double precision (the kinetic energy first, which few inputs enter, then all results),
+and the best of them are replayed in the Apple's own arithmetic. What a scene costs is what its
+inputs cost to believe plus what every printed result then costs.
 """
 
 from __future__ import annotations
 
-import heapq
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
-from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -21,37 +18,43 @@ from numpy.typing import NDArray
 from ..closedform import energy as closed_form
 from ..closedform.solve import solve
 from ..doubles import double
-from ..fields import FIELDS, FINAL_SPINS, INPUTS
-from ..names import VELOCITIES
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS
+from ..names import PIVOT, VELOCITIES
 from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
 from . import replays
-from .choices import Choice, Choices, other_bits
+from .choices import Column, mu_turned, scene_name
+from .misprints import opposite
+from .typedtext import stored_and_printed, texts_that_print, typed_for
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
-"""Combinations: a row each, the index of the choice taken in every column's list."""
+"""Combinations: a row each, the index of the option taken in every column."""
 
 MISMATCH = 3.0
 """What a printed result costs that the program does not print."""
 AGREES = 1.5
 """Below this a result counts as explained."""
 _UNREAD = 0.6
-"""The same where hardly anything was read."""
+"""What a result costs of which hardly anything was read."""
 _ABSENT = 0.7
 """What it costs that the program prints a result the page does not have."""
-_SCREENED = 30_000
+_OTHER_BITS = 0.02
+"""What it costs that a number was typed with zeros nobody sees, by the rank of that text."""
+_ENERGIES = 60
+"""Combinations of masses and velocities that are tried with the rest."""
+_BELIEF = 0.1
+"""Part of what they cost to believe that counts beside the printed energy."""
 _REPLAYED = 160
-_ENERGY_KEPT = 60
-_FEW, _AT_ONCE = 500, 1_000_000
-"""Combinations up to which they are sought one by one, and that are laid out at once at most."""
-_VARIANTS = 3_000
+_ROOM = 30_000
+"""Combinations of the rest tried with the likeliest of these."""
 _CLOSELY = 5_000
-_TELLING = ("VAX", "VAY", "VBX", "VBY")
-"""Of many combinations these results are looked at first, and so many looked at closely."""
+"""Of more combinations, four results are looked at first; these are then looked at closely."""
+_VARIANTS = 3_000
 _FEW_DIFFER = 8
 KINETIC = frozenset(("MA", "MB", "IA", "IB", "UX", "UY", "WA", "VX", "VY", "WB"))
 """The inputs that enter the kinetic energy."""
+_TELLING = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "XAF", "YAF", "XBF", "YBF", "LOSS")
 _ROUGH = 4e-7
 """Relative error allowed to the Apple's arithmetic in screening."""
 RESULTS = tuple(name for name in FIELDS if name not in INPUTS)
@@ -80,6 +83,20 @@ class Expected:
         """What it costs that the program prints ``text`` here."""
         return self.texts.get(text, self.default)
 
+    def mismatch(self, values: Floats) -> Floats:
+        """What each unfloored value costs."""
+        costs: Floats = np.full(values.shape, self.default)
+        places = FIELDS[self.name].places
+        unit = 0.0 if places is None else 10.0**-places
+        for text, cost in self.texts.items():
+            number = _number(text)
+            slack = _ROUGH * abs(number) + 0.05 * unit
+            if places is None:
+                slack = max(slack, 1e-9)
+            fits = (values >= number - slack) & (values < number + unit + slack)
+            costs = np.where(fits & (cost < costs), cost, costs)
+        return costs
+
 
 def expected_results(shown: Printout) -> list[Expected]:
     """The results of a printout as read."""
@@ -89,132 +106,180 @@ def expected_results(shown: Printout) -> list[Expected]:
 def _expected(name: str, reading: Reading) -> Expected:
     if reading.clean:
         texts = {**dict(candidates(reading.region, 1)), reading.text: 0.0}
-    else:
-        texts = dict(candidates(reading.region, 60, reading.sign_free))
-    if reading.closing and reading.region[-1].char in reading.closing:
-        for text, cost in candidates(reading.region[:-1], 8):
-            texts.setdefault(text, cost + 0.5)
-    if reading.clean:
         return Expected(name, texts, MISMATCH)
+    texts = dict(candidates(reading.region, 60, reading.sign_free))
     digits = sum(glyph.char.isdigit() for glyph in reading.region)
     return Expected(name, texts, MISMATCH if digits >= 2 else _UNREAD)
 
 
 class Search:
-    """The search for one printout's scene."""
+    """The search for one printout's scene. ``typed``: by field what was typed for a printed text,
+    where the page or a scene file says so."""
 
-    def __init__(self, shown: Printout) -> None:
+    def __init__(self, shown: Printout, typed: Mapping[str, Mapping[str, str]]) -> None:
         self.shown = shown
         self.expected = expected_results(shown)
+        self._typed = typed
+        on_row = ANGLES if shown.angles else ()
+        self._on_page = {name for name in INPUTS if name in shown.fields or name in on_row}
         self._lost_inputs = set(INPUTS) - set(shown.fields)
 
-    def best(self, choices: Choices) -> Scored:
-        """The scene of least cost that the choices allow."""
-        tried = self.replayed(choices, combinations(choices, 2))
-        best = min(tried, key=_cost)
+    def best(self, columns: Sequence[Column]) -> Scored:
+        """The scene of least cost that the columns allow."""
+        best = min(self.replayed(columns, combinations(columns, 2)), key=_cost)
         if best.wrong or best.cost >= 0.05:
-            tried += self.replayed(choices, self._screened(choices))
-            best = min(tried, key=_cost)
-        return self.other_bits(best)
+            tried = self.replayed(columns, self.promising(columns, _ROOM))
+            best = min([best, *tried], key=_cost)
+        return self._other_bits(best)
 
-    def other_bits(self, best: Scored) -> Scored:
-        """The same printed inputs, typed in other ways that enter the equations with other bits."""
-        if not 0 < len(best.wrong) <= _FEW_DIFFER:
-            return best
-        choices = other_bits(best.scene, best.assumed)
-        picks = combinations(choices, _VARIANTS)
-        if len(picks) < 2:
-            return best
-        extra = best.cost - sum(self._costs(best.outcome))
-        tried = [
-            one._replace(assumed=best.assumed, cost=one.cost + extra)
-            for one in self.replayed(choices, picks)
+    def promising(
+        self,
+        columns: Sequence[Column],
+        room: int,
+        most: int = _REPLAYED,
+        limit: float = np.inf,
+        wrong: frozenset[str] = frozenset(),
+    ) -> Picks:
+        """The most promising combinations: those whose kinetic energy is the printed one first, the
+        better they are with the more of the rest, ``room`` for the best. ``limit``: what masses and
+        velocities, or the rest, may cost to believe; ``wrong``: results that tell most."""
+        still = _without_spin(columns)
+        kinetic = [
+            place
+            for place, column in enumerate(columns)
+            if KINETIC & set(column.names) and not still & set(column.names)
         ]
-        return min([best, *tried], key=_cost)
+        others = [place for place in range(len(columns)) if place not in kinetic]
+        first = self._by_energy(columns, kinetic, room, limit)
+        second = combinations([columns[place] for place in others], room, limit)
+        parts = []
+        for rank, one in enumerate(first, 1):
+            count = min(len(second), max(2, room // rank**2))
+            picks = np.zeros((count, len(columns)), np.intp)
+            picks[:, kinetic] = one
+            picks[:, others] = second[:count]
+            parts.append(picks)
+        return self.screened(columns, np.concatenate(parts), most, wrong)
+
+    def _by_energy(
+        self, columns: Sequence[Column], kinetic: Sequence[int], most: int, limit: float
+    ) -> Picks:
+        """The cheapest combination of masses and velocities, and those that give the printed
+        energy."""
+        some = combinations([columns[place] for place in kinetic], most, limit)
+        picks = np.zeros((len(some), len(columns)), np.intp)
+        picks[:, kinetic] = some
+        costs = _BELIEF * _believing(columns, picks)
+        expected = next((one for one in self.expected if one.name == "KI"), None)
+        if expected is not None:
+            costs = costs + expected.mismatch(kinetic_energy(_values(columns, picks)))
+        costs[0] = -1.0
+        return some[np.argsort(costs, kind="stable")[:_ENERGIES]]
 
     def screened(
         self,
-        choices: Choices,
+        columns: Sequence[Column],
         picks: Picks,
-        most: int = _REPLAYED,
-        telling: Sequence[str] = _TELLING,
+        most: int,
+        wrong: frozenset[str] = frozenset(),
     ) -> Picks:
-        """The combinations that explain most, by double precision. ``telling``: the results that
-        are looked at first where there are many."""
+        """The combinations that explain most, by double precision."""
         if len(picks) <= most:
             return picks
         if len(picks) > 4 * _CLOSELY:
-            few = [one for one in self.expected if one.name in telling and one.default == MISMATCH]
-            costs = self._rough(choices, picks, few)
+            legible = {one.name for one in self.expected if one.default == MISMATCH}
+            telling = sorted(_TELLING, key=lambda name: name not in wrong)[:4]
+            few = [one for one in self.expected if one.name in legible & set(telling)]
+            costs = self._rough(columns, picks, few)
             picks = picks[np.argsort(costs, kind="stable")[:_CLOSELY]]
-        costs = self._rough(choices, picks, self.expected)
+        costs = self._rough(columns, picks, self.expected)
         return picks[np.argsort(costs, kind="stable")[:most]]
 
-    def _screened(self, choices: Choices) -> Picks:
-        """The most promising combinations: those whose kinetic energy is the printed one first."""
-        still = _without_spin(choices)
-        entering = [place for place, some in enumerate(choices) if KINETIC & set(some[0].typed)]
-        kinetic = [place for place in entering if not still & set(choices[place][0].typed)]
-        others = [place for place in range(len(choices)) if place not in kinetic]
-        own = [choices[place][: None if place in kinetic else 1] for place in entering]
-        first = self.by_energy(own, combinations(own, _SCREENED), _ENERGY_KEPT)
-        first = first[:, [entering.index(place) for place in kinetic]]
-        room = max(2, _SCREENED // len(first))
-        second = combinations([choices[place] for place in others], room)
-        picks = np.zeros((len(first) * len(second), len(choices)), np.intp)
-        picks[:, kinetic] = np.repeat(first, len(second), axis=0)
-        picks[:, others] = np.tile(second, (len(first), 1))
-        return self.screened(choices, picks)
-
-    def by_energy(self, choices: Choices, picks: Picks, most: int = _ENERGY_KEPT) -> Picks:
-        """The combinations of masses and velocities that give the printed KE, if any do."""
-        if len(picks) <= most:
-            return picks
-        costs = _believing(choices, picks)
-        expected = next((one for one in self.expected if one.name == "KI"), None)
-        if expected is not None:
-            costs = costs + mismatch(expected, kinetic_energy(columns(choices, picks)))
-        return picks[np.argsort(costs, kind="stable")[:most]]
-
-    def _rough(self, choices: Choices, picks: Picks, expected: Sequence[Expected]) -> Floats:
+    def _rough(
+        self, columns: Sequence[Column], picks: Picks, expected: Sequence[Expected]
+    ) -> Floats:
         """What each combination costs, some of its results in double precision."""
-        value = columns(choices, picks)
-        costs = _believing(choices, picks)
-        results = in_doubles(value, [*(one.name for one in expected), "MUP"])
-        mu = printed_mu(choices, picks)
-        wrong_sign = np.abs(results["MUP"] - mu) > 1e-6 * np.abs(mu)
-        costs = costs + np.where(wrong_sign, MISMATCH, 0.0)
+        value = _values(columns, picks)
+        if "MUP" in self._on_page:
+            value["MU"] = _typed_mu(value)[0]
+        costs = _believing(columns, picks)
+        results = in_doubles(value, [one.name for one in expected])
         for one in expected:
-            wrong = mismatch(one, results[one.name])
+            wrong = one.mismatch(results[one.name])
             if one.name in FINAL_SPINS:
                 wrong = np.where(value["M"] == 6, wrong, MISMATCH)
             costs = costs + wrong
         return costs
 
-    def replayed(self, choices: Choices, picks: Picks) -> list[Scored]:
-        """Combinations, replayed in the Apple's arithmetic."""
-        joined = []
-        for pick in picks.tolist():
+    def replayed(self, columns: Sequence[Column], picks: Picks) -> list[Scored]:
+        """Combinations, replayed in the Apple's arithmetic, in their order."""
+        turned, unsure = np.zeros(len(picks), bool), np.zeros(len(picks), bool)
+        if "MUP" in self._on_page:
+            value = _values(columns, picks)
+            typed, unsure = _typed_mu(value)
+            turned = typed != value["MU"]
+        scenes: list[tuple[dict[str, str], dict[str, str], float]] = []
+        number: list[int] = []
+        for row, pick in enumerate(picks.tolist()):
             scene: dict[str, str] = {}
             assumed: dict[str, str] = {}
             cost = 0.0
-            for options, index in zip(choices, pick, strict=True):
-                scene.update(options[index].typed)
-                assumed.update(options[index].printed)
-                cost += options[index].cost
-            joined.append((scene, assumed, cost))
-        outcomes = replays.run_all([scene for scene, _, _ in joined])
-        return [self._scored(*one, outcome) for one, outcome in zip(joined, outcomes, strict=True)]
+            for column, index in zip(columns, pick, strict=True):
+                texts, price = column.options[index]
+                cost += price
+                for name, text in zip(column.names, texts, strict=True):
+                    scene[scene_name(name)] = text if column.typed else self._typed_text(name, text)
+                    if name in self._on_page and not column.typed:
+                        assumed[name] = text
+            other = {**scene, "MU": opposite(scene["MU"])} if turned[row] or unsure[row] else scene
+            for one in [other, scene] if unsure[row] else [other]:
+                scenes.append((one, assumed, cost))
+                number.append(row)
+        best: dict[int, Scored] = {}
+        for row, scored in zip(number, self._scored(scenes), strict=True):
+            if row not in best or scored.cost < best[row].cost:
+                best[row] = scored
+        return list(best.values())
+
+    def _typed_text(self, name: str, text: str) -> str:
+        known = self._typed.get(name, {}).get(text)
+        return known or typed_for(text, name in ANGLES) or text
+
+    def _other_bits(self, best: Scored) -> Scored:
+        """The same printed inputs, typed in other ways that enter the equations with other bits."""
+        if not 0 < len(best.wrong) <= _FEW_DIFFER:
+            return best
+        columns = [
+            Column((name,), [((text,), _OTHER_BITS * rank) for rank, text in enumerate(texts)])
+            for name, texts in _texts_of(best)
+        ]
+        picks = combinations(columns, _VARIANTS)
+        if len(picks) < 2:
+            return best
+        extra = best.cost - sum(self._costs(best.outcome))
+        scenes = []
+        for pick, cost in zip(picks.tolist(), _believing(columns, picks), strict=True):
+            taken = zip(columns, pick, strict=True)
+            scene = {one.names[0]: one.options[index][0][0] for one, index in taken}
+            scenes.append((scene, best.assumed, extra + float(cost)))
+        return min([best, *self._scored(scenes)], key=_cost)
 
     def results_cost(self, scored: Scored) -> float:
         """What the results of a scene that was replayed cost, its inputs apart."""
-        return self._scored(scored.scene, {}, 0.0, scored.outcome).cost
+        return self._weighed(scored.scene, {}, 0.0, scored.outcome).cost
 
     def replayed_scene(self, scene: dict[str, str], assumed: dict[str, str]) -> Scored:
         """One scene, replayed."""
-        return self._scored(scene, assumed, 0.0, replays.run_once(scene))
+        return next(self._scored([(scene, assumed, 0.0)]))
 
     def _scored(
+        self, scenes: Sequence[tuple[dict[str, str], dict[str, str], float]]
+    ) -> Iterator[Scored]:
+        outcomes = replays.run_all([scene for scene, _, _ in scenes])
+        for one, outcome in zip(scenes, outcomes, strict=True):
+            yield self._weighed(*one, outcome)
+
+    def _weighed(
         self, scene: dict[str, str], assumed: dict[str, str], cost: float, outcome: replays.Outcome
     ) -> Scored:
         names = [one.name for one in self.expected]
@@ -241,37 +306,50 @@ def _cost(scored: Scored) -> float:
     return scored.cost
 
 
-def combinations(choices: Sequence[Sequence[Choice]], most: int) -> Picks:
-    """The combinations of one choice each, cheapest first, up to ``most``."""
-    sizes = [len(options) for options in choices]
-    if most < _FEW or prod(sizes) > _AT_ONCE:
-        return np.array(list(islice(_cheapest(choices), most)), np.intp)
-    costs: Floats = np.zeros(())
-    for options in choices:
-        costs = np.add.outer(costs, [choice.cost for choice in options])
-    best = np.argsort(costs, axis=None, kind="stable")[:most]
-    return np.stack(np.unravel_index(best, sizes), axis=1).astype(np.intp)
+def _texts_of(best: Scored) -> Iterator[tuple[str, list[str]]]:
+    """The texts that may have been typed for each value of a scene, of different bits."""
+    for name, typed in best.scene.items():
+        angle = name in ANGLES
+        texts = [typed]
+        printed = best.assumed.get("MUP" if name == "MU" else name)
+        seen = stored_and_printed(typed, angle)
+        if printed is not None and seen and name != "M":
+            others: Iterable[str] = texts_that_print(printed, angle)
+            if name == "MU" and mu_turned(typed, printed):
+                others = map(opposite, others)
+            for text in others:
+                if (stored_and_printed(text, angle) or seen)[0] != seen[0]:
+                    texts.append(text)
+        yield name, texts
 
 
-def _cheapest(choices: Sequence[Sequence[Choice]]) -> Iterator[tuple[int, ...]]:
-    costs = [[choice.cost for choice in options] for options in choices]
-    start = (0,) * len(choices)
-    heap = [(sum(some[0] for some in costs), start, 0)]
-    while heap:
-        cost, pick, last = heapq.heappop(heap)
-        yield pick
-        # each combination is reached once: only the last column that moved, or a later one, moves
-        for place in range(last, len(choices)):
-            index = pick[place] + 1
-            if index < len(costs[place]):
-                step = costs[place][index] - costs[place][index - 1]
-                following = (*pick[:place], index, *pick[place + 1 :])
-                heapq.heappush(heap, (cost + step, following, place))
+def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) -> Picks:
+    """The combinations of one option each, cheapest first, up to ``most`` and up to a cost."""
+    picks = np.zeros((1, 0), np.intp)
+    costs: Floats = np.zeros(1)
+    for column in columns:
+        options = np.array([cost for _, cost in column.options])
+        # both are sorted: with option j none but the first most / (j + 1) are among the cheapest
+        counts = np.minimum(
+            most // np.arange(1, len(options) + 1),
+            np.searchsorted(costs, limit - options, side="right"),
+        )
+        before = np.concatenate([np.arange(count) for count in counts])
+        option = np.repeat(np.arange(len(counts)), counts)
+        every = costs[before] + options[option]
+        if len(every) > most:
+            kept = np.argpartition(every, most - 1)[:most]
+            kept = kept[np.argsort(every[kept], kind="stable")]
+        else:
+            kept = np.argsort(every, kind="stable")
+        costs = every[kept]
+        picks = np.column_stack([picks[before[kept]], option[kept]])
+    return picks
 
 
-def _without_spin(choices: Choices) -> frozenset[str]:
+def _without_spin(columns: Sequence[Column]) -> frozenset[str]:
     """The inertias that do not spin, as first read: the energy says nothing of them."""
-    first = {name: text for some in choices for name, text in some[0].typed.items()}
+    first = dict(pair for one in columns for pair in zip(one.names, one.options[0][0], strict=True))
     spins = {"IA": "WA", "IB": "WB"}
     return frozenset(name for name, spin in spins.items() if not _number(first[spin]))
 
@@ -283,32 +361,37 @@ def _number(text: str) -> float:
         return float("nan")
 
 
-def _believing(choices: Choices, picks: Picks) -> Floats:
-    """What the choices themselves cost."""
+def _believing(columns: Sequence[Column], picks: Picks) -> Floats:
+    """What the options themselves cost."""
     costs: Floats = np.zeros(len(picks))
-    for place, options in enumerate(choices):
-        costs += np.array([choice.cost for choice in options])[picks[:, place]]
+    for place, column in enumerate(columns):
+        costs += np.array([cost for _, cost in column.options])[picks[:, place]]
     return costs
 
 
-def columns(choices: Choices, picks: Picks) -> dict[str, Floats]:
-    """The typed values of combinations as columns of doubles."""
-    columns_by_name: dict[str, Floats] = {}
-    for place, options in enumerate(choices):
-        for name in options[0].typed:
-            columns_by_name[name] = np.array([_number(one.typed[name]) for one in options])[
-                picks[:, place]
-            ]
-    return columns_by_name
+def _values(columns: Sequence[Column], picks: Picks) -> dict[str, Floats]:
+    """The values of combinations as columns of doubles; of MU the printed one."""
+    values: dict[str, Floats] = {}
+    for place, column in enumerate(columns):
+        for at, name in enumerate(column.names):
+            numbers = np.array([_number(texts[at]) for texts, _ in column.options])
+            values[scene_name(name)] = numbers[picks[:, place]]
+    return values
 
 
-def printed_mu(choices: Choices, picks: Picks) -> Floats:
-    """The MU that each combination takes to be printed."""
-    for place, options in enumerate(choices):
-        if "MU" in options[0].typed:
-            texts = [_number(one.printed.get("MUP", "")) for one in options]
-            return np.array(texts)[picks[:, place]]
-    return np.full(len(picks), np.nan)
+def _typed_mu(value: Mapping[str, Floats]) -> tuple[Floats, NDArray[np.bool_]]:
+    """What was typed where MU is printed so: line 400 turns its sign where the contact points slide
+    one way, which does not depend on MU; and where double precision does not tell which way."""
+    points = in_doubles(value, ("XA", "YA", "XB", "YB"))
+    angle = np.radians(value["GA"])
+    with np.errstate(all="ignore"):
+        slide = (points["XA"] - points["XB"]) * np.sin(angle)
+        slide -= (points["YA"] - points["YB"]) * np.cos(angle)
+        size = sum(map(np.abs, points.values()))
+        mu = value["MU"]
+        unsure = ~(np.abs(slide) > _ROUGH * size) | (np.abs(mu) == -PIVOT)
+        typed = np.where((slide < 0) & (mu != PIVOT), -mu, mu)
+    return typed, unsure & (mu != 0)
 
 
 def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
@@ -336,18 +419,3 @@ def in_doubles(value: Mapping[str, Floats], names: Sequence[str]) -> dict[str, F
             results["KI"] = np.where(points, whole, results["KI"])
             results["LOSS"] = np.where(points, loss, results["LOSS"])
     return results
-
-
-def mismatch(expected: Expected, values: Floats) -> Floats:
-    """What each value costs where the program prints it to the places of its line."""
-    costs: Floats = np.full(values.shape, expected.default)
-    places = FIELDS[expected.name].places
-    unit = 0.0 if places is None else 10.0**-places
-    for text, cost in expected.texts.items():
-        number = _number(text)
-        slack = _ROUGH * abs(number) + 0.05 * unit
-        if places is None:
-            slack = max(slack, 1e-9)
-        fits = (values >= number - slack) & (values < number + unit + slack)
-        costs = np.where(fits & (cost < costs), cost, costs)
-    return costs

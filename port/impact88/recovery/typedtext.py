@@ -78,6 +78,17 @@ def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
     return tuple(printing.values())
 
 
+@lru_cache(maxsize=16384)
+def typed_for(printed: str, angle: bool) -> str | None:
+    """What was typed where this is printed; None when nothing prints so."""
+    if len(printed.lstrip("-").replace(".", "")) < 7 and not angle:
+        seen = stored_and_printed(printed)
+        if seen is not None and seen[1] == printed:
+            return printed
+    texts = texts_that_print(printed, angle)
+    return texts[0] if texts else None
+
+
 def _keep(texts: dict[bytes, str], text: str, printed: str, angle: bool) -> None:
     seen = stored_and_printed(text, angle)
     if seen is not None and seen[1] == printed:
