@@ -15,7 +15,6 @@ from impact88.errors import UserError
 from impact88.fields import INPUTS, outcome_fields
 from impact88.judging.judgement import Status, settled
 from impact88.program.run import run
-from impact88.reading.margins import cut_before
 from impact88.reading.numerals import printable
 from impact88.reading.printout import Printout, read_bytes, read_printouts
 from impact88.reporting.examination import Verdict, Verification, verify
@@ -266,29 +265,12 @@ def test_a_digit_misread_in_a_reply_counts_like_any_other() -> None:
     assert [(one.read, one.printed) for check in told for one in check.doubts][-1] == ("8", "0")
 
 
-def test_a_comma_for_a_point_in_a_reply() -> None:
-    """The numbers printed below say which of the commas it is; numbers that are not those are too
-    many."""
-    assert PROMPTS.count("?14.52,25.15,0") == 1
-    read = PROMPTS.replace("?14.52,25.15,0", "714.52,25,15,0")
-    result = one(read)
-    assert result.verdict is Verdict.IDENTICAL_AS_READ
-    assert [reply.same for reply in result.replies if reply.name == "WB"] == [True]
-    assert one(read.replace("25,15,0", "26,15,0")).verdict is Verdict.DIFFERS
-
-
 # --- margins -------------------------------------------------------------------------------------
 
 
 def cropped(text: str, start: int | None = None, stop: int | None = None) -> str:
     """A text of which a margin is cut off."""
     return "\n".join(line[start:stop] for line in text.split("\n"))
-
-
-def test_an_edge_is_where_most_lines_begin_within_their_labels() -> None:
-    assert cut_before([True] * 3 + [False] * 2)
-    assert not cut_before([True] * 3 + [False] * 3)
-    assert not cut_before([True] * 2)
 
 
 def test_digits_lost_at_no_edge_are_another_number() -> None:
@@ -298,16 +280,6 @@ def test_digits_lost_at_no_edge_are_another_number() -> None:
     assert one(two).verdict is Verdict.DIFFERS
     other = run(sample(1)).page.replace(ROW, ROW.lstrip().replace("-19.8", "-17.8"))
     assert one(cropped(other, 2)).verdict not in SETTLED
-
-
-def test_a_last_digit_cut_off_is_not_read() -> None:
-    text = run(sample(1)).page
-    width = next(len(line) for line in text.split("\n") if line.endswith("YB= 25.14")) - 1
-    cut = one(cropped(text, None, width))
-    assert cut.verdict is Verdict.INCOMPLETE
-    assert cut.not_read == ["YB"]
-    assert one(text.replace("25.14", "25.1")).verdict is Verdict.DIFFERS
-    assert one(cropped(text.replace("25.14", "26.14"), None, width)).verdict is Verdict.DIFFERS
 
 
 def test_an_exponent_is_no_label() -> None:

@@ -48,7 +48,7 @@ _GOOD, _MORE = 16.0, 10.0
 """Up to so many bits nothing further is looked for, and so many more before what takes a second."""
 _LOOKED_AT = {*misprints.KINDS_OF_SLIPS, LABELS_EXCHANGED, LABEL_WRONG}
 """Kinds of changes that the paper itself can show."""
-_SLIPS_BESIDES, _TWINS, _BY_COPY = 60, 8, 12
+_BY_COPY = 12
 _KINDS = {
     misprints.DIGIT: 10.0,
     misprints.SIGN: 9.5,
@@ -140,19 +140,12 @@ def explain(
 
     if not found.recovered.missing and any(not one.startswith("label ") for one in work.base):
         rereading = Rereading(found.recovered, apart=True)
-        reread = list(rereading.best() if rereads is None else rereads)
-        causes += work.rereads(reread)
+        causes += work.rereads(list(rereading.best() if rereads is None else rereads))
         tables = hypotheses.Tables(work.evidence)
         causes += work.rows(tables.nearest)
         causes += work.results_otherwise()
         causes += map(work.machine, machines.causes(work.evidence))
         causes += work.last_places_alone()
-        if wanting(_GOOD):
-            doubles = rereading.double_slips()
-            causes += work.rereads(doubles)
-            reread += doubles
-        best = sorted(reread, key=lambda one: one.scored.cost)[:_TWINS]
-        causes += work.rereads(list(rereading.twins(best)))
         if wanting(_GOOD + _MORE):
             causes += work.rows(list(tables.searched()))
             causes += work.exchanged_and_slipped(tables.exchanges(), rereading)
@@ -275,14 +268,14 @@ class _Work:
         self, exchanges: Sequence[hypotheses.Hypothesis], rereading: Rereading
     ) -> Iterator[Explanation]:
         """Inputs of a side or an axis exchanged, and a slip in another."""
-        texts = [{c.field: one.assumed[c.field] for c in one.changes} for one in exchanges]
-        for number, one in rereading.besides(texts, _SLIPS_BESIDES) if texts else ():
-            exchange = exchanges[number]
-            changes = [*exchange.changes, *one.changes]
-            bits = exchange.row.bits + sum(map(_believed, one.changes)) + _EACH
-            made = self._slipped(changes, self._wrong(one, changes), bits)
-            made.note = exchange.row.note
-            yield made
+        for exchange in exchanges:
+            texts = {one.field: exchange.assumed[one.field] for one in exchange.changes}
+            for one in rereading.best(texts):
+                changes = [*exchange.changes, *one.changes]
+                bits = exchange.row.bits + sum(map(_believed, one.changes)) + _EACH
+                made = self._slipped(changes, self._wrong(one, changes), bits)
+                made.note = exchange.row.note
+                yield made
 
     def _wrong(self, one: Reread, changes: Sequence[Change]) -> frozenset[str]:
         """What differs from the page of a scene put right; a number that contradicted the same

@@ -24,7 +24,7 @@ from ..files import packaged_text
 from ..names import PIVOT
 from ..reading import numerals
 from ..recovery import replays
-from ..recovery.choices import Choice, Choices, scene_name, with_opposite_mu
+from ..recovery.choices import Column, scene_name, with_opposite_mu
 from ..recovery.rereading import Change
 from ..recovery.search import in_doubles
 from .predictions import Evidence, Range, around, as_printed, digits_of
@@ -34,7 +34,7 @@ _REPLAYED = 40
 _FAR, _NEAR = 0.1, 0.03
 """What a result counts at most that is far off, relatively; and how far a unit may be off on
 average to be searched: 88 for 88.4 is off by 0.005."""
-_SEARCHED, _BY_ENERGY, _LAST = 3, 300, 24
+_SEARCHED, _LAST = 3, 24
 _CANDIDATES, _COMBINATIONS = 40, 60_000
 """Numbers that may have been computed with: of one input, and of all together."""
 _FACTOR = 1e-6
@@ -204,14 +204,10 @@ class Tables:
             yield from map(self._searched, list(units.values())[:_SEARCHED])
 
     def _searched(self, unit: Hypothesis) -> Hypothesis:
-        choices = self._choices(unit)
-        picks = np.stack(
-            [axis.ravel() for axis in np.indices([len(some) for some in choices])], axis=1
-        )
+        columns = self._columns(unit)
         search = self._evidence.recovered.search
-        picks = search.by_energy(choices, picks, _BY_ENERGY)
-        picks = search.screened(choices, picks, _LAST)
-        best = min(search.replayed(choices, picks), key=lambda one: one.cost)
+        picks = search.promising(columns, _COMBINATIONS, _LAST)
+        best = min(search.replayed(columns, picks), key=lambda one: one.cost)
         changes = tuple(
             change._replace(would_be=numerals.as_printed(text) or text)
             for change in unit.changes
@@ -219,25 +215,21 @@ class Tables:
         )
         return unit._replace(changes=changes, scene=best.scene, within={})
 
-    def _choices(self, unit: Hypothesis) -> Choices:
+    def _columns(self, unit: Hypothesis) -> list[Column]:
         """For the converted inputs every number that may have been computed with."""
         most = int(_COMBINATIONS ** (1 / len(unit.within)))
-        choices: Choices = []
+        columns = []
         for name in INPUTS:
             own = scene_name(name)
+            same = unit.scene[own] == self._scene[own] and name in self._printed
+            texts = [self._printed[name] if same else unit.scene[own]]
             if own in unit.within:
                 made = unit.row.inputs[own]
                 exact = float(value(made, {**self._values, "x": self._values[own]}))
                 texts = _near(exact, unit.within[own], min(_CANDIDATES, most))
-                choices.append([Choice({own: text}, {}, 0.0) for text in texts])
-                continue
-            printed = {name: self._printed[name]} if name in self._printed else {}
-            choices.append([Choice({own: unit.scene[own]}, printed, 0.0)])
-            if own == "MU":
-                for typed in with_opposite_mu({own: unit.scene[own]}):
-                    choices[-1].append(Choice(typed, printed, 0.0))
-        choices.append([Choice({"M": unit.scene["M"]}, {}, 0.0)])
-        return choices
+            columns.append(Column((name,), [((text,), 0.0) for text in texts], not same))
+        columns.append(Column(("M",), [((unit.scene["M"],), 0.0)], True))
+        return columns
 
 
 def unexplained(

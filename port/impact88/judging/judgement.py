@@ -298,7 +298,8 @@ def verdict_of(
     if shown.mislabelled:
         return Verdict.DIFFERS
     if any(check.status == Status.CONTRADICTED for check in every):
-        return Verdict.INCOMPLETE if shown.badly_read else Verdict.DIFFERS
+        misread = shown.badly_read or (shown.machine_read and recovered.missing)
+        return Verdict.INCOMPLETE if misread else Verdict.DIFFERS
     unread = any(check.status in (Status.NOT_READ, Status.NOT_COMPARED) for check in fields)
     if unread or ending.same is None or recovered.missing or shown.fragment_of_run or shown.unread:
         return Verdict.INCOMPLETE

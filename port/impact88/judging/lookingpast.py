@@ -36,7 +36,7 @@ class LookingPast:
         machine read, or that lacks an input."""
         if not self._shown.machine_read or self._recovered.missing:
             return None
-        return Rereading(self._recovered).best(deep=True)
+        return Rereading(self._recovered).best()
 
     def judged(self) -> Judged | None:
         """The printout judged with its reader's slips put right; None where they are not its alone.

@@ -10,17 +10,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from .glyphs import Glyph
-from .template import RESULTS, WITHIN, code, template
+from .template import ANGLE_ROW, RESULTS, WITHIN, code, template
 
 WINDOW = 9000
 """Glyphs aligned at a time: a dozen printouts."""
 _BEGIN, _END = 2.2, 0.8
 """What it costs that a printout begins or ends."""
+_WITHIN = 6.0
+"""What it costs more that one begins with the angles, which numbers in a note look like."""
 _BIG = 1e6
 _FIGURES = frozenset("0123456789.")
 
@@ -53,14 +55,12 @@ _FEW_LABELS = 4
 @dataclass
 class Aligned:
     """One printout's part of the text: ``slots``, field -> glyphs ``(start, stop)`` in its place;
-    ``states``, the template's state of every glyph from ``start`` on; ``lines``, the template's
-    lines of which something was read."""
+    ``states``, the template's state of every glyph from ``start`` on."""
 
     start: int
     stop: int
     states: list[int]
-    slots: dict[str, tuple[int, int]] = field(default_factory=dict)
-    lines: list[int] = field(default_factory=list)
+    slots: dict[str, tuple[int, int]]
 
 
 def align(glyphs: Sequence[Glyph], budget: Budget | None = None) -> Iterator[Aligned]:
@@ -81,7 +81,7 @@ def align(glyphs: Sequence[Glyph], budget: Budget | None = None) -> Iterator[Ali
         taken = parts if last else parts[:-1] or parts[:1]
         budget.spend(len(window), any(stop - begin >= _PAGE for begin, stop, _ in taken))
         for part in taken:
-            yield _Described(part, start).aligned
+            yield _described(*part, start)
         if last:
             return
         if not parts:
@@ -92,21 +92,14 @@ def align(glyphs: Sequence[Glyph], budget: Budget | None = None) -> Iterator[Ali
             start += parts[-1][0]
 
 
-class _Described:
-    """A part of the states, described."""
-
-    def __init__(self, part: tuple[int, int, list[int]], offset: int) -> None:
-        names = template().slots
-        lines = template().line
-        start, stop, states = part
-        self.aligned = Aligned(offset + start, offset + stop, states)
-        for index, state in enumerate(states):
-            name = names.get(state)
-            if name is not None:
-                old = self.aligned.slots.get(name, (offset + start + index, 0))
-                self.aligned.slots[name] = (old[0], offset + start + index + 1)
-        betweens = set(template().between.tolist())
-        self.aligned.lines = sorted({lines[s] for s in states if s and s not in betweens})
+def _described(start: int, stop: int, states: list[int], offset: int) -> Aligned:
+    """A part of the states as one printout's."""
+    page = template()
+    slots: dict[str, tuple[int, int]] = {}
+    for index, state in enumerate(states, offset + start):
+        if (name := page.slots.get(state)) is not None:
+            slots[name] = (slots.get(name, (index, 0))[0], index + 1)
+    return Aligned(offset + start, offset + stop, states, slots)
 
 
 def _parts(states: Sequence[int]) -> list[tuple[int, int, list[int]]]:
@@ -182,6 +175,8 @@ def _states(glyphs: Sequence[Glyph]) -> list[int]:
     labelled = page.unlabelled[0, 1:] > 0
     numbered = np.zeros(size, bool)
     numbered[list(page.slots)] = True
+    begin = np.full(between.size, _BEGIN)
+    begin[ANGLE_ROW - 1 : ANGLE_ROW + 1] += _WITHIN
     # what is needed to find the way back
     moved = np.empty((count, size), bool)
     straight = np.zeros((count, size), bool)
@@ -201,7 +196,7 @@ def _states(glyphs: Sequence[Glyph]) -> list[int]:
     def opened(costs: np.ndarray, row: int | None) -> np.ndarray:
         """A printout may begin before any line, and lines may be missing."""
         waiting = costs[between]
-        start = costs[0] + _BEGIN
+        start = costs[0] + begin
         begins = start < waiting
         waiting = np.where(begins, start, waiting)
         relative = waiting - missed_line

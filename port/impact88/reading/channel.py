@@ -22,11 +22,11 @@ _NUMBERS = """
 5 5662 S24 E4 O3 B3 L2 $2
 6 5242 B5 É4 E4 O3 S2 G2
 8 5083 S13 E6 A4 B3 O3 G2 ©2
-7 5041 ?33 F12 P11 °7 A6 V3 R3 O3 T2 >2 |2 S2 D2 E2 Y2 /2
+7 5041 F12 P11 °7 A6 V3 R3 O3 T2 >2 |2 S2 D2 E2 Y2 /2
 9 4751 G8 U3 A3 $3 S3
 """
 """Glyph of a number, how often it was printed, what it was read as and how often; other figures
-left out: a figure read for a figure contradicts."""
+left out, for a figure read for a figure contradicts, and the mark for the illegible."""
 _LABELS = """
 = 13242 S274 E92 :17 214 O11 Z8 R8 A8 L7 >4 T4 #4 F4 73 W3 B3
 A 8625 E23 H13 O8 S8 F5 N5 R5 I3 B3 D3 P3 22 >2 M2 °2
@@ -71,6 +71,8 @@ _TYPED = 8
 _DECADES = 4.0
 UNSEEN = 1.1
 """What a confusion costs that was never seen."""
+LOOK_ALIKE = 0.3
+"""What the likeliest figure costs for a glyph that is none: less than that the glyph is a speck."""
 _AS_OFTEN = 0.2
 """A glyph may be every one for which it is read so often, next to the likeliest."""
 
@@ -102,6 +104,10 @@ def printed_for(read: str) -> dict[str, float]:
     """What a glyph that stands in no number was read for, with what each costs, likeliest first."""
     every = _OF_NUMBERS.items()
     shares = {printed: seen[read] / total for printed, (total, seen) in every if read in seen}
-    least = _AS_OFTEN * max(shares.values(), default=0.0)
-    likely = sorted(((share, one) for one, share in shares.items() if share >= least), reverse=True)
-    return {one: -log10(share) / _DECADES for share, one in likely}
+    best = max(shares.values(), default=0.0)
+    likely = sorted(shares.items(), key=lambda one: -one[1])
+    return {
+        printed: LOOK_ALIKE + log10(best / share) / _DECADES
+        for printed, share in likely
+        if share >= _AS_OFTEN * best
+    }

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from ..fields import ANGLES
 from .channel import UNSEEN
 from .glyphs import Gap, Page
-from .template import INSERTED, LETTER_LOST, REPLY_A, REPLY_B, Label, as_letter, template
+from .template import LETTER_LOST, REPLY_A, REPLY_B, Label, as_letter, template
 
 PROMPTS = (REPLY_A, REPLY_B)
 _LETTERS = 2
@@ -23,6 +23,8 @@ _LETTERS = 2
 _REACH = 0.7
 """From this cost on a label is none that a reader made of its own: one letter read so less than
 once in 600."""
+_EXTRA = 0.6
+"""What a letter too many costs."""
 READERS = 3
 """So many other marks of an optical reader, and a label that contradicts is the reader's doing: of
 15,300 labels of given scans 373 read as other words, 7 of them on pages of fewer marks."""
@@ -240,7 +242,7 @@ def _only_lost(printed: str, read: str) -> bool:
 @lru_cache(maxsize=4096)
 def _distance(printed: str, read: str) -> float:
     """What it costs that a label was read so, letter by letter."""
-    row = [INSERTED * count for count in range(len(read) + 1)]
+    row = [_EXTRA * count for count in range(len(read) + 1)]
     for letter in printed:
         before, row = row, [row[0] + LETTER_LOST]
         for place, char in enumerate(read):
@@ -248,7 +250,7 @@ def _distance(printed: str, read: str) -> float:
                 min(
                     before[place] + as_letter(letter, char),
                     before[place + 1] + LETTER_LOST,
-                    row[place] + INSERTED,
+                    row[place] + _EXTRA,
                 )
             )
     return row[-1]

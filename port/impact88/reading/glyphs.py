@@ -57,12 +57,13 @@ class Glyph(NamedTuple):
 
 
 class Page:
-    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order."""
+    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order; ``width``: where
+    its lines were broken or cut off, 0 where they were not."""
 
     def __init__(self, text: str) -> None:
         self.text = text
         self._lines = [0, *(match.end() for match in re.finditer("\n", text))]
-        self._width = _wrapping_width(text)
+        self.width = _wrapping_width(text)
         self.glyphs = self._read(text)
 
     def _read(self, text: str) -> list[Glyph]:
@@ -72,7 +73,7 @@ class Page:
         wrapped = False
         for offset, character in enumerate(text):
             if character == "\n":
-                wrapped = bool(self._width) and length == self._width and gap is Gap.NONE
+                wrapped = bool(self.width) and length == self.width and gap is Gap.NONE
                 gap, start = Gap.LINE, offset + 1
                 length = 0
                 continue

@@ -29,7 +29,7 @@ from .channel import printed_for
 from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
 from .glyphs import Gap, Page
 from .numerals import Region
-from .template import REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
+from .template import LABELLED_ANGLES, REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -60,9 +60,9 @@ class Reading:
 
     ``text``: what it is taken for, ``?`` for illegible glyphs; ``line``, ``column`` (from 1),
     ``start``, ``stop`` (offsets in the text): where it stands; ``region``: its glyphs;
-    ``alternatives``: other numbers it may be; ``cut``: whether the text ends right at it, so that
-    more of it may have stood there; ``sign_free``: whether a minus before it may be the label's own
-    sign, damaged."""
+    ``alternatives``: other numbers it may be; ``cut``: whether the text, or a line as wide as the
+    page, ends right at it, so that more of it may have stood there; ``sign_free``: whether a minus
+    before it may be the label's own sign, damaged."""
 
     text: str
     line: int
@@ -387,8 +387,14 @@ class _Reader:
         self._slots = {name: (base + i, base + j) for name, (i, j) in aligned.slots.items()}
         self._worded: set[int] = set()
         self._part_labels()
+        self._part_row()
+        cropped = self._cropped() and [
+            name for name, (start, _) in self._slots.items() if self._glyphs[start].gap is Gap.LINE
+        ]
         start, stop = page.span(self._start, base + aligned.stop)
         self._printout = Printout(*page.place(start), start, stop, page=page)
+        for name in cropped or ():
+            self._remark(name, "begins where the margin is cut off", self._slots.pop(name)[0])
 
     def _part_labels(self) -> None:
         """A word that stands apart from the number before it, and is joined to the next by its
@@ -400,6 +406,39 @@ class _Reader:
                     self._slots[name] = (start, first)
                 elif first <= start <= sign < stop - 1:
                     self._slots[name] = (sign + 1, stop)
+
+    def _cropped(self) -> bool:
+        """Whether most lines that begin with a label lack its first letter, three at least."""
+        page = template()
+        begins = [
+            state - 1 in page.letters and state - 1 not in self._states
+            for index, state in enumerate(self._states)
+            if self._glyphs[self._start + index].gap is Gap.LINE
+            and page.letters.get(state, "*") != "*"
+        ]
+        return sum(begins) > max(2, len(begins) / 2)
+
+    def _part_row(self) -> None:
+        """A line of five clean numbers is the row of angles; what stands below it is none of it."""
+        spans = [self._slots[name] for name in ANGLES if name in self._slots]
+        if not spans:
+            return
+        start, stop = min(spans)[0], max(spans)[1]
+        starts = [start]
+        for index in range(start + 1, stop):
+            glyph = self._glyphs[index]
+            if glyph.gap is Gap.LINE and not glyph.wrapped:
+                stop = index
+                break
+            if not glyph.joined:
+                starts.append(index)
+        parts = list(zip(starts, [*starts[1:], stop], strict=True))
+        if len(parts) == len(ANGLES) and all(numerals.clean(self._glyphs[i:j]) for i, j in parts):
+            self._slots.update(zip(ANGLES, parts, strict=True))
+            page = template()
+            for index in range(stop - self._start, len(self._states)):
+                if page.line[self._states[index]] == LABELLED_ANGLES:
+                    self._states[index] = int(page.between[LABELLED_ANGLES])
 
     def read(self) -> Printout | None:
         """The printout; None when there is nothing of one."""
@@ -537,8 +576,6 @@ class _Reader:
     def _keep_left_over(self) -> None:
         """Runs of glyphs between lines or put into labels, on the lines of the page; and which
         lines those are (`_keep_other_lines` keeps the others)."""
-        page = template()
-        between = {*page.between.tolist(), 0}
         lines: dict[int, list[int]] = {}
         for index in range(self._start, self._start + len(self._states)):
             lines.setdefault(self._page.place(self._glyphs[index].offset)[0], []).append(index)
@@ -551,7 +588,7 @@ class _Reader:
             taken.add(number)
             run: list[int] = []
             for index in [*line, -1]:
-                if index >= 0 and index not in self._worded and self._loose(index, between):
+                if index >= 0 and index not in self._worded | numbers and self._loose(index):
                     run.append(index)
                 elif run:
                     start, stop = self._page.span(run[0], run[-1] + 1)
@@ -559,14 +596,14 @@ class _Reader:
                     run = []
         self._printout.taken = frozenset(taken)
 
-    def _loose(self, index: int, between: set[int]) -> bool:
-        """Whether a glyph belongs to no number and no label."""
+    def _loose(self, index: int) -> bool:
+        """Whether a glyph that is part of no number belongs to no label."""
         page = template()
         at = index - self._start
         state, char = self._states[at], self._glyphs[index].char
         letter = page.letters.get(state)
-        if state in between or letter is None:
-            return state in between
+        if letter is None:
+            return not (page.line[state] < 2 and state in page.slots)
         again = (
             at > 0
             and state == self._states[at - 1]
@@ -597,6 +634,7 @@ def _reading(page: Page, region: Region, sign_free: bool = False) -> Reading | N
     if text is None:
         return None
     cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
+    cut = cut or page.place(end - 1)[1] == page.width
     return Reading(text, *page.place(begin), begin, end, region, tuple(ways[1:]), cut, sign_free)
 
 

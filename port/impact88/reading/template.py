@@ -73,6 +73,10 @@ LINES: tuple[Line, ...] = (
 
 ANGLE_ROW = 5
 """The line of `LINES` that holds nothing but the five angles."""
+LABELLED_ANGLES = 6
+"""The line of the angles as some people retype them."""
+_RETYPED = 2.5
+"""What it costs to begin it: the row of angles is what the program prints."""
 RESULTS = 12
 """The line of `LINES` that the results begin with."""
 SPINS = 14
@@ -207,6 +211,9 @@ def template() -> Template:
                 for part in "_{}":
                     stay[ord(part), state] = 0.05
             miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, LETTER_LOST)
+    retyped = kinds.index(("between", "", LABELLED_ANGLES)) + 1
+    enter[:, retyped] += _RETYPED
+    miss[retyped] += _RETYPED
     miss[1] = 1000.0  # a printout begins at a price, not by missing what is outside
     between = np.array([state for state, kind in enumerate(kinds) if kind[0] == "between"])
     closes = np.array([kind[0] == "slot" or kind[1] in ")%*" for kind in kinds])
