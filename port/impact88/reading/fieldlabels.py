@@ -23,7 +23,7 @@ _LETTERS = 2
 _REACH = 0.7
 """From this cost on a label is none that a reader made of its own: one letter read so less than
 once in 600."""
-_EXTRA = 0.6
+_EXTRA = 0.68
 """What a letter too many costs."""
 READERS = 3
 """So many other marks of an optical reader, and a label that contradicts is the reader's doing: of

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -461,9 +461,10 @@ class _Reader:
         shown.ended = any(lines[state] == STARS[1] for state in self._states)
         self._keep_left_over()
         read = {name: self._slots[name] for name in shown.fields if name in self._slots}
-        marks = shown.marks if len(shown.fields) >= _PART else READERS
+        marks = shown.marks + self._misread("*") if len(shown.fields) >= _PART else READERS
         shown.labels = label_checks(self._page, self._start, self._states, read, marks)
-        shown.misread_letters = self._misread_letters()
+        wrong = {one.name for one in shown.mislabelled}
+        shown.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
         return shown
 
     def _letters(self, lines: Sequence[int] = ()) -> int:
@@ -475,16 +476,16 @@ class _Reader:
             if state and (not lines or page.line[state] in lines)
         )
 
-    def _misread_letters(self) -> int:
-        """Letters of labels, and asterisks, read as other letters or figures."""
+    def _misread(self, letters: str, wrong: Collection[str] = ()) -> int:
+        """How many of some letters of labels, but of wrong ones, and asterisks were read as other
+        letters or figures."""
         page = template()
-        wrong = {one.name for one in self._printout.mislabelled}
         others = {state for one in page.labels if one.name in wrong for state in one.states}
         count = before = 0
         for index, state in enumerate(self._states):
             letter = "" if state in others else page.letters.get(state, "")
             glyph = self._glyphs[self._start + index]
-            if state != before and (letter.isalpha() or letter == "*"):
+            if state != before and letter and letter in letters:
                 count += glyph.char != letter and glyph.char.isalnum()
             before = state
         return count
