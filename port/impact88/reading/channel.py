@@ -65,7 +65,7 @@ _SHAPES = (
     "0OQDCUØ©®°@(){ 1I|![]LJ/\\T(){}<> 2ZR 4AH 5S$ 6GB&@ 7TYF 8B&S 9PGY@ "
     "-~_=\u00ad¬«^\"“” .,·•‧∙․:;'`´’‘ "
 )
-_LABEL_SHAPES = "=: %#$&984"
+_LABEL_SHAPES = "=: %#$&984 IL1|! EF"
 """Glyphs that people type for others, or that have their shape: `_TYPED` readings each."""
 _TYPED = 8
 _DECADES = 4.0

@@ -21,8 +21,8 @@ PROMPTS = (REPLY_A, REPLY_B)
 _LETTERS = 2
 """One letter for one (E) is no word: on clean scans E is read L."""
 _REACH = 0.7
-"""From this cost on a label is none that a reader made of its own: one letter read so less than
-once in 600."""
+"""From this cost on, for two letters, a label is none that a reader made of its own: one letter
+read so less than once in 600."""
 _EXTRA = 0.68
 """What a letter too many costs."""
 READERS = 3
@@ -199,7 +199,7 @@ def _state(one: _Read) -> LabelState:
     if _only_lost(one.printed, one.read) and one.read not in others:
         return LabelState.DAMAGED
     word = one.read.isascii() and one.read.isalpha()
-    if other < own or (word and own >= _REACH):
+    if other < own or (word and own >= _REACH * len(one.printed) / 2):
         return LabelState.CONTRADICTORY
     return LabelState.DAMAGED
 
