@@ -30,6 +30,8 @@ SWEEP = bool(os.environ.get("IMPACT88_SWEEP"))
 pytestmark = pytest.mark.browser
 MISSING = {"chromium": desk_browser.missing(), "firefox": desk_browser.no_firefox()}
 Numbers = dict[str, tuple[float, str]]
+REASON = "document.getElementById('reconstruction-waiting').textContent"
+"""Why there is no solution."""
 
 
 def some_scenes() -> list[dict[str, str]]:
@@ -189,12 +191,11 @@ def test_what_the_page_shows_is_what_the_commands_print(
         known |= {name: repr(float(answer[name])) for name in (*FINAL_STATE, "MUP")}
         known = texts(system, known)
         fill(page, "reconstruction", known, system)
-        agree(
-            page,
-            "#reconstruction-answer .solution",
-            solution(printed(capsys, "reconstruct", write(known), "--json")),
-            9,
-        )
+        capsys.readouterr()
+        if main(["reconstruct", write(known), "--json"]) == 2:  # what is known does not do
+            until(lambda: len(page.value(REASON)) > 20, "the reason", 30)
+            continue
+        agree(page, "#reconstruction-answer .solution", solution(capsys.readouterr().out), 9)
 
 
 def test_nothing_bars_a_reader_who_cannot_see(address: str) -> None:
