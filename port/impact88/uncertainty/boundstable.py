@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .. import notebook
 from ..names import quantity
-from ..plaintable import number
+from ..plaintable import number, plain
 from ..plaintable import table as columns
 from ..units import system_of
 from .draws import Drive, Spread
@@ -84,79 +84,54 @@ class Bounds:
         return notebook.preformatted(table(self))
 
 
-def _plain(value: float) -> float | None:
-    """A number JSON has; None for the others."""
-    return value if math.isfinite(value) else None
-
-
 def as_json(bounds: Bounds) -> dict[str, Any]:
     """Everything found, as JSON takes it; a value that does not exist is null."""
     units = system_of(bounds.units)
-    return {
-        "problem": bounds.problem,
-        "samples": bounds.samples,
-        "seed": bounds.seed,
-        "sigmas": bounds.sigmas,
-        "evaluations": bounds.evaluations,
-        "all_corners": bounds.corners_in_full,
-        "unusable": bounds.unusable,
-        "warnings": bounds.warnings,
-        "correlations": [
-            {"names": list(pair), "correlation": value}
-            for pair, value in bounds.correlations.items()
-        ],
-        "inputs": {
-            name: {
-                "kind": item.kind,
-                "nominal": item.nominal,
-                "limits": list(bounds.limits[name]),
-                "unit": units.label(quantity(name).unit),
-            }
-            for name, item in bounds.inputs.items()
-        },
-        "outputs": {
-            name: {
-                "meaning": quantity(name).meaning,
-                "unit": units.label(quantity(name).unit),
-                "nominal": bound.nominal,
-                "lower": _plain(bound.lower),
-                "upper": _plain(bound.upper),
-                "unbounded": unbounded(bound),
-                "corner_lower": _plain(bound.corner_lower),
-                "corner_upper": _plain(bound.corner_upper),
-                "lower_warnings": list(bound.lower_warnings),
-                "upper_warnings": list(bound.upper_warnings),
-                "at_lower": bound.at_lower,
-                "at_upper": bound.at_upper,
-                "mean": _plain(bounds.spreads[name].mean),
-                "deviation": _plain(bounds.spreads[name].deviation),
-                "quantiles": {
-                    f"{share:g}": _plain(value)
-                    for share, value in bounds.spreads[name].quantiles.items()
-                },
-                "drives": {
-                    source: {
-                        "rank_correlation": _plain(drive.rank_correlation),
-                        "at_low": _plain(drive.at_low),
-                        "at_high": _plain(drive.at_high),
-                        "lowest": _plain(drive.lowest),
-                        "highest": _plain(drive.highest),
-                    }
-                    for source, drive in bounds.drives[name].items()
-                },
-            }
-            for name, bound in bounds.bounds.items()
-        },
-    }
+
+    def output(name: str, bound: Bound) -> dict[str, Any]:
+        spread = bounds.spreads[name]
+        return {
+            "meaning": quantity(name).meaning,
+            "unit": units.label(quantity(name).unit),
+            **asdict(bound),
+            "unbounded": unbounded(bound),
+            "mean": spread.mean,
+            "deviation": spread.deviation,
+            "quantiles": {f"{share:g}": value for share, value in spread.quantiles.items()},
+            "drives": {source: asdict(drive) for source, drive in bounds.drives[name].items()},
+        }
+
+    whole: dict[str, Any] = plain(
+        {
+            "problem": bounds.problem,
+            "samples": bounds.samples,
+            "seed": bounds.seed,
+            "sigmas": bounds.sigmas,
+            "evaluations": bounds.evaluations,
+            "all_corners": bounds.corners_in_full,
+            "unusable": bounds.unusable,
+            "warnings": bounds.warnings,
+            "correlations": [
+                {"names": pair, "correlation": value} for pair, value in bounds.correlations.items()
+            ],
+            "inputs": {
+                name: {
+                    "kind": item.kind,
+                    "nominal": item.nominal,
+                    "limits": bounds.limits[name],
+                    "unit": units.label(quantity(name).unit),
+                }
+                for name, item in bounds.inputs.items()
+            },
+            "outputs": {name: output(name, bound) for name, bound in bounds.bounds.items()},
+        }
+    )
+    return whole
 
 
 def unbounded(bound: Bound | Range) -> list[str]:
     """The sides on which there is no bound."""
-    return [side for side, value in _sides(bound) if math.isinf(value)]
-
-
-def _sides(bound: Bound | Range) -> tuple[tuple[str, float], tuple[str, float]]:
-    return ("lower", bound.lower), ("upper", bound.upper)
+    return [side for side in ("lower", "upper") if math.isinf(getattr(bound, side))]
 
 
 def _width(bound: Bound) -> float:

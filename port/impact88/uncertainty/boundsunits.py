@@ -7,12 +7,12 @@ multiplied: nominal values, limits, bounds, spreads, and the scenes that attain 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import astuple, replace
 from typing import Any
 
-from ..units import RULES, System, system_of
-from .boundstable import Bound, Bounds
-from .draws import Spread
+from ..units import RULES, system_of, written
+from .boundstable import Bounds
+from .draws import Drive
 
 
 def in_units(found: Bounds, name: str | None) -> Bounds:
@@ -21,46 +21,40 @@ def in_units(found: Bounds, name: str | None) -> Bounds:
     if units is RULES:
         return found
     factors = {name: units.factor(name) for name in (*found.inputs, *found.bounds)}
+
+    def times(records: Mapping[str, Any], *fields: str) -> dict[str, Any]:
+        """Records by name, with the fields of those names multiplied."""
+        return {
+            name: replace(one, **{field: getattr(one, field) * factors[name] for field in fields})
+            for name, one in records.items()
+        }
+
+    bounds = times(found.bounds, "nominal", "lower", "upper", "corner_lower", "corner_upper")
+    spreads = times(found.spreads, "mean", "deviation")
     return replace(
         found,
-        inputs={
-            name: _times(factors[name], item, "nominal", "low", "high", "deviation")
-            for name, item in found.inputs.items()
-        },
+        inputs=times(found.inputs, "nominal", "low", "high", "deviation"),
         limits={
             name: (low * factors[name], high * factors[name])
             for name, (low, high) in found.limits.items()
         },
-        bounds={name: _bound(one, factors[name], units) for name, one in found.bounds.items()},
-        spreads={name: _spread(one, factors[name]) for name, one in found.spreads.items()},
+        bounds={
+            name: replace(
+                one, at_lower=written(one.at_lower, units), at_upper=written(one.at_upper, units)
+            )
+            for name, one in bounds.items()
+        },
+        spreads={
+            name: replace(one, quantiles={q: v * factors[name] for q, v in one.quantiles.items()})
+            for name, one in spreads.items()
+        },
         drives={
             name: {
-                source: _times(factors[name], drive, "at_low", "at_high", "lowest", "highest")
-                for source, drive in drives.items()
+                source: Drive(one.rank_correlation, *(x * factors[name] for x in astuple(one)[1:]))
+                for source, one in drives.items()
             }
             for name, drives in found.drives.items()
         },
         draws={name: draws * factors[name] for name, draws in found.draws.items()},
         units=units.name,
     )
-
-
-def _times(factor: float, record: Any, *names: str) -> Any:
-    """The record with the fields of those names multiplied."""
-    return replace(record, **{name: getattr(record, name) * factor for name in names})
-
-
-def _scene(values: Mapping[str, float], units: System) -> dict[str, float]:
-    return {name: value * units.factor(name) for name, value in values.items()}
-
-
-def _bound(one: Bound, factor: float, units: System) -> Bound:
-    scenes = {"at_lower": _scene(one.at_lower, units), "at_upper": _scene(one.at_upper, units)}
-    values = ("nominal", "lower", "upper", "corner_lower", "corner_upper")
-    scaled: Bound = replace(_times(factor, one, *values), **scenes)
-    return scaled
-
-
-def _spread(one: Spread, factor: float) -> Spread:
-    quantiles = {share: value * factor for share, value in one.quantiles.items()}
-    return Spread(one.mean * factor, one.deviation * factor, quantiles)
