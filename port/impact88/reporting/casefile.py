@@ -82,7 +82,7 @@ def report(
         if one.error:
             read.append([where, "–", "NOT READ", one.error])
         for result in one.results:
-            what = f"{result.number} (line {result.line})"
+            what = f"{result.number} ({result.where})"
             read.append(
                 [where, what, wording.TITLES[result.verdict], wording.counts(result.fields)]
             )
@@ -95,7 +95,7 @@ def report(
         examiner=examiner,
         date=date,
         files_read=read,
-        printouts=[_printout(one, result) for one in examined for result in one.results],
+        printouts=[_printout(result) for one in examined for result in one.results],
         headings=_HEADINGS,
         meanings=[(wording.TITLES[one], wording.MEANINGS[one]) for one in Verdict],
         key=[(n, q.meaning, q.unit) for n in FIELDS for q in [quantity("MU" if n == "MUP" else n)]],
@@ -109,7 +109,7 @@ def report(
     )
 
 
-def _printout(one: Examined, result: Verification) -> dict[str, Any]:
+def _printout(result: Verification) -> dict[str, Any]:
     """What the template shows of a printout."""
     inputs = [
         text
@@ -118,7 +118,7 @@ def _printout(one: Examined, result: Verification) -> dict[str, Any]:
     ]
     inputs += [""] * (-len(inputs) % 8)
     return {
-        "title": f"{files.called(result.file)}, printout {result.number} (line {result.line})",
+        "title": f"{files.called(result.file)}, printout {result.number} ({result.where})",
         "look": _LOOKS[result.verdict],
         "verdict": wording.TITLES[result.verdict],
         "says": wording.MEANINGS[result.verdict],
@@ -138,7 +138,7 @@ def _printout(one: Examined, result: Verification) -> dict[str, Any]:
         "drawing": _drawing(result),
         "inputs": [inputs[at : at + 8] for at in range(0, len(inputs), 8)],
         "guessed": "; † not read exactly on the paper" if result.guessed else "",
-        "pictures": list(_pictures(one, result)),
+        "exhibit": result.exhibit() if result.exhibit else "",
         "text": list(_as_read(result)),
     }  # fmt: skip
 
@@ -154,32 +154,6 @@ def _drawing(result: Verification) -> str:
         return scene_svg(scene, beside.solved(scene, [*FINAL_VELOCITIES, "STATUS"]))
     except (UserError, ValueError):
         return ""
-
-
-def _pictures(one: Examined, result: Verification) -> Iterator[tuple[Any, ...]]:
-    """The scanned pages of a printout: address, marked cells, width and height."""
-    if not one.picture or not result.cells:
-        return
-    from base64 import b64encode
-    from io import BytesIO
-
-    from PIL import Image
-
-    from ..scan.picture import pages_of
-
-    wanted = {cell["page"] for cell in result.cells}
-    for page in pages_of(one.picture, one.file):
-        if page.number in wanted:
-            data = BytesIO()
-            Image.fromarray(page.grey.astype("uint8")).save(data, "PNG", optimize=True)
-            height, width = page.grey.shape[:2]
-            boxes = [
-                (*cell["box"], cell["state"])
-                for cell in result.cells
-                if cell["page"] == page.number and cell["state"] in ("differs", "doubtful")
-            ]
-            address = "data:image/png;base64," + b64encode(data.getvalue()).decode()
-            yield address, boxes, width, height
 
 
 def _as_read(result: Verification) -> Iterator[tuple[str, str]]:

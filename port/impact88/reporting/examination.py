@@ -56,12 +56,11 @@ def examine_bytes(
 ) -> Examined:
     """The same of a file's bytes; ``path`` is what it is called."""
     digest = provenance.sha256(data)
-    picture = data if data.startswith(PICTURE_STARTS) else b""
     try:
         results = list(_verified(path, data, digest, given, copy))
     except UserError as error:
         return Examined(path, digest, error=str(error))
-    return Examined(path, digest, results, picture=picture)
+    return Examined(path, digest, results)
 
 
 def _verified(

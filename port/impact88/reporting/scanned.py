@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 from ..errors import UserError
@@ -11,6 +12,7 @@ from ..files import called
 from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..names import SCENE
 from ..scan.evidence import state
+from ..scan.exhibit import exhibit, shown
 from ..scan.holding import Cell
 from ..scan.picture import pages_of
 from ..scan.sheets import Leaf, Looked, looked
@@ -25,7 +27,9 @@ def verified(path: str, data: bytes) -> Iterator[Verification]:
         seen = looked(page.grey)
         for leaf in seen.leaves:
             number += 1
-            yield _verification(path, number, page.number, page.grey.shape, seen, leaf)
+            result = _verification(path, number, page.number, page.grey.shape, seen, leaf)
+            result.exhibit = partial(exhibit, page.grey, seen, leaf)
+            yield result
     if not number:
         raise UserError(
             f"{called(path)}: no printout was found in the picture; expected lines of fixed pitch, "
@@ -43,7 +47,8 @@ def _verification(
     result = Verification(
         file=path,
         number=number,
-        line=1,
+        line=min((row.start for row in leaf.sheet.rows.values()), default=0) + 1,
+        page=page,
         verdict=leaf.judged.verdict,
         scene=scene,
         fields=[_check(leaf, name, name) for name in _names(leaf)],
@@ -56,6 +61,13 @@ def _verification(
     result.cells = [_described(cell, page, size, seen) for cell in leaf.cells if _told(cell)]
     if leaf.judged.reason:
         result.remarks.append(f"page {page}: {leaf.judged.reason}")
+    result.findings += [
+        f"page {page}, line {cell.place.line + 1}, cell {cell.place.cell + 1}: "
+        f"{cell.name or 'a label'} shows {shown(cell.other)} where the program prints "
+        f"{shown(cell.predicted)} (margin {cell.margin:+.2f}, {cell.count} and {cell.other_count} "
+        "cells of each on the page)"
+        for cell in leaf.judged.differing
+    ]
     return result
 
 

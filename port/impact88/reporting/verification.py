@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -26,7 +26,8 @@ class Verification:
 
     ``guessed``: inputs whose printed number was not read exactly, or not at all; ``unseen``: what
     the page cannot show; ``left_over``: text that belongs to no field and no label; ``copy``: the
-    listing it is held against where that is not the restored one.
+    listing it is held against where that is not the restored one; ``page``: of a picture, its
+    page, and ``exhibit``: what shows its cells in the report.
 
     >>> page = impact88.run(impact88.sample(1)).page.replace("-13.263", "-13.268")
     >>> (found,) = impact88.verify(page)
@@ -52,11 +53,18 @@ class Verification:
     left_over: list[Piece] = field(default_factory=list)
     labels: list[LabelCheck] = field(default_factory=list)
     cells: list[dict[str, Any]] = field(default_factory=list)
+    exhibit: Callable[[], str] | None = field(default=None, repr=False)
+    page: int | None = None
     start: int = 0
     stop: int = 0
     sha256: str | None = None
     copy: dict[str, Any] | None = None
     text: str = field(default="", repr=False)
+
+    @property
+    def where(self) -> str:
+        """Where the printout begins in its file."""
+        return f"line {self.line}" if self.page is None else f"page {self.page}, line {self.line}"
 
     @property
     def differing(self) -> list[FieldCheck]:
@@ -138,14 +146,12 @@ class Verification:
 
 @dataclass
 class Examined:
-    """One file: what was found in it, or why it could not be read. ``sha256``: of its bytes;
-    ``picture``: these, where they are a picture."""
+    """One file: what was found in it, or why it could not be read. ``sha256``: of its bytes."""
 
     file: str
     sha256: str | None
     results: list[Verification] = field(default_factory=list)
     error: str | None = None
-    picture: bytes = field(default=b"", repr=False)
 
     def as_json(self) -> list[dict[str, Any]]:
         """The objects `impact88 verify --json` prints for the file."""
@@ -250,7 +256,7 @@ def _explained(result: Verification) -> list[str]:
 
 def lines(result: Verification, brief: bool = False) -> Iterator[str]:
     """What `impact88 verify` prints of one printout; ``brief``: only verdict and what differs."""
-    where = f"{shown(called(result.file))}, printout {result.number} (line {result.line})"
+    where = f"{shown(called(result.file))}, printout {result.number} ({result.where})"
     yield f"{where}: {wording.TITLES[result.verdict]}"
     yield from (f"  {line}" for line in summary(result))
     parts = {one.heading: one.lines for one in sections(result)}

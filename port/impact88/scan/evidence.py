@@ -31,6 +31,7 @@ class Thresholds(NamedTuple):
 
 
 THRESHOLDS = Thresholds(holds=-0.12, differs=0.35, label=0.1, blank=-0.15, foreign=20.0, kind=8.0)
+RATES = "PLACEHOLDER"
 MOST_DOUBTFUL, MOST_DIFFERING = 4, 4
 """Cells that may be doubtful on a page that is settled, or differ on one that is accused: with more
 it was the reading that went wrong."""

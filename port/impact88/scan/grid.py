@@ -19,7 +19,7 @@ CELL_WIDTH = 16
 """Pixels across a cell after sampling: the least at which 3 and 8 of a dot matrix stay apart."""
 SLACK = 2
 """Pixels of picture kept on each side of a cell, for the shifts that are tried."""
-_LEAST_HEIGHT = 5
+_LEAST_HEIGHT, _MOST_LINES = 5, 100
 _INKED = 0.25
 """Darkness, of full ink, from which a cell is inked: of 2,405 blank cells one in a thousand is
 darker than 0.27, of 7,648 others one in a thousand is lighter than 0.44."""
@@ -208,7 +208,7 @@ def grid_of(ink: Image) -> Grid | None:
     lines = _lines(points, level)
     height = float(np.median([bottom - top for top, bottom in lines])) if lines else 0.0
     lines = _mended(lines, height)
-    if len(lines) < 6 or height < _LEAST_HEIGHT:
+    if not 6 <= len(lines) <= _MOST_LINES or height < _LEAST_HEIGHT:
         return None
     members = [np.flatnonzero((level >= top) & (level < bottom)) for top, bottom in lines]
     xs, ys = [x[inside] for inside in members], [y[inside] for inside in members]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -72,6 +73,9 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
                 shown = fields.get(name, "") if name else text
             if line in SPACED:  # its gaps are what they are
                 column = row.column(piece.places[0]) if piece.places else column
+                if name:  # a speck may stand for one of its cells
+                    spare = range(max(0, len(piece.places) - len(shown)) + 1)
+                    column += min(spare, key=partial(_beside_cost, read, name, shown))
             if not name and not text.strip():
                 shown = BLANK * len(piece.places)
             for character in shown:
@@ -80,6 +84,10 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
         for _ in range(_BESIDE):
             yield "", BLANK, row.place(column)
             column += 1
+
+
+def _beside_cost(read: Read, name: str, text: str, blanks: int) -> float:
+    return read.cost(name, BLANK * blanks + text)
 
 
 def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:

@@ -114,7 +114,7 @@ class Sheet:
 def parts(line: str) -> tuple[tuple[str, str], ...]:
     """A line of `LINES` as (name, text): one of the two is empty. A blank that begins a line is a
     part of its own, which the chapter leaves out."""
-    found = re.findall(r"\{(\w+)\}|(^ | {2,}|[^{}]+)", line)
+    found = re.findall(r"\{(\w+)\}|(^ | {2,}|(?:[^{} ]| (?! ))+)", line)
     return tuple((name, text) for name, text in found)
 
 
