@@ -18,7 +18,7 @@ from .typeface import BLANK
 
 class Thresholds(NamedTuple):
     """``holds``: a cell with a smaller margin is the character predicted; ``differs``: one with a
-    larger margin is another; ``blank``: blank paper with a larger margin is not blank; ``foreign``:
+    larger margin is another; ``label``: the same of labels; ``blank``: blank paper with a larger margin is not blank; ``foreign``:
     a cell this many times as far from its mean as is usual was not made by the same type; ``kind``:
     a label that is nearer than this to another letter's mean is that letter."""
 
@@ -94,7 +94,8 @@ def state(cell: Cell) -> str:
         return "holds" if cell.distance < limits.foreign else "doubtful"
     if cell.margin < limits.differs or (cell.predicted in _MARKS and cell.other in f"{BLANK}.,-"):
         return "doubtful"
-    return "differs"
+    # a blot is no other character
+    return "differs" if cell.other_distance < limits.foreign else "doubtful"
 
 
 def _slight(cell: Cell) -> bool:
