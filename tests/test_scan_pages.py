@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from captures import ROOT
@@ -108,7 +109,7 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     """Printouts on a page share their mean characters, and one misplaced spoils them for all."""
     given = iter([Judged(Verdict.DIFFERS), Judged(beside)])
     monkeypatch.setattr(sheets, "read_numbers", lambda grid, found: [None, None])
-    monkeypatch.setattr(sheets, "scene_of", lambda read: object())
+    monkeypatch.setattr(sheets, "scene_of", lambda *given: object())
     monkeypatch.setattr(sheets, "held", lambda *given: [])
     monkeypatch.setattr(sheets, "_mistaken", lambda cells, found: False)
     monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
@@ -116,3 +117,44 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     expected = Verdict.DIFFERS if beside is Verdict.IDENTICAL else Verdict.INCOMPLETE
     assert leaves[0].judged.verdict is expected
     assert bool(leaves[0].judged.reason) is (beside is Verdict.INCOMPLETE)
+
+
+def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> None:
+    from impact88.reporting.casefile import report
+
+    cells = examine(str(PAGES / "clean-001.png")).results[0].cells
+    chosen = [
+        cell for cell in cells if cell["field"] in ("LOSS", "XAF") and cell["state"] == "holds"
+    ]
+    target = next(cell for cell in chosen if cell["predicted"].isdigit())
+    source = next(c for c in cells if c["predicted"] in set("23456789") - {target["predicted"]})
+    with Pillow.open(PAGES / "clean-001.png") as page:
+        grey = page.convert("L")
+    glyph = grey.crop(tuple(round(v) for v in source["box"]))
+    grey.paste(glyph, tuple(round(v) for v in target["box"][:2]))
+    examined = examine_bytes("page.png", saved(grey, "PNG"))
+    (result,) = examined.results
+    assert result.verdict is Verdict.DIFFERS
+    assert [(one.name, one.same) for one in result.differing] == [(target["field"], False)]
+    assert f"shows {source['predicted']}" in result.findings[0]
+    shown = report([examined])
+    assert "looks like" in shown
+    assert "Basis of the thresholds" in shown
+
+
+def test_a_text_layer_must_agree_and_another_readers_words_decide_nothing(monkeypatch) -> None:
+    from impact88.reporting import scanned
+    from impact88.scan.picture import Page
+
+    row = next(row for row in TRUTH if row["file"] == "clean-001.png")
+    with Pillow.open(PAGES / row["file"]) as page:
+        grey = np.asarray(page.convert("L"), np.float32)
+    (right,) = examine(str(PAGES / row["file"])).results
+    number = next(one for one in right.fields if one.name == "KI").printed
+    wrong = right.text.replace(number, number[:-1] + "1379"[number[-1] == "1"])
+    pages = [Page(1, np.full((300, 400), 255, np.float32)), Page(2, grey, wrong)]
+    monkeypatch.setattr(scanned, "pages_of", lambda data, path: pages)
+    (result,) = scanned.verified("page.pdf", b"", right.text)
+    assert result.verdict is Verdict.INCOMPLETE
+    assert any("does not agree" in remark and "KI" in remark for remark in result.remarks)
+    assert any("page 1" in remark for remark in result.remarks)

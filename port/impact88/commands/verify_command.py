@@ -29,7 +29,10 @@ from __future__ import annotations
 import argparse
 import sys
 
+from .. import files
 from ..errors import UserError
+from ..reading.plaintext import decoded
+from ..reading.printout import LARGEST_FILE
 from ..reporting.examination import Examined, Verdict, examine
 from ..reporting.verification import lines
 from ..stderr import note
@@ -69,6 +72,12 @@ ARGUMENTS = (
         help="compare the pages with another copy of the listing",
     ),
     argument(
+        "--text-from",
+        type=InputFile,
+        metavar="WORDS",
+        help="what another reader made of the picture: tesseract's TSV, hOCR, ALTO or text",
+    ),
+    argument(
         "--report", type=OutputFile, metavar="FILE.html", help="write a page for the case file"
     ),
     sample_option("the inputs are those of a published run"),
@@ -91,10 +100,13 @@ def main(args: argparse.Namespace) -> int:
         from ..program.listingcopy import ListingCopy
 
         copy = ListingCopy(args.listing)
+    seed = ""
+    if args.text_from:
+        seed = decoded(files.read_bytes(args.text_from, LARGEST_FILE), args.text_from)
     status = 0
     examined = []
     for path in args.printouts:
-        file = examine(path, given, copy)
+        file = examine(path, given, copy, seed)
         examined.append(file)
         _show(file, args)
         adverse = any(result.verdict is not Verdict.IDENTICAL for result in file.results)

@@ -223,7 +223,7 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     >>> printout.fields["MA"].text
     '143.5'
     """
-    if "<" in text[:1000]:
+    if "<" in text[:1000] or text.startswith("level\t"):
         from .wordplaces import laid_out
 
         text = laid_out(text, where) or text

@@ -6,6 +6,7 @@ wide, in widths of the page's own letters. Line and column then count in that te
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Iterator, Sequence
 from html.parser import HTMLParser
@@ -35,18 +36,34 @@ class Word(NamedTuple):
 
 
 def laid_out(text: str, where: str) -> str | None:
-    """The text of an hOCR or ALTO document; None for what is neither. Raises UserError for one
-    that is damaged or holds no words."""
+    """The text of an hOCR or ALTO document or of tesseract's TSV; None for what is none of them.
+    Raises UserError for one that is damaged or holds no words."""
     head = text[:4000].lower()
     if "<alto" in head:
         pages = _alto(text, where)
     elif "ocr_page" in head or "ocrx_word" in head or "ocr-system" in head:
         pages = _hocr(text)
+    elif head.startswith("level\tpage_num\t"):
+        pages = _tsv(text, where)
     else:
         return None
     if not any(pages):
-        raise UserError("holds no words with places; expected hOCR or ALTO of a page", where)
+        raise UserError("holds no words with places; expected hOCR, ALTO or TSV of a page", where)
     return "\n\n".join(_page(words) for words in pages)
+
+
+def _tsv(text: str, where: str) -> list[list[Word]]:
+    """Words of tesseract's table, by page."""
+    pages: dict[str, list[Word]] = {}
+    for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
+        try:
+            if (row["text"] or "").strip():
+                left, top = float(row["left"]), float(row["top"])
+                box = (left, top, left + float(row["width"]), top + float(row["height"]))
+                pages.setdefault(row["page_num"], []).append(Word(row["text"].strip(), *box))
+        except (KeyError, TypeError, ValueError):
+            raise UserError("a row of the TSV is damaged", where) from None
+    return list(pages.values())
 
 
 def _page(words: Sequence[Word]) -> str:

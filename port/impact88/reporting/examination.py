@@ -37,15 +37,19 @@ __all__ = ["Examined", "Verdict", "Verification", "examine", "verify"]
 
 
 def examine(
-    path: str, given: Mapping[str, str] | None = None, copy: ListingCopy | None = None
+    path: str,
+    given: Mapping[str, str] | None = None,
+    copy: ListingCopy | None = None,
+    seed: str = "",
 ) -> Examined:
     """A file (``-``: standard input), every printout in it judged; what cannot be read is told.
-    ``copy``: the listing it is held against, in place of the restored one."""
+    ``copy``: the listing it is held against, in place of the restored one; ``seed``: what another
+    reader made of a picture."""
     try:
         data = files.read_bytes(path, LARGEST_PICTURE)
     except UserError as error:
         return Examined(path, None, error=str(error))
-    return examine_bytes(path, data, given, copy)
+    return examine_bytes(path, data, given, copy, seed)
 
 
 def examine_bytes(
@@ -53,11 +57,12 @@ def examine_bytes(
     data: bytes,
     given: Mapping[str, str] | None = None,
     copy: ListingCopy | None = None,
+    seed: str = "",
 ) -> Examined:
     """The same of a file's bytes; ``path`` is what it is called."""
     digest = provenance.sha256(data)
     try:
-        results = list(_verified(path, data, digest, given, copy))
+        results = list(_verified(path, data, digest, given, copy, seed))
     except UserError as error:
         return Examined(path, digest, error=str(error))
     return Examined(path, digest, results)
@@ -69,6 +74,7 @@ def _verified(
     digest: str,
     given: Mapping[str, str] | None,
     copy: ListingCopy | None = None,
+    seed: str = "",
 ) -> Iterator[Verification]:
     if data.startswith(PICTURE_STARTS):
         if given or copy:
@@ -81,7 +87,7 @@ def _verified(
                 f"{files.called(path)}: pictures need {error.name}, which is not installed; "
                 "pip install 'impact88[scan]'"
             ) from None
-        for result in verified(path, data):
+        for result in verified(path, data, seed):
             result.sha256 = digest
             yield completed(result)
         return

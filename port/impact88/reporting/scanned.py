@@ -11,30 +11,74 @@ from ..fields import FIELDS, REPLIES
 from ..files import called
 from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..names import SCENE
-from ..scan.evidence import state
+from ..progress import progress
+from ..reading.printout import read_printouts
+from ..scan.evidence import RATES, state
 from ..scan.exhibit import exhibit, shown
 from ..scan.holding import Cell
 from ..scan.picture import pages_of
+from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, Looked, looked
 from ..scan.typeface import BLANK
 from .verification import Verification
 
 
-def verified(path: str, data: bytes) -> Iterator[Verification]:
-    """Each printout in a picture or PDF. Raises UserError when none is found."""
-    number = 0
-    for page in pages_of(data, path):
-        seen = looked(page.grey)
-        for leaf in seen.leaves:
-            number += 1
-            result = _verification(path, number, page.number, page.grey.shape, seen, leaf)
-            result.exhibit = partial(exhibit, page.grey, seen, leaf)
-            yield result
-    if not number:
+def verified(path: str, data: bytes, seed: str = "") -> Iterator[Verification]:
+    """Each printout in a picture or PDF. ``seed``: what another reader made of it; its scenes are
+    tried, and it decides nothing. Raises UserError when no printout is found."""
+    results: list[Verification] = []
+    without = []
+    seeds = scenes_in(seed)
+    with progress(None, "pages read", "page") as meter:
+        for page in pages_of(data, path):
+            seen = looked(page.grey, [*seeds, *scenes_in(page.text)])
+            found: list[Verification] = []
+            for leaf in seen.leaves:
+                number = len(results) + len(found) + 1
+                result = _verification(path, number, page.number, page.grey.shape, seen, leaf)
+                result.exhibit = partial(exhibit, page.grey, seen, leaf)
+                found.append(result)
+            if page.text.strip():
+                _layered(found, page.text)
+            if not found:
+                without.append(page.number)
+            results += found
+            meter.update(1)
+    if not results:
         raise UserError(
             f"{called(path)}: no printout was found in the picture; expected lines of fixed pitch, "
-            "12 pixels or more a character"
+            "10 pixels or more a character"
         )
+    if without:
+        pages = ", ".join(map(str, without))
+        results[0].remarks.append(f"no printout was found on page {pages} of the file")
+    yield from results
+
+
+def _layered(results: list[Verification], text: str) -> None:
+    """Holds a PDF's text layer against what its picture shows: one that says another number is
+    told, and nothing is settled."""
+    try:
+        layer = [one for one in read_printouts(text) if not one.fragment]
+    except UserError:
+        layer = []
+    if len(layer) != len(results):
+        for result in results:
+            result.remarks.append(f"page {result.page}: no such printout is in its text layer")
+        return
+    for result, one in zip(results, layer, strict=True):
+        other = [
+            f"{check.name} {one.text(check.name)} for {check.printed}"
+            for check in result.fields
+            if one.text(check.name) is not None and one.text(check.name) != check.printed
+        ]
+        if other:
+            result.remarks.append(
+                f"page {result.page}: its text layer does not agree with its picture: "
+                + ", ".join(other)
+            )
+            if result.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
+                result.verdict = Verdict.INCOMPLETE
 
 
 def _verification(
@@ -49,6 +93,7 @@ def _verification(
         number=number,
         line=min((row.start for row in leaf.sheet.rows.values()), default=0) + 1,
         page=page,
+        basis=RATES,
         verdict=leaf.judged.verdict,
         scene=scene,
         fields=[_check(leaf, name, name) for name in _names(leaf)],

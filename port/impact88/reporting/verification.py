@@ -27,7 +27,7 @@ class Verification:
     ``guessed``: inputs whose printed number was not read exactly, or not at all; ``unseen``: what
     the page cannot show; ``left_over``: text that belongs to no field and no label; ``copy``: the
     listing it is held against where that is not the restored one; ``page``: of a picture, its
-    page, and ``exhibit``: what shows its cells in the report.
+    page, ``basis``: how sure its margins are, and ``exhibit``: what shows its cells in the report.
 
     >>> page = impact88.run(impact88.sample(1)).page.replace("-13.263", "-13.268")
     >>> (found,) = impact88.verify(page)
@@ -53,6 +53,7 @@ class Verification:
     left_over: list[Piece] = field(default_factory=list)
     labels: list[LabelCheck] = field(default_factory=list)
     cells: list[dict[str, Any]] = field(default_factory=list)
+    basis: str = ""
     exhibit: Callable[[], str] | None = field(default=None, repr=False)
     page: int | None = None
     start: int = 0
@@ -141,6 +142,7 @@ class Verification:
         }
         if self.cells:
             whole["cells"] = self.cells
+            whole["basis"] = self.basis
         return stamped("verify", whole)
 
 
@@ -199,7 +201,8 @@ def summary(result: Verification) -> list[str]:
     not_read = [name for name in result.not_read if name not in result.missing]
     if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
         said.append(f"not read: {', '.join(not_read)}")
-    if verdict is Verdict.INCOMPLETE and not result.missing and not not_read:
+    whole = result.missing or not_read or result.page is not None
+    if verdict is Verdict.INCOMPLETE and not whole:
         said.append("the results are missing, or the page ends before they do")
     ending = result.ending
     if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):

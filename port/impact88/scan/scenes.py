@@ -6,7 +6,7 @@ This is the one module that knows how text is recovered.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from ..applesoft.decimaltext import is_number
@@ -76,10 +76,11 @@ class Candidate:
     cost: float
 
 
-def scene_of(read: Read) -> Candidate | None:
-    """The scene whose page fits the cells best, None where none can be run."""
+def scene_of(read: Read, seeds: Sequence[dict[str, str]] = ()) -> Candidate | None:
+    """The scene whose page fits the cells best, None where none can be run. ``seeds``: scenes that
+    another reader found."""
     known: dict[tuple[tuple[str, str], ...], Candidate] = {}
-    for scene in _first(read):
+    for scene in [*_first(read), *seeds]:
         _weigh(read, [scene], known)
     if not known:
         return None
@@ -108,14 +109,16 @@ def _first(read: Read) -> Iterator[dict[str, str]]:
             yield {**direct, "M": spins}
             mu = texts["MUP"]
             yield {**direct, "M": spins, "MU": mu[1:] if mu.startswith("-") else f"-{mu}"}
+    yield from scenes_in(read.page())
+
+
+def scenes_in(text: str) -> list[dict[str, str]]:
+    """The scenes of the printouts in a text, as far as they are recovered."""
     try:
-        printouts = list(read_printouts(read.page()))
+        recovered = [recover(one) for one in read_printouts(text) if not one.fragment]
     except UserError:
-        return
-    if len(printouts) == 1 and not printouts[0].fragment:
-        recovered = recover(printouts[0])
-        if not recovered.missing:
-            yield recovered.scene
+        return []
+    return [one.scene for one in recovered if not one.missing]
 
 
 def _weigh(

@@ -53,8 +53,9 @@ class Looked:
     leaves: list[Leaf]
 
 
-def looked(grey: Image) -> Looked:
-    """All printouts of a page, upright or turned by quarters."""
+def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> Looked:
+    """All printouts of a page, upright or turned by quarters. ``seeds``: scenes that another reader
+    found; they are tried beside those of the picture."""
     ink = ink_of(grey)
     best: tuple[float, Grid | None, int, list[Sheet]] = (0.0, None, 0, [])
     for turns in _turns(ink):
@@ -66,7 +67,7 @@ def looked(grey: Image) -> Looked:
         if any(sheet.whole and sheet.gain > _UPRIGHT for sheet in sheets):
             break
     _, grid, turns, sheets = best
-    return Looked(grid, turns, _leaves(grid, sheets) if grid else [])
+    return Looked(grid, turns, _leaves(grid, sheets, seeds) if grid else [])
 
 
 def _turns(ink: Image) -> list[int]:
@@ -77,9 +78,9 @@ def _turns(ink: Image) -> list[int]:
     return [0, 2, 1, 3] if down * small.shape[1] >= across * small.shape[0] else [1, 3, 0, 2]
 
 
-def _leaves(grid: Grid, sheets: list[Sheet]) -> list[Leaf]:
+def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
     reads = read_numbers(grid, sheets)
-    found = [scene_of(read) for read in reads]
+    found = [scene_of(read, seeds) for read in reads]
     known = [
         (sheet, read, one) for sheet, read, one in zip(sheets, reads, found, strict=True) if one
     ]
