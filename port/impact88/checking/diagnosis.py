@@ -1,9 +1,9 @@
 """Why another program's results differ: one cause for a table where one explains it.
 
-What is looked for, in turn: right numbers written otherwise; one mistake (`trials`); the
-velocities and the rest apart; two mistakes (`twofaults`); rows of several programs; coarser
-arithmetic. A cause must earn its name: rows that agree must bear it out, and the bits that it gets
-right in rows that disagree must be many more than choosing among so many programs yields by chance.
+What is looked for, in turn: right numbers written otherwise; one mistake, then two (`trials`), and
+what they leave; rows of several programs; coarser arithmetic. A cause must earn its name: rows that
+agree must bear it out, and the bits that it gets right in rows that disagree must be many more than
+choosing among so many programs yields by chance.
 """
 
 from __future__ import annotations

@@ -35,7 +35,6 @@ OF_ACCUMULATOR = {
     "atn": 0xF09E,
 }
 READ_NUMBER, WRITE_NUMBER = 0xEC4A, 0xED34
-OPERATIONS = (*WITH_MEMORY, "pow", *OF_ACCUMULATOR, "fin", "fout")
 
 _OPERAND, _STUB, _BACK, _BUFFER = 0x0300, 0x0310, 0x0340, 0x0200
 """Page 3 is the user's; a number to be read stands in the input buffer."""
