@@ -22,7 +22,6 @@ Floats = NDArray[np.float64]
 
 REPLY_A, REPLY_B = "REPLY_A", "REPLY_B"
 """Slots of the replies to the two prompts."""
-PERCENT = "%"
 
 _PROMPT = "ENTERTHEINITIALVELOCITYCOMPONENTSOFM{0}:VAX,VAY,WA?"
 

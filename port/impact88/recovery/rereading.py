@@ -12,7 +12,8 @@ from functools import cached_property
 from itertools import combinations as pairs_of
 from typing import NamedTuple
 
-from ..fields import INPUTS
+from ..doubles import double
+from ..fields import ANGLES, INPUTS
 from ..reading.numerals import is_number, printable
 from . import misprints
 from .choices import Column, scene_name
@@ -32,6 +33,8 @@ _UNLIKE = 0.05
 """What a digit costs more by each rank in the likeness of its shape."""
 _TWO_SLIPS, _ONE_SLIP = 5.85, 3.5
 """What two slips may cost, neither of them a digit lost or added; and one."""
+_FULL_TURN, _TURNED = 360.0, 2.0
+"""Beyond it nobody types an angle, and what it costs to believe that somebody did."""
 _ROOM, _FEW, _REPLAYED = 100_000, 1_000, 320
 _DIGITS = 9
 """Of a number the Apple keeps so many digits."""
@@ -112,11 +115,15 @@ class Rereading:
                 cost = COSTS[kind]
                 if kind == misprints.DIGIT:
                     cost += _UNLIKE * misprints.likeness(text, other)
-                yield Change(kind, name, text, other), cost
+                yield Change(kind, name, text, other), cost + self._turned(name, other)
         for other in _two_digits(text):
             if possible(other):
                 change = Change(misprints.TWO_DIGITS, name, text, other)
-                yield change, COSTS[misprints.TWO_DIGITS]
+                yield change, COSTS[misprints.TWO_DIGITS] + self._turned(name, other)
+
+    def _turned(self, name: str, text: str) -> float:
+        """What an angle costs that nobody types."""
+        return _TURNED if name in ANGLES and abs(double(text)) > _FULL_TURN else 0.0
 
 
 def _two_digits(text: str) -> Iterator[str]:

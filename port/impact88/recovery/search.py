@@ -264,10 +264,6 @@ class Search:
             scenes.append((scene, best.assumed, extra + float(cost)))
         return min([best, *self._scored(scenes)], key=_cost)
 
-    def results_cost(self, scored: Scored) -> float:
-        """What the results of a scene that was replayed cost, its inputs apart."""
-        return self._weighed(scored.scene, {}, 0.0, scored.outcome).cost
-
     def replayed_scene(self, scene: dict[str, str], assumed: dict[str, str]) -> Scored:
         """One scene, replayed."""
         return next(self._scored([(scene, assumed, 0.0)]))
