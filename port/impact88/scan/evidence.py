@@ -71,6 +71,10 @@ def judged(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
     spins = "WAF" in candidate.outcome.fields
     if candidate.outcome.ending is not None or spins is not (13 in sheet.rows):
         return Judged(Verdict.INCOMPLETE, differing, doubtful, "the final spins were not found")
+    told = [cell for cell in differing if not _retyped(cell, [*differing, *doubtful])]
+    if differing and not told:
+        reason = "a reply is typed otherwise than was expected"
+        return Judged(Verdict.INCOMPLETE, differing, doubtful, reason)
     if not differing:
         if not doubtful:
             return Judged(Verdict.IDENTICAL)
@@ -104,6 +108,12 @@ def state(cell: Cell) -> str:
         return "doubtful"
     # a blot is no other character
     return "differs" if cell.other_distance < limits.foreign else "doubtful"
+
+
+def _retyped(cell: Cell, others: Sequence[Cell]) -> bool:
+    """Whether a cell belongs to a reply that is another in several cells: one number can be typed
+    in many ways, and what was typed never outranks what was printed."""
+    return cell.name.startswith("REPLY") and sum(one.name == cell.name for one in others) > 1
 
 
 def _slight(cell: Cell) -> bool:

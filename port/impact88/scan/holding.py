@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import partial
 from itertools import product
 
@@ -102,6 +103,8 @@ def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:
 
 def _written(text: str) -> list[str]:
     """A number as people type it: with or without the nought before the point, noughts after."""
+    if "E" in text:
+        return [text, *_written(format(Decimal(text), "f"))]
     sign, digits = ("-", text[1:]) if text.startswith("-") else ("", text)
     whole, point, part = digits.partition(".")
     wholes = {whole, whole.lstrip("0"), whole or "0"} if point else {whole}
