@@ -28,7 +28,9 @@ import contextlib, io, json, os, sys
 opened = set()
 uses = ("open", "ctypes.dlopen")
 sys.addaudithook(lambda event, told: opened.add(str(told[0])) if event in uses else None)
-from impact88 import cli
+import numpy
+from impact88 import cli, sample
+from impact88.bench.populations import evolved
 from impact88.desk import app
 from impact88.schemas import NUMBERS, text
 statuses = {}
@@ -63,7 +65,12 @@ run("verify", "altered.txt", "--report", "verified.html")
 desk = app.Desk()
 client = app.application(desk, 8088, "word").test_client()
 pages = ["/word/", *(f"/word/static/{name}" for name in sys.argv[3:])]
-pages = [client.get(page, base_url="http://127.0.0.1:8088").status_code for page in pages]
+own = "http://127.0.0.1:8088"
+pages = [client.get(page, base_url=own).status_code for page in pages]
+form = {"values": dict(sample(1)), "units": ""}
+answer = client.post("/word/collision", json=form, base_url=own, headers={"Origin": own})
+pages.append(answer.status_code)
+evolved(numpy.random.default_rng(0), 1)
 desk.close()
 print(json.dumps([cli.__file__, sorted(opened), statuses, len(vectors), pages]))
 """

@@ -74,8 +74,9 @@ ANGLE_ROW = 5
 """The line of `LINES` that holds nothing but the five angles."""
 LABELLED_ANGLES = 6
 """The line of the angles as some people retype them."""
-_RETYPED = 2.5
-"""What it costs to begin it: the row of angles is what the program prints."""
+_RETYPED = 1.5
+"""What it costs to begin it: the row of angles is what the program prints. Two columns of
+names and numbers are read with up to 2.0, no longer with 2.5."""
 RESULTS = 12
 """The line of `LINES` that the results begin with."""
 SPINS = 14
