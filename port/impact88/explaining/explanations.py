@@ -17,6 +17,8 @@ from decimal import Decimal
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from ..fields import FIELDS, INPUTS
 from ..judging.judgement import Judged, Status, same_value
 from ..reading.numerals import value_of
@@ -124,6 +126,7 @@ class Explanation:
         return self.note.endswith(machines.NOT_APPLESOFT)
 
 
+@np.errstate(all="ignore")  # a cause tried may leave a double's range, and then explains nothing
 def explain(
     found: Judged,
     rereads: Sequence[Reread] | None = None,
@@ -154,6 +157,7 @@ def explain(
     return _chosen(causes, len(work.base))
 
 
+@np.errstate(all="ignore")
 def explain_copy(
     found: Judged,
     recovered: Recovered,
