@@ -16,7 +16,9 @@ from captures import ROOT
 from impact88.judging.judgement import Verdict
 from impact88.reporting.examination import Examined, examine, examine_bytes
 from impact88.scan import sheets
-from impact88.scan.evidence import Judged
+from impact88.scan.evidence import THRESHOLDS, Judged, state
+from impact88.scan.holding import Cell
+from impact88.scan.layout import Place
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
 Pillow = pytest.importorskip("PIL.Image", reason="the extra scan is not installed")
@@ -158,3 +160,31 @@ def test_a_text_layer_must_agree_and_another_readers_words_decide_nothing(monkey
     assert result.verdict is Verdict.INCOMPLETE
     assert any("does not agree" in remark and "KI" in remark for remark in result.remarks)
     assert any("page 1" in remark for remark in result.remarks)
+
+
+def cell(name: str, *, distance: float, other_distance: float) -> Cell:
+    """A cell that is clearly not what is predicted, and as far as given from that and another."""
+    predicted, other = ("3", "8") if name else ("V", "U")
+    return Cell(0, Place(0, 0), name, predicted, 2.0, other, distance, other_distance, 5, 5)
+
+
+@pytest.mark.parametrize(
+    ("distance", "other_distance", "expected"),
+    [
+        (100.0, THRESHOLDS.foreign - 1, "differs"),
+        (THRESHOLDS.foreign + 2, THRESHOLDS.foreign + 1, "doubtful"),  # like nothing: a blot
+        (81.0, 40.0, "differs"),  # another hand's digit
+        (79.0, 40.0, "doubtful"),
+        (200.0, THRESHOLDS.far - 1, "differs"),
+        (200.0, THRESHOLDS.far + 1, "doubtful"),
+    ],
+)
+def test_a_digit_of_another_hand_differs_and_a_blot_does_not(
+    distance: float, other_distance: float, expected: str
+) -> None:
+    assert state(cell("TB", distance=distance, other_distance=other_distance)) == expected
+
+
+def test_another_letter_is_near_to_that_letters_mean() -> None:
+    assert state(cell("", distance=100.0, other_distance=THRESHOLDS.kind - 1)) == "differs"
+    assert state(cell("", distance=100.0, other_distance=THRESHOLDS.kind + 1)) == "doubtful"
