@@ -30,14 +30,14 @@ import argparse
 from ..errors import UserError
 from ..scene import known_template
 from ..stderr import note
-from .options import SOLUTION, known_within_limits, sample_option, source_of
+from . import options
 
 KNOWABLE = (
     *("E", "MU", "MUP", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "M"),
     *("UX", "UY", "WA", "VAX", "VAY", "WAF"),
 )
 
-ARGUMENTS = (*SOLUTION, sample_option("vehicle A of a published run"))
+ARGUMENTS = (*options.SOLUTION, options.sample_option("vehicle A of a published run"))
 
 
 def main(args: argparse.Namespace) -> int:
@@ -50,16 +50,16 @@ def main(args: argparse.Namespace) -> int:
     if args.template:
         print(known_template(KNOWABLE))
         return 0
-    if source_of(args) is None and not args.set:
+    if options.source_of(args) is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..units import system_of
 
-    given, named = known_within_limits(args, KNOWABLE, single=True)
+    given, named = options.known_within_limits(args, KNOWABLE, single=True)
     wall = {name: fixed(value) for name, value in BARRIER.items()}
     resting = {} if "UX" in given else {n: fixed(value) for n, value in BARRIER_AFTER.items()}
     known, found = share_resolved(given | wall | resting)
     if found:
         note(None, found)
     everything = {name: item.nominal for name, item in known.items()} | BARRIER_AFTER
-    show(everything, None, source_of(args), args.contact_time, args.json, system_of(named))
+    show(everything, None, options.source_of(args), args.contact_time, args.json, system_of(named))
     return 0

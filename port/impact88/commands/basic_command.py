@@ -31,7 +31,7 @@ from ..files import called, packaged_text, read_text, replacing, typed_line
 from ..program.run import page
 from ..signals import INTERRUPTED
 from ..stderr import note
-from .options import InputFile, argument, flag, whole_number
+from . import options
 from .run_command import MACHINE, check_slot
 
 LISTING = "impact.bas"
@@ -43,14 +43,9 @@ _SHOWN_CONTROLS = "\n\a\b"
 
 
 ARGUMENTS = (
-    argument("program", nargs="?", type=InputFile, metavar="FILE.bas", help="a program to run"),
-    flag("--prompt", "stay at the prompt after FILE.bas"),
-    argument(
-        "--max-statements",
-        type=whole_number(1, 10**12),
-        metavar="N",
-        help="stop a program after N statements",
-    ),
+    options.reads("program", "FILE.bas", "a program to run", nargs="?"),
+    options.flag("--prompt", "stay at the prompt after FILE.bas"),
+    options.count("--max-statements", 1, 10**12, "stop a program after N statements"),
     *MACHINE,
 )
 

@@ -27,17 +27,7 @@ from typing import Any
 from ..bench.populations import BENCHMARK, POPULATIONS
 from ..errors import library
 from ..plaintable import plain
-from .options import (
-    OUTPUT,
-    OutputFile,
-    argument,
-    flag,
-    json_option,
-    names_given,
-    names_option,
-    seed,
-    whole_number,
-)
+from . import options
 
 __doc__ = (__doc__ or "").format(
     populations="\n".join(f"  {p.name:<14} {p.level:<8} {p.meaning}" for p in POPULATIONS.values())
@@ -53,34 +43,21 @@ SIZES = (1_000, 10_000, 100_000, 1_000_000, 10_000_000)
 
 
 ARGUMENTS = (
-    names_option("--populations", f"default: {','.join(BENCHMARK)}"),
-    argument(
-        "--scenes",
-        type=whole_number(1, MOST_SCENES),
-        default=2000,
-        help="of each population (%(default)s)",
-    ),
-    seed("of the populations", 1988),
-    argument(
-        "--repeats",
-        type=whole_number(1, 1000),
-        default=5,
-        help="times are medians of so many (%(default)s)",
-    ),
-    flag("--quick", "time a twentieth of the scenes: rougher, sooner"),
-    flag("--paths", "what skipping saves, instead"),
-    flag("--sizes", "growth with the scenes, instead"),
-    flag("--files", "tables from file to file, instead"),
-    json_option("JSON instead of tables"),
-    OUTPUT,
-    argument(
-        "--figure", type=OutputFile, metavar="FILE", help="draw error against time: .svg .png .pdf"
-    ),
-    argument(
+    options.names_option("--populations", f"default: {','.join(BENCHMARK)}"),
+    options.count("--scenes", 1, MOST_SCENES, "of each population (%(default)s)", default=2000),
+    options.seed("of the populations", 1988),
+    options.count("--repeats", 1, 1000, "times are medians of so many (%(default)s)", default=5),
+    options.flag("--quick", "time a twentieth of the scenes: rougher, sooner"),
+    options.flag("--paths", "what skipping saves, instead"),
+    options.flag("--sizes", "growth with the scenes, instead"),
+    options.flag("--files", "tables from file to file, instead"),
+    options.json_option("JSON instead of tables"),
+    options.OUTPUT,
+    options.writes("--figure", "FILE", "draw error against time: .svg .png .pdf"),
+    options.writes(
         "--errors-figure",
-        type=OutputFile,
-        metavar="FILE",
-        help="draw errors against condition, with their bound, and their distribution",
+        "FILE",
+        "draw errors against condition, with their bound, and their distribution",
     ),
 )
 
@@ -101,7 +78,7 @@ def main(arguments: argparse.Namespace) -> int:
     library("mpmath", "bench", "the reference")
     machine = measure.machine()
     finite = [name for name in POPULATIONS if name != "barriers"]
-    populations = names_given(arguments.populations, finite, "--populations", "population")
+    populations = options.names_given(arguments.populations, finite, "--populations", "population")
     populations = populations or list(BENCHMARK)
     total = measure.steps(populations, arguments.repeats)
     with progress(total, "bench") as meter:

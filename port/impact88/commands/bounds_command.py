@@ -33,10 +33,15 @@ from __future__ import annotations
 
 import argparse
 
-from .options import JSON, OUTPUT, names_option, print_json
+from . import options
 from .rangeoptions import RANGES, explored
 
-ARGUMENTS = (*RANGES, names_option("--outputs", "the results wanted"), JSON, OUTPUT)
+ARGUMENTS = (
+    *RANGES,
+    options.names_option("--outputs", "the results wanted"),
+    options.JSON,
+    options.OUTPUT,
+)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -45,7 +50,7 @@ def main(args: argparse.Namespace) -> int:
 
     found = explored(args, args.outputs)
     if args.json:
-        print_json("bounds", as_json(found))
+        options.print_json("bounds", as_json(found))
     else:
         print(table(found))
     return 0

@@ -19,13 +19,13 @@ import math
 from ..errors import UserError
 from ..scene import known_template
 from ..units import System, system_of, written
-from .options import SOLUTION, known_values, print_json
+from . import options
 
 COMMON = ("MA", "MB", "E", "MUP")
 BEFORE = ("UN", "UT", "VN", "VT")
 AFTER = ("VAN", "VAT", "VBN", "VBT")
 
-ARGUMENTS = SOLUTION
+ARGUMENTS = options.SOLUTION
 
 
 def main(args: argparse.Namespace) -> int:
@@ -35,7 +35,7 @@ def main(args: argparse.Namespace) -> int:
     if args.template:
         print(known_template((*COMMON, *BEFORE, *AFTER)))
         return 0
-    known, named = known_values(args, (*COMMON, *BEFORE, *AFTER))
+    known, named = options.known_values(args, (*COMMON, *BEFORE, *AFTER))
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
     if before and after:
         raise UserError(
@@ -75,7 +75,7 @@ def show(
     if as_json:
         units = {name: system.label(quantity(name).unit) for name in values}
         whole = {"solved_for": solved_for, "values": values, "units": units, "warnings": warnings}
-        print_json("colinear", whole)
+        options.print_json("colinear", whole)
         return
     decimals = decimals_for([values[name] for name in (*BEFORE, *AFTER)])
     rows = []

@@ -31,52 +31,37 @@ from ..checking.compare import HARMLESS, Comparison, compare_file
 from ..errors import UserError, shown
 from ..stderr import note
 from ..tables.table import format_of
-from .options import (
-    ENCODING,
-    FORMATS,
-    JSON,
-    OUTPUT,
-    UNITS,
-    InputFile,
-    OutputFile,
-    argument,
-    flag,
-    print_json,
-    setting,
-    settings,
-)
+from . import options
 
 SHOWN = 20
 """Unreadable rows listed on stderr."""
 
 ARGUMENTS = (
-    argument(
-        "theirs", type=InputFile, metavar="THEIRS", help="the table (- is standard input, CSV)"
+    options.reads("theirs", "THEIRS", "the table (- is standard input, CSV)"),
+    options.choice(
+        "--from", options.FORMATS, "the format, if its name does not show it", dest="form"
     ),
-    argument(
-        "--from", dest="form", choices=FORMATS, help="the format, if its name does not show it"
-    ),
-    setting("a value of the scene for all rows, where the table has no such column"),
-    argument(
+    options.setting("a value of the scene for all rows, where the table has no such column"),
+    options.value(
         "--rtol",
-        type=float,
-        metavar="SHARE",
-        help="the difference that agrees, as a share of the scene's largest velocity, spin or "
+        "SHARE",
+        "the difference that agrees, as a share of the scene's largest velocity, spin or "
         "energy; default: what rounding in double precision allows in that scene",
+        type=float,
     ),
-    flag("--strict", "rows, cells and columns that were not compared are failures"),
-    flag("--no-causes", "judge only; look for no causes"),
-    argument("--junit", type=OutputFile, metavar="FILE", help="write a JUnit report, a test a row"),
-    UNITS,
-    ENCODING,
-    JSON,
-    OUTPUT,
+    options.flag("--strict", "rows, cells and columns that were not compared are failures"),
+    options.flag("--no-causes", "judge only; look for no causes"),
+    options.writes("--junit", "FILE", "write a JUnit report, a test a row"),
+    options.UNITS,
+    options.ENCODING,
+    options.JSON,
+    options.OUTPUT,
 )
 
 
 def main(args: argparse.Namespace) -> int:
     """Compare a table."""
-    given = settings(args.set, units=args.units)
+    given = options.settings(args.set, units=args.units)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
     comparison = compare_file(
@@ -93,7 +78,7 @@ def main(args: argparse.Namespace) -> int:
 
         write_junit(args.junit, args.theirs, comparison, args.strict)
     if args.json:
-        print_json("compare", comparison.as_json())
+        options.print_json("compare", comparison.as_json())
     else:
         print("\n".join(_lines(comparison)))
     for line in _talk(comparison):

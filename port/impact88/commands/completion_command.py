@@ -14,12 +14,11 @@ from collections.abc import Iterable
 from importlib import import_module
 
 from ..errors import library
-from . import CHAPTER, CHAPTER_MEANING, COMMANDS, module_of
-from .options import OUTPUT, InputFile, InputFolder, OutputFile, OutputFolder, argument, declare
+from . import CHAPTER, CHAPTER_MEANING, COMMANDS, module_of, options
 
 ARGUMENTS = (
-    argument("shell", choices=("bash", "zsh", "tcsh"), metavar="SHELL", help="bash, zsh or tcsh"),
-    OUTPUT,
+    options.value("shell", "SHELL", "bash, zsh or tcsh", choices=("bash", "zsh", "tcsh")),
+    options.OUTPUT,
 )
 
 
@@ -46,9 +45,9 @@ def _add(
 
     for name in names:
         parser = commands.add_parser(name, help=COMMANDS[name])
-        declare(parser, import_module(module_of(name)).ARGUMENTS)
+        options.declare(parser, import_module(module_of(name)).ARGUMENTS)
         for action in parser._actions:
-            if action.type in (InputFile, OutputFile):
+            if action.type in (options.InputFile, options.OutputFile):
                 action.complete = shtab.FILE  # type: ignore[attr-defined]
-            elif action.type in (InputFolder, OutputFolder):
+            elif action.type in (options.InputFolder, options.OutputFolder):
                 action.complete = shtab.DIRECTORY  # type: ignore[attr-defined]

@@ -26,16 +26,7 @@ from typing import Any
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_VELOCITIES, SCENE, quantity
 from ..units import System, system_of, written
-from .options import (
-    JSON,
-    KNOWN,
-    OUTPUT,
-    argument,
-    flag,
-    known_values,
-    print_json,
-    sample_option,
-)
+from . import options
 
 AFTER = FINAL_VELOCITIES[:4]
 KNOWABLE = (*SCENE, "SA", "SB", "LOSS", "DT", "EL", "DVA", "DVB", *AFTER)
@@ -47,16 +38,14 @@ CATEGORIES = {
 }
 
 ARGUMENTS = (
-    *KNOWN,
-    sample_option("masses and velocities of a published run"),
-    argument(
-        "--like",
-        choices=tuple(CATEGORIES),
-        help="take the range of energy losses of this category of Table 2",
+    *options.KNOWN,
+    options.sample_option("masses and velocities of a published run"),
+    options.choice(
+        "--like", tuple(CATEGORIES), "take the range of energy losses of this category of Table 2"
     ),
-    flag("--as-printed", "Equation 19 as printed, without the factor 2/3"),
-    JSON,
-    OUTPUT,
+    options.flag("--as-printed", "Equation 19 as printed, without the factor 2/3"),
+    options.JSON,
+    options.OUTPUT,
 )
 
 Answer = tuple[dict[str, Any], list[str]]
@@ -67,7 +56,7 @@ def main(args: argparse.Namespace) -> int:
     """Print the estimate, or its range."""
     from ..chapter.deltav import AS_PRINTED, AS_USED, ERROR, described
 
-    known, named = known_values(args, KNOWABLE)
+    known, named = options.known_values(args, KNOWABLE)
     units = system_of(named)
     factor = AS_PRINTED if args.as_printed else AS_USED
     try:
@@ -76,7 +65,7 @@ def main(args: argparse.Namespace) -> int:
         raise UserError(str(error), args.scene) from None
     equation = described(factor)
     if args.json:
-        print_json("delta-v", {"equation": equation, **found})
+        options.print_json("delta-v", {"equation": equation, **found})
     else:
         caution = f"An estimate: {ERROR};\nuntested elsewhere (Section VI)."
         print("\n".join([*lines, equation, caution]))

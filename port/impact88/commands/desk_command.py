@@ -16,17 +16,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-from .options import argument, flag, whole_number
+from . import options
 
 ARGUMENTS = (
-    argument(
-        "--port",
-        type=whole_number(0, 65535),
-        default=0,
-        metavar="N",
-        help="the port (default: any free port)",
-    ),
-    flag("--no-browser", "print the address and open no browser"),
+    options.count("--port", 0, 65535, "the port (default: any free port)", default=0),
+    options.flag("--no-browser", "print the address and open no browser"),
 )
 
 

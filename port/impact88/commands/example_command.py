@@ -14,9 +14,9 @@ from __future__ import annotations
 import argparse
 from dataclasses import asdict
 
-from .options import JSON, OUTPUT, print_json
+from . import options
 
-ARGUMENTS = (JSON, OUTPUT)
+ARGUMENTS = (options.JSON, options.OUTPUT)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -29,7 +29,7 @@ def main(args: argparse.Namespace) -> int:
             {**asdict(step), "numbers": [asdict(n) | {"agrees": n.agrees} for n in step.numbers]}
             for step in steps()
         ]
-        print_json("example", {"steps": described})
+        options.print_json("example", {"steps": described})
     else:
         print(_text())
     return int(any(number.agrees is False for number in numbers))

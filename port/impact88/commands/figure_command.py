@@ -35,18 +35,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UserError
 from ..names import RESULTS
 from ..scene import Scene, entries_in, numbers_of
-from .options import (
-    MOVE,
-    SWEEP,
-    OutputFile,
-    argument,
-    known_values,
-    names_given,
-    names_option,
-    one_scene,
-    sweeps,
-    whole_number,
-)
+from . import options
 from .rangeoptions import RANGES, explored
 
 if TYPE_CHECKING:
@@ -58,24 +47,18 @@ OF_NOTHING = ("staged", "force", "colinear", "configurations")
 KINDS = (*OF_A_SCENE, "barrier", *OF_RANGES, "planar", *OF_NOTHING)
 
 ARGUMENTS = (
-    argument("kind", choices=KINDS, metavar="KIND", help="see kinds below"),
-    argument(
-        "-o",
-        "--output",
-        type=OutputFile,
-        required=True,
-        metavar="FILE",
-        help="where to write: .svg, .png or .pdf",
-    ),
+    options.value("kind", "KIND", "see kinds below", choices=KINDS),
+    options.writes("-o --output", "FILE", "where to write: .svg, .png or .pdf", required=True),
     *RANGES,
-    MOVE,
-    SWEEP,
-    names_option("--outputs", "the results wanted"),
-    argument(
+    options.MOVE,
+    options.SWEEP,
+    options.names_option("--outputs", "the results wanted"),
+    options.count(
         "--width",
-        type=whole_number(40, 3000),
+        40,
+        3000,
+        "how wide it is written, such as 900 for an exhibit board (default: 85, strip 170)",
         metavar="MM",
-        help="how wide it is written, such as 900 for an exhibit board (default: 85, strip 170)",
     ),
 )
 
@@ -117,21 +100,21 @@ def _drawn(args: argparse.Namespace) -> Drawing:
     if kind == "friction":
         from ..figures import charts
 
-        return charts.friction_sweep(one_scene(args))
+        return charts.friction_sweep(options.one_scene(args))
     if kind == "scene":
         from ..figures.sceneview import scene_drawing
 
-        scene = one_scene(args)
+        scene = options.one_scene(args)
         return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
     if kind == "strip":
         from ..figures.strip import strip_drawing
 
-        scene = one_scene(args)
+        scene = options.one_scene(args)
         return strip_drawing(scene, solved(scene), scene.title or "Before, impact and after")
     if kind == "planar":
         from ..figures import freebody
 
-        return freebody.planar(one_scene(args) if given or args.set else None)
+        return freebody.planar(options.one_scene(args) if given or args.set else None)
     if kind == "colinear":
         from ..figures import freebody
 
@@ -152,7 +135,7 @@ def _barrier(args: argparse.Namespace) -> Drawing:
     from ..names import missing
     from ..units import system_of
 
-    known, units = known_values(args, (*VEHICLE, "M"))
+    known, units = options.known_values(args, (*VEHICLE, "M"))
     absent = [name for name in VEHICLE if name not in known]
     if absent:
         raise UserError(missing(absent), args.scene)
@@ -177,12 +160,16 @@ def _swept(args: argparse.Namespace) -> Drawing:
 
     if args.ranges:
         raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")
-    scene = one_scene(args)
-    ranges = read_ranges(sweeps(args.sweep), scene.units)
+    scene = options.one_scene(args)
+    ranges = read_ranges(options.sweeps(args.sweep), scene.units)
     if len(ranges) != 1:
         raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
     ((name, run),) = ranges.items()
-    outputs = names_given(args.outputs, tuple(RESULTS), "--outputs") or ["LOSS", "DVA", "DVB"]
+    outputs = options.names_given(args.outputs, tuple(RESULTS), "--outputs") or [
+        "LOSS",
+        "DVA",
+        "DVB",
+    ]
     return charts.swept(scene, name, run.values(), outputs)
 
 

@@ -11,6 +11,7 @@ import argparse
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from math import isfinite
 
 from ..doubles import double
@@ -72,32 +73,44 @@ Argument = tuple[tuple[str, ...], dict[str, "Any"]]
 """What argparse's ``add_argument`` takes: names and keywords."""
 
 
-def argument(*names: str, **keywords: Any) -> Argument:
-    """An argument, as argparse's ``add_argument`` takes it."""
-    return names, keywords
+def value(names: str, metavar: str | None, meaning: str, **keywords: Any) -> Argument:
+    """An argument with a value; ``names``: of an option, between blanks, or of what has no dash."""
+    return tuple(names.split()), {"metavar": metavar, "help": meaning, **keywords}
+
+
+reads = partial(value, type=InputFile)
+reads_folder = partial(value, type=InputFolder)
+writes = partial(value, type=OutputFile)
+writes_folder = partial(value, type=OutputFolder)
+
+
+def choice(names: str, choices: Sequence[Any], meaning: str, **keywords: Any) -> Argument:
+    """An option whose value is one of several."""
+    return value(names, None, meaning, choices=choices, **keywords)
+
+
+def count(
+    name: str, least: int, most: int, meaning: str, metavar: str = "N", default: int | None = None
+) -> Argument:
+    """An option whose value is a whole number within limits."""
+    return value(name, metavar, meaning, type=whole_number(least, most), default=default)
 
 
 def flag(name: str, meaning: str) -> Argument:
     """An option without a value."""
-    return argument(name, action="store_true", help=meaning)
+    return (name,), {"action": "store_true", "help": meaning}
 
 
 def repeatable(name: str, metavar: str, meaning: str, **keywords: Any) -> Argument:
     """An option whose values are collected."""
-    return argument(
-        name,
-        action="append",
-        default=[],
-        metavar=metavar,
-        help=f"{meaning}; repeatable",
-        **keywords,
-    )
+    meaning += "; repeatable"
+    return value(name, metavar, meaning, action="append", default=[], **keywords)
 
 
 def names_option(name: str, meaning: str, metavar: str = "NAMES") -> Argument:
     """An option that takes names, see `names_given`."""
     text = f"{meaning}; separated by commas, or repeated"
-    return argument(name, action="append", default=[], metavar=metavar, help=text)
+    return value(name, metavar, text, action="append", default=[])
 
 
 def setting(meaning: str) -> Argument:
@@ -107,20 +120,19 @@ def setting(meaning: str) -> Argument:
 
 def sample_option(meaning: str = "the scene of a published run") -> Argument:
     """The option ``--sample``."""
-    return argument("--sample", type=int, choices=SAMPLES, help=meaning)
+    return choice("--sample", SAMPLES, meaning, type=int)
 
 
 def draws(default: int, least: int = 0, meaning: str = "random draws") -> tuple[Argument, Argument]:
     """The options ``--samples`` and ``--seed``."""
-    read = whole_number(least, MOST_DRAWS)
-    text = f"{meaning} (default: %(default)s)"
-    return argument("--samples", type=read, default=default, metavar="N", help=text), seed()
+    meaning += " (default: %(default)s)"
+    return count("--samples", least, MOST_DRAWS, meaning, default=default), seed()
 
 
 def seed(meaning: str = "which random draws", default: int = 0) -> Argument:
     """The option ``--seed``."""
     text = f"{meaning} (default: %(default)s)"
-    return argument("--seed", type=whole_number(0, 2**63), default=default, metavar="S", help=text)
+    return count("--seed", 0, 2**63, text, default=default, metavar="S")
 
 
 def renamed(old: str, new: str) -> Argument:
@@ -130,7 +142,8 @@ def renamed(old: str, new: str) -> Argument:
         def __call__(self, *ignored: object) -> None:
             raise UserError(f"{old} is not an option here; expected {new}")
 
-    return argument(old, action=Renamed, dest=argparse.SUPPRESS, help=argparse.SUPPRESS)
+    hidden = argparse.SUPPRESS
+    return value(old, None, hidden, action=Renamed, dest=hidden)
 
 
 def json_option(meaning: str = "one JSON object") -> Argument:
@@ -167,51 +180,43 @@ def _duration(text: str) -> float:
 
 
 JSON = json_option()
-OUTPUT = argument(
-    "-o", "--output", type=OutputFile, metavar="FILE", help="write here (default: stdout)"
-)
+OUTPUT = writes("-o --output", "FILE", "write here (default: stdout)")
 """Of a command whose result is what it prints; others write files of their own."""
-UNITS = argument(
+UNITS = value(
     "--units",
-    metavar="SYSTEM",
-    help="units of bare numbers: us (lb, mph, ft), chapter (slug, ft/s, ft), metric (kg, km/h, m) "
+    "SYSTEM",
+    "units of bare numbers: us (lb, mph, ft), chapter (slug, ft/s, ft), metric (kg, km/h, m) "
     "or si (kg, m/s, m), unless the file names its own",
 )
-ENCODING = argument(
-    "--encoding", metavar="NAME", help="encoding of a text that is not UTF-8, such as cp1252"
-)
+ENCODING = value("--encoding", "NAME", "encoding of a text that is not UTF-8, such as cp1252")
 SWEEP = repeatable(
     "--sweep", "NAME=LOW:HIGH:COUNT", "run a value of a scene file through COUNT values"
 )
-MOVE = argument(
+MOVE = value(
     "--move-contact",
-    metavar="DX,DY",
-    help="move the contact point along the scene's x and y, in both vehicles (write "
+    "DX,DY",
+    "move the contact point along the scene's x and y, in both vehicles (write "
     "--move-contact=-1,0 where DX is negative)",
 )
 ONE_SCENE = (
-    argument(
-        "scene", nargs="?", type=InputFile, metavar="FILE.toml", help="a scene file (- is stdin)"
-    ),
+    reads("scene", "FILE.toml", "a scene file (- is stdin)", nargs="?"),
     sample_option(),
     UNITS,
 )
 """A scene: a file, or ``--sample``."""
 KNOWN = (
-    argument(
-        "scene", nargs="?", type=InputFile, metavar="FILE.toml", help="what is known (- is stdin)"
-    ),
+    reads("scene", "FILE.toml", "what is known (- is stdin)", nargs="?"),
     setting("give or change a value; an empty one makes it unknown"),
     UNITS,
 )
 """What is known of a problem."""
 SOLUTION = (
     *KNOWN,
-    argument(
+    value(
         "--contact-time",
+        "T",
+        "duration of contact (usually .1 to .2 s): average and peak force",
         type=_duration,
-        metavar="T",
-        help="duration of contact (usually .1 to .2 s): average and peak force",
     ),
     flag("--template", "print a file to fill in"),
     JSON,

@@ -35,29 +35,26 @@ from ..checking.oracle import Request, answer
 from ..checking.vectors import CLASSES
 from ..errors import UserError
 from ..files import called, encoding_of, open_bytes
-from .options import OUTPUT, UNITS, InputFile, OutputFolder, argument, flag, seed, whole_number
+from . import options
 
 MOST_VECTORS = 10_000_000
 
 ARGUMENTS = (
-    argument("scenes", nargs="?", type=InputFile, default="-", metavar="SCENES.jsonl"),
-    OUTPUT,
-    flag("--no-reference", "leave out the 30 digits"),
-    argument(
-        "--vectors", type=whole_number(1, MOST_VECTORS), metavar="N", help="write N test vectors"
-    ),
-    seed("of the test vectors"),
-    argument("--class", dest="only", choices=CLASSES, help="vectors of this class only"),
-    argument("--to", choices=("jsonl", "csv"), help="csv: the scenes of --vectors as a flat table"),
-    argument(
+    options.reads("scenes", "SCENES.jsonl", "", nargs="?", default="-"),
+    options.OUTPUT,
+    options.flag("--no-reference", "leave out the 30 digits"),
+    options.count("--vectors", 1, MOST_VECTORS, "write N test vectors"),
+    options.seed("of the test vectors"),
+    options.choice("--class", CLASSES, "vectors of this class only", dest="only"),
+    options.choice("--to", ("jsonl", "csv"), "csv: the scenes of --vectors as a flat table"),
+    options.writes_folder(
         "--kit",
-        type=OutputFolder,
-        metavar="DIR",
-        help="write vectors, conventions and programs that answer them, in five languages and a "
+        "DIR",
+        "write vectors, conventions and programs that answer them, in five languages and a "
         "spreadsheet, into a folder or one archive (KIT.zip)",
     ),
-    flag("--published", "write the published vectors"),
-    UNITS,
+    options.flag("--published", "write the published vectors"),
+    options.UNITS,
 )
 
 

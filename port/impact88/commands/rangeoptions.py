@@ -9,41 +9,32 @@ from typing import TYPE_CHECKING
 from ..errors import UserError
 from ..progress import progress
 from ..stderr import note
-from .options import (
-    ONE_EXPECTED,
-    ONE_SCENE,
-    argument,
-    changes_in_base,
-    draws,
-    entries_given,
-    flag,
-    names_option,
-    pairs,
-    repeatable,
-    setting,
-    source_of,
-)
+from . import options
 
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
     from ..uncertainty.ranges import Inputs
 
 RANGES = (
-    *ONE_SCENE,
-    setting("change a value of the scene"),
-    repeatable("--range", "NAME=RANGE", "a range in place of the scene's value", dest="ranges"),
-    repeatable("--correlation", "A,B=R", "the correlation of two inputs", dest="correlations"),
-    names_option(
+    *options.ONE_SCENE,
+    options.setting("change a value of the scene"),
+    options.repeatable(
+        "--range", "NAME=RANGE", "a range in place of the scene's value", dest="ranges"
+    ),
+    options.repeatable(
+        "--correlation", "A,B=R", "the correlation of two inputs", dest="correlations"
+    ),
+    options.names_option(
         "--exclude", "leave out scenes that carry a warning, such as ENERGY_GAINED", "WARNINGS"
     ),
-    flag("--reconstruct", "from final to initial velocities"),
-    *draws(100_000),
-    argument(
+    options.flag("--reconstruct", "from final to initial velocities"),
+    *options.draws(100_000),
+    options.value(
         "--sigmas",
-        type=float,
+        "K",
+        "where a normal without limits ends for the bounds (default: %(default)s)",
         default=3.0,
-        metavar="K",
-        help="where a normal without limits ends for the bounds (default: %(default)s)",
+        type=float,
     ),
 )
 """What is uncertain, and how it is explored."""
@@ -54,12 +45,14 @@ def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
     UserError."""
     from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
 
-    if (entries := entries_given(args)) is None:
-        raise UserError(ONE_EXPECTED)
-    changes = pairs([*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'")
-    changes, units = changes_in_base(changes, "--range", entries.units, args.scene)
+    if (entries := options.entries_given(args)) is None:
+        raise UserError(options.ONE_EXPECTED)
+    changes = options.pairs(
+        [*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'"
+    )
+    changes, units = options.changes_in_base(changes, "--range", entries.units, args.scene)
     problem = "reconstruction" if args.reconstruct else "forward"
-    inputs = read_inputs(entries.values, changes, problem, source_of(args) or "")
+    inputs = read_inputs(entries.values, changes, problem, options.source_of(args) or "")
     correlations = dict(inputs.correlations)
     for text in args.correlations:
         names, equals, number = text.partition("=")

@@ -60,19 +60,7 @@ from ..reconstruction.knowable import KNOWABLE
 from ..scene import known_template, shown_texts
 from ..scene import template as scene_template
 from ..stderr import note
-from .options import (
-    SOLUTION,
-    OutputFile,
-    argument,
-    draws,
-    known_within_limits,
-    names_given,
-    names_option,
-    print_json,
-    renamed,
-    sample_option,
-    source_of,
-)
+from . import options
 
 if TYPE_CHECKING:
     from ..reconstruction.adjustment import Reconstruction
@@ -80,21 +68,16 @@ if TYPE_CHECKING:
     from ..units import System
 
 ARGUMENTS = (
-    names_option("--outputs", "solve for these only; others may stay unknown"),
-    argument("--for", dest="outputs", action="append", help=argparse.SUPPRESS),
-    *draws(
+    options.names_option("--outputs", "solve for these only; others may stay unknown"),
+    options.value("--for", None, argparse.SUPPRESS, dest="outputs", action="append"),
+    *options.draws(
         20_000,
         meaning="random draws of values known within limits; 0: neither draws nor bounds",
     ),
-    argument(
-        "--write-scene",
-        type=OutputFile,
-        metavar="FILE",
-        help="write the impact found as a scene file",
-    ),
-    renamed("--scene", "--write-scene FILE"),
-    *SOLUTION,
-    sample_option("start from the scene of a published run"),
+    options.writes("--write-scene", "FILE", "write the impact found as a scene file"),
+    options.renamed("--scene", "--write-scene FILE"),
+    *options.SOLUTION,
+    options.sample_option("start from the scene of a published run"),
 )
 
 
@@ -103,15 +86,15 @@ def main(args: argparse.Namespace) -> int:
     if args.template:
         print(known_template(KNOWABLE))
         return 0
-    if source_of(args) is None and not args.set:
+    if options.source_of(args) is None and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..reconstruction.adjustment import needs_adjustment
     from ..reconstruction.frictionshare import share_resolved
     from ..reconstruction.state import QUANTITIES
     from ..units import system_of
 
-    wanted = names_given(args.outputs, QUANTITIES, "--outputs") or None
-    known, named = known_within_limits(args, KNOWABLE)
+    wanted = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
+    known, named = options.known_within_limits(args, KNOWABLE)
     known, found = share_resolved(known)
     if found:
         note(None, found)
@@ -120,7 +103,7 @@ def main(args: argparse.Namespace) -> int:
         from ..reconstruction.solutiontable import show
 
         numbers = {name: item.nominal for name, item in known.items()}
-        show(numbers, wanted, source_of(args), args.contact_time, args.json, units)
+        show(numbers, wanted, options.source_of(args), args.contact_time, args.json, units)
         return 0
     _reconstruct(known, wanted, args, units)
     return 0
@@ -138,10 +121,10 @@ def _reconstruct(
         with progress(None, "reconstruct", "impacts") as meter:
             solutions = reconstruct(known, meter.update)
     except UserError as error:
-        raise UserError(str(error), source_of(args)) from None
+        raise UserError(str(error), options.source_of(args)) from None
     for name in wanted or ():
         if any(name not in solution.values for solution in solutions):
-            raise UserError(f"{name} is not determined by what is known", source_of(args))
+            raise UserError(f"{name} is not determined by what is known", options.source_of(args))
     if args.write_scene:
         _write_scene(solutions, args, units)
     found = []
@@ -153,7 +136,7 @@ def _reconstruct(
                 )
             )
     if args.json:
-        print_json("reconstruct", {"solutions": [one.as_json(units) for one in found]})
+        options.print_json("reconstruct", {"solutions": [one.as_json(units) for one in found]})
     else:
         print(in_turn([one.as_text(units) for one in found]))
 
@@ -164,6 +147,6 @@ def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace, unit
     texts = {name: repr(value).upper() for name, value in solutions[0].scene().items()}
     texts["M"] = "4" if texts["M"] == "4.0" else "6"
     with replacing(args.write_scene) as file:
-        title = f"Reconstructed from {source_of(args) or '--set'}"
+        title = f"Reconstructed from {options.source_of(args) or '--set'}"
         file.write(scene_template(shown_texts(texts, units.name or None), title, units.name))
     print(f"scene written to {args.write_scene}", file=sys.stderr)

@@ -29,35 +29,23 @@ import csv
 from ..errors import UserError
 from ..files import decode, read_bytes, replacing
 from ..scene import SOURCE, TOML_LIMIT, entries_of, sample, toml_texts
-from .options import (
-    KNOWN,
-    ONE_EXPECTED,
-    OutputFile,
-    argument,
-    draws,
-    note_remarks,
-    pairs,
-    sample_option,
-    source_of,
-)
+from . import options
 
 ARGUMENTS = (
-    *KNOWN,
-    sample_option(),
-    argument(
-        "-o", "--output", type=OutputFile, required=True, metavar="FILE.html", help="the page"
-    ),
-    argument("--case", default="", metavar="NUMBER", help="the case number"),
-    argument("--title", default="", metavar="TEXT", help="the title of the page"),
-    argument(
+    *options.KNOWN,
+    options.sample_option(),
+    options.writes("-o --output", "FILE.html", "the page", required=True),
+    options.value("--case", "NUMBER", "the case number", default=""),
+    options.value("--title", "TEXT", "the title of the page", default=""),
+    options.choice(
         "--paper",
-        choices=("letter", "a4"),
+        ("letter", "a4"),
+        "paper size (default: letter for us units, else a4)",
         default="",
-        help="paper size (default: letter for us units, else a4)",
     ),
-    *draws(20_000),
-    argument("--csv", type=OutputFile, metavar="FILE", help="write the tables as CSV"),
-    argument("--xlsx", type=OutputFile, metavar="FILE", help="write the tables as a workbook"),
+    *options.draws(20_000),
+    options.writes("--csv", "FILE", "write the tables as CSV"),
+    options.writes("--xlsx", "FILE", "write the tables as a workbook"),
 )
 
 
@@ -66,16 +54,16 @@ def main(args: argparse.Namespace) -> int:
     from ..report.findings import report
     from ..report.tablefiles import as_rows, write_workbook
 
-    source = source_of(args)
+    source = options.source_of(args)
     if source is None or bool(args.scene) == bool(args.sample):
-        raise UserError(ONE_EXPECTED)
+        raise UserError(options.ONE_EXPECTED)
     scene = sample(args.sample).to_toml().encode() if args.sample else b""
     data = scene or read_bytes(args.scene, TOML_LIMIT)
     texts = toml_texts(decode(data, source), source)
-    for name, text in pairs(args.set, "--set", "NAME=VALUE, such as --set MU=.5").items():
+    for name, text in options.pairs(args.set, "--set", "NAME=VALUE, such as --set MU=.5").items():
         texts |= {name: text, name + SOURCE: "changed with --set"}
     entries = entries_of(texts, source, args.units)
-    note_remarks(entries)
+    options.note_remarks(entries)
     made = report(
         entries,
         source,

@@ -27,41 +27,23 @@ from ..names import VELOCITIES
 from ..program.arithmetics import ARITHMETICS
 from ..program.run import Run, finished, page, start
 from ..scene import Scene, published_data
-from .options import (
-    MOVE,
-    ONE_SCENE,
-    OUTPUT,
-    InputFile,
-    OutputFile,
-    argument,
-    flag,
-    json_option,
-    print_json,
-    scene_given,
-    setting,
-    settings,
-)
+from . import options
 
 MOST_REPLIES = 10_000
 """Replies that are read: the program asks twice, and once more for each it refuses."""
 
 MACHINE = (
-    flag("--no-dos", "no disk operating system: lines that start with control-D are shown"),
-    argument(
+    options.flag("--no-dos", "no disk operating system: lines that start with control-D are shown"),
+    options.value(
         "--slot",
-        type=int,
+        "N",
+        "the output slot in line 190: 0 the screen, 1 the printer",
         choices=range(8),
         default=0,
-        metavar="N",
-        help="the output slot in line 190: 0 the screen, 1 the printer",
+        type=int,
     ),
-    argument(
-        "--printer",
-        type=OutputFile,
-        metavar="FILE",
-        help="where the printer's output goes (default: stdout)",
-    ),
-    flag(
+    options.writes("--printer", "FILE", "where the printer's output goes (default: stdout)"),
+    options.flag(
         "--raw",
         "every character as the Apple sends it: form feed, bells, NULs and control-D too",
     ),
@@ -69,32 +51,27 @@ MACHINE = (
 """What is plugged into the machine."""
 
 ARGUMENTS = (
-    *ONE_SCENE,
-    setting("change a value of the scene"),
-    MOVE,
-    argument(
+    *options.ONE_SCENE,
+    options.setting("change a value of the scene"),
+    options.MOVE,
+    options.choice(
         "--arithmetic",
-        choices=tuple(ARITHMETICS),
+        tuple(ARITHMETICS),
+        "the numbers to compute with (default: %(default)s)",
         default="applesoft",
-        help="the numbers to compute with (default: %(default)s)",
     ),
-    json_option("the run as one JSON object"),
-    OUTPUT,
+    options.json_option("the run as one JSON object"),
+    options.OUTPUT,
     *MACHINE,
-    argument(
-        "--listing",
-        type=InputFile,
-        metavar="THEIRS.bas",
-        help="run another copy of the listing, in the emulator",
-    ),
+    options.reads("--listing", "THEIRS.bas", "run another copy of the listing, in the emulator"),
 )
 
 
 def chosen_scene(args: argparse.Namespace) -> Scene | None:
     """The scene the options name, changed; None for the listing's own data with prompts."""
-    if (scene := scene_given(args, "the program's page")) is not None:
+    if (scene := options.scene_given(args, "the program's page")) is not None:
         return scene
-    changes = settings(args.set, units=args.units)
+    changes = options.settings(args.set, units=args.units)
     given = [name for name in VELOCITIES if name in changes]
     if not given:
         return None
@@ -122,7 +99,9 @@ def main(args: argparse.Namespace) -> int:
     scene = chosen_scene(args)
     if args.listing:
         return _run_copy(args, scene)
-    data: dict[str, str] | Scene = scene or published_data() | settings(args.set, units=args.units)
+    data: dict[str, str] | Scene = scene or published_data() | options.settings(
+        args.set, units=args.units
+    )
     replied = scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")
     replied.check_typed()
     output: list[str] = []
@@ -177,7 +156,7 @@ def _run_copy(args: argparse.Namespace, scene: Scene | None) -> int:
 
 
 def _print_run(run: Run) -> None:
-    print_json("run", {**run._asdict(), "floats": run.floats})
+    options.print_json("run", {**run._asdict(), "floats": run.floats})
 
 
 def _show_page(text: str) -> None:

@@ -21,11 +21,11 @@ from __future__ import annotations
 import argparse
 
 from ..scene import SIGNS, Scene, sample, template
-from .options import OUTPUT, UNITS, sample_option
+from . import options
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)
 
-ARGUMENTS = (sample_option(), UNITS, OUTPUT)
+ARGUMENTS = (options.sample_option(), options.UNITS, options.OUTPUT)
 
 
 def main(args: argparse.Namespace) -> int:

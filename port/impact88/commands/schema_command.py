@@ -18,9 +18,9 @@ import argparse
 import json
 
 from ..schemas import CONVENTIONS, NUMBERS, text
-from .options import OUTPUT, argument
+from . import options
 
-ARGUMENTS = (argument("name", nargs="?", metavar="NAME", help="a form, or conventions"), OUTPUT)
+ARGUMENTS = (options.value("name", "NAME", "a form, or conventions", nargs="?"), options.OUTPUT)
 
 
 def main(args: argparse.Namespace) -> int:

@@ -14,9 +14,9 @@ import argparse
 import sys
 
 from ..checking.selfcheck import CHECKS, Check, checks, record
-from .options import OUTPUT, json_option, print_json
+from . import options
 
-ARGUMENTS = (json_option("the record as one JSON object"), OUTPUT)
+ARGUMENTS = (options.json_option("the record as one JSON object"), options.OUTPUT)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -32,7 +32,7 @@ def main(args: argparse.Namespace) -> int:
             print(_line(check), flush=True)
     whole = record(results)
     if args.json:
-        print_json("selfcheck", whole, indent=2)
+        options.print_json("selfcheck", whole, indent=2)
     else:
         print()
         for group in ("versions", "hashes"):

@@ -36,19 +36,7 @@ from __future__ import annotations
 import argparse
 
 from ..names import RESULTS
-from .options import (
-    ENCODING,
-    FORMATS,
-    SWEEP,
-    UNITS,
-    InputFile,
-    OutputFile,
-    argument,
-    flag,
-    names_option,
-    sample_option,
-    setting,
-)
+from . import options
 
 
 def _list_of_results() -> str:
@@ -60,39 +48,25 @@ __doc__ = (__doc__ or "").format(results=_list_of_results())
 
 
 ARGUMENTS = (
-    argument(
-        "cases", nargs="?", type=InputFile, metavar="CASES", help="the table of scenes (- is stdin)"
-    ),
-    argument(
-        "-o",
-        "--output",
-        type=OutputFile,
-        metavar="RESULTS",
-        default="-",
-        help="the table to write (default: stdout)",
-    ),
-    names_option("--outputs", "the results wanted (default: all)"),
-    argument(
+    options.reads("cases", "CASES", "the table of scenes (- is stdin)", nargs="?"),
+    options.writes("-o --output", "RESULTS", "the table to write (default: stdout)", default="-"),
+    options.names_option("--outputs", "the results wanted (default: all)"),
+    options.choice(
         "--arithmetic",
-        choices=("float64", "applesoft"),
+        ("float64", "applesoft"),
+        "the numbers to compute with (default: %(default)s)",
         default="float64",
-        help="the numbers to compute with (default: %(default)s)",
     ),
-    sample_option("the scene of a published run in place of CASES"),
-    setting("a value for all rows, in place of a column"),
-    SWEEP,
-    UNITS,
-    flag("--results-only", "leave out the scene's own columns; others are passed through"),
-    argument(
-        "--scene",
-        type=InputFile,
-        metavar="FILE.toml",
-        help="a scene file for the columns the table lacks",
-    ),
-    ENCODING,
-    argument("--errors", type=OutputFile, metavar="FILE", help="write the bad rows here (CSV)"),
-    argument("--from", dest="form", choices=FORMATS, help="the format of CASES"),
-    argument("--to", choices=FORMATS, help="the format of RESULTS"),
+    options.sample_option("the scene of a published run in place of CASES"),
+    options.setting("a value for all rows, in place of a column"),
+    options.SWEEP,
+    options.UNITS,
+    options.flag("--results-only", "leave out the scene's own columns; others are passed through"),
+    options.reads("--scene", "FILE.toml", "a scene file for the columns the table lacks"),
+    options.ENCODING,
+    options.writes("--errors", "FILE", "write the bad rows here (CSV)"),
+    options.choice("--from", options.FORMATS, "the format of CASES", dest="form"),
+    options.choice("--to", options.FORMATS, "the format of RESULTS"),
 )
 
 

@@ -36,12 +36,7 @@ from ..tables.rows import (
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from ..tables.tableunits import TableUnits
-from .options import (
-    names_given,
-    note_remarks,
-    settings,
-    sweeps,
-)
+from . import options
 
 Results = dict[str, NDArray[Any]]
 
@@ -55,7 +50,7 @@ def _sweep(
     """The table that a scene makes, swept or as it is, in the file's units."""
     path = arguments.cases
     scene = Scene.from_toml(path, arguments.units) if path else sample(arguments.sample)
-    note_remarks(scene.entries)
+    options.note_remarks(scene.entries)
     return read_sweep(scene, read_ranges(texts, scene.units), scene.units)
 
 
@@ -75,7 +70,7 @@ def solve_table(arguments: argparse.Namespace) -> int:
     complaints = _Complaints(arguments.errors)
     with ExitStack() as stack:
         source = stack.enter_context(
-            _sweep(arguments, sweeps(arguments.sweep))
+            _sweep(arguments, options.sweeps(arguments.sweep))
             if swept
             else open_reader(arguments.cases, source_format, arguments.encoding)
         )
@@ -85,14 +80,14 @@ def solve_table(arguments: argparse.Namespace) -> int:
         filling = _filling(arguments)
         known = arguments.units or (filling.units if filling else None)
         units = TableUnits(source.names, known, first, where=called(arguments.cases or "--sample"))
-        given = settings(arguments.set, others=("inf",), units=units.system.name or None)
+        given = options.settings(arguments.set, others=("inf",), units=units.system.name or None)
         if filling:
             given = {n: t for n, t in filling.values.items() if n not in source.names} | given
         points = given.get("M", "4" if "M" in source.names else "6") == "4"
         optional = ["M", *(UNUSED_BY_POINTS if points else ())]
         check_scene_columns(source.names, list(given), optional)
         if arguments.sweep:
-            wanted = sweeps(arguments.sweep)  # the rest is the same in every row
+            wanted = options.sweeps(arguments.sweep)  # the rest is the same in every row
             source.names = [name for name in source.names if name in wanted]
         elif units.strict:
             source.names = units.headings(source.names)
@@ -133,14 +128,16 @@ def _filling(arguments: argparse.Namespace) -> Entries | None:
     if not arguments.scene:
         return None
     entries = entries_in(arguments.scene, arguments.units, single=True)
-    note_remarks(entries)
+    options.note_remarks(entries)
     entries.values = {name: text for name, text in entries.values.items() if text}
     check_names(entries.values, SCENE, "value of a scene", called(arguments.scene))
     return entries
 
 
 def _chosen(outputs: Sequence[str], known: Sequence[str], arithmetic: str) -> list[str]:
-    chosen = names_given(outputs, known, "--outputs", f"result of --arithmetic {arithmetic}")
+    chosen = options.names_given(
+        outputs, known, "--outputs", f"result of --arithmetic {arithmetic}"
+    )
     return chosen or list(known)
 
 

@@ -36,25 +36,23 @@ from typing import TYPE_CHECKING, Any
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_STATE, VELOCITIES, missing
 from ..plaintable import fixed, paragraph, table
-from .options import JSON, KNOWN, OUTPUT, argument, flag, known_values, print_json
+from . import options
 
 if TYPE_CHECKING:
     from ..chapter.staged import Closure, Collision
 
 ARGUMENTS = (
-    *KNOWN,
-    argument(
-        "--spin-weight", type=float, metavar="W", help="weight of a squared spin (with FILE.toml)"
-    ),
+    *options.KNOWN,
+    options.value("--spin-weight", "W", "weight of a squared spin (with FILE.toml)", type=float),
     [
-        flag("--fit", "least-squares fits beside Table 2"),
-        flag("--cells", "emended and doubtful cells, evidence"),
-        flag("--measured", "energy and momentum as measured, beside Table 2"),
-        flag("--claims", "the chapter's claims, checked"),
-        argument("--table", type=int, choices=(1, 2), help="print a table, emended"),
+        options.flag("--fit", "least-squares fits beside Table 2"),
+        options.flag("--cells", "emended and doubtful cells, evidence"),
+        options.flag("--measured", "energy and momentum as measured, beside Table 2"),
+        options.flag("--claims", "the chapter's claims, checked"),
+        options.choice("--table", (1, 2), "print a table, emended", type=int),
     ],
-    JSON,
-    OUTPUT,
+    options.JSON,
+    options.OUTPUT,
 )
 
 
@@ -74,7 +72,7 @@ def main(args: argparse.Namespace) -> int:
     if args.spin_weight is not None:
         raise UserError("--spin-weight is for a collision in a file; expected FILE.toml")
     if args.json:
-        print_json("staged", _everything())
+        options.print_json("staged", _everything())
     else:
         print("\n".join(views[view]() if view else _comparison()))
     return int(any(not c.agrees and c.explanation == "not explained" for c in comparison()))
@@ -89,7 +87,7 @@ def _own(args: argparse.Namespace) -> int:
     if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
         raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number, 0 or more")
     names = (*NAMES, *VELOCITIES, *FINAL_STATE)
-    known, named = known_values(args, names)
+    known, named = options.known_values(args, names)
     if absent := [name for name in names if name not in known]:
         raise UserError(missing(absent), args.scene)
     try:
@@ -97,7 +95,7 @@ def _own(args: argparse.Namespace) -> int:
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     if args.json:
-        print_json("staged", whole)
+        options.print_json("staged", whole)
     else:
         print("\n".join(lines))
     return 0

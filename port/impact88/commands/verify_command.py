@@ -36,54 +36,30 @@ from ..reading.printout import LARGEST_FILE
 from ..reporting.examination import Examined, Verdict, examine
 from ..reporting.verification import lines
 from ..stderr import note
-from .options import (
-    OUTPUT,
-    UNITS,
-    InputFile,
-    OutputFile,
-    argument,
-    flag,
-    json_option,
-    one_scene,
-    print_json,
-    sample_option,
-    setting,
-)
+from . import options
 
 _ON_REPORT = ("date", "case", "examiner")
 
 ARGUMENTS = (
-    argument(
-        "printouts", nargs="+", type=InputFile, metavar="PRINTOUT", help="text, picture or PDF"
-    ),
-    json_option("one JSON object a printout"),
-    OUTPUT,
-    flag("--brief", "only verdicts and what differs"),
-    argument(
-        "--scene",
-        type=InputFile,
-        metavar="FILE.toml",
-        help="the inputs, for a page that has only results",
-    ),
-    argument(
-        "--listing",
-        type=InputFile,
-        metavar="THEIRS.bas",
-        help="compare the pages with another copy of the listing",
-    ),
-    argument(
+    options.reads("printouts", "PRINTOUT", "text, picture or PDF", nargs="+"),
+    options.json_option("one JSON object a printout"),
+    options.OUTPUT,
+    options.flag("--brief", "only verdicts and what differs"),
+    options.reads("--scene", "FILE.toml", "the inputs, for a page that has only results"),
+    options.reads("--listing", "THEIRS.bas", "compare the pages with another copy of the listing"),
+    options.reads(
         "--text-from",
-        type=InputFile,
-        metavar="WORDS",
-        help="what another reader made of the picture: tesseract's TSV, hOCR, ALTO or text",
+        "WORDS",
+        "what another reader made of the picture: tesseract's TSV, hOCR, ALTO or text",
     ),
-    argument(
-        "--report", type=OutputFile, metavar="FILE.html", help="write a page for the case file"
+    options.writes("--report", "FILE.html", "write a page for the case file"),
+    options.sample_option("the inputs are those of a published run"),
+    options.setting("change a value of these inputs"),
+    options.UNITS,
+    *(
+        options.value(f"--{name}", None, f"{name} printed on the report, as given")
+        for name in _ON_REPORT
     ),
-    sample_option("the inputs are those of a published run"),
-    setting("change a value of these inputs"),
-    UNITS,
-    *(argument(f"--{name}", help=f"{name} printed on the report, as given") for name in _ON_REPORT),
 )
 
 
@@ -94,7 +70,7 @@ def main(args: argparse.Namespace) -> int:
             raise UserError(f"--{option} is for the report; expected --report FILE.html with it")
     given = None
     if args.scene or args.sample or args.set:
-        given = dict(one_scene(args))
+        given = dict(options.one_scene(args))
     copy = None
     if args.listing:
         from ..program.listingcopy import ListingCopy
@@ -123,7 +99,7 @@ def _show(file: Examined, args: argparse.Namespace) -> None:
         note("verify", file.error)
     if args.json:
         for described in file.as_json():
-            print_json("verify", described)
+            options.print_json("verify", described)
     else:
         for result in file.results:
             print("\n".join(lines(result, args.brief)))

@@ -25,23 +25,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UserError
 from ..progress import progress
 from ..scene import SAMPLES, Scene, sample
-from .options import (
-    OUTPUT,
-    UNITS,
-    InputFile,
-    InputFolder,
-    OutputFolder,
-    argument,
-    flag,
-    json_option,
-    note_remarks,
-    print_json,
-    sample_option,
-    seed,
-    setting,
-    settings,
-    whole_number,
-)
+from . import options
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,28 +45,23 @@ SHOWN_LINES = 24
 
 
 ARGUMENTS = (
-    argument("scenes", nargs="*", type=InputFile, metavar="SCENE.toml", help="scenes to run"),
-    argument("--rom", type=InputFile, required=True, metavar="FILE", help="the ROM image"),
-    sample_option("the scene of a published run; all three when nothing else is asked for"),
-    setting("change a value of these scenes"),
-    UNITS,
-    argument(
-        "--captures", metavar="N", help="N random packaged captures of each kind's mix, or all"
-    ),
-    argument(
+    options.reads("scenes", "SCENE.toml", "scenes to run", nargs="*"),
+    options.reads("--rom", "FILE", "the ROM image", required=True),
+    options.sample_option("the scene of a published run; all three when nothing else is asked for"),
+    options.setting("change a value of these scenes"),
+    options.UNITS,
+    options.value("--captures", "N", "N random packaged captures of each kind's mix, or all"),
+    options.reads_folder(
         "--programs",
-        type=InputFolder,
-        metavar="FOLDER",
-        help="every .bas of a folder, its replies in a .in beside it, on the ROM and the emulator",
+        "FOLDER",
+        "every .bas of a folder, its replies in a .in beside it, on the ROM and the emulator",
     ),
-    argument(
-        "--random", type=whole_number(0, MOST), default=0, metavar="N", help="N random scenes"
-    ),
-    seed("of what is random"),
-    flag("--any-rom", "accept a ROM that is not known, too"),
-    argument("--save", type=OutputFolder, metavar="DIR", help="write what the ROM did as captures"),
-    json_option("the record as one JSON object"),
-    OUTPUT,
+    options.count("--random", 0, MOST, "N random scenes", default=0),
+    options.seed("of what is random"),
+    options.flag("--any-rom", "accept a ROM that is not known, too"),
+    options.writes_folder("--save", "DIR", "write what the ROM did as captures"),
+    options.json_option("the record as one JSON object"),
+    options.OUTPUT,
 )
 
 
@@ -103,7 +82,7 @@ def main(args: argparse.Namespace) -> int:
 
         save(args.save, heard)
     if args.json:
-        print_json("witness", whole, indent=2)
+        options.print_json("witness", whole, indent=2)
     else:
         print("\n".join(_report(image, heard, whole)))
     return 0 if whole["passed"] else 1
@@ -115,7 +94,7 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
     from ..witness.packaged import ALL, cases, own_programs
 
     jobs: list[Job] = []
-    changes = settings(args.set)
+    changes = options.settings(args.set)
     asked = args.scenes or args.captures is not None or args.random or args.programs
     for number in [args.sample] if args.sample else () if asked else SAMPLES:
         if changes:
@@ -125,8 +104,8 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
             jobs.append(partial(hearing.hear_sample, number=number))
     for path in args.scenes:
         given = Scene.from_toml(path, args.units)
-        scene = given.replaced(settings(args.set, units=given.units))
-        note_remarks(scene.entries)
+        scene = given.replaced(options.settings(args.set, units=given.units))
+        options.note_remarks(scene.entries)
         jobs.append(partial(hearing.hear_scene, name=path, scene=scene))
     if args.captures is not None:
         if args.captures != ALL and not args.captures.isdecimal():
