@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -25,6 +26,25 @@ Made by tests/linetable.py from the comments of listing.py; not to be edited by 
 
 from __future__ import annotations
 
+FIRST_PYTHON_LINE = {first}
+"""Where `listing.impact` begins."""
+_PYTHON = """
+{PYTHON_LINES}
+"""
+_BASIC = """
+{BASIC_LINES}
+"""
+PYTHON_LINES, BASIC_LINES = (tuple(map(int, lines.split())) for lines in (_PYTHON, _BASIC))
+"""The Python line of each comment, and the number of the BASIC line it holds."""
+REALS = """
+{REALS}
+""".split()
+INPUTS = {inputs}
+_ASSIGNED = """
+{ASSIGNED}
+"""
+ASSIGNED = {{int(line): names for line, *names in map(str.split, _ASSIGNED.split(";"))}}
+"""The variables each line assigns, in order."""
 '''
 
 
@@ -53,15 +73,14 @@ def table() -> str:
         if names:
             assigned[number] = names
         reals |= {*names, *re.findall(LOOP, text)}
-    text = HEAD + f"FIRST_PYTHON_LINE = {first}\n"
-    text += '"""Where `listing.impact` begins."""\nLINES = (\n'
-    text += "".join(f"    ({place}, {number}),\n" for place, number, _ in lines)
-    text += ')\n"""Python line of each comment, and the BASIC line it holds."""\n'
-    text += "REALS = (\n" + "".join(f'    "{name}",\n' for name in sorted(reals)) + ")\n"
-    text += f"INPUTS = {tuple(inputs)!r}\nASSIGNED: dict[int, tuple[str, ...]] = {{\n"
-    for number, names in assigned.items():
-        text += f"    {number}: {tuple(names)!r},\n".replace("'", '"')
-    return text + '}\n"""The variables each line assigns, in order."""\n'
+    words = {
+        "PYTHON_LINES": " ".join(str(place) for place, _, _ in lines),
+        "BASIC_LINES": " ".join(str(number) for _, number, _ in lines),
+        "REALS": " ".join(sorted(reals)),
+        "ASSIGNED": "; ".join(" ".join((str(n), *names)) for n, names in assigned.items()),
+    }
+    filled = {name: "\n".join(textwrap.wrap(text, 96)) for name, text in words.items()}
+    return HEAD.format(first=first, inputs=tuple(inputs), **filled)
 
 
 if __name__ == "__main__":

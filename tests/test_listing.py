@@ -42,7 +42,7 @@ def test_the_line_table_is_the_one_of_the_comments():
         values[name] = {}
         exec(text, values[name])
     names = [name for name in values["written"] if name.isupper()]
-    assert len(names) == 5
+    assert len(names) == 9
     assert all(values["written"][name] == values["namespaces"][name] for name in names)
 
 

@@ -25,7 +25,7 @@ from ..errors import UserError
 from ..files import replacing, typed_line
 from ..names import VELOCITIES
 from ..program.arithmetics import ARITHMETICS
-from ..program.run import Run, finished, page, start
+from ..program.run import Run, page, start
 from ..scene import Scene, published_data
 from . import options
 
@@ -119,9 +119,7 @@ def main(args: argparse.Namespace) -> int:
                 _typed_lines().__next__, show, printer, dos=not args.no_dos, echo=echo
             )
         try:
-            error, zero_determinant, variables = start(
-                data, console, args.arithmetic, str(args.slot)
-            )
+            run = start(data, console, args.arithmetic, str(args.slot))
         except EndOfInput:
             if not args.json:
                 print(flush=True)
@@ -132,10 +130,10 @@ def main(args: argparse.Namespace) -> int:
                 + ",".join(VELOCITIES[3:])
             ) from None
     if args.json:
-        _print_run(finished("".join(output), error, zero_determinant, variables))
-    elif error is not None and sys.stdout.isatty():
+        _print_run(run._replace(printout="".join(output)))
+    elif run.error and sys.stdout.isatty():
         print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
-    return 1 if error else 0
+    return 1 if run.error else 0
 
 
 def _run_copy(args: argparse.Namespace, scene: Scene | None) -> int:

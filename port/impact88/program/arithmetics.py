@@ -25,45 +25,31 @@ if TYPE_CHECKING:
 class Arithmetic:
     """What the listing needs of a machine's numbers.
 
-    ``read(text, start)`` gives the number that begins there and where it ends; ``LET`` is what
-    storing does to a value and ``NEXT`` what NEXT makes of a loop's variable; ``error`` turns an
-    exception of this arithmetic into Applesoft's, or None if it is not the arithmetic's. ``unset``
-    is a zero that ``is`` tells from every other: the value of a variable never assigned; ``zero``
-    is any other zero.
+    ``read(text, start)`` returns the number that begins there and where it ends; ``LET`` rounds a
+    value as storing does, ``NEXT`` increments a loop's variable; ``error`` turns an exception of
+    this arithmetic into Applesoft's, or None for any other. ``unset`` is the zero of a variable
+    never assigned, distinguished by ``is`` from ``zero``.
     """
 
-    def __init__(
-        self,
-        name: str,
-        *,
-        read: Callable[[str, int], tuple[Any, int]],
-        LET: Callable[[Any], Any],
-        NEXT: Callable[[Any], Any],
-        INT: Callable[[Any], Any],
-        ABS: Callable[[Any], Any],
-        SIN: Callable[[Any], Any],
-        COS: Callable[[Any], Any],
-        write: Callable[[Any], str],
-        error: Callable[[Exception], ApplesoftError | None],
-        unset: Any,
-        zero: Any,
-    ) -> None:
-        self.name = name
-        self.read = read
-        self.LET = LET
-        self.NEXT = NEXT
-        self.INT = INT
-        self.ABS = ABS
-        self.SIN = SIN
-        self.COS = COS
-        self.write = write
-        self.error = error
-        self.unset = unset
-        self.zero = zero
+    name: str
+    read: Callable[[str, int], tuple[Any, int]]
+    LET: Callable[[Any], Any]
+    NEXT: Callable[[Any], Any]
+    INT: Callable[[Any], Any]
+    ABS: Callable[[Any], Any]
+    SIN: Callable[[Any], Any]
+    COS: Callable[[Any], Any]
+    write: Callable[[Any], str]
+    error: Callable[[Exception], ApplesoftError | None]
+    unset: Any
+    zero: Any
+
+    def __init__(self, **operations: Any) -> None:
+        self.__dict__.update(operations)
         self._constants: dict[str, Any] = {}
 
     def number(self, text: str) -> Any:
-        """The number ``text`` is, not yet rounded. Raises ApplesoftError OVERFLOW."""
+        """A number from its text, not yet rounded. Raises ApplesoftError OVERFLOW."""
         return self.read(text.upper(), 0)[0]
 
     def constant(self, text: str) -> Any:
@@ -82,12 +68,8 @@ def _read_real(text: str, start: int) -> tuple[Real, int]:
     return Real(number), end
 
 
-def _write_real(x: Real) -> str:
-    return decimaltext.write(x.number)
-
-
 def _next_real(x: Real) -> Real:
-    """x + 1, stored; what follows the usual small numbers is worked out once."""
+    """x + 1, stored; looked up for small integers."""
     return _FOLLOWING.get(x.number) or (x + 1).rounded()
 
 
@@ -95,10 +77,7 @@ _FOLLOWING = {integer(n): (Real(integer(n)) + 1).rounded() for n in range(16)}
 
 
 def _of_reals(function: Callable[[Number], Number]) -> Callable[[Real], Real]:
-    def of_real(x: Real) -> Real:
-        return Real(function(x.number))
-
-    return of_real
+    return lambda x: Real(function(x.number))
 
 
 def _float_error(error: Exception) -> ApplesoftError | None:
@@ -129,14 +108,6 @@ def _write_float(x: float) -> str:
     return decimaltext.lay_out("-" if x < 0 else "", mantissa.replace(".", ""), int(exponent) - 8)
 
 
-def _keep(x: float) -> float:
-    return x
-
-
-def _next_float(x: float) -> float:
-    return x + 1
-
-
 def _floor(x: float) -> float:
     """INT of a double. Raises OverflowError for one that is not finite."""
     if not math.isfinite(x):
@@ -145,7 +116,7 @@ def _floor(x: float) -> float:
 
 
 APPLESOFT = Arithmetic(
-    "applesoft",
+    name="applesoft",
     read=_read_real,
     LET=Real.rounded,
     NEXT=_next_real,
@@ -153,16 +124,16 @@ APPLESOFT = Arithmetic(
     ABS=_of_reals(absolute),
     SIN=_of_reals(functions.sine),
     COS=_of_reals(functions.cosine),
-    write=_write_real,
+    write=lambda x: decimaltext.write(x.number),
     error=_applesoft_error,
     unset=Real(ZERO),
     zero=Real(ZERO),
 )
 FLOAT64 = Arithmetic(
-    "float64",
+    name="float64",
     read=_read_float,
-    LET=_keep,
-    NEXT=_next_float,
+    LET=lambda x: x,
+    NEXT=lambda x: x + 1,
     INT=_floor,
     ABS=abs,
     SIN=math.sin,

@@ -1,7 +1,7 @@
-"""Run the restored listing itself, as text in the Applesoft emulator: the port's witness.
+"""Run the restored listing itself in the Applesoft emulator, as an independent check of the port.
 
-The listing is loaded, the scene's lines are retyped as its user would retype them, and the
-velocities are typed when it asks. What comes back has the same form as from `run.run`.
+The scene's lines are retyped into the listing and the velocities typed at its prompts. The result
+has the form of `run.run`.
 """
 
 from __future__ import annotations
@@ -66,17 +66,24 @@ class Emulated:
         inner = machine.machine
         inner.after_line = (lambda line: after_line(line, self)) if after_line else None
         try:
-            error = machine.run()
+            machine.run()
         finally:
             inner.after_line = None
-        return Run(
-            machine.take_output(),
-            error.message if error else None,
-            error.line if error else None,
-            self.reals,
-            self.A,
-            error is None and inner.last_line == ZERO_DETERMINANT_LINE,
-        )
+        return finished(machine, inner.last_line == ZERO_DETERMINANT_LINE)
+
+
+def finished(machine: Applesoft, zero_determinant: bool = False) -> Run:
+    """What a program's run left in a machine; ``zero_determinant``: whether that is how it ended,
+    unless by an error."""
+    error = machine.machine.error
+    return Run(
+        machine.take_output(),
+        error.message if error else None,
+        error.line if error else None,
+        machine.reals(),
+        machine.array("A"),
+        error is None and zero_determinant,
+    )
 
 
 def run(

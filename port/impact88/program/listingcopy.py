@@ -21,7 +21,7 @@ from ..emulator.machine import TooManyStatements
 from ..errors import UserError
 from ..files import packaged_text
 from ..names import SCENE
-from .emulated import LISTING
+from .emulated import LISTING, finished
 from .run import Run
 
 LARGEST_COPY = 100_000
@@ -75,39 +75,23 @@ class ListingCopy:
         than the scene's, or does not end."""
         machine = Applesoft(dos=dos, blanks=False)
         machine.load("\n".join(self._with(scene)))
-        machine.feed(*self._replies(scene))
+        for names in self._lists("INPUT"):
+            machine.feed(",".join(scene.get(name.upper(), "0") for name in names))
         machine.machine.statements_left = STATEMENTS
         try:
-            error = machine.run()
+            machine.run()
         except EndOfInput:
             raise UserError("asks for more than a scene holds", self.file) from None
         except TooManyStatements:
             raise UserError(f"does not end within {STATEMENTS:,} statements", self.file) from None
-        return Run(
-            machine.take_output(),
-            error.message if error else None,
-            error.line if error else None,
-            machine.reals(),
-            machine.array("A"),
-            False,
-        )
-
-    def _statements(self) -> Iterator[tuple[int, str]]:
-        for number, text in sorted(self._source.items()):
-            for statement in _split(text):
-                yield number, statement
+        return finished(machine)
 
     def _lists(self, verb: str) -> Iterator[list[str]]:
-        """The items of every READ, INPUT or DATA, in the order of the lines."""
-        for _, statement in self._statements():
-            match = _LIST.fullmatch(statement)
-            if match and match["verb"].upper() == verb:
-                yield [item.strip() for item in match["items"].split(",")]
-
-    def _replies(self, scene: Mapping[str, str]) -> list[str]:
-        """What is typed at each INPUT: the scene's values, 0 for what it has none of."""
-        lists = self._lists("INPUT")
-        return [",".join(scene.get(name.upper(), "0") for name in names) for names in lists]
+        """The items of every READ or INPUT, in the order of the lines."""
+        for _, text in sorted(self._source.items()):
+            for statement in _split(text):
+                if items := _items(statement, verb):
+                    yield items
 
     def _with(self, scene: Mapping[str, str]) -> Iterator[str]:
         """The program's lines with the scene's values in place of its own."""
@@ -115,9 +99,7 @@ class ListingCopy:
         for number, text in sorted(self._source.items()):
             statements = []
             for statement in _split(text):
-                match = _LIST.fullmatch(statement)
-                if match and match["verb"].upper() == "DATA":
-                    items = [item.strip() for item in match["items"].split(",")]
+                if items := _items(statement, "DATA"):
                     given = [(item, next(names, "").upper()) for item in items]
                     items = [scene[name] if name in SCENE else item for item, name in given]
                     statement = " DATA " + ",".join(items)
@@ -126,6 +108,13 @@ class ListingCopy:
                     statement = match["before"] + scene[match["name"].upper()]
                 statements.append(statement)
             yield f"{number} {':'.join(statements)}"
+
+
+def _items(statement: str, verb: str) -> list[str]:
+    """The items of a READ, INPUT or DATA; none of another statement."""
+    match = _LIST.fullmatch(statement)
+    found = match and match["verb"].upper() == verb
+    return [item.strip() for item in match["items"].split(",")] if match and found else []
 
 
 def _listed(text: str) -> dict[int, str]:

@@ -13,7 +13,6 @@ from contextlib import nullcontext
 
 from .. import notebook
 from ..applesoft.console import Console
-from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.operators import Real
 from ..scene import Scene
 from . import arithmetics, listing, stepping
@@ -41,12 +40,11 @@ _UNPRINTED = {code: None for code in range(32) if chr(code) not in "\n\b"}
 class Run(_Run):
     """What a run left behind.
 
-    ``printout``: every character sent, RETURN as newline, control characters kept (`page` is
-    without them). ``error``: the
-    Applesoft error that ended it, or None; ``line``: its line. ``reals``: every real variable that
-    was assigned, as five stored bytes in hexadecimal. ``A``: the array's ``dims`` (sizes) and
-    ``data``, first subscript fastest; None before line 360. In double precision the values are
-    floats. ``zero_determinant``: whether the program ended at line 1160.
+    ``printout``: every character sent, RETURN as newline, control characters kept (`page` removes
+    them). ``error``: the Applesoft error that ended it, or None; ``line``: its line. ``reals``:
+    every real variable that was assigned, as five stored bytes in hexadecimal. ``A``: the array's
+    ``dims`` (sizes) and ``data``, first subscript fastest; None before line 360. In double
+    precision the values are floats. ``zero_determinant``: whether the program ended at line 1160.
 
     >>> run = impact88.run(impact88.sample(1))
     >>> run.error, run.reals["KI"]
@@ -91,12 +89,12 @@ def start(
     arithmetic: str | Arithmetic = "applesoft",
     slot: str = "0",
     after_line: stepping.AfterLine | None = None,
-) -> tuple[ApplesoftError | None, bool, stepping.Variables]:
-    """Run the port on a console until the program ends.
+) -> Run:
+    """Run the port on a console until the program ends; the Run's printout is empty, because the
+    console's devices have it.
 
-    Returns the error that ended it (with its line), whether it found a zero determinant, and the
-    variables. An error's message goes to the console, as the ROM prints it. Raises UserError for an
-    unknown arithmetic and `console.EndOfInput`.
+    An error's message goes to the console, as the ROM prints it. Raises UserError for an unknown
+    arithmetic and `console.EndOfInput`.
     """
     chosen = arithmetics.named(arithmetic)
     error = None
@@ -122,7 +120,14 @@ def start(
         if begun:
             values = stepping.Variables({**values.reals, begun: chosen.zero}, values.A)
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
-    return error, zero_determinant, values
+    return Run(
+        "",
+        error.message if error else None,
+        error.line if error else None,
+        {name: _shown(value) for name, value in values.reals.items()},
+        {"dims": values.A.sizes, "data": list(map(_shown, values.A.data))} if values.A else None,
+        zero_determinant,
+    )
 
 
 def run(
@@ -146,27 +151,8 @@ def run(
     characters: list[str] = []
     replies = iter(scene.keyboard())
     console = Console(lambda: next(replies, None), characters.append, dos=dos)
-    error, zero_determinant, values = start(scene, console, arithmetic, str(slot), after_line)
-    return finished("".join(characters), error, zero_determinant, values)
-
-
-def finished(
-    printout: str,
-    error: ApplesoftError | None,
-    zero_determinant: bool,
-    values: stepping.Variables,
-) -> Run:
-    """The Run that `start`'s results amount to, its numbers in the captures' form."""
-    return Run(
-        printout,
-        error.message if error else None,
-        error.line if error else None,
-        {name: _shown(value) for name, value in values.reals.items()},
-        None
-        if values.A is None
-        else {"dims": values.A.sizes, "data": [_shown(value) for value in values.A.data]},
-        zero_determinant,
-    )
+    finished = start(scene, console, arithmetic, str(slot), after_line)
+    return finished._replace(printout="".join(characters))
 
 
 def _shown(value: Any) -> Any:

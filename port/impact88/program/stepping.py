@@ -1,8 +1,8 @@
 """Where the port is: the BASIC line being executed, and stopping after every line.
 
-The port itself keeps no books. The BASIC line of a Python line of `listing` is the one in the last
-comment above it, as `linetable` holds it; the variables are those of the frame of `listing.impact`.
-No source is read: a package of compiled files alone prints the same.
+The BASIC line of a Python line of `listing` is the one in the last comment above it, held in
+`linetable`; the variables are the locals of `listing.impact`. No source is read at run time, so a
+package of compiled files alone prints the same.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from typing import Any
 
 _LISTING = listing.impact.__code__
-_PYTHON_LINES = [python_line for python_line, _ in linetable.LINES]
 AfterLine = Callable[[int, "Variables"], object]
 
 if _LISTING.co_firstlineno != linetable.FIRST_PYTHON_LINE:
@@ -40,18 +39,15 @@ class Variables:
 
 def basic_line(python_line: int) -> int | None:
     """The BASIC line that a line of ``listing.py`` translates; None above the first."""
-    index = bisect_right(_PYTHON_LINES, python_line) - 1
-    return linetable.LINES[index][1] if index >= 0 else None
-
-
-def _lines_of(code: CodeType) -> Iterator[int]:
-    return (line for _, _, line in code.co_lines() if line is not None)
+    index = bisect_right(linetable.PYTHON_LINES, python_line) - 1
+    return linetable.BASIC_LINES[index] if index >= 0 else None
 
 
 _TRANSLATIONS = {
     code
     for code in _LISTING.co_consts
-    if isinstance(code, CodeType) and any(line > _PYTHON_LINES[0] for line in _lines_of(code))
+    if isinstance(code, CodeType)
+    and any((line or 0) > linetable.PYTHON_LINES[0] for _, _, line in code.co_lines())
 }
 """The functions inside `listing.impact` that BASIC lines stand in: main program, subroutines."""
 _MAIN = min(_TRANSLATIONS, key=lambda code: code.co_firstlineno)
@@ -84,12 +80,10 @@ def variables(names: Mapping[str, Any], unset: object) -> Variables:
 
 
 def begun_assignment(line: int, known: Mapping[str, Any], asked: int | None) -> str | None:
-    """The variable that an error in ``line`` left as a fresh zero: the first one the line assigns
-    that has no value yet. Applesoft makes the variable before it works out the value.
-
-    ``asked``: how many of its variables the last reply to an INPUT had come to.
-    """
-    assigned = linetable.ASSIGNED.get(line, ())
+    """The variable that an error in ``line`` left as a new zero: the first one the line assigns
+    that has no value yet. Applesoft creates the variable before it evaluates the formula.
+    ``asked``: how many variables the last reply to an INPUT had reached."""
+    assigned = linetable.ASSIGNED.get(line, [])
     if line in linetable.INPUTS and asked is not None:
         assigned = assigned[:asked]
     return next((name for name in assigned if name not in known), None)
