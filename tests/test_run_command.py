@@ -216,7 +216,6 @@ def test_what_a_refused_reply_has_made():
     """The ROM makes a variable when it looks for its value: UX and UY, then OVERFLOW."""
     replies = iter(["54.79,$1,-52", "1E100"])
     console = Console(lambda: next(replies, None), lambda text: None)
-    error, _, left = start(sample(1), console)
-    assert error is not None
-    assert str(error) == "?OVERFLOW ERROR IN 210"
+    left = start(sample(1), console)
+    assert left.error == "?OVERFLOW ERROR IN 210"
     assert set(left.reals) == {"UX", "UY"}
