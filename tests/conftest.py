@@ -2,10 +2,14 @@
 
 ``pytest --force-regen`` writes anew the golden printouts that differ, and fails, so that somebody
 looks at the difference before committing it.
+
+Files of tests are shared out among processes, those that take longest first, so that none is begun
+when all others are done.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
@@ -15,6 +19,27 @@ from pytest_regressions.file_regression import FileRegressionFixture
 
 from captures import ROOT
 from impact88 import native
+
+LONGEST = (
+    *("compare", "installed", "desk_browser", "kit", "desk_numbers", "public", "verify_files"),
+    *("scans", "sizes", "fuzz", "doors", "emulator_captures", "witness", "desk", "scan_pages"),
+    *("verify", "bench", "files", "listing", "figures", "bounds", "mappings"),
+)
+"""Files of tests that take more than some seconds (``--durations=0`` has the times)."""
+
+# processes that tests start need not compile the package each for itself
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have pytest-xdist keep the order of the tests; its own begins with the most tests."""
+    config.option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the files that take longest first."""
+    ranks = {f"test_{name}.py": rank for rank, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: ranks.get(item.path.name, len(LONGEST)))
 
 
 @pytest.fixture(scope="module")

@@ -48,7 +48,7 @@ for name in "listing run1 run2 table3".split():
     run("verify", "--brief", os.path.join(sys.argv[1], "legacy", f"{name}-as-printed.txt"))
 run("solve", "--sample", "1")
 run("chapter", "staged")
-run("oracle", "--kit", "kit")
+run("oracle", "--kit", "kit", "--vectors", "30")
 with open("scene.toml", "w") as file:
     file.write(run("scene", "--sample", "1"))
 run("report", "scene.toml", "-o", "report.html")

@@ -85,7 +85,7 @@ READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
         lambda n: (["compare", "t.csv"], table(f"{HEADER},VAX", *[f"{ROW},-13.26"] * n)),
     ),
     "unlike rows to compare": (
-        40,
+        20,
         lambda n: (
             ["compare", "t.csv"],
             table(f"{HEADER},VAX", *[f"{ROW},{i}" for i in range(n)]),
@@ -93,7 +93,7 @@ READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
     ),
     "arrays of an .npz": (80, lambda n: (["solve", "t.npz", "-o", "o.npz"], npz(n))),
     "questions to the oracle": (
-        5,
+        3,
         lambda n: (
             ["oracle", "t.jsonl", "--no-reference"],
             table(*[json.dumps({"id": i, "scene": VALUES}) for i in range(n)]),
