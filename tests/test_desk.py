@@ -223,7 +223,7 @@ def test_the_screen_is_the_emulators_memory() -> None:
         assert len(told) == 24
         for row, runs in enumerate(told):
             start = 0x400 + row % 8 * 0x80 + row // 8 * 40
-            memory = [machine.screen.byte_at(start + column) for column in range(40)]
+            memory = [machine.peek(start + column) for column in range(40)]
             assert [kind for kind, text in runs for _ in text] == ["normal"] * 40
             assert "".join(text for _, text in runs) == "".join(chr(b & 0x7F) for b in memory)
     codes = bytes([0x01, 0x20, 0x41, 0x60, 0xC1, 0xA0])

@@ -140,8 +140,6 @@ class Memory:
         """The byte at an address."""
         if address < 256:
             return self._page_zero(address)
-        if address in SCREEN:
-            return self.screen.byte_at(address)
         return APPLE_II_PLUS.get(address, 0) if address >= ROM else self.ram[address]
 
     def _page_zero(self, address: int) -> int:
@@ -161,12 +159,10 @@ class Memory:
         """Put a byte at an address."""
         if address < 256:
             self._poke_page_zero(address, value)
-        elif address in SCREEN:
-            self.screen.put_byte(address, value)
         elif address < ROM:
             changed = self.ram[address] != value
             self.ram[address] = value
-            if changed and address < self.vartab:
+            if changed and address < self.vartab and address not in SCREEN:
                 self.text_changed()
             elif changed and self.vartab <= address < self.strend:
                 self.variables_changed()
@@ -181,7 +177,7 @@ class Memory:
             word = getattr(self, WORDS[address - 1]) & 0xFF | value << 8
             self._point(WORDS[address - 1], word)
         elif address in OF_SCREEN:
-            self.screen.poke(OF_SCREEN[address], value)
+            setattr(self.screen, OF_SCREEN[address], value)
         elif address in SEED:
             stored = bytearray(to_stored(self.seed))
             stored[address - SEED.start] = value

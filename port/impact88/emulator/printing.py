@@ -125,7 +125,7 @@ class Printing(Intrinsics):
     def set_mode(self, mask: int, flash: int = 0) -> None:
         """NORMAL, INVERSE, FLASH."""
         self.flash = flash
-        self.screen.set_mode(mask)
+        self.screen.mask = mask
 
     # --- LIST ---------------------------------------------------------------------------------
 
