@@ -65,8 +65,6 @@ class Applesoft:
             blanks=blanks,
         )
 
-    # --- keyboard and screen ------------------------------------------------------------------
-
     def _next_line(self) -> str | None:
         if self._queue:
             return self._queue.popleft()
@@ -94,8 +92,6 @@ class Applesoft:
     def screen_text(self) -> str:
         """The 24 rows of the text screen."""
         return self.machine.screen.text()
-
-    # --- the program --------------------------------------------------------------------------
 
     def load(self, text: str) -> None:
         """A program from text, one numbered line a row; replaces the one there is. Small letters
@@ -190,8 +186,6 @@ class Applesoft:
                 return
             except KeyboardInterrupt:
                 self.machine.console.put("\n")
-
-    # --- variables ----------------------------------------------------------------------------
 
     def value(self, name: str) -> Any:
         """A simple variable: five stored bytes in hexadecimal, text for a string, None if it was

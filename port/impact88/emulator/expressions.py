@@ -63,6 +63,8 @@ class Expressions(Variables):
     for a relation's signs."""
 
     cprtyp = 0
+    power: Callable[[Number, Number], Number]
+    function: Callable[[int, int], Number]
 
     def number(self, sp: int) -> Number:
         """FRMNUM: a formula that must be a number. Raises TYPE MISMATCH."""
@@ -184,12 +186,6 @@ class Expressions(Variables):
             last = PRECEDENCES[operator]
             sp -= PENDING
 
-    # --- operators ----------------------------------------------------------------------------
-
-    def power(self, left: Number, right: Number) -> Number:
-        """FPWRT, of `intrinsics`."""
-        raise NotImplementedError
-
     def _concatenation(self, sp: int, left: Number) -> Number:
         """CAT: left + the next element, whatever operator stands before."""
         self.fac = left
@@ -201,8 +197,6 @@ class Expressions(Variables):
             return self.joined(descriptor(left), descriptor(right))
         except ApplesoftError as error:
             raise placed(error, sp - 1) from None
-
-    # --- elements -----------------------------------------------------------------------------
 
     def element(self, sp: int) -> Number:
         """FRM_ELEMENT: a constant, a variable, a string, a function or a parenthesis. ``sp`` is
@@ -271,12 +265,6 @@ class Expressions(Variables):
             e, m, s = self.fac
             return e, m & 0xFFFF000000 | (address & 0xFF) << 16 | address & 0xFF00, s
         return self.integer_value(address) if kind else self.value(address)
-
-    # --- functions ----------------------------------------------------------------------------
-
-    def function(self, token: int, sp: int) -> Number:
-        """UNARY, of `intrinsics`."""
-        raise NotImplementedError
 
     def function_name(self, sp: int) -> int:
         """FNC: the address of the function named after FN, which is made if there is none. Raises

@@ -7,6 +7,7 @@ RESUME or the manual's CALL -3288 sets the stack pointer back.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 from ..applesoft.errorcodes import ApplesoftError
@@ -45,13 +46,13 @@ NO_FRAME = Frame(-1, NO_VARIABLE, 0, 0)
 class Flow(Inputs):
     """The statements that say what comes next."""
 
+    execute: Callable[[], None]
+
     def __init__(self, *arguments: object, **options: object) -> None:
         super().__init__(*arguments, **options)  # type: ignore[arg-type]
         self.frames: list[Frame] = []
         self.last_line = 0
         self.broken = False
-
-    # --- the stack ----------------------------------------------------------------------------
 
     def set_stack(self, sp: int) -> None:
         """TXS: what lay below is gone."""
@@ -95,8 +96,6 @@ class Flow(Inputs):
                 return n, sp
             sp = sp + FOR_SIZE & 0xFF
         return -1, sp
-
-    # --- FOR and NEXT -------------------------------------------------------------------------
 
     def let_(self) -> None:
         """LET with its keyword."""
@@ -177,8 +176,6 @@ class Flow(Inputs):
                 return
             self.txtptr += 1
             self.forpnt = self.variable(self.sp - 4)
-
-    # --- GOTO and GOSUB -----------------------------------------------------------------------
 
     def goto(self, sp: int = 0) -> None:
         """GOTO. Raises SYNTAX and UNDEF'D STATEMENT."""
@@ -268,10 +265,6 @@ class Flow(Inputs):
             if self.character() != COMMA:
                 return
 
-    def execute(self) -> None:
-        """EXECUTE_STATEMENT, of `machine`."""
-        raise NotImplementedError
-
     def if_(self) -> None:
         """IF. Of a string the ROM sees the number that stands in the accumulator."""
         sp = self.sp - 2
@@ -286,8 +279,6 @@ class Flow(Inputs):
             self.goto_()
         else:
             self.execute()
-
-    # --- errors -------------------------------------------------------------------------------
 
     def onerr_(self) -> None:
         """ONERR GOTO. Raises SYNTAX."""
@@ -325,8 +316,6 @@ class Flow(Inputs):
         """CALL -3288: the stack as it was before the error."""
         self.set_stack(self.errstk)
 
-    # --- the end ------------------------------------------------------------------------------
-
     def run_(self) -> None:
         """RUN. Raises UNDEF'D STATEMENT.
 
@@ -347,13 +336,11 @@ class Flow(Inputs):
             self.oldlin = self.curlin
 
     def end_(self) -> None:
-        """END."""
         if self.at_end():
             self._note_place()
             raise Restart
 
     def stop_(self) -> None:
-        """STOP."""
         if self.at_end():
             self._note_place()
             self.message(b"\rBREAK")

@@ -39,8 +39,6 @@ class Inputs(Printing):
         data = text.encode("latin-1") + b"\0"
         self.ram[INPUT_BUFFER : INPUT_BUFFER + len(data)] = data
 
-    # --- READ ---------------------------------------------------------------------------------
-
     def read_(self) -> None:
         """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is not a number."""
         self._take_items(FROM_DATA, self.datptr, self.sp - 2)
@@ -62,8 +60,6 @@ class Inputs(Printing):
             self.txtptr += 1
             if ram[self.txtptr] == DATA:
                 return
-
-    # --- INPUT and GET ------------------------------------------------------------------------
 
     def input_(self) -> None:
         """INPUT. Raises ILLEGAL DIRECT, and what a bad reply does."""

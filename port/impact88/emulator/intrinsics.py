@@ -102,15 +102,13 @@ class Intrinsics(Expressions):
         if word in NUMERIC:
             return NUMERIC[word](fac)
         if word in LOOKING_FOR_INT:
-            result = LOOKING_FOR_INT[word](fac)
+            result: Number = LOOKING_FOR_INT[word](fac)
             self.charac = word, ZERO, fac
-            return result
-        return _FUNCTIONS[word](self, fac, sp)
-
-    # --- numbers ------------------------------------------------------------------------------
+        else:  # the method named for the function
+            result = getattr(self, f"_{word.rstrip('$').lower()}")(fac, sp)
+        return result
 
     def _int(self, fac: Number, sp: int) -> Number:
-        """INT."""
         whole = floor(fac)
         if fac[0] < INTEGER_EXPONENT:
             self.charac = to_integer(whole) & 0xFF
@@ -142,7 +140,6 @@ class Intrinsics(Expressions):
         return functions.exponential_integer(x) & 0xFF
 
     def _rnd(self, fac: Number, sp: int) -> Number:
-        """RND."""
         self.seed = functions.random(fac, self.seed)
         return self.seed
 
@@ -164,7 +161,6 @@ class Intrinsics(Expressions):
         return integer(self.screen.column & 0xFF)
 
     def _peek(self, fac: Number, sp: int) -> Number:
-        """PEEK."""
         self.valtyp = 0
         return integer(self.peek(address_of(fac, sp - 4)))
 
@@ -174,8 +170,6 @@ class Intrinsics(Expressions):
         self.refuse("PDL")
         return ZERO
 
-    # --- strings ------------------------------------------------------------------------------
-
     def _text(self, fac: Number, sp: int) -> bytes:
         """GETSTR: the characters of the argument, which becomes a number. Raises TYPE MISMATCH."""
         if not self.valtyp:
@@ -184,7 +178,6 @@ class Intrinsics(Expressions):
         return self.used(fac)
 
     def _len(self, fac: Number, sp: int) -> Number:
-        """LEN."""
         return integer(len(self._text(fac, sp)))
 
     def _asc(self, fac: Number, sp: int) -> Number:
@@ -222,7 +215,6 @@ class Intrinsics(Expressions):
         return decimaltext.write(x).encode("ascii")
 
     def _str(self, fac: Number, sp: int) -> Number:
-        """STR$."""
         if self.valtyp:
             raise Fault("TYPE MISMATCH", sp - 2)
         text = self.digits(fac)
@@ -230,7 +222,6 @@ class Intrinsics(Expressions):
         return self.made(text)
 
     def _chr(self, fac: Number, sp: int) -> Number:
-        """CHR$."""
         code = byte_of(fac, sp - 2)
         address = self.room(1)
         self.ram[address] = code
@@ -264,19 +255,3 @@ class Intrinsics(Expressions):
             length = min(first, size)
             start = 0 if word == "LEFT$" else size - length
         return self.part(place, start, length, shifted_out(last))
-
-
-_FUNCTIONS: dict[str, Callable[[Intrinsics, Number, int], Number]] = {
-    "INT": Intrinsics._int,
-    "RND": Intrinsics._rnd,
-    "USR": Intrinsics._usr,
-    "FRE": Intrinsics._fre,
-    "POS": Intrinsics._pos,
-    "PDL": Intrinsics._pdl,
-    "PEEK": Intrinsics._peek,
-    "LEN": Intrinsics._len,
-    "ASC": Intrinsics._asc,
-    "VAL": Intrinsics._val,
-    "STR$": Intrinsics._str,
-    "CHR$": Intrinsics._chr,
-}

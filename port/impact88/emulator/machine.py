@@ -70,8 +70,6 @@ class Machine(Editing):
         self.text_changed()
         self.variables_changed()
 
-    # --- running ------------------------------------------------------------------------------
-
     def parse(self, typed: bytes, tokens: bytes) -> None:
         """PARSE: on page 2 tokens come in the place of the line that was typed."""
         for line in (typed, tokens):
@@ -187,10 +185,7 @@ class Machine(Editing):
         elif byte and byte != COLON:
             self.let(self.sp - 2)
 
-    # --- variables ----------------------------------------------------------------------------
-
     def dim_(self) -> None:
-        """DIM."""
         while True:
             self.variable(self.sp - 4, dimensions=1)
             if self.at_end():
@@ -215,8 +210,6 @@ class Machine(Editing):
         self.ram[function + 4] = first
         self.data_()
 
-    # --- memory -------------------------------------------------------------------------------
-
     def _address(self) -> int:
         """FRMNUM and GETADR: a 16-bit address. Raises ILLEGAL QUANTITY."""
         return address_of(self.number(self.sp - 4), self.sp - 4)
@@ -229,7 +222,6 @@ class Machine(Editing):
         return place, self.byte(sp + 2)
 
     def poke_(self) -> None:
-        """POKE."""
         self.poke(*self._address_and_byte())
 
     def wait_(self) -> None:
@@ -278,7 +270,6 @@ class Machine(Editing):
         self.clear()
 
     def clear_(self) -> None:
-        """CLEAR."""
         if self.at_end():
             self.clear()
 
@@ -289,10 +280,7 @@ class Machine(Editing):
             raise Fault("ILLEGAL QUANTITY", self.sp - 2)
         self.ram[place] = table[n]
 
-    # --- devices ------------------------------------------------------------------------------
-
     def pr_(self) -> None:
-        """PR#."""
         self.console.select(self.byte(self.sp - 4))
 
     def in_(self) -> None:
@@ -300,11 +288,9 @@ class Machine(Editing):
         self.byte(self.sp - 4)
 
     def trace_(self) -> None:
-        """TRACE."""
         self.trcflg = self.trcflg >> 1 | 0x80
 
     def notrace_(self) -> None:
-        """NOTRACE."""
         self.trcflg >>= 1
 
 

@@ -3,11 +3,13 @@
 Everything a program can look at lies in ``ram`` where the ROM puts it: the program from TXTTAB,
 variables from VARTAB, arrays from ARYTAB, strings down from MEMSIZ, a typed line on page 2, the
 text screen on pages 4 to 7. The pointers of page 0 are attributes here, by the names of the ROM's
-listing in small letters; `WORDS` and `BYTES` say where they lie. Other RAM keeps what is put there
+listing in small letters; `POINTERS` says where they lie. Other RAM keeps what is put there
 and reads as 0 before. Of the ROM there is nothing to read.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 from ..applesoft.console import Console, Device, Keyboard
 from ..applesoft.real import from_stored, to_stored
@@ -48,21 +50,23 @@ _BEYOND = 0x200
 """Zeros behind the last address, so that text that runs on to the end of memory ends there."""
 
 
-def _named(text: str) -> dict[int, str]:
-    """Names by address, from the hexadecimal addresses before them."""
-    words = text.split()
-    return {int(address, 16): name for address, name in zip(words[::2], words[1::2], strict=True)}
-
-
-WORDS = _named(
+WORDS = (
     "67 txttab 69 vartab 6B arytab 6D strend 6F fretop 73 memsiz 75 curlin 77 oldlin 79 oldtext "
     "7B datlin 7D datptr 83 varpnt 85 forpnt AF prgend B8 txtptr DA errlin DC errpos F4 txtpsv "
     "F6 cursv"
 )
-BYTES = _named(
+BYTES = (
     "14 subflg 52 temppt 53 lastpt D6 lock D8 errflg DE errnum DF errstk F2 trcflg F3 flash "
     "F8 remstk"
 )
+POINTERS: dict[int, tuple[str, int, int]] = {}
+"""What page 0 holds at an address: an attribute, its shift, and the bits of it that stand
+elsewhere."""
+for _address, _name in zip(BYTES.split()[::2], BYTES.split()[1::2], strict=True):
+    POINTERS[int(_address, 16)] = _name, 0, 0
+for _address, _name in zip(WORDS.split()[::2], WORDS.split()[1::2], strict=True):
+    POINTERS[int(_address, 16)] = _name, 0, 0xFF00
+    POINTERS[int(_address, 16) + 1] = _name, 8, 0x00FF
 OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
 
 
@@ -70,8 +74,13 @@ class Memory:
     """``ram``, the pointers, and the devices.
 
     ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``refused``
-    holds what was asked for and is not done here: drawing, tape, machine code.
+    holds what was asked for and is not done here: drawing, tape, machine code. ``text_changed`` and
+    ``variables_changed`` make the classes above forget what they remember of the program's bytes,
+    of names and sizes among the variables.
     """
+
+    text_changed: Callable[[], None]
+    variables_changed: Callable[[], None]
 
     def __init__(
         self,
@@ -106,8 +115,6 @@ class Memory:
         self.statements_left: int | None = None
         self.refused: list[str] = []
 
-    # --- what stands outside ------------------------------------------------------------------
-
     def pause(self) -> None:
         """ISCNTC: control-C, or no more statements. Raises KeyboardInterrupt and
         TooManyStatements."""
@@ -124,72 +131,38 @@ class Memory:
             self.refused.append(what if len(self.refused) < REFUSALS else MORE_REFUSED)
         raise Fault("SYNTAX", self.sp - 4)
 
-    # --- the caches of what is above ----------------------------------------------------------
-
-    def text_changed(self) -> None:
-        """The program's bytes are other ones now: nothing remembered of them holds."""
-        raise NotImplementedError
-
-    def variables_changed(self) -> None:
-        """The same of names and sizes among the variables."""
-        raise NotImplementedError
-
-    # --- PEEK and POKE ------------------------------------------------------------------------
-
     def peek(self, address: int) -> int:
         """The byte at an address."""
-        if address < 256:
-            return self._page_zero(address)
-        return APPLE_II_PLUS.get(address, 0) if address >= ROM else self.ram[address]
-
-    def _page_zero(self, address: int) -> int:
-        if address in BYTES:
-            return int(getattr(self, BYTES[address])) & 0xFF
-        if address in WORDS:
-            return int(getattr(self, WORDS[address])) & 0xFF
-        if address - 1 in WORDS:
-            return int(getattr(self, WORDS[address - 1])) >> 8 & 0xFF
+        if address in POINTERS:
+            name, shift, _ = POINTERS[address]
+            return int(getattr(self, name)) >> shift & 0xFF
         if address in OF_SCREEN:
             return int(getattr(self.screen, OF_SCREEN[address])) & 0xFF
         if address in SEED:
             return to_stored(self.seed)[address - SEED.start]
-        return self.ram[address]
+        return APPLE_II_PLUS.get(address, 0) if address >= ROM else self.ram[address]
 
     def poke(self, address: int, value: int) -> None:
-        """Put a byte at an address."""
-        if address < 256:
-            self._poke_page_zero(address, value)
-        elif address < ROM:
-            changed = self.ram[address] != value
-            self.ram[address] = value
-            if changed and address < self.vartab and address not in SCREEN:
+        """Put a byte at an address. A pointer poked may move the program or its variables."""
+        if address in POINTERS:
+            name, shift, kept = POINTERS[address]
+            setattr(self, name, getattr(self, name) & kept | value << shift)
+            if kept:
                 self.text_changed()
-            elif changed and self.vartab <= address < self.strend:
                 self.variables_changed()
-
-    def _poke_page_zero(self, address: int, value: int) -> None:
-        if address in BYTES:
-            setattr(self, BYTES[address], value)
-        elif address in WORDS:
-            word = getattr(self, WORDS[address]) & 0xFF00 | value
-            self._point(WORDS[address], word)
-        elif address - 1 in WORDS:
-            word = getattr(self, WORDS[address - 1]) & 0xFF | value << 8
-            self._point(WORDS[address - 1], word)
         elif address in OF_SCREEN:
             setattr(self.screen, OF_SCREEN[address], value)
         elif address in SEED:
             stored = bytearray(to_stored(self.seed))
             stored[address - SEED.start] = value
             self.seed = from_stored(bytes(stored))
-        else:
+        elif address < ROM:
+            changed = self.ram[address] != value
             self.ram[address] = value
-
-    def _point(self, pointer: str, address: int) -> None:
-        """A pointer poked: programs may move themselves, or their variables."""
-        setattr(self, pointer, address)
-        self.text_changed()
-        self.variables_changed()
+            if changed and 0xFF < address < self.vartab and address not in SCREEN:
+                self.text_changed()
+            elif changed and self.vartab <= address < self.strend:
+                self.variables_changed()
 
     def word(self, address: int) -> int:
         """Two bytes, the low one first."""

@@ -26,8 +26,6 @@ IN_ROM, IN_STACK_PAGE = 0xD000, 0x100
 class Printing(Intrinsics):
     """The statements that display. ``flash`` is set in every printing character they send."""
 
-    # --- characters ---------------------------------------------------------------------------
-
     def put(self, text: str) -> None:
         """OUTDO: characters, high bit dropped, RETURN as newline."""
         if self.flash or not text.isascii() or "\r" in text:
@@ -57,8 +55,6 @@ class Printing(Intrinsics):
         """FOUT and STROUT. Raises FORMULA TOO COMPLEX."""
         self.charac = 0
         self.show_message(self.digits(x), IN_STACK_PAGE)
-
-    # --- PRINT --------------------------------------------------------------------------------
 
     def print_(self) -> None:
         """PRINT. Raises SYNTAX, and what its formulas do."""
@@ -126,8 +122,6 @@ class Printing(Intrinsics):
         """NORMAL, INVERSE, FLASH."""
         self.flash = flash
         self.screen.mask = mask
-
-    # --- LIST ---------------------------------------------------------------------------------
 
     def list_(self) -> None:
         """LIST. Raises SYNTAX for a line number past 63999."""

@@ -66,8 +66,6 @@ class Screen(Editor):
         ram[BASE + _TITLE_COLUMN : BASE + _TITLE_COLUMN + len(_TITLE)] = _TITLE
         self._go_to_row(1)
 
-    # --- characters ---------------------------------------------------------------------------
-
     def write(self, text: str) -> None:
         """Show characters, and pass them on."""
         gap = self.column - self._expected
@@ -150,8 +148,6 @@ class Screen(Editor):
         normal ones."""
         return "".join("".join(map(shown_character, row)).rstrip(" ") + "\n" for row in self.rows())
 
-    # --- the cursor -------------------------------------------------------------------------
-
     def home(self) -> None:
         """HOME: clear the window; the cursor at its top left."""
         self.row = self.top
@@ -201,8 +197,6 @@ class Screen(Editor):
     def stay_at(self, column: int) -> None:
         """After a line feed: the column is unchanged, and nothing has been skipped."""
         self.column = self._expected = column
-
-    # --- typing -------------------------------------------------------------------------------
 
     def under_cursor(self) -> str:
         """The character that control-U takes."""

@@ -35,8 +35,6 @@ class Strings(Text):
     valtyp = 0
     strng2 = 0
 
-    # --- room ---------------------------------------------------------------------------------
-
     def collect_garbage(self) -> None:
         """GARBAG: move the strings that variables hold together below MEMSIZ, the highest first.
 
@@ -94,8 +92,6 @@ class Strings(Text):
         """The characters of the string that a descriptor describes."""
         address = self.word(place + 1)
         return bytes(self.ram[address : address + self.ram[place]])
-
-    # --- temporaries --------------------------------------------------------------------------
 
     def temporary(self, length: int, address: int, extension: int = 0) -> Number:
         """PUTNEW: a new temporary, in the accumulator. Raises FORMULA TOO COMPLEX."""
@@ -174,8 +170,6 @@ class Strings(Text):
         if target < ROM:
             ram[target] = length
             self.put_word(target + 1, address)
-
-    # --- operations ---------------------------------------------------------------------------
 
     def joined(self, left: int, right: int) -> Number:
         """CAT: left + right, by their descriptors. Raises STRING TOO LONG past 255 characters,

@@ -70,15 +70,12 @@ class Text(Memory):
     charac: int | tuple[str, Number, Number] = 0
 
     def text_changed(self) -> None:
-        """See `Memory.text_changed`."""
         self.remember(Reading({}, {}, {}, {}))
 
     def remember(self, reading: Reading) -> None:
         """Take what has been read for what there is to read."""
         self._reading = reading
         self.names, self.atoms, self.targets, _ = reading
-
-    # --- characters ---------------------------------------------------------------------------
 
     def character(self) -> int:
         """CHRGOT: the byte at TXTPTR, or the next one that is no blank."""
@@ -120,8 +117,6 @@ class Text(Memory):
         """REM: to the end of the line."""
         self.txtptr = self.ram.index(0, self.txtptr)
         self.charac = 0
-
-    # --- names and numbers --------------------------------------------------------------------
 
     def name_at(self, pos: int) -> Name:
         """The name that begins with the letter at an address: two characters count."""
@@ -167,8 +162,6 @@ class Text(Memory):
             self.txtptr += 1
         self.linnum = number
         return number
-
-    # --- lines --------------------------------------------------------------------------------
 
     def find_line(self, number: int, address: int) -> tuple[bool, int]:
         """FNDLIN: whether a line of this number comes, from the line at an address on, and where

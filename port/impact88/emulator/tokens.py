@@ -8,6 +8,7 @@ special: AT followed at once by N or O is not AT, so that ATN and A TO are found
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from functools import lru_cache
 
@@ -32,7 +33,6 @@ TOKENS = {word: FIRST + n for n, word in enumerate(KEYWORDS)}
 DATA = TOKENS["DATA"]
 REM = TOKENS["REM"]
 PRINT = TOKENS["PRINT"]
-AT = TOKENS["AT"]
 LAST_STATEMENT = TOKENS["NEW"]
 """Keywords up to here may begin a statement."""
 LAST_LINE = 63999
@@ -40,35 +40,15 @@ LINE_LIMIT = 239
 """The monitor hands over no more of a line than this."""
 
 _LISTED = (*KEYWORDS, "", *[*CODES][1:], " ERROR\a")
-_BY_LETTER: dict[str, list[tuple[str, int]]] = {}
-for _word, _token in TOKENS.items():
-    _BY_LETTER.setdefault(_word[0], []).append((_word, _token))
-
-_QUOTE = '"'
-
-
-def _keyword(text: str, start: int) -> tuple[int, int] | None:
-    """Token and end of the keyword at ``start``, blanks passed over, or None."""
-    for word, token in _BY_LETTER.get(text[start], ()):
-        position = start
-        for letter in word:
-            while text[position : position + 1] == " ":
-                position += 1
-            if text[position : position + 1] != letter:
-                break
-            position += 1
-        else:
-            if token == AT and text[position : position + 1] in ("N", "O"):
-                continue
-            return token, position
-    return None
+_PATTERNS = (f"({' *'.join(map(re.escape, word))})" for word in KEYWORDS)
+_KEYWORD = re.compile("|".join(_PATTERNS).replace("(A *T)", "(A *T(?![NO]))"))
 
 
 @lru_cache(maxsize=4096)
 def tokenise(kept: str, *, folded: bool = False) -> bytes:
     """The bytes of a line's statements as the ROM's parser leaves them, without the final zero.
 
-    ``folded``: small letters are capitals outside quotes and remarks, as nobody types them else.
+    ``folded``: small letters become capitals outside quotes and remarks.
     """
     kept = keyed(kept)
     text = kept.upper() if folded else kept
@@ -79,8 +59,10 @@ def tokenise(kept: str, *, folded: bool = False) -> bytes:
         character = text[position]
         if character == " " and not in_data:
             position += 1
-        elif character == _QUOTE:
-            position = _copy(kept, position, _QUOTE, out)
+        elif character == '"':
+            end = text.find('"', position + 1) + 1 or len(text)
+            out += kept[position:end].encode("ascii")
+            position = end
         elif in_data or "0" <= character <= ";":
             out.append(ord(character))
             position += 1
@@ -89,24 +71,18 @@ def tokenise(kept: str, *, folded: bool = False) -> bytes:
         elif character == "?":
             out.append(PRINT)
             position += 1
-        elif keyword := _keyword(text, position):
-            token, position = keyword
+        elif keyword := _KEYWORD.match(text, position):
+            token = FIRST + (keyword.lastindex or 0) - 1
+            position = keyword.end()
             out.append(token)
             in_data = token == DATA
             if token == REM:
-                position = _copy(kept, position, "", out)
+                out += kept[position:].encode("ascii")
+                break
         else:
             out.append(ord(character))
             position += 1
     return bytes(out)
-
-
-def _copy(text: str, position: int, until: str, out: bytearray) -> int:
-    """Copy up to and including the next ``until``, or to the end; return where that is."""
-    end = text.find(until, position + 1) + 1 if until else 0
-    end = end or len(text)
-    out += bytes(ord(character) for character in text[position:end])
-    return end
 
 
 def split_number(text: str) -> tuple[int, str] | None:

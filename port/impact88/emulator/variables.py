@@ -8,7 +8,7 @@ reading a simple variable makes none. Where names lie is remembered while none i
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from struct import Struct
 from typing import NamedTuple
 
@@ -76,9 +76,9 @@ class Variables(Strings):
     """Simple variables from VARTAB, arrays from ARYTAB to STREND."""
 
     inttyp = False
+    formula: Callable[[int], Number]
 
     def variables_changed(self) -> None:
-        """See `Memory.variables_changed`."""
         ram = self.ram
         self.simple: dict[int, int] = {}
         for place in range(self.vartab, self.arytab - VARIABLE_SIZE + 1, VARIABLE_SIZE):
@@ -108,8 +108,6 @@ class Variables(Strings):
             self.collect_garbage()
             if address >= self.fretop:
                 raise ApplesoftError("OUT OF MEMORY")
-
-    # --- PTRGET -------------------------------------------------------------------------------
 
     def variable(self, sp: int, dimensions: int = 0, mark: int = 0) -> int:
         """PTRGET: the address of the value of the variable that comes next, which is made if there
@@ -149,10 +147,6 @@ class Variables(Strings):
         ram[place : place + VARIABLE_SIZE] = bytes((name >> 8, name & 0xFF, 0, 0, 0, 0, 0))
         self.simple[name] = place + 2
         return place + 2
-
-    def formula(self, sp: int) -> Number:
-        """FRMEVL, of `expressions`."""
-        raise NotImplementedError
 
     def array_element(self, name: int, sp: int, dimensions: int = 0) -> int:
         """ARRAY: the address of an element; its array is made if there is none. Raises SYNTAX,
@@ -239,8 +233,6 @@ class Variables(Strings):
         self.strend = end
         array = self.arrays[name] = self._array(name, place, sizes)
         return array
-
-    # --- values -------------------------------------------------------------------------------
 
     def value(self, address: int) -> Number:
         """MOVFM: the real at an address."""
