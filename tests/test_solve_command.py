@@ -15,7 +15,7 @@ from impact88.bench.populations import scenes, texts
 from impact88.cli import main
 from impact88.names import RESULTS, SCENE
 from impact88.scene import sample
-from impact88.tables import csvtable, plainblocks
+from impact88.tables import csvtable
 
 NAMES = list(SCENE)
 
@@ -225,7 +225,7 @@ def test_unusable(cases, tmp_path, monkeypatch, capsys, arguments, told):
 
 def test_memory_does_not_grow_with_the_file(cases, tmp_path, monkeypatch):
     monkeypatch.setattr(csvtable, "BLOCK_ROWS", 500)
-    monkeypatch.setattr(plainblocks, "BLOCK_BYTES", 50_000)
+    monkeypatch.setattr(csvtable, "BLOCK_BYTES", 50_000)
     lines = cases.read_text().splitlines(keepends=True)
     peaks = []
     for rows in (200, 3_000, 12_000):  # the first only to have everything imported

@@ -11,12 +11,12 @@ import pytest
 
 from captures import ROOT
 from impact88 import solve
-from impact88.chapter.claims import claims
 from impact88.chapter.staged import (
     COLUMNS_1,
     COLUMNS_2,
     SPIN_WEIGHT,
     cells,
+    claims,
     closure,
     collisions,
     comparison,

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.names import SCENE
-from impact88.tables import arrow, plainblocks
+from impact88.tables import arrow, csvtable
 from impact88.tables.arrow import texts_of
 from impact88.tables.rows import BLOCK_ROWS, BadCell, check_scene_columns, numbers, shortest
 from impact88.tables.table import format_of, open_reader, open_writer
@@ -253,7 +253,7 @@ def test_with_and_without_pyarrow_the_same_bytes(tmp_path, monkeypatch, capsys, 
     said = []
     for there in (True, False):
         monkeypatch.setattr(arrow, "available", lambda there=there: there)
-        monkeypatch.setattr(plainblocks, "BLOCK_BYTES", block)
+        monkeypatch.setattr(csvtable, "BLOCK_BYTES", block)
         status = main(["solve", str(path)])
         said.append((status, *capsys.readouterr()))
     assert said[0] == said[1]

@@ -34,10 +34,9 @@ from __future__ import annotations
 import argparse
 
 from . import options
-from .rangeoptions import RANGES, explored
 
 ARGUMENTS = (
-    *RANGES,
+    *options.EXPLORED,
     options.names_option("--outputs", "the results wanted"),
     options.JSON,
     options.OUTPUT,
@@ -48,9 +47,6 @@ def main(args: argparse.Namespace) -> int:
     """Print bounds, spreads and what drives them."""
     from ..uncertainty.boundstable import as_json, table
 
-    found = explored(args, args.outputs)
-    if args.json:
-        options.print_json("bounds", as_json(found))
-    else:
-        print(table(found))
+    found = options.explored(args, args.outputs)
+    options.show(args, "bounds", lambda: as_json(found), lambda: [table(found)])
     return 0

@@ -77,10 +77,7 @@ def main(args: argparse.Namespace) -> int:
         from ..checking.junit import write_junit
 
         write_junit(args.junit, args.theirs, comparison, args.strict)
-    if args.json:
-        options.print_json("compare", comparison.as_json())
-    else:
-        print("\n".join(_lines(comparison)))
+    options.show(args, "compare", comparison.as_json, lambda: _lines(comparison))
     for line in _talk(comparison):
         note("compare", line)
     return int(

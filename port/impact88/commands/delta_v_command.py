@@ -64,11 +64,9 @@ def main(args: argparse.Namespace) -> int:
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     equation = described(factor)
-    if args.json:
-        options.print_json("delta-v", {"equation": equation, **found})
-    else:
-        caution = f"An estimate: {ERROR};\nuntested elsewhere (Section VI)."
-        print("\n".join([*lines, equation, caution]))
+    caution = f"An estimate: {ERROR};\nuntested elsewhere (Section VI)."
+    whole = {"equation": equation, **found}
+    options.show(args, "delta-v", lambda: whole, lambda: [*lines, equation, caution])
     return 0
 
 

@@ -36,7 +36,6 @@ from ..errors import UserError
 from ..names import RESULTS
 from ..scene import Scene, entries_in, numbers_of
 from . import options
-from .rangeoptions import RANGES, explored
 
 if TYPE_CHECKING:
     from ..figures.drawing import Drawing
@@ -49,7 +48,7 @@ KINDS = (*OF_A_SCENE, "barrier", *OF_RANGES, "planar", *OF_NOTHING)
 ARGUMENTS = (
     options.value("kind", "KIND", "see kinds below", choices=KINDS),
     options.writes("-o --output", "FILE", "where to write: .svg, .png or .pdf", required=True),
-    *RANGES,
+    *options.EXPLORED,
     options.MOVE,
     options.SWEEP,
     options.names_option("--outputs", "the results wanted"),
@@ -87,7 +86,7 @@ def _drawn(args: argparse.Namespace) -> Drawing:
         outputs = args.outputs
         if kind == "tornado" and not outputs:
             outputs = ["SA", "SB", "LOSS"] if args.reconstruct else ["DVA", "DVB", "LOSS"]
-        return draw(explored(args, outputs, keep=kind == "histogram"))
+        return draw(options.explored(args, outputs, keep=kind == "histogram"))
     if kind == "sweep":
         return _swept(args)
     if args.ranges or args.outputs:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from math import isfinite
@@ -36,6 +36,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from ..uncertainty.boundstable import Bounds
+    from ..uncertainty.ranges import Inputs
     from ..uncertainty.uncertain import Uncertain
 
 FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
@@ -282,6 +284,20 @@ def output_of(args: argparse.Namespace, arguments: Sequence[object]) -> Iterator
         yield
 
 
+def show(
+    args: argparse.Namespace,
+    form: str,
+    record: Callable[[], Mapping[str, Any]],
+    lines: Callable[[], Iterable[str]],
+    indent: int | None = None,
+) -> None:
+    """Print a result: as an object of a published form with ``--json``, else as lines."""
+    if args.json:
+        print_json(form, record(), indent)
+    else:
+        print("\n".join(lines()))
+
+
 def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -> None:
     """Print an object of a published form on one line; what is not finite is null."""
     import json
@@ -519,3 +535,77 @@ def with_contact_moved(scene: Scene, move: str | None) -> Scene:
     texts, _ = in_base_units(given, "--move-contact", scene.units)
     dx, dy = (_double(name, texts[name], "--move-contact") for name in ("CX", "CY"))
     return scene.replaced(moved_texts(scene, dx, dy))
+
+
+# --- values within limits, as bounds and figure take them ---------------------------------------
+
+EXPLORED = (
+    *ONE_SCENE,
+    setting("change a value of the scene"),
+    repeatable("--range", "NAME=RANGE", "a range in place of the scene's value", dest="ranges"),
+    repeatable("--correlation", "A,B=R", "the correlation of two inputs", dest="correlations"),
+    names_option(
+        "--exclude", "leave out scenes that carry a warning, such as ENERGY_GAINED", "WARNINGS"
+    ),
+    flag("--reconstruct", "from final to initial velocities"),
+    *draws(100_000),
+    value(
+        "--sigmas",
+        "K",
+        "where a normal without limits ends for the bounds (default: %(default)s)",
+        default=3.0,
+        type=float,
+    ),
+)
+"""What is uncertain, and how it is explored."""
+
+
+def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
+    """The inputs the options describe, in base units, and the system they were written in. Raises
+    UserError."""
+    from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
+
+    if (entries := entries_given(args)) is None:
+        raise UserError(ONE_EXPECTED)
+    changes = pairs([*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'")
+    changes, units = changes_in_base(changes, "--range", entries.units, args.scene)
+    problem = "reconstruction" if args.reconstruct else "forward"
+    inputs = read_inputs(entries.values, changes, problem, source_of(args) or "")
+    correlations = dict(inputs.correlations)
+    for text in args.correlations:
+        names, equals, number = text.partition("=")
+        if not equals:
+            raise UserError(f"--correlation {text}: expected A,B=R, such as UX,VX=0.5")
+        correlations |= read_correlations(f"{names} {number.strip()}", "--correlation")
+    return Inputs(inputs.values, correlations, inputs.derived), units
+
+
+def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = False) -> Bounds:
+    """The bounds the options ask for, in the units the inputs came in; with progress on a terminal.
+    Raises UserError."""
+    from ..progress import progress
+    from ..uncertainty.bounds import bounds
+    from ..uncertainty.boundsunits import in_units
+
+    inputs, units = inputs_given(args)
+    if not any(item.varies for item in inputs.values.values()):
+        raise UserError(
+            "nothing varies; give ranges in the file or with --range, such as MU='.7 .. .9'"
+        )
+    if inputs.derived:
+        note(None, f"from the forward solution: {' '.join(inputs.derived)}")
+    words = [name.upper() for text in outputs or () for name in text.replace(",", " ").split()]
+    with progress(args.samples, "draws") as meter:
+        found = bounds(
+            inputs.values,
+            words or None,
+            problem="reconstruction" if args.reconstruct else "forward",
+            samples=args.samples,
+            seed=args.seed,
+            correlations=inputs.correlations,
+            sigmas=args.sigmas,
+            exclude=[name.upper() for name in args.exclude],
+            keep_draws=keep,
+            progress=meter.update,
+        )
+    return in_units(found, units)

@@ -135,10 +135,12 @@ def _reconstruct(
                     *(solution, args.samples, args.seed, wanted, args.contact_time, meter.update)
                 )
             )
-    if args.json:
-        options.print_json("reconstruct", {"solutions": [one.as_json(units) for one in found]})
-    else:
-        print(in_turn([one.as_text(units) for one in found]))
+    options.show(
+        args,
+        "reconstruct",
+        lambda: {"solutions": [solution.as_json(units) for solution in found]},
+        lambda: [in_turn([solution.as_text(units) for solution in found])],
+    )
 
 
 def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace, units: System) -> None:

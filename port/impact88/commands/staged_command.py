@@ -71,10 +71,7 @@ def main(args: argparse.Namespace) -> int:
         return _own(args)
     if args.spin_weight is not None:
         raise UserError("--spin-weight is for a collision in a file; expected FILE.toml")
-    if args.json:
-        options.print_json("staged", _everything())
-    else:
-        print("\n".join(views[view]() if view else _comparison()))
+    options.show(args, "staged", _everything, views[view] if view else _comparison)
     return int(any(not c.agrees and c.explanation == "not explained" for c in comparison()))
 
 
@@ -94,10 +91,7 @@ def _own(args: argparse.Namespace) -> int:
         whole, lines = within_doubles(_fitted)(known, args.spin_weight, base_of(system_of(named)))
     except UserError as error:
         raise UserError(str(error), args.scene) from None
-    if args.json:
-        options.print_json("staged", whole)
-    else:
-        print("\n".join(lines))
+    options.show(args, "staged", lambda: whole, lambda: lines)
     return 0
 
 
@@ -158,7 +152,7 @@ def _measured() -> list[str]:
 
 
 def _claims() -> list[str]:
-    from ..chapter.claims import claims
+    from ..chapter.staged import claims
 
     def extent(values: tuple[float, float]) -> str:
         return f"{values[0] + 0.0:.1f} ... {values[1]:.1f}"

@@ -81,10 +81,7 @@ def main(args: argparse.Namespace) -> int:
         from ..witness.saving import save
 
         save(args.save, heard)
-    if args.json:
-        options.print_json("witness", whole, indent=2)
-    else:
-        print("\n".join(_report(image, heard, whole)))
+    options.show(args, "witness", lambda: whole, lambda: _report(image, heard, whole), indent=2)
     return 0 if whole["passed"] else 1
 
 

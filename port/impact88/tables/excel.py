@@ -20,7 +20,7 @@ from ..errors import UserError, library, quoted
 from ..files import replacing
 from ..names import SCENE
 from .jsontext import plain
-from .npzfile import check_unpacked
+from .npztable import check_unpacked
 from .rows import (
     BLOCK_ROWS,
     Reader,

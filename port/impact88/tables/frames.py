@@ -12,12 +12,11 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import doubles
 from ..closedform.columns import UNUSED_BY_POINTS
 from ..closedform.solve import solve
 from ..errors import UserError, library
 from ..names import DEFAULT_M, SCENE
-from .rows import Rows, check_scene_columns, heading, scene_names
+from .rows import Rows, check_scene_columns, heading, numbers, scene_names
 from .tableunits import TableUnits
 
 Frame = TypeVar("Frame")
@@ -100,34 +99,23 @@ def _dtype(values: Any) -> np.dtype[Any]:
 
 def _numbers(name: str, values: Any, units: TableUnits) -> Array:
     """Cells as doubles in base units, NaN for what is missing or no number."""
-    factor = units.factor(name)
     if isinstance(values, np.ma.MaskedArray):
-        filled: Array = np.ma.filled(values.astype(np.float64), np.nan)
-        return filled * factor
+        values = np.ma.filled(values.astype(np.float64), np.nan)
     array = np.asarray(values)
-    if array.dtype.kind in "fiu":
-        return array if factor == 1 else array * factor
-    cells = array.reshape(-1).tolist()
-    numbers = [_number(name, cell, units, factor) for cell in cells]
-    return np.array(numbers, np.float64).reshape(array.shape)
+    cells = array.reshape(-1)
+    column = cells if array.dtype.kind in "fiu" else list(map(_cell, cells.tolist()))
+    rows = Rows(1, array.size, {name: column}, {})
+    return numbers(rows, units)[name].reshape(array.shape)
 
 
-def _number(name: str, cell: Any, units: TableUnits, factor: float) -> float:
-    if isinstance(cell, str):
-        try:
-            return doubles.double(cell) * factor
-        except ValueError:
-            pass
-        try:
-            return doubles.double(units.cell(name, cell))
-        except ValueError:
-            return float("inf") if cell.strip().lower() == "inf" else float("nan")
-    if cell is None or isinstance(cell, bool):
-        return float("nan")
+def _cell(cell: Any) -> Any:
+    """A cell of a table: the text of a number of whatever type."""
+    if isinstance(cell, str | bool) or cell is None:
+        return cell
     try:
-        return float(cell) * factor
+        return repr(float(cell))
     except (TypeError, ValueError):
-        return float("nan")
+        return None
 
 
 def _structured(frame: Array, solved: Solver) -> Array:
