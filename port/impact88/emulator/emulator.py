@@ -19,7 +19,7 @@ from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals, ke
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import to_stored
 from .machine import Machine
-from .text import INTEGER, STRING
+from .memory import INTEGER, STRING
 from .tokens import LINE_LIMIT, source, split_number, tokenise
 
 PROMPT = "]"

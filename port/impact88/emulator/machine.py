@@ -13,13 +13,11 @@ from functools import partial
 from typing import Any
 
 from ..applesoft.errorcodes import ApplesoftError
-from .editing import Editing
+from .expressions import address_of
 from .faults import Fault, Restart, TooManyStatements, placed
-from .flow import EQUAL
-from .intrinsics import address_of
-from .memory import DIRECT, INPUT_BUFFER, RTS, SPEED
+from .flow import EQUAL, Flow
+from .memory import BLANK, CLOSE, COLON, COMMA, DIRECT, INPUT_BUFFER, OPEN, RTS, SPEED
 from .screen import FLASHING, INVERSE, NORMAL
-from .text import BLANK, CLOSE, COLON, COMMA, OPEN
 from .tokens import KEYWORDS, LAST_STATEMENT
 from .variables import SUBFLG_SIMPLE
 
@@ -40,7 +38,7 @@ AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
 """What the ROM's parser leaves in the accumulator: an address."""
 
 
-class Machine(Editing):
+class Machine(Flow):
     """An Apple II Plus with 48K as far as a BASIC program can tell.
 
     ``after_line(number)`` is called each time the program leaves a line; ``broken``: whether

@@ -1,0 +1,331 @@
+"""PRINT, LIST and the messages; READ, INPUT and GET.
+
+READ, INPUT and GET take values from DATA, from a reply and from a key by the same routine. TXTPTR
+changes places between the statement's variables and the values. Each variable is found, its value
+read and stored, then what follows the value is judged; so values before a bad one stay. A string
+ends at a comma or colon unless it began with a quote; a number is whatever reads as one, and after
+it only a comma, a colon or the end will do.
+"""
+
+from __future__ import annotations
+
+from ..applesoft.console import CONTROL_C
+from ..applesoft.errorcodes import ApplesoftError
+from ..applesoft.real import Number, integer
+from .expressions import Expressions, byte_of
+from .faults import Fault, placed
+from .memory import (
+    ADDRESSES,
+    CLOSE,
+    COLON,
+    COMMA,
+    DIRECT,
+    HEADER,
+    INPUT_BUFFER,
+    MINUS,
+    QUOTE,
+    SEMICOLON,
+    is_digit,
+)
+from .screen import HEIGHT, WIDTH
+from .tokens import DATA, FIRST, TOKENS, spelling
+from .variables import IS_STRING
+
+TAB, SPC = TOKENS["TAB("], TOKENS["SPC("]
+ZONE = 16
+LAST_ZONE_FROM = 24
+"""From this column on a comma begins a new line."""
+WRAP_COLUMN = 33
+INDENT = 5
+"""LIST goes on in the next row, indented, when the cursor has reached a column after a character
+or the blank that ends a keyword."""
+LAST_NUMBER = 0xFFFF
+IN_ROM, IN_STACK_PAGE = 0xD000, 0x100
+"""Where messages and the digits of a number stand; only the page counts."""
+
+FROM_REPLY, FROM_KEY, FROM_DATA = 0, 0x40, 0x98
+"""INPFLG."""
+BAD_REPLY = 254
+BREAK_CODE = 255
+AFTER_GET = 0xFF40
+"""What a bad GET puts in place of the line number: the machine believes it is at the prompt."""
+REENTER, EXTRA_IGNORED = b"?REENTER\r", b"?EXTRA IGNORED\r"
+
+
+class InputOutput(Expressions):
+    """Output and input. ``flash`` is set in every printing character sent."""
+
+    def put(self, text: str) -> None:
+        """OUTDO: characters, high bit dropped, RETURN as newline."""
+        if self.flash or not text.isascii() or "\r" in text:
+            bit = self.flash & 0x7F
+            codes = (ord(character) & 0x7F for character in text)
+            text = "".join(chr(n | bit if n >= 32 else n) for n in codes).replace("\r", "\n")
+        self.console.put(text)
+
+    def show(self, text: bytes) -> None:
+        """STRPRT: a string's characters. A line feed moves down and leaves the column as it is."""
+        first, *others = text.decode("latin-1").split("\n")
+        self.put(first)
+        for other in others:
+            column = self.screen.column
+            self.put("\n")
+            self.screen.stay_at(column)
+            self.put(other)
+
+    def show_message(self, text: bytes, address: int = IN_ROM) -> None:
+        """STROUT: a text that is no variable's, as a temporary string. Raises FORMULA TOO
+        COMPLEX."""
+        self.used(self.temporary(0, address, address >> 8))
+        self.fac = len(text), self.fac[1], 0
+        self.show(text)
+
+    def show_number(self, x: Number) -> None:
+        """FOUT and STROUT. Raises FORMULA TOO COMPLEX."""
+        self.charac = 0
+        self.show_message(self.digits(x), IN_STACK_PAGE)
+
+    def print_(self) -> None:
+        """PRINT. Raises SYNTAX, and what its formulas do."""
+        sp = self.sp - 2
+        newline = True
+        while (byte := self.character()) and byte != COLON:
+            newline = False
+            if byte in (TAB, SPC):
+                self._skip_columns(byte, sp - 1)
+            elif byte == COMMA:
+                self.txtptr += 1
+                self._next_zone()
+            elif byte == SEMICOLON:
+                self.txtptr += 1
+            else:
+                fac = self.formula(sp - 2)
+                if self.valtyp:
+                    self.show(self.used(fac))
+                else:
+                    self.show_number(fac)
+                newline = True
+        if newline:
+            self.console.put("\n")
+
+    def _skip_columns(self, token: int, sp: int) -> None:
+        """SPC: so many blanks; TAB: up to a column, counted from 1, 0 as 256. Raises SYNTAX."""
+        self.txtptr += 1
+        columns = self.byte(sp - 2)
+        if self.character() != CLOSE:
+            raise Fault("SYNTAX", sp)
+        self.txtptr += 1
+        if token == TAB:
+            columns = (columns - 1 & 0xFF) - self.screen.column
+        if columns > 0:
+            self.put(" " * columns)
+
+    def _next_zone(self) -> None:
+        """The comma: on to the next zone, or to a new line."""
+        column = self.screen.column
+        if column >= LAST_ZONE_FROM:
+            self.put("\n")
+        else:
+            self.screen.column = column + ZONE & 0xF0
+
+    def byte(self, sp: int) -> int:
+        """GETBYT: a number from 0 to 255. Raises SYNTAX, TYPE MISMATCH, ILLEGAL QUANTITY."""
+        return byte_of(self.number(sp - 2), sp)
+
+    def htab_(self) -> None:
+        """HTAB: to a column, counted from 1, on a later line if there is none such on this one."""
+        column = self.byte(self.sp - 4) - 1 & 0xFF
+        while column >= WIDTH:
+            self.put("\n")
+            column -= WIDTH
+        self.screen.column = column
+
+    def vtab_(self) -> None:
+        """VTAB: to a row, counted from 1. Raises ILLEGAL QUANTITY past 24."""
+        row = self.byte(self.sp - 4)
+        if not 1 <= row <= HEIGHT:
+            raise Fault("ILLEGAL QUANTITY", self.sp - 2)
+        self.screen.move_to_row(row - 1)
+
+    def set_mode(self, mask: int, flash: int = 0) -> None:
+        """NORMAL, INVERSE, FLASH."""
+        self.flash = flash
+        self.screen.mask = mask
+
+    def list_(self) -> None:
+        """LIST. Raises SYNTAX for a line number past 63999."""
+        sp = self.sp - 2
+        byte = self.character()
+        if not (is_digit(byte) or self.at_end() or byte in (MINUS, COMMA)):
+            return
+        number = self.line_number(sp - 2)
+        _, line = self.find_line(number, self.txttab)
+        if not self.at_end():
+            if self.character() not in (MINUS, COMMA):
+                return
+            self.txtptr += 1
+            number = self.line_number(sp - 2)
+            if not self.at_end():
+                return
+        self._list_lines(line, number or LAST_NUMBER)
+
+    def _list_lines(self, line: int, last: int) -> None:
+        ram = self.ram
+        for _ in range(ADDRESSES):  # addresses poked may lead in a circle
+            if not ram[line + 1]:
+                break
+            self.pause()
+            self.put("\n")
+            number = self.word(line + 2)
+            if number > last:
+                break
+            self.show_number(integer(number))
+            tokens = ram[line + HEADER : ram.index(0, line + HEADER)]
+            for piece in (" ", *map(_listed, tokens)):
+                self.put(piece)
+                if self.screen.column >= WRAP_COLUMN:
+                    self.put("\n")
+                    self.screen.column = INDENT
+            line = self.word(line)
+        self.put("\n")
+
+    def refuse_direct(self, sp: int) -> None:
+        """ERRDIR. Raises ILLEGAL DIRECT at the prompt."""
+        if self.curlin >= DIRECT:
+            raise Fault("ILLEGAL DIRECT", sp)
+
+    def put_in_buffer(self, text: str) -> None:
+        """INLIN's bytes, on page 2."""
+        data = text.encode("latin-1") + b"\0"
+        self.ram[INPUT_BUFFER : INPUT_BUFFER + len(data)] = data
+
+    def read_(self) -> None:
+        """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is not a number."""
+        self._take_items(FROM_DATA, self.datptr, self.sp - 2)
+
+    def restore_(self) -> None:
+        """RESTORE: READ begins with the first DATA again."""
+        self.datptr = self.txttab - 1
+
+    def _next_data(self, sp: int) -> None:
+        """Put TXTPTR where the next DATA's text begins. Raises OUT OF DATA."""
+        ram = self.ram
+        while True:
+            self.data_()
+            if not ram[self.txtptr]:
+                if not ram[self.txtptr + 2]:
+                    raise Fault("OUT OF DATA", sp)
+                self.datlin = self.word(self.txtptr + 3)
+                self.txtptr += HEADER
+            self.txtptr += 1
+            if ram[self.txtptr] == DATA:
+                return
+
+    def input_(self) -> None:
+        """INPUT. Raises ILLEGAL DIRECT, and what a bad reply does."""
+        sp = self.sp - 2
+        if self.character() == QUOTE:
+            prompt = self.literal(self.txtptr + 1)
+            self.txtptr = self.strng2
+            self.expect(SEMICOLON, sp - 2)
+            self.show(self.used(prompt))
+        else:
+            self.put("?")
+        self.refuse_direct(sp - 2)
+        try:
+            reply = self.console.read_line()
+        except KeyboardInterrupt:
+            reply = CONTROL_C
+        self.ram[INPUT_BUFFER - 1] = COMMA
+        self.put_in_buffer(reply)
+        if reply.startswith(CONTROL_C):
+            raise KeyboardInterrupt
+        self._take_items(FROM_REPLY, INPUT_BUFFER - 1, sp)
+
+    def get_(self) -> None:
+        """GET. Raises ILLEGAL DIRECT, and SYNTAX, as if at the prompt, for a key that begins no
+        number."""
+        self.refuse_direct(self.sp - 4)
+        self.ram[INPUT_BUFFER + 1] = 0
+        self._take_items(FROM_KEY, INPUT_BUFFER + 1, self.sp - 4)
+
+    def _take_items(self, source: int, values: int, sp: int) -> None:
+        """PROCESS_INPUT_LIST: TXTPTR stands at the variables, ``values`` before the values."""
+        ram = self.ram
+        while True:
+            self.forpnt = self.variable(sp - 2)
+            variables, self.txtptr = self.txtptr, values
+            if self.at_end():
+                self._more_values(source, sp)
+            self.next_character()
+            try:
+                refused = self._take_item(source, sp)
+            except ApplesoftError as error:
+                raise placed(error, sp - 4) from None
+            if not refused and not self.at_end() and ram[self.txtptr] != COMMA:
+                refused = True
+            if refused:
+                self._refuse_value(source, sp)
+                return
+            values, self.txtptr = self.txtptr, variables
+            if self.at_end():
+                break
+            self.expect(COMMA, sp - 2)
+        if source == FROM_DATA:
+            self.datptr = values
+        elif ram[values]:
+            self.show_message(EXTRA_IGNORED)
+
+    def _more_values(self, source: int, sp: int) -> None:
+        """Where the values are used up: the next DATA, a key, or another reply."""
+        if source == FROM_DATA:
+            self._next_data(sp)
+            return
+        if source == FROM_KEY:
+            self.ram[INPUT_BUFFER] = ord(self.console.read_key()) & 0x7F
+        else:
+            self.put("??")
+            self.put_in_buffer(self.console.read_line())
+        self.txtptr = INPUT_BUFFER - 1
+
+    def _take_item(self, source: int, sp: int) -> bool:
+        """Read one value and store it; whether it is refused before it is read."""
+        if not self.valtyp:
+            if source == FROM_REPLY and not self.ram[INPUT_BUFFER]:
+                return True
+            integer_ = self.inttyp
+            value = self.numeral()
+            if integer_:
+                self.assign_integer(self.forpnt, value, sp - 2)
+                self.fac = value
+            else:
+                self.assign(self.forpnt, value)
+            return False
+        start = self.txtptr
+        if source == FROM_KEY:
+            string = self.literal(INPUT_BUFFER, 0)
+        elif self.ram[start] == QUOTE:
+            string = self.literal(start + 1)
+        else:
+            string = self.literal(start, COLON, COMMA)
+        self.txtptr = self.strng2
+        self.assign_string(self.forpnt, string)
+        self.valtyp = IS_STRING
+        return False
+
+    def _refuse_value(self, source: int, sp: int) -> None:
+        """INPUTERR. Raises SYNTAX for DATA and keys; a reply is asked for again, from where the ROM
+        noted last that a statement begins, unless ONERR is on."""
+        if source == FROM_REPLY:
+            if self.errflg & 0x80:
+                raise Fault("SYNTAX", sp, BAD_REPLY)
+            self.show_message(REENTER)
+            self.txtptr = self.oldtext
+            return
+        self.curlin = self.datlin if source == FROM_DATA else AFTER_GET
+        raise Fault("SYNTAX", sp)
+
+
+def _listed(byte: int) -> str:
+    """What LIST writes for a byte before it asks where the cursor is."""
+    return chr(byte) if byte < FIRST else f" {spelling(byte)} "
