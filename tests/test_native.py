@@ -9,14 +9,17 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import impact88
+import kernels
 from impact88 import native
 from impact88.bench.measure import enlarged
 from impact88.bench.populations import POPULATIONS, scenes, texts
+from impact88.closedform.fused import KERNELS, program_for
 from impact88.closedform.solve import FEW, TILE, quantities
 from impact88.names import RESULTS
 from impact88.replay import blocks
@@ -45,6 +48,13 @@ def assert_same_bits(compiled, alone):
 @pytest.mark.parametrize("count", [2, FEW, FEW + 1])
 def test_every_result_of_every_population(name, count):
     assert_same_bits(*both(enlarged(scenes(name, min(count, 500), 11), count), threads=1))
+
+
+def test_what_is_compiled_as_a_whole_is_what_the_formulas_say(file_regression):
+    file = Path(native.__file__).with_name("kernels.h")
+    file_regression.check(kernels.text(), fullpath=file, encoding="ascii")
+    for kinds, results in KERNELS.values():
+        assert program_for(kinds, results).kernel
 
 
 def odd(count: int, seed: int) -> dict[str, np.ndarray]:

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from impact88 import solve
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.columns import UNUSED_BY_POINTS, Buffers, examine, sources
-from impact88.closedform.solve import SHARED_TILE, plan_for
+from impact88.closedform.fused import plan_for
+from impact88.closedform.solve import SHARED_TILE
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.status import Status

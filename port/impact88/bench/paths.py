@@ -22,7 +22,8 @@ import numpy as np
 from ..accuracy.elimination import ORDER
 from ..closedform.columns import Buffers, examine, sources
 from ..closedform.degrees import sine_and_cosine
-from ..closedform.solve import TILE, plan_for, solve
+from ..closedform.fused import plan_for
+from ..closedform.solve import TILE, solve
 from ..names import RESULTS, SCENE
 from ..tables import arrow
 from .measure import enlarged, medians

@@ -258,16 +258,17 @@ ORDINARY = {name: _ordinary(name) for name in SCENE}
 looked at."""
 
 
-def ordinary_kinds(least: Mapping[str, float], most: Mapping[str, float]) -> tuple[str, ...] | None:
-    """The kinds of a block, as `examine` finds them, from the least number of each column and the
-    largest of those that may vary; None where its numbers have to be looked at."""
+def ordinary_kinds(
+    extremes: Mapping[str, Limits], fixed: Mapping[str, float]
+) -> tuple[str, ...] | None:
+    """The kinds of a block, as `examine` finds them, from the least and largest number of columns
+    and the values of the others; None where its numbers have to be looked at."""
     kinds = []
     for name, (low, high) in ORDINARY.items():
-        value = least[name]
-        largest = most.get(name, value)
-        if not (low <= value and largest <= high):  # NaN is neither
+        least, most = extremes[name] if name in extremes else (fixed[name], fixed[name])
+        if not (low <= least and most <= high):  # NaN is neither
             return None
-        kinds.append("array" if value < largest else _alike_kind(name, value))
+        kinds.append("array" if least < most else _alike_kind(name, least))
     return tuple(kinds)
 
 

@@ -1,14 +1,21 @@
-"""A plan for the compiled machine: `plan.Plan` hands numpy one operation at a time; here the same
-operations become a program of `impact88.native`, one pass over the scenes."""
+"""What is run for a kind of block and the results wanted: numpy's plan (`plan.Plan`), one operation
+at a time, or the same operations as a program of `impact88.native`, one pass over the scenes."""
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
+from functools import lru_cache
 
-from ..native.formulas import Expression
+from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE
+from ..native.formulas import Expression, ExpressionTable
 from ..native.program import Program
 from . import degrees, sinetable
+from .columns import UNUSED_BY_POINTS
+from .impact import Impact
+from .plan import Plan
+
+Kinds = tuple[str, ...]
+"""Of each column, see `closedform.columns.Block`."""
 
 
 class _Circle(ctypes.Structure):
@@ -33,13 +40,59 @@ CIRCLE = ctypes.addressof(_CIRCLE)
 """Where the machine finds it."""
 
 
-def fused(results: Mapping[str, Expression]) -> Program:
-    """The program that computes ``results``: no negative zero, and NaN for what is not finite;
-    COND alone may be infinite."""
-    # the sum of STATUS's bits becomes a whole number as it is written
-    shown = {name: e.operands[0] if e.operation == "bits" else e for name, e in results.items()}
-    endings = ["BITS" if shown[name] is not e else "RESULT" for name, e in results.items()]
-    for number, name in enumerate(results):
-        if name == "COND":
-            endings[number] = "RESULT_OR_INFINITE"
-    return Program(shown, endings)
+@lru_cache(maxsize=1024)
+def plan_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None) -> Plan:
+    """By numpy; MU's sign by line 400's rule or as `solve.quantities` has it."""
+    return Plan(_expressions(kinds, wanted, sign))
+
+
+@lru_cache(maxsize=1024)
+def program_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None) -> Program:
+    """By the compiled machine: no negative zero, and NaN for what is not finite; COND alone may be
+    infinite."""
+    results = _expressions(kinds, wanted, sign)
+    endings = ["RESULT_OR_INFINITE" if name == "COND" else "RESULT" for name in results]
+    for number, (name, e) in enumerate(results.items()):
+        if e.operation == "bits":
+            # the sum of STATUS's bits becomes a whole number as it is written
+            results[name], endings[number] = e.operands[0], "BITS"
+    return Program(results, endings)
+
+
+def _expressions(
+    kinds: Kinds, wanted: tuple[str, ...], sign: float | None
+) -> dict[str, Expression]:
+    table = ExpressionTable()
+    kind = dict(zip(SCENE, kinds, strict=True))
+    scene: dict[str, Expression] = {}
+    for name, what in kind.items():
+        if what in ("0", "1", "inf"):
+            scene[name] = table.constant(float(what))
+        elif what == "unused":
+            scene[name] = table.constant(0.0)
+        else:
+            scene[name] = table.column(name, varies=what.startswith(("array", "mixed")))
+    pivot: bool | Expression = kind["MU"] == "pivot"
+    if kind["MU"] == "mixed":
+        pivot = table.equals(scene["MU"], PIVOT)
+    point: bool | Expression = kind["M"] == "4"
+    if kind["M"] == "mixed":
+        point = table.equals(scene["M"], 4.0)
+    infinite = any("inf" in what for what in kinds)
+    impact = Impact(table, scene, pivot, point, infinite, sign)
+    return {name: getattr(impact, name) for name in wanted}
+
+
+def varying(pivot: bool, point: bool) -> Kinds:
+    """The kinds where every column varies but MU of pivots and M."""
+    unused = dict.fromkeys(UNUSED_BY_POINTS if point else (), "unused")
+    kinds = {"M": "4" if point else "6", "MU": "pivot" if pivot else "array", **unused}
+    return tuple(kinds.get(name, "array") for name in SCENE)
+
+
+KERNELS = {
+    f"{name}_{len(results)}": (varying(name == "pivot", name == "point"), results)
+    for name in ("friction", "pivot", "point")
+    for results in (FINAL_VELOCITIES, tuple(RESULTS))
+}
+"""Kinds and results of the programs that the machine has as a whole (tests/kernels.py)."""

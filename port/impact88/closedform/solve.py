@@ -6,6 +6,7 @@ point masses) with exact pi, by the closed form of `closedform.impact`.
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
@@ -17,29 +18,22 @@ from numpy.typing import NDArray
 from .. import native
 from ..errors import UserError
 from ..mappings import in_base, in_doubles
-from ..names import DEFAULT_M, PIVOT, RESULTS, SCENE
-from ..native.formulas import Expression, ExpressionTable
-from ..native.program import Program, addresses, extremes
+from ..names import PIVOT, RESULTS, SCENE
+from ..native.program import addresses, extremes
 from ..processors import processors
 from ..scene import check_mapping
 from ..status import Status
 from .columns import ORDINARY, Block, Buffers, Limits, Source, examine, ordinary_kinds, sources
-from .fused import CIRCLE, fused
-from .impact import Impact
-from .onescene import solve_one
-from .plan import Plan
+from .fused import CIRCLE, plan_for, program_for
+from .onescene import ALL, PLAIN, in_order, solve_one
 from .share import share_of
 
 Array = NDArray[Any]
 
-ALL = tuple(RESULTS)
-_NAMED = SCENE.keys() - {"M"}
-_SIX = float(DEFAULT_M)
-_PLAIN = {np.ndarray, np.float64, float, int}
 _CELLS = {str, list, tuple}
 _FLOATS = np.dtype(np.float64)
 """Of a column of texts, in which MU may be a share."""
-_ROWS = np.arange(len(RESULTS))
+_ROWS = 8 * np.arange(len(SCENE))
 TILE = 16384
 """Scenes a pass works on. Two arrays fit the second-level cache and all of them the third; numpy's
 cost of starting an operation (half a microsecond) is spread over enough scenes not to matter.
@@ -56,8 +50,8 @@ TOGETHER = 1 << 28
 instead of 12 ns a scene for the six velocities of a million) but is kept as long as one of them."""
 SHARED_SPAN = 2 * SHARED_TILE
 """Scenes a thread takes at a time."""
-WORTH_A_THREAD = 4 * SHARED_TILE
-"""Scenes for each thread from which it pays."""
+WORTH_A_THREAD = 32768
+"""Scenes for each thread from which it pays: half a millisecond of the compiled machine."""
 
 
 def solve(
@@ -122,10 +116,11 @@ def solve(
     mu = columns.get("MU")
     if type(mu) in _CELLS or getattr(mu, "dtype", _FLOATS).kind in "OUS":
         columns = _with_shares_typed(in_base(columns))
-    if out is None:
-        few = solve_one(columns, wanted)
-        if few is None and (threads or 1) == 1:
-            few = solve_plain(columns, wanted)
+    values = in_order(columns)
+    if values and wanted:
+        few = solve_one(values, wanted) if out is None else None
+        if few is None and native.library is not None:
+            few = solve_plain(values, wanted, threads, out)
         if few is not None:
             return few
     results = _solved(columns, wanted, threads, out=out)
@@ -144,13 +139,13 @@ def _solved(
     out: Mapping[str, Array] | None = None,
 ) -> dict[str, Array]:
     given, shape = sources(columns)
-    count = int(np.prod(shape, dtype=np.int64))
-    whole = _rooms([name for name in wanted if out is None or name not in out], shape)
+    count = math.prod(shape)
+    whole, _ = _rooms([name for name in wanted if out is None or name not in out], shape)
     if out is not None:
         _check_room(out, wanted, shape, [source.values for source in given.values()])
         whole |= {name: out[name] for name in wanted if name in out}
     results: dict[str, Array] = {name: whole[name].reshape(count) for name in wanted}
-    workers = _workers(count, threads) if wanted else 1
+    workers = _workers(count, threads, SHARED_SPAN) if wanted else 1
     if workers == 1:
         _Worker(given, wanted, results, TILE, sign)([(0, count)] if wanted else [])
     else:
@@ -173,17 +168,23 @@ def _solved(
     return {name: whole[name] for name in wanted}
 
 
-def _rooms(names: Sequence[str], shape: tuple[int, ...]) -> dict[str, Array]:
-    """Arrays for results."""
-    floats = [name for name in names if name != "STATUS"]
-    size = max(1, 8 * int(np.prod(shape, dtype=np.int64)))
-    many = max(1, TOGETHER // size)
+def _rooms(
+    names: Sequence[str], shape: tuple[int, ...]
+) -> tuple[dict[str, Array], NDArray[np.int64]]:
+    """Arrays for results, and where they begin."""
+    size = 8 * math.prod(shape)
+    many = max(1, TOGETHER // max(1, size))
     rooms: dict[str, Array] = {}
-    for at in range(0, len(floats), many):
-        some = floats[at : at + many]
-        together = np.empty((len(some), *shape))
-        rooms |= {name: together[i, ...] for i, name in enumerate(some)}
-    return rooms | {name: np.empty(shape, np.uint16) for name in names if name == "STATUS"}
+    where = np.empty(len(names), np.int64)
+    for at in range(0, len(names), many):
+        together = np.empty((len(names[at : at + many]), *shape))
+        rows = together if shape else [together[i, ...] for i in range(len(together))]
+        rooms.update(zip(names[at:], rows, strict=False))
+        where[at : at + many] = together.ctypes.data + size * np.arange(len(together))
+    if "STATUS" in rooms:
+        rooms["STATUS"] = np.empty(shape, np.uint16)
+        where[names.index("STATUS")] = rooms["STATUS"].ctypes.data
+    return rooms, where
 
 
 def _check_room(
@@ -210,58 +211,82 @@ def _check_room(
             raise UserError("shares memory with a column or another result", where)
 
 
-def solve_plain(columns: Mapping[str, object], wanted: tuple[str, ...]) -> dict[str, Array] | None:
-    """The results of plain columns, all of one kind, by the compiled machine in one call, so that
-    hardly anything is done column by column: `bounds` and root finders make many short calls. None
-    where the columns have to be looked at."""
-    if native.library is None or not wanted or not _NAMED <= columns.keys() <= SCENE.keys():
-        return None
-    rows: dict[str, int] = {}
-    arrays: list[Array] = []
+def solve_plain(
+    values: tuple[Any, ...],
+    wanted: tuple[str, ...],
+    threads: int | None,
+    out: Mapping[str, Array] | None,
+) -> dict[str, Array] | None:
+    """The results of plain columns, all of one kind, by one call of the compiled machine a thread,
+    so that hardly anything is done column by column: `bounds` and root finders make many short
+    calls. None where the columns have to be looked at."""
+    arrays: dict[str, Array] = {}
     fixed: dict[str, float] = {}
-    for name in SCENE:
-        value: Any = columns.get(name, _SIX)
-        if type(value) is np.ndarray and value.ndim:
-            rows[name] = len(arrays)
-            arrays.append(value)
-        elif type(value) in _PLAIN:
-            fixed[name] = float(value)
+    shape: tuple[int, ...] = ()
+    for name, value in zip(SCENE, values, strict=True):
+        if type(value) is np.ndarray:
+            if value.shape != shape and arrays:
+                return None
+            shape, arrays[name] = value.shape, value
+        elif type(value) in PLAIN:
+            fixed[name] = value
         else:
             return None
-    shape = arrays[0].shape if arrays else ()
-    count = len(arrays[0]) if len(shape) == 1 else 0
-    if not 1 < count <= WORTH_A_THREAD or any(x.shape != shape for x in arrays):
+    if len(shape) != 1 or (count := shape[0]) < 2:
         return None
     if count <= FEW:
-        if any(x.dtype.kind not in "fiub" for x in arrays):
+        try:
+            together = np.concatenate(list(arrays.values()), dtype=np.float64, casting="same_kind")
+        except TypeError:  # no numbers
             return None
-        together = np.concatenate(arrays, dtype=np.float64, casting="unsafe")
-        where = together.ctypes.data + 8 * count * _ROWS[: len(arrays)]
-    elif all(x.dtype == np.float64 and x.strides[0] == 8 for x in arrays):
-        where = addresses(arrays)
+        where = together.ctypes.data + count * _ROWS[: len(arrays)]
+    elif all(x.dtype == np.float64 and x.strides[0] == 8 for x in arrays.values()):
+        where = addresses(arrays.values())
     else:
         return None
     least, most = extremes(where, min(count, FEW))
-    fixed.update(zip(rows, least, strict=True))
-    kinds = ordinary_kinds(fixed, dict(zip(rows, most, strict=True)))
+    kinds = ordinary_kinds(dict(zip(arrays, zip(least, most, strict=True), strict=True)), fixed)
     if kinds is None:
         return None
-    limits: Sequence[tuple[int, float, float]] = ()
-    if count > FEW:
-        limits = [
-            (address, *(ORDINARY[name] if low < high else (low, high)))
-            for name, address, low, high in zip(rows, where.tolist(), least, most, strict=True)
-        ]
+    fixed.update(zip(arrays, least, strict=True))
     program = program_for(kinds, wanted)
-    results = np.empty((len(wanted), count))
-    into = results.ctypes.data + 8 * count * _ROWS[: len(wanted)]
-    by_name: dict[str, Array] = dict(zip(wanted, results, strict=True))
-    if "STATUS" in wanted:
-        by_name["STATUS"] = np.empty(count, np.uint16)
-        into[wanted.index("STATUS")] = by_name["STATUS"].ctypes.data
-    read = where[[rows[name] for name in program.columns]]
-    done = program.run(read, into, count, CIRCLE, fixed, limits)
-    return by_name if done == count else None
+    place = dict(zip(arrays, where.tolist(), strict=True))
+    read = np.array([place[name] for name in program.columns], np.int64)
+    if out is None:
+        by_name, into = _rooms(wanted, shape)
+    else:
+        by_name, into = _rooms([name for name in wanted if name not in out], shape)
+        _check_room(out, wanted, shape, list(arrays.values()))
+        by_name |= out
+        into = addresses(by_name[name] for name in wanted)
+        by_name = {name: by_name[name] for name in wanted}
+    if count <= FEW:  # all have been looked at
+        program.run(read, into, count, CIRCLE, fixed)
+        return by_name
+    limits = np.array(
+        [
+            ORDINARY[name] if low < high else (low, high)
+            for name, low, high in zip(arrays, least, most, strict=True)
+        ]
+    )
+    widths = program.width[len(read) :]
+    workers = _workers(count, threads, WORTH_A_THREAD)
+    size = -(-count // workers)
+    done = [False] * workers
+
+    def part(k: int) -> None:
+        start = k * size
+        many = min(size, count - start)
+        at, to, checked = read + 8 * start, into + widths * start, where + 8 * start
+        done[k] = program.run(at, to, many, CIRCLE, fixed, checked, limits) == many
+
+    others = [threading.Thread(target=part, args=(k,)) for k in range(1, workers)]
+    for thread in others:
+        thread.start()
+    part(0)
+    for thread in others:
+        thread.join()
+    return by_name if all(done) else None
 
 
 def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
@@ -312,10 +337,9 @@ def _known(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _workers(count: int, threads: int | None) -> int:
-    if threads is None:
-        threads = min(processors(), 1 + count // WORTH_A_THREAD)
-    return max(1, min(threads, -(-count // SHARED_SPAN)))
+def _workers(count: int, threads: int | None, share: int) -> int:
+    """How many threads, each with at least ``share`` scenes to do."""
+    return max(1, min(threads or processors(), count // share))
 
 
 class _Worker:
@@ -385,14 +409,15 @@ class _Worker:
     ) -> int:
         """By the compiled machine; returns how many scenes it has done."""
         program = program_for(block.kinds, self.wanted, self.sign)
-        where = dict(zip(columns, addresses(columns.values()).tolist(), strict=True))
+        where = dict(zip(columns, addresses(columns.values()), strict=True))
         return program.run(
             np.array([where[name] for name in program.columns], np.int64),
             addresses(array[start:stop] for array in self.results.values()),
             stop - start,
             CIRCLE,
             {name: float(values[0]) for name, values in block.fixed.items()},
-            [(where[name], *bounds) for name, bounds in limits.items()],
+            np.array([where[name] for name in limits], np.int64),
+            np.array(list(limits.values()), np.float64),
         )
 
     def run_plan(self, block: Block, start: int, stop: int) -> None:
@@ -416,42 +441,3 @@ class _Worker:
             if name != "STATUS" and not np.isfinite(result.sum()):
                 # NaN by one set of bits; COND alone may be infinite
                 result[np.isnan(result) if name == "COND" else ~np.isfinite(result)] = np.nan
-
-
-@lru_cache(maxsize=1024)
-def plan_for(kinds: tuple[str, ...], wanted: tuple[str, ...], sign: float | None = None) -> Plan:
-    """The plan for a kind of block (see `closedform.columns.Block`) and the results wanted, with
-    MU's sign by line 400's rule or as `quantities` has it."""
-    return Plan(_expressions(kinds, wanted, sign))
-
-
-@lru_cache(maxsize=1024)
-def program_for(
-    kinds: tuple[str, ...], wanted: tuple[str, ...], sign: float | None = None
-) -> Program:
-    """`plan_for`, for the compiled machine."""
-    return fused(_expressions(kinds, wanted, sign))
-
-
-def _expressions(
-    kinds: tuple[str, ...], wanted: tuple[str, ...], sign: float | None
-) -> dict[str, Expression]:
-    table = ExpressionTable()
-    kind = dict(zip(SCENE, kinds, strict=True))
-    scene: dict[str, Expression] = {}
-    for name, what in kind.items():
-        if what in ("0", "1", "inf"):
-            scene[name] = table.constant(float(what))
-        elif what == "unused":
-            scene[name] = table.constant(0.0)
-        else:
-            scene[name] = table.column(name, varies=what.startswith(("array", "mixed")))
-    pivot: bool | Expression = kind["MU"] == "pivot"
-    if kind["MU"] == "mixed":
-        pivot = table.equals(scene["MU"], PIVOT)
-    point: bool | Expression = kind["M"] == "4"
-    if kind["M"] == "mixed":
-        point = table.equals(scene["M"], 4.0)
-    infinite = any("inf" in what for what in kinds)
-    impact = Impact(table, scene, pivot, point, infinite, sign)
-    return {name: getattr(impact, name) for name in wanted}

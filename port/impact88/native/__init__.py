@@ -37,8 +37,9 @@ def _declared(found: ctypes.CDLL) -> ctypes.CDLL:
     found.survey.argtypes = [address, number, number, address]
     found.run.argtypes = [
         *(address, number, number, address, address, number, number, address, number),
-        *(address, address, number, number, address, address, number),
+        *(address, address, number, number, address, address, number, address),
     ]
+    found.kernel_of.argtypes, found.kernel_of.restype = [ctypes.c_uint64], address
     found.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
     found.write_numbers.argtypes = [address, number, address, address]
     found.instructions.restype = found.operations.restype = ctypes.c_char_p

@@ -29,35 +29,75 @@
 #define STRIP 128
 #endif
 
-/* Numbers of columns that are in cache anyway: half a megabyte. */
-#define CACHED 65536
-
-/* Strips by which memory is fetched ahead, into the second-level cache (the first is too
-   small, and one strip too late): 33 to 19 ns a scene where columns come from memory. */
-#define AHEAD 2
+/* Strips whose columns are looked at before any is computed: long runs through memory are what the
+   processor fetches ahead by itself, and so many scenes' columns stay in the second-level cache. */
+#ifndef AT_ONCE
+#define AT_ONCE 32
+#endif
 
 /* Values a program may keep at a time. */
 #define PLACES 1024
 
 #define LOOP for (int i = 0; i < lanes; i++)
 #if defined(__GNUC__) && !defined(__clang__)
-#define EACH _Pragma("GCC ivdep") LOOP
+#define INDEPENDENT _Pragma("GCC ivdep")
 #elif defined(__clang__)
-#define EACH _Pragma("clang loop vectorize(assume_safety)") LOOP
+#define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else
-#define EACH __pragma(loop(ivdep)) LOOP
+#define INDEPENDENT __pragma(loop(ivdep))
 #endif
+#define EACH INDEPENDENT LOOP
 
-/* Each operation, by the name that expressions have for it. */
+/* Each operation, by the name that expressions have for it; what it makes of one scene's numbers stands
+   below. A condition is 1 or 0, a number's sign of zero counts for nothing. */
+#define UNARIES(X) X(NEGATIVE) X(ABSOLUTE) X(SQRT) X(NOT) X(RESULT) X(RESULT_OR_INFINITE)
+#define BINARIES(X) \
+    X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(AGAINST) X(EQUAL) X(LESS) X(LESS_OR_EQUAL) X(EITHER) X(BOTH)
+#define TERNARIES(X) X(PRODUCT_PLUS) X(PRODUCT_MINUS) X(MINUS_PRODUCT) X(CHOOSE)
+#define QUATERNARIES(X) X(PRODUCTS_PLUS) X(PRODUCTS_MINUS)
 #define OPERATIONS(X) \
-    X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(NEGATIVE) X(ABSOLUTE) X(SQRT) \
-    X(PRODUCT_PLUS) X(PRODUCT_MINUS) X(MINUS_PRODUCT) X(PRODUCTS_PLUS) X(PRODUCTS_MINUS) \
-    X(SINE_AND_COSINE) X(AGAINST) X(CHOOSE) \
-    X(EQUAL) X(LESS) X(LESS_OR_EQUAL) X(EITHER) X(BOTH) X(NOT) \
+    UNARIES(X) BINARIES(X) TERNARIES(X) QUATERNARIES(X) X(SINE_AND_COSINE) X(BITS) X(COPY) \
     X(REAL_ROUNDED) X(REAL_ADD) X(REAL_SUBTRACT) X(REAL_MULTIPLY) X(REAL_DIVIDE) X(REAL_INT) \
     X(REAL_LESS) X(REAL_FRACTION) X(REAL_EXPONENT) X(REAL_HALVED) X(REAL_WHOLE) X(REAL_SCALED) \
-    X(REAL_ORDINARY) X(ODD) \
-    X(RESULT) X(RESULT_OR_INFINITE) X(COPY) X(BITS)
+    X(REAL_ORDINARY) X(ODD)
+
+#define NEGATIVE(a) (-(a))
+#define ABSOLUTE(a) fabs(a)
+#define SQRT(a) sqrt(a)
+#define NOT(a) ((a) == 0)
+#define RESULT(a) ((a) - (a) == 0.0 ? (a) + 0.0 : NAN) /* no negative zero, one NaN for all that is none */
+#define RESULT_OR_INFINITE(a) ((a) == (a) ? (a) + 0.0 : NAN)
+#define ADD(a, b) ((a) + (b))
+#define SUBTRACT(a, b) ((a) - (b))
+#define MULTIPLY(a, b) ((a) * (b))
+#define DIVIDE(a, b) ((a) / (b))
+#define AGAINST(a, b) ((b) > 0.0 ? -(a) : (a))
+#define EQUAL(a, b) ((a) == (b))
+#define LESS(a, b) ((a) < (b))
+#define LESS_OR_EQUAL(a, b) ((a) <= (b))
+#define EITHER(a, b) (((a) != 0) | ((b) != 0))
+#define BOTH(a, b) (((a) != 0) & ((b) != 0))
+#define PRODUCT_PLUS(a, b, c) ((a) * (b) + (c))
+#define PRODUCT_MINUS(a, b, c) ((a) * (b) - (c))
+#define MINUS_PRODUCT(a, b, c) ((c) - (a) * (b))
+#define CHOOSE(a, b, c) ((a) != 0 ? (b) : (c))
+#define PRODUCTS_PLUS(a, b, c, d) ((a) * (b) + (c) * (d))
+#define PRODUCTS_MINUS(a, b, c, d) ((a) * (b) - (c) * (d))
+#define BITS(a) ((uint16_t)(int32_t)(a))
+/* sin a and cos a of an angle in degrees, as closedform/degrees.py */
+#define SINE_AND_COSINE(a, sine, cosine) \
+    do { \
+        double shifted = (a) * circle->per_step + circle->shift; \
+        int64_t index; \
+        memcpy(&index, &shifted, 8); \
+        index &= circle->steps - 1; \
+        double x = circle->turn[index], y = circle->turn[index + circle->steps / 4]; \
+        double rest = (a) - (shifted - circle->shift) * circle->step, square = rest * rest; \
+        double small = ((square * circle->s2 + circle->s1) * square + circle->s0) * rest; \
+        double less = (square * circle->c2 + circle->c1) * square; \
+        sine = x + (y * small + x * less); \
+        cosine = y + (y * less - x * small); \
+    } while (0)
 
 #define NAME(name) name,
 #define TEXT(name) #name " "
@@ -69,7 +109,7 @@ typedef struct {
     int32_t place[5]; /* operands, then where the value goes */
 } step;
 
-/* sin k + r, cos k + r of an angle in degrees: see closedform/degrees.py, the same operations. */
+/* What sines and cosines are made of. */
 typedef struct {
     const double *turn;
     double per_step, step, shift;
@@ -80,51 +120,27 @@ typedef struct {
 #include "reals.h"
 
 static inline __attribute__((always_inline)) void perform(
-    const step *steps, int64_t count, double *const *place, const circle *circle,
-    char *const *next, int64_t ahead, int64_t columns, int64_t *odd, const int lanes)
+    const step *steps, int64_t count, double *const *place, const circle *circle, int64_t *odd,
+    const int lanes)
 {
-    int64_t pace = columns ? count / columns : 0, wait = pace;
     for (const step *s = steps; s < steps + count; s++) {
-        if (pace && --wait == 0 && columns--) {
-            const char *column = *next++ + ahead;
-            for (int i = 0; i < STRIP * 8; i += 64) __builtin_prefetch(column + i, 0, 2);
-            wait = pace;
-        }
         const double *a = place[s->place[0]], *b = place[s->place[1]];
         const double *c = place[s->place[2]], *d = place[s->place[3]];
         double *o;
         switch (s->operation) {
-#define UNARY(name, value) case name: o = (double *)b; EACH o[i] = (value); break;
-#define BINARY(name, value) case name: o = (double *)c; EACH o[i] = (value); break;
-#define TERNARY(name, value) case name: o = (double *)d; EACH o[i] = (value); break;
-#define QUATERNARY(name, value) \
-    case name: o = place[s->place[4]]; EACH o[i] = (value); break;
-        BINARY(ADD, a[i] + b[i])
-        BINARY(SUBTRACT, a[i] - b[i])
-        BINARY(MULTIPLY, a[i] * b[i])
-        BINARY(DIVIDE, a[i] / b[i])
-        UNARY(NEGATIVE, -a[i])
-        UNARY(ABSOLUTE, fabs(a[i]))
-        UNARY(SQRT, sqrt(a[i]))
-        TERNARY(PRODUCT_PLUS, a[i] * b[i] + c[i])
-        TERNARY(PRODUCT_MINUS, a[i] * b[i] - c[i])
-        TERNARY(MINUS_PRODUCT, c[i] - a[i] * b[i])
-        QUATERNARY(PRODUCTS_PLUS, a[i] * b[i] + c[i] * d[i])
-        QUATERNARY(PRODUCTS_MINUS, a[i] * b[i] - c[i] * d[i])
-        BINARY(AGAINST, b[i] > 0.0 ? -a[i] : a[i])
-        TERNARY(CHOOSE, a[i] != 0.0 ? b[i] : c[i])
-        /* a condition is 1 or 0 */
-        BINARY(EQUAL, a[i] == b[i] ? 1.0 : 0.0)
-        BINARY(LESS, a[i] < b[i] ? 1.0 : 0.0)
-        BINARY(LESS_OR_EQUAL, a[i] <= b[i] ? 1.0 : 0.0)
-        BINARY(EITHER, a[i] + b[i] != 0.0 ? 1.0 : 0.0)
-        BINARY(BOTH, a[i] * b[i])
-        UNARY(NOT, 1.0 - a[i])
+#define UNARY(name) case name: o = (double *)b; EACH o[i] = name(a[i]); break;
+#define BINARY(name) case name: o = (double *)c; EACH o[i] = name(a[i], b[i]); break;
+#define TERNARY(name) case name: o = (double *)d; EACH o[i] = name(a[i], b[i], c[i]); break;
+#define QUATERNARY(name) \
+    case name: o = place[s->place[4]]; EACH o[i] = name(a[i], b[i], c[i], d[i]); break;
+        UNARIES(UNARY) BINARIES(BINARY) TERNARIES(TERNARY) QUATERNARIES(QUATERNARY)
+#define REAL_1(name, value) case name: o = (double *)b; EACH o[i] = (value); break;
+#define REAL_2(name, value) case name: o = (double *)c; EACH o[i] = (value); break;
         /* the Apple's reals: see reals.h */
-        UNARY(REAL_ROUNDED, real_rounded(a[i]))
-        BINARY(REAL_ADD, ordinary(real_add(a[i], b[i]), odd + i))
-        BINARY(REAL_SUBTRACT, ordinary(real_add(a[i], -b[i]), odd + i))
-        BINARY(REAL_DIVIDE, ordinary(real_divide(a[i], b[i]), odd + i))
+        REAL_1(REAL_ROUNDED, real_rounded(a[i]))
+        REAL_2(REAL_ADD, ordinary(real_add(a[i], b[i]), odd + i))
+        REAL_2(REAL_SUBTRACT, ordinary(real_add(a[i], -b[i]), odd + i))
+        REAL_2(REAL_DIVIDE, ordinary(real_divide(a[i], b[i]), odd + i))
         case REAL_MULTIPLY: { /* never into an operand's place, so that it can be done again */
             int64_t defects = 0;
             o = (double *)c;
@@ -136,45 +152,41 @@ static inline __attribute__((always_inline)) void perform(
                 LOOP if (has_defect(b[i])) o[i] = ordinary(real_multiply_bytes(a[i], b[i]), odd + i);
             break;
         }
-        UNARY(REAL_INT, real_int(a[i]))
-        BINARY(REAL_LESS, real_less(a[i], b[i]))
-        UNARY(REAL_FRACTION, real_fraction(a[i]))
-        UNARY(REAL_EXPONENT, real_exponent(a[i]))
-        BINARY(REAL_HALVED, real_halved(a[i], b[i], odd + i))
-        UNARY(REAL_WHOLE, floor(real_cut(a[i])))
-        BINARY(REAL_SCALED, ordinary(real_scaled(a[i], b[i]), odd + i))
-        UNARY(REAL_ORDINARY, ordinary(a[i], odd + i))
-        UNARY(ODD, odd[i] || a[i] != 0.0 ? 1.0 : 0.0)
-        UNARY(COPY, a[i])
-        /* a result: no negative zero, and one NaN for all that is none */
-        UNARY(RESULT, a[i] - a[i] == 0.0 ? a[i] + 0.0 : NAN)
-        UNARY(RESULT_OR_INFINITE, a[i] == a[i] ? a[i] + 0.0 : NAN)
+        REAL_1(REAL_INT, real_int(a[i]))
+        REAL_2(REAL_LESS, real_less(a[i], b[i]))
+        REAL_1(REAL_FRACTION, real_fraction(a[i]))
+        REAL_1(REAL_EXPONENT, real_exponent(a[i]))
+        REAL_2(REAL_HALVED, real_halved(a[i], b[i], odd + i))
+        REAL_1(REAL_WHOLE, floor(real_cut(a[i])))
+        REAL_2(REAL_SCALED, ordinary(real_scaled(a[i], b[i]), odd + i))
+        REAL_1(REAL_ORDINARY, ordinary(a[i], odd + i))
+        REAL_1(ODD, odd[i] || a[i] != 0.0 ? 1.0 : 0.0)
+        REAL_1(COPY, a[i])
         case BITS: {
             uint16_t *bits = (uint16_t *)b;
-            EACH bits[i] = (uint16_t)(int32_t)a[i];
+            EACH bits[i] = BITS(a[i]);
             break;
         }
         case SINE_AND_COSINE: {
             double *sine = (double *)b, *cosine = (double *)c;
-            const double *turn = circle->turn;
-            const int64_t last = circle->steps - 1, quarter = circle->steps / 4;
-            EACH {
-                double shifted = a[i] * circle->per_step + circle->shift;
-                int64_t index;
-                memcpy(&index, &shifted, 8);
-                index &= last;
-                double x = turn[index], y = turn[index + quarter];
-                double rest = a[i] - (shifted - circle->shift) * circle->step;
-                double square = rest * rest;
-                double small = ((square * circle->s2 + circle->s1) * square + circle->s0) * rest;
-                double less = (square * circle->c2 + circle->c1) * square;
-                sine[i] = x + (y * small + x * less);
-                cosine[i] = y + (y * less - x * small);
-            }
+            EACH SINE_AND_COSINE(a[i], sine[i], cosine[i]);
             break;
         }
         }
     }
+}
+
+/* Programs that are used most, each compiled as a whole: the same operations on numbers that stay in
+   registers. A program that has changed since is none of them. */
+typedef void (*kernel)(double *const *place, const circle *circle, int64_t eights);
+#define EACH_OF_EIGHTS INDEPENDENT for (int64_t i = 0; i < 8 * eights; i++)
+#include "kernels.h"
+
+EXPORT kernel kernel_of(uint64_t digest)
+{
+#define FOUND(name, its) if (digest == its) return name;
+    KERNELS(FOUND)
+    return 0;
 }
 
 /* Runs a program over ``count`` scenes and returns how many were done: fewer where a column left
@@ -185,42 +197,50 @@ static inline __attribute__((always_inline)) void perform(
    stay: first ``scalars``, numbers that are the same for all scenes; what the ``once`` first steps
    make of them; and what the other steps need in between. ``room`` has a strip for each place.
 
+   whole: what does the same as all steps, or 0.
+
    checked: columns of which every number must lie between limits[2k] and limits[2k + 1]. */
 EXPORT CLONES int64_t run(
     const step *steps, int64_t once, int64_t length,
     char *const *given, const int64_t *width, int64_t read, int64_t moving,
     const double *scalars, int64_t scalar_count,
     const double *const *checked, const double *limits, int64_t checks,
-    int64_t count, const circle *circle, double *room, int64_t places)
+    int64_t count, const circle *circle, double *room, int64_t places, kernel whole)
 {
     double *place[PLACES];
     int64_t odd[STRIP] = {0};
     for (int64_t p = 0; p < places; p++) place[p] = room + p * STRIP;
-    for (int64_t k = 0; k < scalar_count; k++)
-        for (int i = 0; i < STRIP; i++) place[moving + k][i] = scalars[k];
-    perform(steps, once, place, circle, given, 0, 0, odd, STRIP);
+    const int lanes = STRIP;
+    if (!whole) {
+        for (int64_t k = 0; k < scalar_count; k++)
+            LOOP place[moving + k][i] = scalars[k];
+        perform(steps, once, place, circle, odd, STRIP);
+    }
     int64_t always[STRIP]; /* what the scenes share makes all of them odd */
     memcpy(always, odd, sizeof odd);
-    const int lanes = STRIP;
-    int64_t fetched = count * read > CACHED ? moving : 0;
+    int64_t looked = 0;
     for (int64_t start = 0; start < count; start += STRIP) {
         int64_t many = count - start < STRIP ? count - start : STRIP;
-        for (int64_t k = 0; k < checks; k++) {
-            const double *x = checked[k] + start, least = limits[2 * k], most = limits[2 * k + 1];
-            int64_t outside = 0;
-            for (int64_t i = 0; i < many; i++) outside |= !((x[i] >= least) & (x[i] <= most));
-            if (outside) return start;
+        int64_t full = many == STRIP, eights = (many + 7) / 8, padded = whole ? 8 * eights : STRIP;
+        if (start >= looked) {
+            looked = count - start < AT_ONCE * STRIP ? count : start + AT_ONCE * STRIP;
+            for (int64_t k = 0; k < checks; k++) {
+                const double *x = checked[k], least = limits[2 * k], most = limits[2 * k + 1];
+                int64_t outside = 0;
+                for (int64_t i = start; i < looked; i++) outside |= !((x[i] >= least) & (x[i] <= most));
+                if (outside) return start;
+            }
         }
-        int whole = many == STRIP;
         memcpy(odd, always, sizeof odd);
         for (int64_t p = 0; p < moving; p++) {
             char *here = given[p] + start * width[p];
-            place[p] = whole ? (double *)here : room + p * STRIP;
-            if (!whole && p < read)
-                LOOP place[p][i] = ((double *)here)[i < many ? i : 0];
+            place[p] = full ? (double *)here : room + p * STRIP;
+            if (!full && p < read)
+                for (int i = 0; i < padded; i++) place[p][i] = ((double *)here)[i < many ? i : 0];
         }
-        perform(steps + once, length - once, place, circle, given, (start + AHEAD * STRIP) * 8, whole ? fetched : 0, odd, STRIP);
-        for (int64_t p = read; p < moving && !whole; p++)
+        if (whole) whole(place, circle, eights);
+        else perform(steps + once, length - once, place, circle, odd, STRIP);
+        for (int64_t p = read; p < moving && !full; p++)
             memcpy(given[p] + start * width[p], place[p], (size_t)(many * width[p]));
     }
     return count;

@@ -8,6 +8,7 @@ with that sum, each still rounded by itself.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -54,7 +55,6 @@ class Program:
 
     def __init__(self, results: Mapping[str, Any], endings: Sequence[str]) -> None:
         assert native.library is not None
-        self._codes = _codes()
         order = in_order(list(results.values()))
         self.results = list(results)
         self.columns = [str(e.value) for e in order if e.operation == "column" and e.varies]
@@ -64,31 +64,38 @@ class Program:
         for e in order:
             if e.operation == "column" and e.varies:
                 self._place[id(e)] = len(self._place)
-        self._moving = len(self.columns) + len(results)
+        self.moving = len(self.columns) + len(results)
         for number, e in enumerate(leaves):
-            self._place[id(e)] = self._moving + number
-        self._taken = self._moving + len(leaves)
+            self._place[id(e)] = self.moving + number
+        self.places = self.moving + len(leaves)
         self._free: list[int] = []
-        self._steps: list[list[int]] = []
+        self.steps: list[tuple[str, tuple[int, ...]]] = []
         work = [e for e in order if e.operation not in ("column", "constant")]
         once = [e for e in work if not e.varies]
         often = [e for e in work if e.varies]
         self._write(once, [*results.values(), *(x for e in often for x in e.operands)])
-        self._once = len(self._steps)
+        self.once = len(self.steps)
         self._write(often, list(results.values()))
         for number, (e, ending) in enumerate(zip(results.values(), endings, strict=True)):
             self._step(ending, self._place[id(e)], len(self.columns) + number)
-        if self._taken > native.library.most_places():
-            raise MemoryError(f"a program of {self._taken} values")
-        self._code = np.array(self._steps, np.int32)
+        if self.places > native.library.most_places():
+            raise MemoryError(f"a program of {self.places} values")
+        codes = _codes()
+        code = [[codes[name], *places, *[0] * (5 - len(places))] for name, places in self.steps]
+        self.code = np.array(code, np.int32)
         widths = [8] * len(self.columns) + [2 if ending == "BITS" else 8 for ending in endings]
-        self._width = np.array(widths, np.int64)
-        self._code_at, self._width_at = self._code.ctypes.data, self._width.ctypes.data
-        self._values = np.array([0.0 if isinstance(x, str) else x for x in self.scalars], float)
-        self._rooms: list[Array] = []
+        self.width = np.array(widths, np.int64)
+        self._rooms: list[Room] = []
+        self.kernel = native.library.kernel_of(self.digest)
+
+    @property
+    def digest(self) -> int:
+        """By what the machine knows a program that it has as a whole."""
+        text = repr((self.columns, self.results, self.scalars, self.steps)).encode()
+        return int.from_bytes(hashlib.blake2b(text, digest_size=8).digest())
 
     def _step(self, name: str, *places: int) -> None:
-        self._steps.append([self._codes[name], *places, *[0] * (5 - len(places))])
+        self.steps.append((name, places))
 
     def _write(self, work: Sequence[Any], kept: Sequence[Any]) -> None:
         """Append the steps for ``work``, each value in a strip of its own for as long as it is
@@ -119,8 +126,8 @@ class Program:
             elif e.operation not in _APART:
                 release(operands, e)
             for value in made:
-                place = self._free.pop() if self._free else self._taken
-                self._taken = max(self._taken, place + 1)
+                place = self._free.pop() if self._free else self.places
+                self.places = max(self.places, place + 1)
                 self._place[id(value)] = own[id(value)] = place
             self._step(name, *places, *(self._place[id(value)] for value in made))
             if e.operation in _APART:
@@ -162,13 +169,6 @@ class Program:
                 fused[id(e)] = ("PRODUCT_PLUS" if plus else "MINUS_PRODUCT"), (right,)
         return fused
 
-    def _room(self) -> Array:
-        """Working memory, for one thread at a time."""
-        size = self._taken * native.STRIP
-        block = np.empty(size + 8)
-        start = -block.ctypes.data % 64 // 8  # at the start of a cache line
-        return block[start : start + size]
-
     def run(
         self,
         columns: Addresses,
@@ -176,43 +176,52 @@ class Program:
         count: int,
         circle: int = 0,
         fixed: Mapping[str, float] = {},
-        limits: Sequence[tuple[int, float, float]] = (),
+        checked: Addresses | None = None,
+        limits: Array | None = None,
     ) -> int:
         """Run it over ``count`` scenes. ``columns``, ``results``: of float64 columns (of uint16 for
         bits), in the program's order; ``fixed``: the columns that do not vary; ``circle``: where
         sines come from, see `closedform.fused`.
 
-        Returns how many scenes were done: all, or those before the strip in which a column of
-        ``limits`` (address, least, most) leaves them.
+        Returns how many scenes were done: all, or those before the strips among which one of the
+        columns ``checked`` leaves its ``limits``, an array of the least and the most of each.
         """
         assert native.library is not None
-        values = self._values
+        room = self._rooms.pop() if self._rooms else Room(self)
+        room.moving[: len(columns)] = columns
+        room.moving[len(columns) :] = results
         if fixed:
-            values = np.array([fixed[x] if isinstance(x, str) else x for x in self.scalars], float)
-        moving = np.concatenate([columns, results])
-        checked = np.array([address for address, *_ in limits], np.int64)
-        bounds = np.array([bounds for _, *bounds in limits], np.float64)
-        room = self._rooms.pop() if self._rooms else self._room()
-        done: int = native.library.run(
-            self._code_at,
-            self._once,
-            len(self._code),
-            moving.ctypes.data,
-            self._width_at,
-            len(columns),
-            self._moving,
-            values.ctypes.data,
-            len(values),
-            checked.ctypes.data,
-            bounds.ctypes.data,
-            len(checked),
-            count,
-            circle,
-            room.ctypes.data,
-            self._taken,
-        )
+            room.values[:] = [fixed[x] if isinstance(x, str) else x for x in self.scalars]
+        done: int = native.library.run(*room.arguments(checked, limits, count, circle))
         self._rooms.append(room)
         return done
+
+
+class Room:
+    """Working memory of a program, for one thread at a time, and what the machine gets to know of
+    both."""
+
+    def __init__(self, program: Program) -> None:
+        self.moving = np.empty(program.moving, np.int64)
+        self.values = np.array([0.0 if isinstance(x, str) else x for x in program.scalars], float)
+        self._block = np.empty(program.places * native.STRIP + 8)
+        start = self._block.ctypes.data + -self._block.ctypes.data % 64  # of a cache line
+        code, width = program.code, program.width
+        self._program = (
+            *(code.ctypes.data, program.once, len(code)),
+            *(self.moving.ctypes.data, width.ctypes.data, len(program.columns), program.moving),
+            *(self.values.ctypes.data, len(self.values)),
+        )
+        self._memory = (start, program.places, program.kernel)
+
+    def arguments(
+        self, checked: Addresses | None, limits: Array | None, count: int, circle: int
+    ) -> Sequence[int]:
+        """What the machine's ``run`` takes."""
+        looked_at = 0, 0, 0
+        if checked is not None and limits is not None:
+            looked_at = checked.ctypes.data, limits.ctypes.data, len(checked)
+        return (*self._program, *looked_at, count, circle, *self._memory)
 
 
 @cache
