@@ -302,13 +302,19 @@ class Impact:
         return self.Ired * kx, self.Ired * ky
 
     @cached_property
-    def _xy_w(self) -> Pair:
-        """(w, ct) along x and y: the approach of the mass centers and e gn n."""
+    def _rebound(self) -> Pair:
+        """e gn n along x and y."""
         (dx, dy), (c, s), (a, b) = self._approach, self._n, self._xy_arms
         gx = dx + a[0] * self.WA + b[0] * self.WB
         gy = dy + a[1] * self.WA + b[1] * self.WB
         rebound = self.E * (c * gx + s * gy)
-        return dx + c * rebound, dy + s * rebound
+        return c * rebound, s * rebound
+
+    @cached_property
+    def _xy_w(self) -> Pair:
+        """(w, ct) along x and y: the approach of the mass centers and the rebound."""
+        (dx, dy), (rx, ry) = self._approach, self._rebound
+        return dx + rx, dy + ry
 
     @cached_property
     def _xy_crossed(self) -> Pair:
@@ -333,47 +339,87 @@ class Impact:
 
     @cached_property
     def _across(self) -> Pair:
-        """JR sigma x (w, ct) and (w, ct) x kappa / R, which the mean spin drops out of."""
+        """sigma x (w, ct) and (w, ct) x kappa, which the mean spin drops out of."""
         (sx, sy), (kx, ky), (wx, wy) = self._xy_sigma, self._xy_kappa, self._xy_w
-        return self._JR * (sx * wy - sy * wx), self._R_inverse * (ky * wx - kx * wy)
+        return sx * wy - sy * wx, ky * wx - kx * wy
+
+    @cached_property
+    def _zJ(self) -> Expression:
+        return self.z * self.J
+
+    @cached_property
+    def _levers(self) -> Pair:
+        """a x b (Ia + Ib) and a x b J/R."""
+        return self._spins * self._arms_cross, self._JR * self._arms_cross
+
+    @cached_property
+    def _pivot_parts(self) -> Pair:
+        """The determinant of the three equations, divided by R: what the masses give of it, z R,
+        and what the arms do, z J sigma·sigma - em Ired (kappa·kappa + ...), sums of squares without
+        cancellation however slight R is."""
+        (sx, sy), (kx, ky), (tx, ty) = self._xy_sigma, self._xy_kappa, self._xy_Ired_kappa
+        arms = tx * kx + ty * ky + self._levers[0] * self._levers[1]
+        return self.z * self.R, self._zJ * (sx * sx + sy * sy) - self.EM * arms
 
     @cached_property
     def _pivot_determinant(self) -> Expression:
-        """The determinant of the three equations, divided by R: z det Q - em Ired kappa·adj
-        Q·kappa, each a sum of squares, without cancellation however slight R is."""
-        (sx, sy), (kx, ky), (tx, ty) = self._xy_sigma, self._xy_kappa, self._xy_Ired_kappa
-        RQ = self.R + self.J * (sx * sx + sy * sy)
-        crossed = self._JR * self._arms_cross * (self._spins * self._arms_cross)
-        return self.z * RQ - self.EM * (tx * kx + ty * ky + crossed)
+        masses, arms = self._pivot_parts
+        return masses + arms
 
     @cached_property
-    def _pivot_numerators(self) -> Pair:
-        """The impulse times the determinant, along x and y."""
+    def _pivot_rest(self) -> Pair:
+        """R P times the determinant, along x and y, without the approach of the mass centers, which
+        is -z R times it; of bodies without arms only the rebound is left."""
         (sx, sy), (kx, ky), (tx, ty) = self._xy_sigma, self._xy_kappa, self._xy_Ired_kappa
-        (wx, wy), (Xx, Xy), mean = self._xy_w, self._xy_crossed, self._mean_spin
-        lever, turn = self._R_inverse * (self._spins * self._arms_cross), self._turn
-        along, k_across = self.z * self._across[0], self._across[1]
-        x = self.EM * (turn * kx + lever * Xy + ty * k_across) - self.z * (wx + sx * mean)
-        y = self.EM * (turn * ky - lever * Xx - tx * k_across) - self.z * (wy + sy * mean)
+        (Xx, Xy), mean, (rx, ry) = self._xy_crossed, self._mean_spin, self._rebound
+        lever, turn, masses = self._levers[0], self._turn * self.R, self._pivot_parts[0]
+        along, k_across = self._zJ * self._across[0], self._across[1]
+        x = self.EM * (turn * kx + lever * Xy + ty * k_across) - masses * (rx + sx * mean)
+        y = self.EM * (turn * ky - lever * Xx - tx * k_across) - masses * (ry + sy * mean)
         return x + sy * along, y - sx * along
 
     @cached_property
+    def _pivot_numerators(self) -> Pair:
+        """R P times the determinant, along x and y."""
+        (x, y), (dx, dy), masses = self._pivot_rest, self._approach, self._pivot_parts[0]
+        return x - masses * dx, y - masses * dy
+
+    @cached_property
     def _pivot_ratio(self) -> Pair:
-        """The impulse times the determinant, along n and t."""
+        """The same along n and t."""
         (c, s), (x, y) = self._n, self._pivot_numerators
         return c * x + s * y, c * y - s * x
 
     @cached_property
     def _pivot_xy(self) -> Pair:
         """The impulse for no tangential relative velocity at separation, along x and y."""
-        x, y = self._pivot_numerators
-        return x / self._pivot_determinant, y / self._pivot_determinant
+        (x, y), divisor = self._pivot_numerators, self.R * self._pivot_determinant
+        return x / divisor, y / divisor
 
     @cached_property
     def _pivot(self) -> Pair:
         """The same along n and t."""
         (c, s), (x, y) = self._n, self._pivot_xy
         return c * x + s * y, c * y - s * x
+
+    @cached_property
+    def _shares(self) -> Pair:
+        """Of A and B in a change of the relative velocity of the mass centers."""
+        return self._ma * self._R_inverse, self._mb * self._R_inverse
+
+    @cached_property
+    def _pivot_short(self) -> Expression:
+        """Whether the arms are short enough for `_velocity` to build on the common velocity."""
+        masses, arms = self._pivot_parts
+        return arms < masses
+
+    @cached_property
+    def _pivot_relative(self) -> Pair:
+        """The relative velocity of the mass centers after the impact, along x and y, where the arms
+        are short, else its change."""
+        (x, y), (dx, dy), (masses, arms) = self._pivot_rest, self._approach, self._pivot_parts
+        part = self.table.choose(self._pivot_short, arms, -masses)
+        return (x + part * dx) / self._pivot_determinant, (y + part * dy) / self._pivot_determinant
 
     # -- denominators, for whoever has to know where results are infinite
 
@@ -401,18 +447,17 @@ class Impact:
     def _final_mean(self) -> Expression:
         """The mean spin after the impact, not the sum of what it was and what the impulse adds:
         where an arm is far longer than the radii of gyration, these nearly cancel."""
-        kept = self.R * self._mean_spin
 
         def friction() -> Expression:
-            left = kept - self._J_sigma_mu * self.w
+            left = self.R * self._mean_spin - self._J_sigma_mu * self.w
             return (self.z * left + self._em_kappa * self._crossed_mu) / self._friction[1]
 
         def pivot() -> Expression:
             (sx, sy), (kx, ky), (wx, wy) = self._xy_sigma, self._xy_kappa, self._xy_w
             Xx, Xy = self._xy_crossed
-            turned = kx * Xx + ky * Xy - self.J * (self._arms_cross * self._across[1])
-            left = kept - self.J * (sx * wx + sy * wy)
-            return (self.z * left + self.EM * turned) / self._pivot_determinant
+            turned = kx * Xx + ky * Xy - self._levers[1] * self._across[1]
+            left = self._pivot_parts[0] * self._mean_spin - self._zJ * (sx * wx + sy * wy)
+            return (left + self.EM * turned) / self._pivot_determinant
 
         return self._by_kind(friction, pivot)
 
@@ -429,7 +474,7 @@ class Impact:
             (sx, sy), (tx, ty), (wx, wy) = self._xy_sigma, self._xy_Ired_kappa, self._xy_w
             Xx, Xy = self._xy_crossed
             pushed = tx * wx + ty * wy - self._turn * self.R
-            turned = sx * Xx + sy * Xy + self._arms_cross * self._across[0]
+            turned = sx * Xx + sy * Xy + self._levers[1] * self._across[0]
             return (pushed - turned) / self._pivot_determinant
 
         return self._unless_point(self._by_kind(friction, pivot))
@@ -445,49 +490,57 @@ class Impact:
         return (1.0 - self.EM) * self._moment
 
     @cached_property
-    def _xy(self) -> Pair:
+    def _friction_xy(self) -> Pair:
         """The impulse on A along x and y."""
+        (c, s), pn, pt = self._n, self._friction_Pn, self.mu * self._friction_Pn
+        return c * pn - s * pt, s * pn + c * pt
 
-        def of_friction(i: int) -> Expression:
-            (c, s), pn, pt = self._n, self._friction_Pn, self.mu * self._friction_Pn
-            return s * pn + c * pt if i else c * pn - s * pt
+    def _velocity(self, body: str, i: int) -> Expression:
+        """A final velocity of the center along x (0) or y (1).
 
-        x, y = (
-            self._by_kind(lambda: of_friction(0), lambda: self._pivot_xy[0]),
-            self._by_kind(lambda: of_friction(1), lambda: self._pivot_xy[1]),
-        )
-        return x, y
+        A light body that hardly rebounds from a heavy one keeps little of its velocity, and its
+        change has rounding errors of the size of what it lost; the common velocity and a share of
+        the final relative one have not. Where arms are long, they would spoil a small change.
+        """
+        ux, vx = (self.UX, self.VX) if i == 0 else (self.UY, self.VY)
+        own = ux if body == "A" else vx
 
-    def _change(self, inverse_mass: Expression) -> Pair:
-        """A velocity change along x and y, with A's sign."""
-        x, y = self._xy
-        return inverse_mass * x, inverse_mass * y
+        def friction() -> Expression:
+            change = self._friction_xy[i]
+            return own + self._ma * change if body == "A" else own - self._mb * change
 
-    @cached_property
-    def _change_a(self) -> Pair:
-        return self._change(self._ma)
+        def pivot() -> Expression:
+            of_a, of_b = self._shares
+            base = self.table.choose(self._pivot_short, of_b * ux + of_a * vx, own)
+            change = self._pivot_relative[i]
+            return base + of_a * change if body == "A" else base - of_b * change
 
-    @cached_property
-    def _change_b(self) -> Pair:
-        return self._change(self._mb)
+        return self._by_kind(friction, pivot)
+
+    def _change_size(self, inverse_mass: Expression) -> Expression:
+        """Of a center's velocity, by operations that every machine rounds alike."""
+        x = self._by_kind(lambda: self._friction_xy[0], lambda: self._pivot_xy[0])
+        y = self._by_kind(lambda: self._friction_xy[1], lambda: self._pivot_xy[1])
+        dx, dy = inverse_mass * x, inverse_mass * y
+        return self.table.root(dx * dx + dy * dy)
 
     # -- after impact
 
     @cached_property
     def VAX(self) -> Expression:
-        return self.UX + self._change_a[0]
+        return self._velocity("A", 0)
 
     @cached_property
     def VAY(self) -> Expression:
-        return self.UY + self._change_a[1]
+        return self._velocity("A", 1)
 
     @cached_property
     def VBX(self) -> Expression:
-        return self.VX - self._change_b[0]
+        return self._velocity("B", 0)
 
     @cached_property
     def VBY(self) -> Expression:
-        return self.VY - self._change_b[1]
+        return self._velocity("B", 1)
 
     @cached_property
     def WAF(self) -> Expression:
@@ -600,10 +653,6 @@ class Impact:
 
     # -- sizes and coefficients of the result
 
-    def _size(self, x: Expression, y: Expression) -> Expression:
-        """The length of a vector, by operations that every machine rounds alike."""
-        return self.table.root(x * x + y * y)
-
     @cached_property
     def VC(self) -> Expression:
         return -self.gn
@@ -615,11 +664,11 @@ class Impact:
 
     @cached_property
     def DVA(self) -> Expression:
-        return self._size(*self._change_a)
+        return self._change_size(self._ma)
 
     @cached_property
     def DVB(self) -> Expression:
-        return self._size(*self._change_b)
+        return self._change_size(self._mb)
 
     @cached_property
     def MUP(self) -> Expression:
@@ -656,7 +705,7 @@ class Impact:
         def pivot() -> Expression:
             crossed = self._spins * (an * bt + at * bn)
             moment = self.Ired * (kn * kn + kt * kt)
-            moment = moment + absolute(self._JR * self._arms_cross) * crossed
+            moment = moment + absolute(self._levers[1]) * crossed
             sx, sy = self._xy_sigma
             straight = self.R + self.J * (sx * sx + sy * sy)
             terms = absolute(self.z) * straight + absolute(self.EM) * moment

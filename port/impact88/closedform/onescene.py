@@ -215,4 +215,7 @@ def _formula(operation: str, operands: Sequence[str]) -> str:
     if operation == "against":
         value, slip = operands
         return f"-{value} if {slip} > 0.0 else {value}"
+    if operation == "choose":
+        where, chosen, other = operands
+        return f"{chosen} if {where} else {other}"
     return f"{operation}({', '.join(operands)})"
