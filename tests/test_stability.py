@@ -254,7 +254,7 @@ def best_scaled_condition(A):
 def test_what_a_light_body_keeps_beside_a_heavy_one():
     """Central, without rebound: both end with the common velocity, here all but a hundred
     thousandth of A's lost; its change alone would have rounding errors of 1e5 of them."""
-    g = {name: 0.0 for name in SCENE} | {"M": 6.0, "MU": -10.0, "EM": -0.3, "GA": 20.0}
+    g = dict.fromkeys(SCENE, 0.0) | {"M": 6.0, "MU": -10.0, "EM": -0.3, "GA": 20.0}
     g |= {"MA": 91.7, "IA": 1701.3, "MB": 3.1e13, "IB": 7.7e14, "UX": -80.7, "VX": 1.3e-3}
     g |= {"UY": 33.3, "VY": -7.1e-4}
     found = solve(g, FINAL_VELOCITIES)
