@@ -77,41 +77,28 @@ class _ArrowReader(Reader):
 
 
 @contextmanager
-def read_parquet(path: str) -> Iterator[Reader]:
-    """Open a Parquet file. Raises UserError if it is not one."""
-    pa = pyarrow("Parquet")
-    from pyarrow import parquet
+def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
+    """Open a Parquet or Arrow file. Raises UserError if it is not one."""
+    pa = pyarrow("this format")
+    with _arrows_errors(path):
+        if form == "parquet":
+            from pyarrow import parquet
 
-    with _arrows_errors(path), parquet.ParquetFile(_named(path), memory_map=True) as file:
-        yield _ArrowReader(
-            file.schema_arrow.names,
-            file.metadata.num_rows,
-            file.iter_batches(BLOCK, use_threads=pa.cpu_count() > 1),
-            path,
-        )
-
-
-@contextmanager
-def read_feather(path: str) -> Iterator[Reader]:
-    """Open an Arrow file. Raises UserError if it is not one."""
-    pa = pyarrow("an Arrow file")
-    with _arrows_errors(path), pa.memory_map(_named(path)) as source:
-        file = pa.ipc.open_file(source)
-
-        def batches() -> Iterator[Any]:
-            for number in range(file.num_record_batches):
-                batch = file.get_batch(number)
-                for first in range(0, batch.num_rows, BLOCK):
-                    yield batch.slice(first, BLOCK)
-
-        rows = sum(file.get_batch(n).num_rows for n in range(file.num_record_batches))
-        yield _ArrowReader(file.schema.names, rows, batches(), path)
-
-
-def _named(path: str) -> str:
-    if path == "-":
-        raise UserError("this format cannot be read from standard input; expected a file")
-    return path
+            with parquet.ParquetFile(path, memory_map=True) as file:
+                batches = file.iter_batches(BLOCK, use_threads=pa.cpu_count() > 1)
+                count = file.metadata.num_rows
+                yield _ArrowReader(file.schema_arrow.names, count, batches, path)
+        else:
+            with pa.memory_map(path) as source:
+                file = pa.ipc.open_file(source)
+                numbers = range(file.num_record_batches)
+                slices = (
+                    batch.slice(first, BLOCK)
+                    for batch in map(file.get_batch, numbers)
+                    for first in range(0, batch.num_rows, BLOCK)
+                )
+                count = sum(batch.num_rows for batch in map(file.get_batch, numbers))
+                yield _ArrowReader(file.schema.names, count, slices, path)
 
 
 @contextmanager
@@ -130,9 +117,10 @@ class _ArrowWriter(Writer):
 
     kind = "a table of typed columns"
 
-    def __init__(self, file: IO[bytes], *columns: Any) -> None:
+    def __init__(self, file: IO[bytes], form: str, *columns: Any) -> None:
         super().__init__(*columns)
-        self._file = file
+        self._file, self._form = file, form
+        self._schema: Any = None
         self._writer: Any = None
 
     def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
@@ -142,17 +130,26 @@ class _ArrowWriter(Writer):
         arrays += [pa.array(results[name]) for name in self.results]
         table = pa.table(arrays, list(map(_encodable, self.headings)))
         if self._writer is None:
-            self._writer = self.open(table.schema)
-        self._writer.write_table(table.cast(self._writer.schema))
+            self._open(table.schema)
+        self._writer.write_table(table.cast(self._schema))
 
-    def open(self, schema: Any) -> Any:
-        raise NotImplementedError
+    def _open(self, schema: Any) -> None:
+        import pyarrow as pa
+        from pyarrow import parquet
+
+        self._schema = schema
+        if self._form == "parquet":
+            # measured numbers hardly repeat: a dictionary of them takes thrice the time and room
+            repeating = [field.name for field in schema if not pa.types.is_floating(field.type)]
+            self._writer = parquet.ParquetWriter(self._file, schema, use_dictionary=repeating)
+        else:
+            self._writer = pa.ipc.new_file(self._file, schema)
 
     def close(self) -> None:
         if self._writer is None:  # no row at all
             import pyarrow as pa
 
-            self._writer = self.open(pa.schema([(name, pa.float64()) for name in self.headings]))
+            self._open(pa.schema([(name, pa.float64()) for name in self.headings]))
         self._writer.close()
 
 
@@ -172,33 +169,11 @@ def _encodable(text: str) -> str:
     return text if text.isascii() else text.encode("utf-8", ESCAPED).decode("utf-8")
 
 
-class _ParquetWriter(_ArrowWriter):
-    def open(self, schema: Any) -> Any:
-        import pyarrow as pa
-        from pyarrow import parquet
-
-        # measured numbers hardly repeat: a dictionary of them takes thrice the time and more room
-        repeating = [field.name for field in schema if not pa.types.is_floating(field.type)]
-        return parquet.ParquetWriter(self._file, schema, use_dictionary=repeating)
-
-
-class _FeatherWriter(_ArrowWriter):
-    def open(self, schema: Any) -> Any:
-        import pyarrow as pa
-
-        writer = pa.ipc.new_file(self._file, schema)
-        writer.schema = schema
-        return writer
-
-
 @contextmanager
-def write_arrow(path: str, form: str, *columns: Any) -> Iterator[Writer]:
-    """Write a Parquet or Arrow file, see `tables.table.open_writer`."""
+def write(path: str, form: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
+    """Write a Parquet or Arrow file."""
     pyarrow("this format")
-    if path == "-":
-        raise UserError(f"{form} is not for standard output; expected -o FILE.{form}")
-    kind = _ParquetWriter if form == "parquet" else _FeatherWriter
     with replacing(path, "wb") as file:
-        writer = kind(file, *columns)
+        writer = _ArrowWriter(file, form, *columns)
         yield writer
         writer.close()

@@ -301,7 +301,7 @@ def _with_points(column: Column) -> Column:
 
 
 @contextmanager
-def read_csv(path: str, encoding: str | None = None) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a CSV table. Raises UserError if it cannot be read as one."""
     with open_text(path, encoding) as file:
         yield _CsvReader(file)
@@ -386,7 +386,7 @@ def _quoted_rows(arrays: Sequence[Any], delimiter: str) -> bytes:
 
 
 @contextmanager
-def write_csv(path: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
-    """Write a CSV table, see `tables.table.open_writer`."""
+def write(path: str, form: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
+    """Write a CSV table."""
     with writing(path) as file:
         yield _CsvWriter(file, delimiter, *columns)

@@ -10,7 +10,7 @@ import os
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from itertools import chain, islice
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -104,30 +104,34 @@ def _text(cell: Any) -> str:
 
 
 @contextmanager
-def read_excel(path: str) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a workbook. Raises UserError if it is not one, or unpacks to more than it may."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
-    try:
+    with _parsing(path):
         with zipfile.ZipFile(path) as archive:
             check_unpacked(archive.infolist(), os.path.getsize(path), path)
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         rows = book.worksheets[0].iter_rows(values_only=True)
-        rows = chain([next(rows, ())], rows)
-    except OSError as error:
-        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
-    except UserError:
-        raise
-    except Exception as error:  # whatever its parsers raise on arbitrary bytes
-        raise UserError(f"is not an .xlsx workbook: {quoted(str(error))}", path) from None
+
+    def checked() -> Iterator[tuple[Any, ...]]:
+        with _parsing(path):
+            yield from rows
+
     try:
-        yield _ExcelReader(_checked(rows, path), path)
+        yield _ExcelReader(checked(), path)
     finally:
         book.close()
 
 
-def _checked(rows: Iterator[tuple[Any, ...]], path: str) -> Iterator[tuple[Any, ...]]:
+@contextmanager
+def _parsing(path: str) -> Iterator[None]:
+    """Whatever openpyxl raises on arbitrary bytes is a UserError."""
     try:
-        yield from rows
+        yield
+    except OSError as error:
+        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
+    except UserError:
+        raise
     except Exception as error:
         raise UserError(f"is not an .xlsx workbook: {quoted(str(error))}", path) from None
 
@@ -163,11 +167,9 @@ def _cell(value: Any) -> Any:
 
 
 @contextmanager
-def write_excel(path: str, *columns: Any) -> Iterator[Writer]:
-    """Write a workbook, see `tables.table.open_writer`."""
+def write(path: str, form: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
+    """Write a workbook."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
-    if path == "-":
-        raise UserError("xlsx is not for standard output; expected -o FILE.xlsx")
     book = openpyxl.Workbook(write_only=True)
     writer = _ExcelWriter(book.create_sheet("impact88"), *columns)
     with replacing(path, "wb") as file:

@@ -108,7 +108,7 @@ class _JsonReader(Reader):
 
 
 @contextmanager
-def read_json_lines(path: str, encoding: str | None = None) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a JSON Lines table. Raises UserError if it cannot be read."""
     with open_text(path, encoding) as file:
         yield _JsonReader(file.lines())
@@ -158,7 +158,7 @@ class _JsonWriter(Writer):
 
 
 @contextmanager
-def write_json_lines(path: str, *columns: Any) -> Iterator[Writer]:
-    """Write a JSON Lines table, see `tables.table.open_writer`."""
+def write(path: str, form: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
+    """Write a JSON Lines table."""
     with writing(path) as file:
         yield _JsonWriter(file, *columns)

@@ -165,10 +165,8 @@ class _NpzReader(Reader):
 
 
 @contextmanager
-def read_npz(path: str) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open an .npz table. Raises UserError if it is not one, or holds Python objects."""
-    if path == "-":
-        raise UserError("an .npz table cannot be read from standard input; expected a file")
     yield _NpzReader(read_arrays(path), path)
 
 
@@ -207,10 +205,8 @@ def _array(name: str, column: Column) -> NDArray[Any]:
 
 
 @contextmanager
-def write_npz(path: str, *columns: Any) -> Iterator[Writer]:
-    """Write an .npz table, see `tables.table.open_writer`."""
-    if path == "-" and sys.stdout.isatty():
-        raise UserError("an .npz table is not for a terminal; expected -o FILE.npz")
+def write(path: str, form: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
+    """Write an .npz table."""
     writer = _NpzWriter(*columns)
     yield writer
     if path == "-":

@@ -7,8 +7,11 @@ them, so that what the file held is passed through as it stood. Memory does not 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
+from importlib import import_module
+from types import ModuleType
 
 from ..errors import UserError
 from ..names import SCENE
@@ -27,6 +30,11 @@ FORMATS = {
     ".xlsx": "xlsx",
 }
 """File name ending -> format."""
+_MODULES = {
+    **{"csv": "csvtable", "jsonl": "jsontable", "npz": "npztable", "xlsx": "excel"},
+    **dict.fromkeys(("parquet", "feather"), "arrowtable"),
+}
+_TEXTS = ("csv", "jsonl")
 
 
 def format_of(path: str, given: str | None) -> str:
@@ -50,27 +58,12 @@ def open_reader(
 
     ``encoding``: of a CSV or of JSON Lines that are not UTF-8.
     """
-    if encoding is not None and form not in ("csv", "jsonl"):
+    if encoding is not None and form not in _TEXTS:
         raise UserError(f"--encoding is for text; {form} has its own")
-    if form == "csv":
-        from .csvtable import read_csv
-
-        return read_csv(path, encoding)
-    if form == "jsonl":
-        from .jsontable import read_json_lines
-
-        return read_json_lines(path, encoding)
-    if form == "npz":
-        from .npztable import read_npz
-
-        return read_npz(path)
-    if form == "xlsx":
-        from .excel import read_excel
-
-        return read_excel(path)
-    from .arrowtable import read_feather, read_parquet
-
-    return (read_parquet if form == "parquet" else read_feather)(path)
+    if path == "-" and form not in _TEXTS:
+        raise UserError(f"{form} cannot be read from standard input; expected a file")
+    opened: AbstractContextManager[Reader] = _module(form).read(path, form, encoding)
+    return opened
 
 
 def open_writer(
@@ -79,24 +72,19 @@ def open_writer(
     """Open a table for writing ``results`` after the columns of ``source`` (its scene columns only
     if ``scene_too``; a column named like a result gives way to it). The file appears under its name
     when all is written."""
+    if path == "-" and form not in _TEXTS and (form != "npz" or sys.stdout.isatty()):
+        place = "a terminal" if form == "npz" else "standard output"
+        raise UserError(f"{form} is not for {place}; expected -o FILE.{form}")
     dropped = {*results, *(() if scene_too else SCENE)}
-    columns = ([name for name in source.names if name not in dropped], results, dropped)
-    if form == "csv":
-        from .csvtable import write_csv
+    kept = [name for name in source.names if name not in dropped]
+    write = _module(form).write
+    opened: AbstractContextManager[Writer] = write(
+        path, form, source.delimiter, kept, results, dropped
+    )
+    return opened
 
-        return write_csv(path, source.delimiter, *columns)
-    if form == "jsonl":
-        from .jsontable import write_json_lines
 
-        return write_json_lines(path, *columns)
-    if form == "npz":
-        from .npztable import write_npz
-
-        return write_npz(path, *columns)
-    if form == "xlsx":
-        from .excel import write_excel
-
-        return write_excel(path, *columns)
-    from .arrowtable import write_arrow
-
-    return write_arrow(path, form, *columns)
+def _module(form: str) -> ModuleType:
+    """The module of a format, which has ``read(path, form, encoding)`` and ``write(path, form,
+    delimiter, *columns)``; each imports what it needs."""
+    return import_module(f"{__package__}.{_MODULES[form]}")
