@@ -67,7 +67,10 @@ def with_estimates(
         else:
             inertia = _of_weight(mass, name, source, units)
             how[name] = "1.03 W - 1206 for passenger cars, from the weight alone"
-        values[name] = _four_digits(inertia) + text.removeprefix(WORD)
+        digits = f"{inertia:.4g}"
+        if "e" in digits:
+            digits = repr(float(digits)).removesuffix(".0").upper()
+        values[name] = digits + text.removeprefix(WORD)
     return values, how, outlines
 
 
@@ -98,11 +101,6 @@ def _of_weight(mass: float, name: str, source: str, units: str | None) -> float:
             source,
         )
     return (_SLOPE * weight - _OFFSET) * float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))
-
-
-def _four_digits(value: float) -> str:
-    text = f"{value:.4g}"
-    return text if "e" not in text else repr(float(text)).removesuffix(".0").upper()
 
 
 def remarks(how: Mapping[str, str], values: Mapping[str, str]) -> dict[str, str]:

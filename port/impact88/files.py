@@ -209,7 +209,9 @@ def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[An
         with file:
             yield file
         return
-    beside = _beside(target)
+    folder, name = os.path.split(target)
+    # at most 255 bytes if that name has
+    beside = os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
     # its name is known before it is there: a signal at any moment finds what to remove
     try:
         try:
@@ -234,12 +236,6 @@ def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[An
         with suppress(OSError):
             os.unlink(beside)
         raise
-
-
-def _beside(target: str) -> str:
-    """An unused name in the folder of ``target``; at most 255 bytes if that one has."""
-    folder, name = os.path.split(target)
-    return os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
 
 
 def _private(path: str, flags: int) -> int:
@@ -296,21 +292,17 @@ def check_apart(inputs: Iterable[str], outputs: Mapping[str, str | None]) -> Non
     for name, path in outputs.items():
         if path is None or path == "-":
             continue
-        if os.path.isdir(path) and any(map(_within(path), inputs)):
-            raise UserError(
-                f"{name} names the folder of a file that is read; expected another", path
-            )
+        if os.path.isdir(path):
+            root = os.path.join(os.path.realpath(path), "")
+            if any(p != "-" and os.path.realpath(p).startswith(root) for p in inputs):
+                raise UserError(
+                    f"{name} names the folder of a file that is read; expected another", path
+                )
         if (place := _place(path)) is None:
             continue
         if place in places:
             raise UserError(f"{name} names {places[place]}; expected another name", path)
         places[place] = f"the file of {name} too"
-
-
-def _within(folder: str) -> Callable[[str], bool]:
-    """Whether a path leads to somewhere in a folder."""
-    root = os.path.join(os.path.realpath(folder), "")
-    return lambda path: path != "-" and os.path.realpath(path).startswith(root)
 
 
 def _place(path: str) -> tuple[Any, ...] | None:

@@ -27,8 +27,6 @@ from __future__ import annotations
 
 import argparse
 
-from ..errors import UserError
-from ..scene import known_template
 from ..stderr import note
 from . import options
 
@@ -47,11 +45,8 @@ def main(args: argparse.Namespace) -> int:
     from ..reconstruction.solutiontable import show
     from ..uncertainty.uncertain import fixed
 
-    if args.template:
-        print(known_template(KNOWABLE))
+    if options.template_printed(args, KNOWABLE):
         return 0
-    if options.source_of(args) is None and not args.set:
-        raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..units import system_of
 
     given, named = options.known_within_limits(args, KNOWABLE, single=True)

@@ -60,7 +60,7 @@ class Terminal:
         self.last = ""
         self._raw = raw
         self._terminal = sys.stdout.isatty()
-        self._row = ""
+        self.row = ""  # what stands in the last row of the output
         if self.typing:
             with suppress(ImportError):
                 import readline  # noqa: F401  (line editing and history in input())
@@ -68,7 +68,7 @@ class Terminal:
     def show(self, text: str) -> None:
         """Characters for the screen; a terminal gets no control characters it would act on, a
         pipe or a file the page a person reads, unless --raw asks for all."""
-        self._row = (self._row + text).rpartition("\n")[2][-200:]
+        self.row = (self.row + text).rpartition("\n")[2][-200:]
         if self._terminal:
             text = "".join(c for c in text if c >= " " or c in _SHOWN_CONTROLS)
         elif not self._raw:
@@ -89,8 +89,8 @@ class Terminal:
     def _ask(self) -> str | None:
         """A line with the terminal's editing; what stands in the row is given as the prompt, so
         that editing does not wipe it out."""
-        prompt = "".join(c for c in self._row if c >= " ")
-        self._row = ""
+        prompt = "".join(c for c in self.row if c >= " ")
+        self.row = ""
         if prompt:
             sys.stdout.write("\r")
             sys.stdout.flush()
@@ -100,11 +100,6 @@ class Terminal:
             return None
         except UnicodeDecodeError:
             raise UserError("contains bytes that are not text", called("-")) from None
-
-    @property
-    def row_begun(self) -> bool:
-        """Whether something stands in the last row of the output."""
-        return bool(self._row)
 
 
 @contextmanager
@@ -179,7 +174,8 @@ def _session(machine: Applesoft, terminal: Terminal, args: argparse.Namespace) -
             print(BANNER.format("RUN starts it" if args.program else "RUN starts the 1988 listing"))
         machine.prompt(None if args.no_dos else lambda line: _disk_command(machine, terminal.last))
         print()
-    _tell_refused(machine)
+    for what in machine.machine.refused:
+        note("basic", f"{what} is not supported: text only, no machine code")
     return status
 
 
@@ -201,14 +197,9 @@ def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
 
 
 def _end_row(terminal: Terminal) -> None:
-    if terminal.row_begun:
+    if terminal.row:
         print()
     sys.stdout.flush()
-
-
-def _tell_refused(machine: Applesoft) -> None:
-    for what in machine.machine.refused:
-        note("basic", f"{what} is not supported: text only, no machine code")
 
 
 def _disk_command(machine: Applesoft, line: str) -> bool:

@@ -117,7 +117,11 @@ def _skipping(arguments: argparse.Namespace) -> int:
         record["outputs"] = paths.selections(PATH_SCENES, repeats)
         record["floor"] = paths.floor(PATH_SCENES, repeats)
     if arguments.files:
-        record["files"] = paths.doors(FILE_ROWS, _solve_file)
+        from ..cli import main as command_line
+
+        record["files"] = paths.doors(
+            FILE_ROWS, lambda path, to: command_line(["solve", path, "-o", to])
+        )
     if arguments.sizes:
         record["sizes"] = paths.sizes(SIZES, repeats)
     machine = measure.machine()
@@ -126,13 +130,6 @@ def _skipping(arguments: argparse.Namespace) -> int:
     else:
         print("\n\n".join([tables.machine(machine), *map(tables.listing, record.values())]))
     return 0
-
-
-def _solve_file(path: str, to: str) -> None:
-    """`impact88 solve`, as the command line does it."""
-    from ..cli import main as command_line
-
-    command_line(["solve", path, "-o", to])
 
 
 def _print_json(record: dict[str, Any]) -> None:

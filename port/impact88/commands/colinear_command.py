@@ -17,7 +17,6 @@ import argparse
 import math
 
 from ..errors import UserError
-from ..scene import known_template
 from ..units import System, system_of, written
 from . import options
 
@@ -32,10 +31,10 @@ def main(args: argparse.Namespace) -> int:
     """Print the velocities that were not given, and what follows from them."""
     from ..chapter.colinear import colinear, colinear_inverse
 
-    if args.template:
-        print(known_template((*COMMON, *BEFORE, *AFTER)))
+    knowable = (*COMMON, *BEFORE, *AFTER)
+    if options.template_printed(args, knowable):
         return 0
-    known, named = options.known_values(args, (*COMMON, *BEFORE, *AFTER))
+    known, named = options.known_values(args, knowable)
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
     if before and after:
         raise UserError(

@@ -121,7 +121,7 @@ def _lines(comparison: Comparison) -> Iterator[str]:
     loose = comparison.elimination
     if loose.rows:
         yield ""
-        lost = _digits_lost(loose.worst_relative)
+        lost = max(0, round(math.log10(max(loose.worst_relative, DOUBLE) / DOUBLE)))
         yield f"{loose.rows} rows agree only as closely as plain elimination in double can there;"
         yield (
             f"the worst, row {loose.worst_row}, has lost {lost} of 16 digits (the best of programs "
@@ -174,7 +174,3 @@ def _equations(comparison: Comparison) -> Iterator[str]:
     elif comparison.equations:
         yield ""
         yield "their final velocities violate none of Equations 13 to 18"
-
-
-def _digits_lost(relative: float) -> int:
-    return max(0, round(math.log10(max(relative, DOUBLE) / DOUBLE)))

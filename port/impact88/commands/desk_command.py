@@ -28,11 +28,9 @@ def main(args: argparse.Namespace) -> int:
     """Serve the page until it is interrupted."""
     from ..desk.serving import serve
 
-    serve(args.port, not args.no_browser, _tell)
+    def announce(address: str) -> None:
+        print(address, flush=True)
+        print("Control-C ends the desk", file=sys.stderr, flush=True)
+
+    serve(args.port, not args.no_browser, announce)
     return 0
-
-
-def _tell(address: str) -> None:
-    """The address is the result; how to end is talk."""
-    print(address, flush=True)
-    print("Control-C ends the desk", file=sys.stderr, flush=True)

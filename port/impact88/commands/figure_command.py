@@ -30,6 +30,7 @@ examples:
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
@@ -75,13 +76,21 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _drawn(args: argparse.Namespace) -> Drawing:
+    from ..figures import charts, configurations, freebody
+
     kind = args.kind
     given = bool(args.scene or args.sample)
-    if kind in OF_NOTHING and (given or args.set or args.ranges):
-        raise UserError(f"{kind} is drawn from the chapter alone and takes no scene")
+    alone: dict[str, Callable[[], Drawing]] = {
+        "staged": charts.figure_5,
+        "force": charts.force_and_impulse,
+        "colinear": freebody.colinear,
+        "configurations": configurations.configurations,
+    }
+    if kind in alone:
+        if given or args.set or args.ranges:
+            raise UserError(f"{kind} is drawn from the chapter alone and takes no scene")
+        return alone[kind]()
     if kind in OF_RANGES:
-        from ..figures import charts
-
         draw = charts.histograms if kind == "histogram" else charts.tornado
         outputs = args.outputs
         if kind == "tornado" and not outputs:
@@ -96,35 +105,18 @@ def _drawn(args: argparse.Namespace) -> Drawing:
         )
     if kind == "barrier":
         return _barrier(args)
+    if kind == "planar":
+        return freebody.planar(options.one_scene(args) if given or args.set else None)
+    scene = options.one_scene(args)
     if kind == "friction":
-        from ..figures import charts
-
-        return charts.friction_sweep(options.one_scene(args))
-    if kind == "scene":
-        from ..figures.sceneview import scene_drawing
-
-        scene = options.one_scene(args)
-        return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
+        return charts.friction_sweep(scene)
     if kind == "strip":
         from ..figures.strip import strip_drawing
 
-        scene = options.one_scene(args)
         return strip_drawing(scene, solved(scene), scene.title or "Before, impact and after")
-    if kind == "planar":
-        from ..figures import freebody
+    from ..figures.sceneview import scene_drawing
 
-        return freebody.planar(options.one_scene(args) if given or args.set else None)
-    if kind == "colinear":
-        from ..figures import freebody
-
-        return freebody.colinear()
-    if kind == "configurations":
-        from ..figures.configurations import configurations
-
-        return configurations()
-    from ..figures import charts
-
-    return charts.figure_5() if kind == "staged" else charts.force_and_impulse()
+    return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
 
 
 def _barrier(args: argparse.Namespace) -> Drawing:

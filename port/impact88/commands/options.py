@@ -28,6 +28,7 @@ from ..scene import (
     entries_in,
     in_base_units,
     is_share,
+    known_template,
     sample,
 )
 from ..stderr import note
@@ -48,25 +49,17 @@ MOST_DRAWS = 100_000_000
 class InputFile(str):
     """The type of an argument that names a file to read; ``-`` is standard input."""
 
-    __slots__ = ()
-
 
 class InputFolder(str):
     """The type of an argument that names a folder whose files are read."""
-
-    __slots__ = ()
 
 
 class OutputFile(str):
     """The type of an argument that names a file to write; ``-`` is standard output."""
 
-    __slots__ = ()
-
 
 class OutputFolder(str):
     """The type of an argument that names a folder to write into."""
-
-    __slots__ = ()
 
 
 # --- declarations --------------------------------------------------------------------------------
@@ -94,8 +87,20 @@ def choice(names: str, choices: Sequence[Any], meaning: str, **keywords: Any) ->
 def count(
     name: str, least: int, most: int, meaning: str, metavar: str = "N", default: int | None = None
 ) -> Argument:
-    """An option whose value is a whole number within limits."""
-    return value(name, metavar, meaning, type=whole_number(least, most), default=default)
+    """An option whose value is a whole number within limits, which the message says."""
+
+    def read(text: str) -> int:
+        try:
+            number = int(text)
+        except ValueError:
+            number = least - 1
+        if not least <= number <= most:
+            raise argparse.ArgumentTypeError(
+                f"{quoted(text)} is not a whole number from {least:,} to {most:,}"
+            )
+        return number
+
+    return value(name, metavar, meaning, type=read, default=default)
 
 
 def flag(name: str, meaning: str) -> Argument:
@@ -151,23 +156,6 @@ def renamed(old: str, new: str) -> Argument:
 def json_option(meaning: str = "one JSON object") -> Argument:
     """The option ``--json``."""
     return flag("--json", f"print {meaning}")
-
-
-def whole_number(low: int, high: int) -> Callable[[str], int]:
-    """An argument's type: a whole number within limits, which the message says."""
-
-    def read(text: str) -> int:
-        try:
-            number = int(text)
-        except ValueError:
-            number = low - 1
-        if not low <= number <= high:
-            raise argparse.ArgumentTypeError(
-                f"{quoted(text)} is not a whole number from {low:,} to {high:,}"
-            )
-        return number
-
-    return read
 
 
 def _duration(text: str) -> float:
@@ -375,31 +363,36 @@ def names_given(
 
 
 def source_of(args: argparse.Namespace) -> str | None:
-    """What messages call the scene or the file given; None where there is none."""
-    if args.scene:
-        return called(args.scene)
+    """What messages call the scene or the file given; None where there is none. Raises UserError
+    where both a file and ``--sample`` are."""
     number = getattr(args, "sample", None)
-    return f"sample {number}" if number else None
-
-
-def _check_one(args: argparse.Namespace) -> None:
-    if args.scene and (number := getattr(args, "sample", None)):
+    if args.scene and number:
         raise UserError(f"a file and --sample {number} are both given; expected one scene")
+    return called(args.scene) if args.scene else f"sample {number}" if number else None
 
 
 def entries_given(args: argparse.Namespace, single: bool = False) -> Entries | None:
     """The entries of the file or of ``--sample``, with their remarks on stderr; None where neither
     is given. Raises UserError where both are."""
-    _check_one(args)
+    if source_of(args) is None:
+        return None
     if args.scene:
         entries = entries_in(args.scene, args.units, single)
         note_remarks(entries)
         return entries
-    if source_of(args) is None:
-        return None
     entries = sample(args.sample).entries
     entries.units = args.units
     return entries
+
+
+def template_printed(args: argparse.Namespace, names: Sequence[str]) -> bool:
+    """Print a file to fill in where ``--template`` asks for it; whether it does. Raises UserError
+    where it does not and nothing is known."""
+    if args.template:
+        print(known_template(names))
+    elif source_of(args) is None and not args.set:
+        raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
+    return bool(args.template)
 
 
 def known_values(
@@ -511,20 +504,14 @@ def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
     """The scene that file or sample name, with what ``--set`` and ``--move-contact`` change; None
     where neither is given. How its entries were understood is said on stderr, and what of the
     answer is ``based`` on other units than the scene's. Raises UserError."""
-    _check_one(args)
-    if not args.scene and not args.sample:
+    if source_of(args) is None:
         return None
     units = getattr(args, "units", None)
     scene = Scene.from_toml(args.scene, units) if args.scene else sample(args.sample)
     changes = settings(args.set, units=scene.units)
     scene = scene.replaced(changes) if changes else scene
     note_remarks(scene.entries, based)
-    return with_contact_moved(scene, getattr(args, "move_contact", None))
-
-
-def with_contact_moved(scene: Scene, move: str | None) -> Scene:
-    """The scene with the contact point moved as ``--move-contact`` says. Raises UserError."""
-    if move is None:
+    if (move := getattr(args, "move_contact", None)) is None:
         return scene
     from ..reconstruction.contact import moved_texts
 

@@ -57,7 +57,7 @@ from typing import TYPE_CHECKING
 from ..errors import UserError
 from ..files import replacing
 from ..reconstruction.knowable import KNOWABLE
-from ..scene import known_template, shown_texts
+from ..scene import shown_texts
 from ..scene import template as scene_template
 from ..stderr import note
 from . import options
@@ -83,11 +83,8 @@ ARGUMENTS = (
 
 def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
-    if args.template:
-        print(known_template(KNOWABLE))
+    if options.template_printed(args, KNOWABLE):
         return 0
-    if options.source_of(args) is None and not args.set:
-        raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     from ..reconstruction.adjustment import needs_adjustment
     from ..reconstruction.frictionshare import share_resolved
     from ..reconstruction.state import QUANTITIES

@@ -105,7 +105,9 @@ def main(args: argparse.Namespace) -> int:
     replied = scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")
     replied.check_typed()
     output: list[str] = []
-    show = output.append if args.json else sys.stdout.write if args.raw else _show_page
+    show: Callable[[str], object] = output.append if args.json else sys.stdout.write
+    if not (args.json or args.raw):
+        show = lambda text: sys.stdout.write(page(text))  # noqa: E731
     if args.json and scene is None and sys.stdin.isatty():
         show = _prompting(output)
     with ExitStack() as stack:
@@ -155,10 +157,6 @@ def _run_copy(args: argparse.Namespace, scene: Scene | None) -> int:
 
 def _print_run(run: Run) -> None:
     options.print_json("run", {**run._asdict(), "floats": run.floats})
-
-
-def _show_page(text: str) -> None:
-    sys.stdout.write(page(text))
 
 
 def _typed_lines() -> Iterator[str | None]:

@@ -69,13 +69,9 @@ from ..tables.table import format_of, open_reader, open_writer
 from ..tables.tableunits import TableUnits
 from . import options
 
-
-def _list_of_results() -> str:
-    width = max(map(len, RESULTS))
-    return "\n".join(f"  {q.name:<{width}}  {q.meaning} [{q.unit}]" for q in RESULTS.values())
-
-
-__doc__ = (__doc__ or "").format(results=_list_of_results())
+__doc__ = (__doc__ or "").format(
+    results="\n".join(f"  {q.name:<6}  {q.meaning} [{q.unit}]" for q in RESULTS.values())
+)
 
 
 ARGUMENTS = (

@@ -75,7 +75,11 @@ def main(args: argparse.Namespace) -> int:
     image = read_image(args.rom, args.any_rom)
     start = time.perf_counter()
     session = Session(image.data)
-    heard = list(_hear(session, jobs))
+    heard = []
+    with progress(len(jobs), "on the ROM", lines=True) as meter:
+        for job in jobs:
+            heard.append(job(session))
+            meter.update(1)
     whole = record(image, heard, time.perf_counter() - start)
     if args.save:
         from ..witness.saving import save
@@ -121,13 +125,6 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
     if not jobs:
         raise UserError("nothing to do; expected --captures or --random above 0")
     return jobs
-
-
-def _hear(session: Session, jobs: list[Job]) -> Iterator[Heard]:
-    with progress(len(jobs), "on the ROM", lines=True) as meter:
-        for job in jobs:
-            yield job(session)
-            meter.update(1)
 
 
 def _report(image: Image, heard: list[Heard], whole: dict[str, Any]) -> Iterator[str]:

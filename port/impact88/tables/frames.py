@@ -16,7 +16,7 @@ from ..closedform.columns import UNUSED_BY_POINTS
 from ..closedform.solve import solve
 from ..errors import UserError, library
 from ..names import DEFAULT_M, SCENE
-from .rows import Rows, check_scene_columns, heading, numbers, scene_names
+from .rows import Column, Rows, check_scene_columns, heading, numbers, scene_names
 from .tableunits import TableUnits
 
 Frame = TypeVar("Frame")
@@ -76,8 +76,10 @@ def solve_frame(
         """The results of a frame's columns, by heading."""
         found = [name for name in scene_names(names) if name in SCENE]
         columns = {name: column(heading(name)) for name in found}
-        texts = {n: c for n, c in columns.items() if _dtype(c).kind not in "fiu"}
-        first = Rows(1, 0, {n: list(np.ravel(np.asarray(c))) for n, c in texts.items()}, {})
+        arrays = {n: np.asanyarray(c) for n, c in columns.items()}
+        texts: dict[str, Column]
+        texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
+        first = Rows(1, 0, texts, {})
         return solver(columns, TableUnits(found, units or getattr(scene, "units", None), first))
 
     is_dataset = type(frame).__module__.partition(".")[0] == "xarray"
@@ -91,10 +93,6 @@ def solve_frame(
     else:
         result = (_dataset if hasattr(frame, "data_vars") else _narwhals)(frame, solved)
     return cast(Frame, result)
-
-
-def _dtype(values: Any) -> np.dtype[Any]:
-    return values.dtype if isinstance(values, np.ndarray) else np.asarray(values).dtype
 
 
 def _numbers(name: str, values: Any, units: TableUnits) -> Array:

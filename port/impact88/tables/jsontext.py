@@ -23,11 +23,10 @@ class Numeral(str):
     __slots__ = ()
 
 
-def _constant(name: str) -> Numeral:
-    return Numeral({"NaN": "nan", "Infinity": "inf", "-Infinity": "-inf"}[name])
-
-
-_decode = json.JSONDecoder(parse_float=Numeral, parse_int=Numeral, parse_constant=_constant).decode
+_CONSTANTS = {name: Numeral(str(float(name))) for name in ("NaN", "Infinity", "-Infinity")}
+_decode = json.JSONDecoder(
+    parse_float=Numeral, parse_int=Numeral, parse_constant=_CONSTANTS.__getitem__
+).decode
 
 
 def read(text: str) -> Any:
