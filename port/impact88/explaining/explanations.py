@@ -10,30 +10,31 @@ share a rank: the page cannot tell them apart.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from dataclasses import field as default
-from decimal import Decimal
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..fields import FIELDS, INPUTS
+from ..doubles import double
+from ..fields import INPUTS
 from ..judging.judgement import Judged, Status, same_value
-from ..reading.numerals import value_of
+from ..reading.numerals import printable
 from ..recovery import misprints
-from ..recovery.recovered import Recovered
+from ..recovery.choices import mu_turned, scene_name
 from ..recovery.rereading import Change, Reread, Rereading
+from ..recovery.search import in_doubles
 from . import hypotheses, machines, programs
-from .predictions import Evidence
+from .predictions import NOT_APPLESOFT, Cause, Evidence, in_last_places
 
 MOST = 6
 """Explanations given at most."""
 NO_SINGLE_SLIP = "no single slip explains this"
 LABELS_EXCHANGED, LABEL_WRONG = "labels exchanged", "another label"
 _LABEL = 10.0
-"""Bits of wrong labels on numbers that are what the program prints."""
+"""Bits of wrong labels on numbers that are what the program prints: as a digit misread."""
 _LEFT = 14.0
 """Bits of a number that a cause leaves unexplained: more than of a slip besides (10 to 13.5), so
 that a cause with the slip comes before the one without."""
@@ -46,11 +47,10 @@ _ALIKE = 8.0
 """Causes that leave the same unexplained and ask for no more bits than these more share a rank."""
 _WORSE = 15.0
 """What asks for so many bits more than the best is no cause."""
-_GOOD, _MORE = 16.0, 10.0
-"""Up to so many bits nothing further is looked for, and so many more before what takes a second."""
-_LOOKED_AT = {*misprints.KINDS_OF_SLIPS, LABELS_EXCHANGED, LABEL_WRONG}
-"""Kinds of changes that the paper itself can show."""
+_ENOUGH = 26.0
+"""Causes that take seconds to try are tried where none asks for so few bits: two slips (21)."""
 _BY_COPY = 12
+"""Slips, of each kind of ranking, that are tried in a copy of the listing."""
 _KINDS = {
     misprints.DIGIT: 10.0,
     misprints.SIGN: 9.5,
@@ -64,19 +64,17 @@ _UNLIKE, _EACH = 0.4, 1.0
 _LAST_PLACE = 8.0
 """Bits more for a result misread by one in its last place, where another arithmetic is likelier;
 and for misread inputs on a page on which nothing worse is wrong."""
-_OTHER_ARITHMETIC = 17.0
+_ANOTHER_ARITHMETIC = 17.0
 """Bits of an arithmetic that is not among those tried: less than two last places misread (37)."""
-_ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
-"""The kinetic energy is printed to so many digits; other arithmetics end within so many units of
-the last of them."""
 
 
 @dataclass
 class Explanation:
     """A cause that would make printed and recomputed agree in ``explains`` of the differing numbers
-    and leaves ``remaining`` differences. ``changes``: every printed number it puts right, and where
-    it stands. ``look``: where to look on the paper. ``rank``: from 1; explanations that the page
-    cannot tell apart share it. ``weight``: the bits it asks for."""
+    and leaves ``unexplained`` ones. ``changes``: every printed number it puts right, and where it
+    stands; ``field``, ``printed``, ``would_be``: the first of them. ``look``: where to look on the
+    paper. ``rank``: from 1; explanations that the page cannot tell apart share it. ``weight``: the
+    bits it asks for."""
 
     kind: str
     note: str
@@ -87,25 +85,14 @@ class Explanation:
     look: list[str] = default(default_factory=list)
     rank: int = 1
 
+    def __post_init__(self) -> None:
+        first = self.changes[0] if self.changes else {}
+        self.field, self.printed, self.would_be = map(first.get, ("field", "printed", "would_be"))
+
     @property
     def remaining(self) -> int:
         """How many numbers differ still."""
         return len(self.unexplained)
-
-    @property
-    def field(self) -> str | None:
-        """The first number it puts right."""
-        return self.changes[0]["field"] if self.changes else None
-
-    @property
-    def printed(self) -> str | None:
-        """What stands there."""
-        return self.changes[0]["printed"] if self.changes else None
-
-    @property
-    def would_be(self) -> str | None:
-        """What would stand there."""
-        return self.changes[0]["would_be"] if self.changes else None
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
@@ -123,7 +110,7 @@ class Explanation:
     @property
     def accuses(self) -> bool:
         """Whether it says that another program or machine made the page."""
-        return self.note.endswith(machines.NOT_APPLESOFT)
+        return self.note.endswith(NOT_APPLESOFT)
 
 
 @np.errstate(all="ignore")  # a cause tried may leave a double's range, and then explains nothing
@@ -135,60 +122,61 @@ def explain(
     """Causes that make more of a differing printout agree, those that ask least first. ``rereads``:
     slips that were tried already, where those are all there can be; ``in_time``: whether another
     kind of cause may still be tried."""
-    work = _Work(found)
-    causes = [*work.by_results_alone(), *work.labels_exchanged()]
+    page = _Page(found)
+    offered = page.explanations(page.without_replay())
 
-    def wanting(bits: float) -> bool:
-        return in_time() and min((one.weight for one in causes), default=100.0) > bits
+    def wanting() -> bool:
+        return in_time() and min((one.weight for one in offered), default=100.0) > _ENOUGH
 
-    if not found.recovered.missing and any(not one.startswith("label ") for one in work.base):
+    if not found.recovered.missing and any(not one.startswith("label ") for one in page.base):
         rereading = Rereading(found.recovered, apart=True)
-        causes += work.rereads(list(rereading.best() if rereads is None else rereads))
-        tables = hypotheses.Tables(work.evidence)
-        causes += work.rows(tables.nearest)
-        causes += work.results_otherwise()
-        causes += map(work.machine, machines.causes(work.evidence))
-        causes += work.last_places_alone()
-        if wanting(_GOOD + _MORE):
-            causes += work.rows(list(tables.searched()))
-            causes += work.exchanged_and_slipped(tables.exchanges(), rereading)
-        if wanting(_GOOD + _MORE):
-            causes += map(work.machine, programs.causes(work.evidence, work.base))
-    return _chosen(causes, len(work.base))
+        tables = hypotheses.Tables(page.evidence)
+        offered += page.explanations(
+            [
+                *page.rereads(rereading.best() if rereads is None else rereads),
+                *hypotheses.unexplained(page.evidence, tables.nearest),
+                *hypotheses.results_otherwise(page.evidence),
+                *machines.causes(page.evidence),
+            ]
+        )
+        if not any(one.accuses and not one.unexplained for one in offered):
+            offered += page.explanations(page.last_places_alone())
+        if wanting():
+            searched = hypotheses.unexplained(page.evidence, list(tables.searched()))
+            both = page.exchanged_and_slipped(tables.exchanges(), rereading)
+            offered += page.explanations([*searched, *both])
+        if wanting():
+            offered += page.explanations(programs.causes(page.evidence, page.base))
+    return _chosen(offered, len(page.base))
 
 
 @np.errstate(all="ignore")
 def explain_copy(
-    found: Judged,
-    recovered: Recovered,
-    held: Callable[[Recovered], Judged],
+    found: Judged, put_right: Callable[[Judged, Mapping[str, str]], Judged | None]
 ) -> list[Explanation]:
-    """The same of a page held against a copy of the listing: slips, judged by the copy's own page.
-    ``recovered``: by the restored listing, whose nearest slips are tried; ``held``: the page
-    judged by the copy for another scene."""
-    work = _Work(found)
-    causes = [*work.by_results_alone(), *work.labels_exchanged()]
-    if not recovered.missing:
-        for one in Rereading(recovered).best()[:_BY_COPY]:
-            scored = one.scored
-            by = held(replace(recovered, scene=scored.scene, assumed=scored.assumed))
-            wrong = frozenset(check.name for check in by.contradicted)
-            same = scored._replace(outcome=by.recovered.outcome, wrong=wrong)
-            causes += work.rereads([one._replace(scored=same)])
-    return _chosen(causes, len(work.base))
+    """The same of a page held against a copy of the listing: slips, those nearest to its results
+    first. ``put_right``: the printout judged by the copy with other inputs printed."""
+    page = _Page(found)
+    causes = list(page.without_replay())
+    if not found.recovered.missing:
+        tried: list[tuple[Change, ...]] = [(one,) for one in page.nearest_slips()[:_BY_COPY]]
+        tried += [one.changes for one in Rereading(found.recovered).best()[:_BY_COPY]]
+        for changes in filter(None, dict.fromkeys(tried)):
+            other = put_right(found, {change.field: change.would_be for change in changes})
+            if other is not None:
+                outcome = other.recovered.outcome.fields
+                causes.append(page.slipped(changes, _differing(other), outcome))
+    return _chosen(page.explanations(causes), len(page.base))
 
 
-class _Work:
-    """What all explanations are measured against: the names that differ."""
+class _Page:
+    """What all explanations are measured against: the page, and the names that differ on it."""
 
     def __init__(self, found: Judged) -> None:
-        self.shown, self.recovered, self.replies = found.shown, found.recovered, found.replies
+        self.found, self.shown, self.recovered = found, found.shown, found.recovered
         self.checks = {check.name: check for check in found.fields}
-        replies = set(map(id, found.replies))
-        self.base = frozenset(
-            [f"{'reply ' * (id(one) in replies)}{one.name}" for one in found.contradicted]
-            + [f"label {one.name}" for one in found.shown.mislabelled]
-        )
+        self.checks |= {f"reply {check.name}": check for check in found.replies}
+        self.base = _differing(found)
 
     @cached_property
     def evidence(self) -> Evidence:
@@ -201,128 +189,125 @@ class _Work:
         return all(
             name in self.checks
             and name not in INPUTS
-            and _in_last_places(name, self.checks[name].printed, self.checks[name].recomputed)
+            and in_last_places(name, self.checks[name].printed, self.checks[name].recomputed)
             for name in self.base
         )
 
-    def by_results_alone(self) -> Iterator[Explanation]:
-        """Results and replies that are one slip away from what they should be."""
-        changes = list(self._slips(self.base, self.recovered.outcome.fields))
-        if changes:
-            yield self._slipped(changes, self.base - {change.field for change in changes})
+    # --- causes ---
 
-    def last_places_alone(self) -> Iterator[Explanation]:
-        """An arithmetic that is none of those tried: results off by one in their last places."""
-        longer = any(
-            self.evidence.decimals(n) > (FIELDS[n].places or 9) for n in self.evidence.texts
-        )
-        if self.last_places and len(self.base) > 1 and not longer:
-            note = f"all that differs is off by one in its last place; {machines.NOT_APPLESOFT}"
-            yield self._explanation("another arithmetic", note, _OTHER_ARITHMETIC, frozenset(), [])
-
-    def labels_exchanged(self) -> Iterator[Explanation]:
-        """Labels that stand in each other's place, or say another number, on numbers that are what
-        the program prints where they stand."""
+    def without_replay(self) -> Iterator[Cause]:
+        """Results and replies that are one slip away from what they should be; labels that stand in
+        each other's place, or name another number, where the number is what the program prints."""
+        if changes := self._slips(self.base, self.recovered.outcome.fields):
+            yield self.slipped(changes, self.base)
         wrong = [
             one
             for one in self.shown.mislabelled
             if one.name in self.checks and self.checks[one.name].status == Status.READ
         ]
-        if not wrong:
-            return
-        exchanged = sorted(one.read for one in wrong) == sorted(one.printed for one in wrong)
-        kind = LABELS_EXCHANGED if exchanged else LABEL_WRONG
-        described = [
-            _described(kind, one.name, one.read, one.printed, one.line, one.column) for one in wrong
-        ]
-        unexplained = self.base - {f"label {one.name}" for one in wrong}
-        note = "the numbers are what the program prints where they stand"
-        yield self._explanation(kind, note, _LABEL, unexplained, described)
+        if wrong:
+            exchanged = sorted(one.read for one in wrong) == sorted(one.printed for one in wrong)
+            kind = LABELS_EXCHANGED if exchanged else LABEL_WRONG
+            changes = tuple(Change(kind, one.name, one.read, one.printed) for one in wrong)
+            left = self.base - {f"label {one.name}" for one in wrong}
+            note = "the numbers are what the program prints where they stand"
+            yield Cause(kind, note, _LABEL, None, left, changes)
 
-    def rereads(self, reread: Iterable[Reread]) -> Iterator[Explanation]:
+    def last_places_alone(self) -> Iterator[Cause]:
+        """An arithmetic that is none of those tried: results off by one in their last places."""
+        if self.last_places and len(self.base) > 1 and not self.evidence.longer:
+            note = f"all that differs is off by one in its last place; {NOT_APPLESOFT}"
+            yield Cause("another arithmetic", note, _ANOTHER_ARITHMETIC, None, frozenset())
+
+    def rereads(self, reread: Iterable[Reread]) -> Iterator[Cause]:
         """Inputs put right, with what results are then still a slip away."""
         for one in reread:
-            if not one.changes:
-                continue
-            wrong = self._wrong(one, one.changes)
-            changes = list(one.changes)
-            if len(wrong & self.base) <= _SLIPS_IN_RESULTS:
-                changes += self._slips(wrong & self.base, one.scored.outcome.fields)
-            yield self._slipped(changes, wrong - {change.field for change in changes})
+            if one.changes:
+                outcome = one.scored.outcome.fields
+                yield self.slipped(one.changes, self._wrong(one, one.changes), outcome)
 
-    def rows(self, every: Sequence[hypotheses.Hypothesis]) -> Iterator[Explanation]:
-        """Inputs in other places and units, replayed."""
-        for one, wrong in hypotheses.unexplained(self.evidence, every):
-            wrong |= self._wrong_replies(one.scene) | self._inputs_left(one.changes)
-            described = list(map(self._change, one.changes))
-            yield self._explanation(one.row.kind, one.row.note, one.row.bits, wrong, described)
-
-    def results_otherwise(self) -> Iterator[Explanation]:
-        """Results in other places and units."""
-        for row, wrong, changes in hypotheses.results_otherwise(self.evidence):
-            described = list(map(self._change, changes))
-            yield self._explanation(row.kind, row.note, row.bits, wrong, described)
-
-    def machine(self, one: machines.Cause) -> Explanation:
-        """Another machine, another print, another line of the listing."""
-        wrong = one.wrong | self._wrong_replies(one.scene) | self._inputs_left(())
-        return self._explanation(one.kind, one.note, one.bits, wrong, [])
+    def nearest_slips(self) -> list[Change]:
+        """The single slips of printed inputs, those first whose results are nearest to the page's
+        by double precision; that differs from what the program prints as in the scene recovered."""
+        scene, assumed = self.recovered.scene, self.recovered.assumed
+        slips = [
+            Change(kind, name, text, other)
+            for name, text in assumed.items()
+            for kind, other in misprints.misreadings(text)
+            if printable(other)
+        ]
+        columns = {name: np.full(len(slips) + 1, double(text)) for name, text in scene.items()}
+        for row, one in enumerate(slips, 1):
+            turned = one.field == "MUP" and mu_turned(scene["MU"], one.printed)
+            columns[scene_name(one.field)][row] = double(one.would_be) * (-1 if turned else 1)
+        fields = self.recovered.outcome.fields
+        found = {
+            name: column - column[0] + double(fields[name])
+            for name, column in in_doubles(columns, self.evidence.named(fields)).items()
+        }
+        order = np.argsort(self.evidence.far(found, len(slips) + 1)[1:], kind="stable")
+        return [slips[index] for index in order]
 
     def exchanged_and_slipped(
-        self, exchanges: Sequence[hypotheses.Hypothesis], rereading: Rereading
-    ) -> Iterator[Explanation]:
+        self, exchanges: Iterable[hypotheses.Hypothesis], rereading: Rereading
+    ) -> Iterator[Cause]:
         """Inputs of a side or an axis exchanged, and a slip in another."""
         for exchange in exchanges:
             texts = {one.field: exchange.assumed[one.field] for one in exchange.changes}
             for one in rereading.best(texts):
-                changes = [*exchange.changes, *one.changes]
+                changes = (*exchange.changes, *one.changes)
                 bits = exchange.row.bits + sum(map(_believed, one.changes)) + _EACH
-                made = self._slipped(changes, self._wrong(one, changes), bits)
-                made.note = exchange.row.note
-                yield made
+                cause = self.slipped(changes, self._wrong(one, changes))
+                yield cause._replace(bits=bits, note=exchange.row.note)
 
     def _wrong(self, one: Reread, changes: Sequence[Change]) -> frozenset[str]:
         """What differs from the page of a scene put right; a number that contradicted the same
         text before still does."""
         now, before = one.scored.outcome.fields, self.recovered.outcome.fields
         still = {n for n in self.base if n not in INPUTS and n in now and now[n] == before.get(n)}
-        wrong = one.scored.wrong | still | self._wrong_replies(one.scored.scene)
-        return wrong | self._inputs_left(changes)
+        return self._left(one.scored.wrong | still, one.scored.scene, changes)
 
-    def _inputs_left(self, changes: Sequence[Change]) -> frozenset[str]:
-        """Printed inputs that differ and that these changes leave as they are."""
-        changed = {change.field for change in changes}
-        return self.base & frozenset(INPUTS) - {"MUP"} - changed
-
-    def _wrong_replies(self, scene: dict[str, str]) -> frozenset[str]:
-        return frozenset(
+    def _left(
+        self, wrong: frozenset[str], scene: Mapping[str, str], changes: Iterable[Change]
+    ) -> frozenset[str]:
+        """What a scene leaves unexplained: ``wrong``, replies that are not its values, and printed
+        inputs that differ and that no change puts right."""
+        replies = {
             f"reply {check.name}"
-            for check in self.replies
+            for check in self.found.replies
             if check.printed is not None
             and check.status in (Status.READ, Status.CONTRADICTED)
-            and not same_value(check.printed, scene[check.name])
-        )
+            and not same_value(check.printed, scene.get(check.name, ""))
+        }
+        inputs = self.base & frozenset(INPUTS) - {"MUP"} - {change.field for change in changes}
+        return wrong | replies | inputs
 
-    def _slips(self, names: Iterable[str], fields: dict[str, str]) -> Iterator[Change]:
-        replies = {f"reply {check.name}": check for check in self.replies}
+    def _slips(self, names: Iterable[str], fields: Mapping[str, str]) -> tuple[Change, ...]:
+        """The single slips of printed numbers and replies that make them what they should be."""
+        found = []
         for name in sorted(names):
-            check = replies.get(name) or self.checks.get(name)
-            if check is None:
-                continue
-            should = self.recovered.scene.get(check.name) if name in replies else fields.get(name)
-            if check.printed is None or should is None:
+            check = self.checks.get(name)
+            reply = name.startswith("reply ")
+            should = self.recovered.scene.get(name[6:]) if reply else fields.get(name)
+            if check is None or check.printed is None or should is None:
                 continue
             kind = misprints.slip(check.printed, should)
             if kind is None and misprints.differ_in_two(check.printed, should):
                 kind = misprints.TWO_DIGITS
             if kind:
-                yield Change(kind, name, check.printed, should)
+                found.append(Change(kind, name, check.printed, should))
+        return tuple(found)
 
-    def _slipped(
-        self, changes: Sequence[Change], unexplained: frozenset[str], bits: float | None = None
-    ) -> Explanation:
-        if bits is None:
-            bits = sum(map(_believed, changes)) + _EACH * (len(changes) - 1)
+    def slipped(
+        self,
+        changes: tuple[Change, ...],
+        wrong: frozenset[str],
+        outcome: Mapping[str, str] | None = None,
+    ) -> Cause:
+        """Slips as a cause; ``outcome``: what is then printed, of which a few may be slips too."""
+        if outcome and len(wrong & self.base) <= _SLIPS_IN_RESULTS:
+            changes = (*changes, *self._slips(wrong & self.base, outcome))
+        bits = sum(map(_believed, changes)) + _EACH * (len(changes) - 1)
         if all(change.field in INPUTS for change in changes) and self.last_places:
             bits += _LAST_PLACE
         note = ""
@@ -331,74 +316,65 @@ class _Work:
         elif any(one.field in self.recovered.apart for one in changes):
             note = "in the inputs given apart"
         kind = " and ".join(dict.fromkeys(change.kind for change in changes))
-        return self._explanation(kind, note, bits, unexplained, list(map(self._change, changes)))
+        return Cause(kind, note, bits, None, wrong - {one.field for one in changes}, changes)
 
-    def _explanation(
-        self,
-        kind: str,
-        note: str,
-        bits: float,
-        unexplained: frozenset[str],
-        changes: list[dict[str, Any]],
-    ) -> Explanation:
-        look = [change["look"] for change in changes if change["kind"] in _LOOKED_AT]
-        explains = len(self.base - unexplained)
-        bits += _LEFT * len(unexplained)
-        return Explanation(kind, note, bits, explains, unexplained, changes, look)
+    # --- as explanations ---
 
-    def _change(self, change: Change) -> dict[str, Any]:
-        name = change.field.removeprefix("reply ")
-        source = self.shown.replies if change.field.startswith("reply ") else self.shown.fields
-        reading = source.get(name)
-        if reading is None:
-            return _described(change.kind, name, change.printed, change.would_be)
-        at = reading.line, reading.column
-        made = _described(change.kind, name, change.printed, change.would_be, *at)
-        if change.kind == misprints.DIGIT:
-            pairs = enumerate(zip(change.printed, change.would_be, strict=False))
-            index = next((i for i, (read, true) in pairs if read != true), 0)
-            if index < len(reading.region):
-                at = self.shown.place(reading.region[index].offset)
-            digit = change.would_be[index]
-            is_this = f"is this {change.printed[index]} {'an' if digit == '8' else 'a'} {digit}?"
-            made["look"] = f"line {at[0]}, column {at[1]}: {is_this}"
-        return made
+    def explanations(self, causes: Iterable[Cause]) -> list[Explanation]:
+        """Causes with what they leave unexplained of this page."""
+        every = []
+        for one in causes:
+            left = one.wrong
+            if one.scene is not None:
+                left = self._left(left, one.scene, one.changes)
+            bits = one.bits + _LEFT * len(left)
+            made = list(map(self._described, one.changes))
+            look = [change["look"] for change in made if change["look"]]
+            explains = len(self.base - left)
+            every.append(Explanation(one.kind, one.note, bits, explains, left, made, look))
+        return every
+
+    def _described(self, change: Change) -> dict[str, Any]:
+        """A number put right, where it stands, and what to ask of the paper there."""
+        kind, name, printed, would_be = change
+        reply = name.startswith("reply ")
+        name = name.removeprefix("reply ")
+        reading = (self.shown.replies if reply else self.shown.fields).get(name)
+        label = kind in (LABELS_EXCHANGED, LABEL_WRONG)
+        one = next((one for one in self.shown.labels if label and one.name == name), reading)
+        line, column = (one.line, one.column) if one else (None, None)
+        look = ""
+        if one and (label or kind in misprints.KINDS_OF_SLIPS):
+            at, glyphs = (line, column), (printed, would_be)
+            if kind == misprints.DIGIT and reading is not None:
+                pairs = enumerate(zip(printed, would_be, strict=False))
+                index = next((i for i, (read, true) in pairs if read != true), 0)
+                if index < len(reading.region):
+                    at = self.shown.place(reading.region[index].offset)
+                glyphs = printed[index], would_be[index]
+            look = f"line {at[0]}, column {at[1]}: is this {glyphs[0]} or {glyphs[1]}?"
+        return {
+            "kind": kind, "field": name, "printed": printed, "would_be": would_be,
+            "line": line, "column": column, "look": look,
+        }  # fmt: skip
 
 
-def _described(
-    kind: str,
-    name: str,
-    printed: str,
-    would_be: str,
-    line: int | None = None,
-    column: int | None = None,
-) -> dict[str, Any]:
-    look = "" if line is None else f"line {line}, column {column}: is this {printed} {would_be}?"
-    return {
-        "kind": kind, "field": name, "printed": printed, "would_be": would_be,
-        "line": line, "column": column, "look": look,
-    }  # fmt: skip
+def _differing(found: Judged) -> frozenset[str]:
+    """The names of what differs; replies and labels are marked as such."""
+    replies = set(map(id, found.replies))
+    return frozenset(
+        [f"{'reply ' * (id(one) in replies)}{one.name}" for one in found.contradicted]
+        + [f"label {one.name}" for one in found.shown.mislabelled]
+    )
 
 
 def _believed(change: Change) -> float:
-    bits = _KINDS[change.kind]
+    bits = _KINDS.get(change.kind, 0.0)
     if change.kind == misprints.DIGIT:
         bits += _UNLIKE * misprints.likeness(change.printed, change.would_be)
     if change.field not in INPUTS:
-        bits += _LAST_PLACE * _in_last_places(change.field, change.printed, change.would_be)
+        bits += _LAST_PLACE * in_last_places(change.field, change.printed, change.would_be)
     return bits
-
-
-def _in_last_places(name: str, printed: str | None, other: str | None) -> bool:
-    """Whether a result is another by no more than other arithmetics leave open: one in the last
-    place it is floored to, or the last of the digits of the kinetic energy."""
-    one, two = value_of(printed or ""), value_of(other or "")
-    if one is None or two is None or name not in FIELDS:
-        return False
-    places = FIELDS[name].places
-    if places is not None:
-        return abs(one - two) <= Decimal(1).scaleb(-places)
-    return abs(one - two) <= _ENERGY_UNITS * Decimal(1).scaleb(two.adjusted() - _ENERGY_DIGITS + 1)
 
 
 # --- which are offered, and in what order ---
@@ -449,8 +425,7 @@ def _adds_to(one: Explanation, other: Explanation) -> bool:
     same way, or says the same."""
     if not other.changes:
         return not one.changes and (one.kind, one.note) == (other.kind, other.note)
-    if one.kind == other.kind and {n for n, _ in one.puts_right} == {
-        n for n, _ in other.puts_right
-    }:
+    fields, others = ({name for name, _ in each.puts_right} for each in (one, other))
+    if one.kind == other.kind and fields == others:
         return one.remaining > other.remaining or one.puts_right == other.puts_right
     return other.puts_right < one.puts_right

@@ -27,13 +27,12 @@ from ..recovery import replays
 from ..recovery.choices import Column, scene_name, with_opposite_mu
 from ..recovery.rereading import Change
 from ..recovery.search import in_doubles
-from .predictions import Evidence, Range, around, as_printed, digits_of
+from .predictions import Cause, Evidence, Range, around, as_printed, digits_of
 
 _REPLAYED = 40
 """Rows that are replayed, the nearest of some 700."""
-_FAR, _NEAR = 0.1, 0.03
-"""What a result counts at most that is far off, relatively; and how far a unit may be off on
-average to be searched: 88 for 88.4 is off by 0.005."""
+_NEAR = 0.03
+"""How far a unit may be off on average to be searched: 88 for 88.4 is off by 0.005."""
 _SEARCHED, _LAST = 3, 24
 _CANDIDATES, _COMBINATIONS = 40, 60_000
 """Numbers that may have been computed with: of one input, and of all together."""
@@ -175,22 +174,15 @@ class Tables:
             name: np.array([double(one.scene[name] or "0") for one in every])
             for name in self._scene
         }
-        numbers = {name: some[0] for name, some in self._evidence.results.items() if some}
-        found = in_doubles(columns, list(numbers))
+        found = in_doubles(columns, self._evidence.named(FIELDS))
         for index, one in enumerate(every):
             if one.row.results:
                 names = {name: column[index] for name, column in found.items()}
                 for name, made in one.row.results.items():
                     if name in names:
                         found[name][index] = value(made, {**names, "x": names[name]})
-        rows = [
-            np.nan_to_num(np.abs(found[name] - float(number)) / (abs(float(number)) + 0.1), nan=1.0)
-            for name, number in numbers.items()
-        ]
-        if not rows:
-            return np.zeros(len(every))
-        result: np.ndarray = np.minimum(rows, _FAR).mean(axis=0)
-        return result
+        far: np.ndarray = self._evidence.far(found, len(every))
+        return far
 
     # --- a unit's rounding undone ---
 
@@ -232,10 +224,8 @@ class Tables:
         return columns
 
 
-def unexplained(
-    evidence: Evidence, every: Sequence[Hypothesis]
-) -> Iterator[tuple[Hypothesis, frozenset[str]]]:
-    """What each leaves unexplained, replayed."""
+def unexplained(evidence: Evidence, every: Sequence[Hypothesis]) -> Iterator[Cause]:
+    """Each replayed, with what it leaves unexplained."""
     for one, outcome in zip(every, replays.run_all([one.scene for one in every]), strict=True):
         predicted = as_printed(outcome)
         if one.row.results:
@@ -243,7 +233,8 @@ def unexplained(
         inputs = {}
         if not any(change.field == "MUP" for change in one.changes) and "MUP" in outcome.fields:
             inputs["MUP"] = outcome.fields["MUP"]
-        yield one, evidence.differing(predicted, outcome.ending, inputs)
+        wrong = evidence.differing(predicted, outcome.ending, inputs)
+        yield Cause(one.row.kind, one.row.note, one.row.bits, one.scene, wrong, one.changes)
 
 
 def shown_otherwise(
@@ -308,10 +299,8 @@ def _near(number: float, within: float, most: int) -> list[str]:
     return texts
 
 
-def results_otherwise(
-    evidence: Evidence,
-) -> Iterator[tuple[Row, frozenset[str], tuple[Change, ...]]]:
-    """The rows that change results alone: what each leaves unexplained, and puts right."""
+def results_otherwise(evidence: Evidence) -> Iterator[Cause]:
+    """The rows that change results alone."""
     recovered = evidence.recovered
     for scene in (recovered.scene, *with_opposite_mu(recovered.scene)):
         outcome, values = replays.run_whole(scene)
@@ -330,4 +319,4 @@ def results_otherwise(
             if other and (changes or other != own):
                 inputs = {"MUP": outcome.fields["MUP"]} if "MUP" in outcome.fields else {}
                 wrong = evidence.differing({**own, **other}, outcome.ending, inputs)
-                yield row, wrong, changes
+                yield Cause(row.kind, row.note, row.bits, scene, wrong, changes)

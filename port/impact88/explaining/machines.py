@@ -13,16 +13,26 @@ import random
 from collections.abc import Callable, Iterator, Mapping
 from copy import copy
 from decimal import Decimal
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..fields import ANGLES, FIELDS, INPUTS
 from ..program.arithmetics import APPLESOFT, FLOAT64, Arithmetic
 from ..reading import numerals
 from ..recovery import replays
 from ..recovery.choices import with_opposite_mu
-from .predictions import CUTS, Evidence, Range, around, as_printed, cut, digits_of, places_of
+from .predictions import (
+    CUTS,
+    NOT_APPLESOFT,
+    Cause,
+    Evidence,
+    Range,
+    around,
+    as_printed,
+    cut,
+    digits_of,
+    places_of,
+)
 
-NOT_APPLESOFT = "then this program on an Apple II did not print it"
 SOME_LINES = 14.2
 """Bits for an office's copy that rounds on some lines: more than for another arithmetic (14), less
 than for a last place misread (18), which a rounded one looks like."""
@@ -39,17 +49,6 @@ _NO_EVIDENCE = 4.0
 _LONG = 7
 """Angles of so many digits came back from radians a little off."""
 _APPLESOFT_DIGITS, SINGLE_DIGITS = 9, 7
-
-
-class Cause(NamedTuple):
-    """Another machine or print: its kind, what is added, its bits, and what it leaves
-    unexplained."""
-
-    kind: str
-    note: str
-    bits: float
-    scene: dict[str, str]
-    wrong: frozenset[str]
 
 
 def _with_pi(arithmetic: Arithmetic, pi: Any) -> Arithmetic:

@@ -6,27 +6,48 @@ A cause predicts for each result a range of numbers, of one number where it says
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from decimal import Decimal
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..fields import FIELDS, INPUTS
 from ..reading.numerals import value_of
 from ..reading.printout import Printout
 from ..recovery.recovered import Recovered
 from ..recovery.replays import Outcome
+from ..recovery.rereading import Change
 from ..recovery.search import AGREES, expected_results
 
 Range = tuple[Decimal, Decimal]
-Cut = Callable[[float], int]
 
-CUTS: dict[str, Cut] = {
+CUTS: dict[str, Callable[[float], int]] = {
     "floored": math.floor,
     "rounded": lambda units: math.floor(units + 0.5),
     "truncated": math.trunc,
 }
 """How programs bring a number to so many decimals; the listing floors."""
+NOT_APPLESOFT = "then this program on an Apple II did not print it"
 _LARGEST = 1e22
 """To here powers of ten are exact in double precision."""
+_FAR = 0.1
+"""What a result counts at most that is far off, relatively."""
+_ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
+"""The kinetic energy is printed to so many digits; other arithmetics end within so many units of
+the last of them."""
+
+
+class Cause(NamedTuple):
+    """A cause tried: its kind, what is added, its bits, the scene it was computed with (None: it
+    was not computed anew), the names it leaves unexplained, and the numbers it puts right."""
+
+    kind: str
+    note: str
+    bits: float
+    scene: Mapping[str, str] | None
+    wrong: frozenset[str]
+    changes: tuple[Change, ...] = ()
 
 
 class Evidence:
@@ -62,6 +83,24 @@ class Evidence:
     def digits(self, name: str) -> int:
         """How many digits it has."""
         return digits_of(self.texts.get(name))
+
+    @property
+    def longer(self) -> bool:
+        """Whether a number has more decimals than the program prints."""
+        return any(self.decimals(name) > (FIELDS[name].places or 9) for name in self.texts)
+
+    def named(self, names: Iterable[str]) -> list[str]:
+        """Those of some names that are results read on the page."""
+        return [name for name in names if self.results.get(name)]
+
+    def far(self, found: Mapping[str, Any], count: int) -> Any:
+        """How far off results are, arrays of ``count`` by name: relatively and on average."""
+        rows = [
+            np.nan_to_num(np.abs(column - number) / (abs(number) + 0.1), nan=1.0)
+            for name, column in found.items()
+            for number in map(float, self.results.get(name, [])[:1])
+        ]
+        return np.minimum(rows, _FAR).mean(axis=0) if rows else np.zeros(count)
 
     def differing(
         self,
@@ -122,3 +161,15 @@ def digits_of(text: str | None) -> int:
     """The digits of a number; 0 of none."""
     value = value_of(text or "")
     return 0 if value is None else len(value.normalize().as_tuple().digits)
+
+
+def in_last_places(name: str, printed: str | None, other: str | None) -> bool:
+    """Whether a result is another by no more than other arithmetics leave open: one in the last
+    place it is floored to, or the last of the digits of the kinetic energy."""
+    one, two = value_of(printed or ""), value_of(other or "")
+    if one is None or two is None or name not in FIELDS:
+        return False
+    places = FIELDS[name].places
+    if places is not None:
+        return abs(one - two) <= Decimal(1).scaleb(-places)
+    return abs(one - two) <= _ENERGY_UNITS * Decimal(1).scaleb(two.adjusted() - _ENERGY_DIGITS + 1)

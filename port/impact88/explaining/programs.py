@@ -20,8 +20,7 @@ from ..equations.edits import Edit, edits_of, readings
 from ..equations.evaluation import Run, chunks
 from ..equations.spelling import LISTING, SHOWN, spellings
 from ..fields import FIELDS
-from .machines import NOT_APPLESOFT, Cause
-from .predictions import Evidence
+from .predictions import NOT_APPLESOFT, Cause, Evidence
 
 _BITS = {"a line of the listing written otherwise": 24.0, "another program": 20.0}
 """Bits of an edit: one of some 5,000 lines (12) or 500 readings (9), and an office's copy in which

@@ -2,60 +2,194 @@
 
 The scene is recovered as always, from what the restored listing prints. The copy may print another
 sign of MU or an angle otherwise, so the few texts that may have been typed are tried in it, and the
-scene whose page is nearest counts. Numbers are compared by name, in whatever order the copy prints.
+scene whose page is nearest counts. Numbers are compared by name, in whatever order the copy prints;
+lines that only the copy prints, such as prompts and the replies to them, are compared whole.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from itertools import product
+from typing import NamedTuple
 
 from ..errors import UserError
-from ..fields import ANGLES, FIELDS, ZERO_DETERMINANT
+from ..fields import ANGLES, FIELDS, ZERO_DETERMINANT, outcome_fields
 from ..program.listingcopy import ListingCopy
 from ..program.run import run
-from ..reading.fieldlabels import LabelCheck, LabelState
+from ..reading.fieldlabels import LabelState
+from ..reading.numerals import value_of
 from ..reading.printout import Printout, read_printouts
-from ..recovery.choices import with_opposite_mu
+from ..recovery.choices import scene_name, with_opposite_mu
+from ..recovery.misprints import opposite
 from ..recovery.recovered import Recovered
 from ..recovery.replays import Outcome
-from ..recovery.typedtext import texts_that_print
+from ..recovery.typedtext import texts_that_print, typed_for
 from ..scene import sample
-from .judgement import Judged, Status, judge
+from .judgement import FieldCheck, Judged, Status, judge
+
+_TEXTS = 4
+"""Texts that are tried for an angle: as printed, rounded, and two that the Apple prints so."""
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
 
 
-def in_order(copy: ListingCopy, text: str) -> tuple[str, list[int]]:
-    """A text with the lines of a page in the order of the restored listing, where the copy prints
-    them in another; and for every line the number, from 1, that it had."""
-    order, own = _orders(copy)
-    lines = text.split("\n")
-    numbers = list(range(1, len(lines) + 1))
-    if own == order:
-        return text, numbers
-    groups: list[list[int]] = [[]]
-    for number, line in enumerate(lines):
-        words = _letters(line)
-        if words in order:
-            if any(_letters(lines[other]) == words for other in groups[-1]):
-                groups.append([])
-            groups[-1].append(number)
-    for group in groups:
-        sorted_group = sorted(group, key=lambda number: order.index(_letters(lines[number])))
-        for place, number in zip(group, sorted_group, strict=True):
-            numbers[place] = number + 1
-    return "\n".join(lines[number - 1] for number in numbers), numbers
+class _Page(NamedTuple):
+    """What the copy prints for a scene: by field, and its lines."""
+
+    outcome: Outcome
+    lines: list[str]
 
 
-@lru_cache(maxsize=8)
-def _orders(copy: ListingCopy) -> tuple[list[str], list[str]]:
-    """The labelled lines of the restored listing's page, and of the copy's, in order."""
-    scene = sample(1)
-    return _labelled(run(scene).page), _labelled(copy.run(scene).page)
+class Prepared(NamedTuple):
+    """A text as `read_printouts` takes it: its lines in the restored listing's order, those left
+    empty that only the copy prints; for every line the number, from 1, that it had; and the lines
+    left empty, by their numbers now."""
+
+    text: str
+    numbers: list[int]
+    besides: dict[int, str]
+
+
+class CopyPages:
+    """The pages of a copy of the listing. Raises UserError where the copy asks for other input than
+    a scene's, or does not end."""
+
+    def __init__(self, copy: ListingCopy) -> None:
+        self.copy = copy
+        restored, own = run(sample(1)).page, copy.run(sample(1)).page
+        self._order, self._own_order = _labelled(restored), _labelled(own)
+        kinds, others = ({_plain(line, "#") for line in one.split("\n")} for one in (restored, own))
+        self._besides = others - kinds
+        text = self.prepared(own).text
+        printed = _read(text)
+        self._labels = {one.name: one.read for one in printed.labels} if printed else {}
+        fields = {name: one.text for name, one in printed.fields.items()} if printed else {}
+        self._as_listed = fields == outcome_fields(text)
+
+    def prepared(self, text: str) -> Prepared:
+        """A text to be read."""
+        lines = text.split("\n")
+        besides = {at for at, line in enumerate(lines) if _plain(line, "#") in self._besides}
+        order = list(range(len(lines)))
+        groups: list[list[int]] = [[]]
+        for at, line in enumerate(lines if self._own_order != self._order else ()):
+            words = _letters(line)
+            if words in self._order and at not in besides:
+                if any(_letters(lines[other]) == words for other in groups[-1]):
+                    groups.append([])
+                groups[-1].append(at)
+        for group in groups:
+            by_order = sorted(group, key=lambda at: self._order.index(_letters(lines[at])))
+            for place, at in zip(group, by_order, strict=True):
+                order[place] = at
+        kept = "\n".join("" if at in besides else lines[at] for at in order)
+        return Prepared(kept, [at + 1 for at in order], {at + 1: lines[at] for at in besides})
+
+    def outcomes(self, scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
+        """What the copy prints for each scene, by field."""
+        return [self._page(scene).outcome for scene in scenes]
+
+    def _page(self, scene: Mapping[str, str]) -> _Page:
+        done = self.copy.run(scene)
+        text = self.prepared(done.page).text
+        if self._as_listed:
+            fields = outcome_fields(text)
+        else:
+            printed = _read(text)
+            found = {name: one.text for name, one in printed.fields.items()} if printed else {}
+            fields = {name: found[name] for name in FIELDS if name in found}
+        ending = ZERO_DETERMINANT if ZERO_DETERMINANT in done.printout else done.error
+        return _Page(Outcome(fields, ending), done.page.split("\n"))
+
+    def judged(self, shown: Printout, recovered: Recovered, besides: Mapping[int, str]) -> Judged:
+        """The printout judged by the copy's page for the scene that comes nearest. ``besides``: its
+        lines that only the copy prints."""
+        best: Judged | None = None
+        least = 10_000
+        for scene in self._scenes(shown, recovered.scene):
+            found = self._judged(shown, recovered, scene, self._page(scene), besides)
+            wrong = sum(check.status != Status.READ for check in [*found.fields, *found.replies])
+            if wrong < least:
+                best, least = found, wrong
+            if not wrong:
+                break
+        assert best is not None
+        return best
+
+    def put_right(self, found: Judged, right: Mapping[str, str]) -> Judged | None:
+        """A printout, judged before, judged again with other inputs printed, by field; None where
+        the copy prints them for no text that is tried."""
+        ways = [_ways(name, text) for name, text in right.items()]
+        for texts in product(*ways):
+            typed = dict(zip(map(scene_name, right), texts, strict=True))
+            scene = {**found.recovered.scene, **typed}
+            page = self._page(scene)
+            if all(page.outcome.fields.get(name) == text for name, text in right.items()):
+                besides = {
+                    one.line or 0: one.printed or ""
+                    for one in found.replies
+                    if one.name.startswith("line ")
+                }
+                return self._judged(found.shown, found.recovered, scene, page, besides)
+        return None
+
+    def _scenes(self, shown: Printout, scene: dict[str, str]) -> Iterator[dict[str, str]]:
+        """The scene as recovered, with MU typed with either sign; then with angles as the page has
+        them, and as others that print so, where the copy prints those otherwise."""
+        either = [scene, *with_opposite_mu(scene)]
+        yield from either
+        for one in either:
+            fields = self._page(one).outcome.fields
+            printed = {
+                name: text
+                for name in ANGLES
+                if (text := shown.text(name)) is not None and fields.get(name) != text
+            }
+            for rank in range(_TEXTS if printed else 0):
+                texts = {name: _ways(name, text)[rank:] for name, text in printed.items()}
+                yield {**one, **{name: some[0] for name, some in texts.items() if some}}
+
+    def _judged(
+        self,
+        shown: Printout,
+        recovered: Recovered,
+        scene: dict[str, str],
+        page: _Page,
+        besides: Mapping[int, str],
+    ) -> Judged:
+        """The printout judged by one page. The copy's own labels are exact; a line that only the
+        copy prints must have its numbers, too."""
+        labels = [
+            one._replace(state=LabelState.EXACT, doubt=False)
+            if self._labels.get(one.name, one.printed) == one.read
+            else one
+            for one in shown.labels
+        ]
+        shown = replace(shown, labels=labels)
+        own = {_plain(line): line for line in page.lines}
+        of_kind = {_plain(line, "#"): line.strip() for line in page.lines}
+        wrong = [
+            FieldCheck(
+                f"line {number}", line.strip(), of_kind.get(_plain(line, "#"), "nothing"), False,
+                status=Status.CONTRADICTED, line=number,
+            )
+            for number, line in besides.items()
+            if _plain(line) not in own
+        ]  # fmt: skip
+        return judge(shown, replace(recovered, scene=scene, outcome=page.outcome), wrong)
+
+
+def _read(text: str) -> Printout | None:
+    """The printout in what the copy prints; None where none is found."""
+    try:
+        return read_printouts(text)[0]
+    except UserError:
+        return None
 
 
 def _letters(line: str) -> str:
-    return "".join(filter(str.isalpha, line.upper()))
+    return "".join(filter(str.isalpha, _NUMBER.sub("", line.upper())))
 
 
 def _labelled(printed: str) -> list[str]:
@@ -64,70 +198,21 @@ def _labelled(printed: str) -> list[str]:
     return [letters for line in body.split("\n") if (letters := _letters(line)) and "=" in line]
 
 
-def held_against(
-    copy: ListingCopy, shown: Printout, recovered: Recovered, just: bool = False
-) -> Judged:
-    """The printout judged by the copy's page for the scene that comes nearest, or for ``just`` the
-    one recovered."""
-    best: Judged | None = None
-    least = 10_000
-    for scene in [recovered.scene] if just else _scenes(copy, shown, recovered):
-        outcome, printed = _outcome(copy, scene)
-        labelled = replace(shown, labels=_labels(shown, printed))
-        found = judge(labelled, replace(recovered, scene=scene, outcome=outcome))
-        wrong = sum(check.status != Status.READ for check in found.fields)
-        if wrong < least:
-            best, least = found, wrong
-        if not wrong:
-            break
-    assert best is not None
-    return best
+def _plain(line: str, number: str = "") -> str:
+    """A line without blanks, its numbers by value or as one mark."""
+
+    def said(found: re.Match[str]) -> str:
+        value = value_of(found[0])
+        return number or (f"{value.normalize()}" if value else "0")
+
+    return _NUMBER.sub(said, "".join(line.split()))
 
 
-def _scenes(copy: ListingCopy, shown: Printout, recovered: Recovered) -> Iterator[dict[str, str]]:
-    """The scene as recovered, with MU typed with either sign; then with angles as the page has
-    them, and as others that print so, where the copy prints those otherwise."""
-    for scene in (recovered.scene, *with_opposite_mu(recovered.scene)):
-        yield scene
-    for scene in (recovered.scene, *with_opposite_mu(recovered.scene)):
-        fields = _outcome(copy, scene)[0].fields
-        printed = {
-            name: text
-            for name in ANGLES
-            if (text := shown.text(name)) is not None and fields.get(name) != text
-        }
-        for rank in range(_TEXTS if printed else 0):
-            texts = {name: _texts(text)[rank:] for name, text in printed.items()}
-            yield {**scene, **{name: some[0] for name, some in texts.items() if some}}
-
-
-_TEXTS = 4
-"""Texts that are tried for an angle: as printed, rounded, and two that the Apple prints so."""
-
-
-def _texts(printed: str) -> list[str]:
+def _ways(name: str, printed: str) -> list[str]:
+    """Texts that may have been typed where this is printed."""
+    if name == "MUP":
+        return [printed, opposite(printed)]
+    if name not in ANGLES:
+        return [typed_for(printed, False) or printed]
     short = f"{float(printed):.6g}"
     return list(dict.fromkeys([printed, short, *texts_that_print(printed, True)]))[:_TEXTS]
-
-
-def _outcome(copy: ListingCopy, scene: Mapping[str, str]) -> tuple[Outcome, Printout | None]:
-    """What the copy prints, by field, and its page as read."""
-    done = copy.run(scene)
-    try:
-        printed = read_printouts(in_order(copy, done.page)[0])[0]
-    except UserError:
-        printed = None
-    fields = {name: one.text for name, one in printed.fields.items()} if printed else {}
-    ending = ZERO_DETERMINANT if ZERO_DETERMINANT in done.printout else done.error
-    return Outcome({name: fields[name] for name in FIELDS if name in fields}, ending), printed
-
-
-def _labels(shown: Printout, printed: Printout | None) -> list[LabelCheck]:
-    """The labels of a page, those that are the copy's own exact."""
-    own = {one.name: one.read for one in printed.labels} if printed else {}
-    return [
-        one._replace(state=LabelState.EXACT, doubt=False)
-        if own.get(one.name, one.printed) == one.read
-        else one
-        for one in shown.labels
-    ]

@@ -278,10 +278,11 @@ class Judged:
         return [check for check in every if check.status == Status.CONTRADICTED]
 
 
-def judge(shown: Printout, recovered: Recovered) -> Judged:
-    """The printout, judged."""
+def judge(shown: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
+    """The printout, judged. ``others``: replies that were compared elsewhere."""
     fields = field_checks(shown, recovered)
-    replies, ending = reply_checks(shown, recovered), ending_check(shown, recovered)
+    replies = [*reply_checks(shown, recovered), *others]
+    ending = ending_check(shown, recovered)
     verdict = verdict_of(shown, recovered, fields, replies, ending)
     return Judged(shown, recovered, fields, replies, ending, verdict)
 

@@ -13,16 +13,16 @@ from .. import files
 from ..errors import UserError
 from ..explaining.explanations import explain, explain_copy
 from ..judging import beside
-from ..judging.copies import held_against, in_order
+from ..judging.copies import CopyPages
 from ..judging.judgement import Judged, Status, Verdict, judge
 from ..judging.lookingpast import LookingPast
-from ..judging.unseen import unseen
+from ..judging.unseen import Program, unseen
 from ..names import SCENE
 from ..program.listingcopy import ListingCopy
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
-from ..recovery.recovered import Recovered, recover, without_angles
-from ..recovery.replays import run_once
+from ..recovery.recovered import recover, without_angles
+from ..recovery.replays import run_all, run_once
 from . import provenance, wording
 from .verification import Examined, Verification
 
@@ -95,15 +95,19 @@ def _verified(
         raise UserError(f"{files.called(path)}: is larger than {LARGEST_FILE:,} bytes of text")
     where = files.called(path)
     text = decoded(data, where)
-    text, lines = in_order(copy, text) if copy else (text, [])
-    begun, pages = process_time(), 1
-    for number, shown in enumerate(read_printouts(text, where), 1):
-        pages += not shown.fragment
-        if process_time() - begun > BUDGET * pages:
+    pages = CopyPages(copy) if copy else None
+    text, lines, besides = pages.prepared(text) if pages else (text, [], {})
+    every = read_printouts(text, where)
+    begun, read = process_time(), 1
+    for number, shown in enumerate(every, 1):
+        read += not shown.fragment
+        if process_time() - begun > BUDGET * read:
             shown.unread = f"this and what follows was not judged: over {BUDGET:g} s a page"
             yield unjudged(shown, path, number, digest)
             return
-        result = verify(shown, path, number, given, copy)
+        end = shown.place(shown.stop)[0] if number < len(every) else len(lines)
+        own = {line: besides.pop(line) for line in sorted(besides) if line <= end}
+        result = verify(shown, path, number, given, pages, own)
         result.renumber(lines)
         result.sha256 = digest
         yield result
@@ -123,20 +127,23 @@ def verify(
     file: str = "-",
     number: int = 1,
     given: Mapping[str, str] | None = None,
-    copy: ListingCopy | None = None,
+    pages: CopyPages | None = None,
+    besides: Mapping[int, str] | None = None,
 ) -> Verification:
     """The verdict on one printout, with explanations where it differs.
 
-    ``given``: texts of inputs by scene name, known from elsewhere than the printout. ``copy``: the
-    listing it is held against, in place of the restored one."""
+    ``given``: texts of inputs by scene name, known from elsewhere than the printout. ``pages``:
+    those of a copy of the listing, held against in place of the restored one's; ``besides``: lines
+    that only the copy prints."""
     begun = process_time()
 
     def in_time() -> bool:
         return process_time() - begun < BUDGET
 
     recovered = recover(shown, given)
-    if copy is not None:
-        return completed(_against(copy, shown, recovered, file, number))
+    if pages is not None:
+        found = pages.judged(shown, recovered, besides or {})
+        return completed(_against(pages, found, file, number), pages.outcomes)
     past = LookingPast(shown, recovered)
     better = None
     tried = recovered.row_in_doubt or bool(shown.mislabelled)
@@ -172,16 +179,12 @@ def verify(
     return completed(result)
 
 
-def _against(
-    copy: ListingCopy, shown: Printout, recovered: Recovered, file: str, number: int
-) -> Verification:
+def _against(pages: CopyPages, found: Judged, file: str, number: int) -> Verification:
     """The verdict on a printout as a page of an office's copy of the listing."""
-    found = held_against(copy, shown, recovered)
     result = _result(found, file, number)
     if result.verdict is Verdict.DIFFERS:
-        result.explanations = explain_copy(
-            found, recovered, lambda other: held_against(copy, shown, other, just=True)
-        )
+        result.explanations = explain_copy(found, pages.put_right)
+    copy = pages.copy
     result.findings = wording.of_copy(copy, found, run_once(found.recovered.scene).fields)
     result.copy = {
         "file": copy.file,
@@ -223,10 +226,10 @@ def _result(found: Judged, file: str, number: int) -> Verification:
     )
 
 
-def completed(result: Verification) -> Verification:
-    """The same with what stands beside the verdict: what the page cannot show, exact values and
-    warnings."""
-    result.unseen = unseen(result.scene, result.missing)
+def completed(result: Verification, program: Program = run_all) -> Verification:
+    """The same with what stands beside the verdict: what the page cannot show of what ``program``
+    prints, exact values and warnings."""
+    result.unseen = unseen(result.scene, result.missing, program)
     if result.runnable:
         scene = {name: text or "" for name, text in result.scene.items()}
         beside.add_exact_values(scene, result.fields)

@@ -223,7 +223,7 @@ def sections(result: Verification) -> list[Section]:
     doubtful += [line for check in result.doubtful for line in wording.doubts(check)]
     explained = _explained(result) if result.verdict is Verdict.DIFFERS else []
     notes = [
-        f"the reply {check.printed} for {check.name} is not the {check.recomputed} used"
+        f"{check.name}: the reply {check.printed} is not the {check.recomputed} used"
         for check in result.replies
         if check.same is False
     ]

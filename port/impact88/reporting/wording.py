@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ..errors import printable
-from ..explaining.explanations import Explanation
+from ..explaining.explanations import LABEL_WRONG, LABELS_EXCHANGED, Explanation
 from ..fields import ANGLES, INPUTS
 from ..judging.judgement import FieldCheck, Judged, Status, Verdict, misread_at_all, swapped_digits
 from ..program.listingcopy import ListingCopy
@@ -202,12 +202,15 @@ def commas(page: Printout) -> bool:
 def cause(one: Explanation) -> str:
     """An explanation in one line."""
     what = one.kind
-    if one.changes:
-        changes = "; ".join(
-            f"{change['field']} {change['printed']}, would be {change['would_be']}"
-            for change in one.changes[:6]
-        )
-        what += f": {changes}"
+    said = [f"{each['printed']}, would be {each['would_be']}" for each in one.changes]
+    if one.kind == LABELS_EXCHANGED:
+        pairs = (" and ".join(sorted((one["printed"], one["would_be"]))) for one in one.changes)
+        what = f"labels {', '.join(dict.fromkeys(pairs))} exchanged"
+    elif one.kind == LABEL_WRONG:
+        what = "; ".join(f"{each['would_be']} labelled {each['printed']}" for each in one.changes)
+    elif one.changes:
+        named = [f"{each['field']} {text}" for each, text in zip(one.changes, said, strict=True)]
+        what += ": " + "; ".join(named[:6])
     return what + (f" ({one.note})" if one.note else "")
 
 
