@@ -375,93 +375,81 @@ def toml_file(path: str) -> dict[str, str]:
 
 
 def toml_texts(text: str, source: str) -> dict[str, str]:
-    """The entries of a flat TOML document as texts: numbers as they stand in the file, strings as
-    what they hold. Raises UserError for anything that is neither, naming the line."""
-    import tomllib
-
-    raw = _raw_values(text, source)
-    try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise _syntax_error(text, str(error), raw, source) from None
-    except RecursionError:
-        raise UserError("nested too deeply; expected one value a line", source) from None
-    except ValueError:  # Python's own limit on the digits of a whole number
-        raise UserError("has a number of thousands of digits; expected a value", source) from None
-    texts = {}
-    for key, value in document.items():
-        line, raw_text = raw.get(key, (0, ""))
-        where = f"{source}, line {line}" if line else source
-        if isinstance(value, dict) and set(value) <= {"value", "source"} and "value" in value:
-            if "source" in value:
-                texts[key + SOURCE] = str(value["source"])
-            inside = re.search(r"\bvalue\s*=\s*([^,}]*)", raw_text)
-            raw_text = inside[1].strip() if inside else raw.get(f"{key}.value", (0, ""))[1]
-            value = value["value"]
-        if isinstance(value, str):
-            texts[key] = value
-        elif isinstance(value, bool) or not isinstance(value, int | float):
-            kind = {bool: "a truth value", list: "a list", dict: "a table"}.get(
-                type(value), "a date"
+    """The entries of a flat TOML document, one a line, as texts: numbers as they stand in the file,
+    strings as what they hold, and of ``NAME = {value = ..., source = ...}`` or a table of these two
+    both. Raises UserError for anything else, naming the line."""
+    texts: dict[str, str] = {}
+    lines: dict[str, int] = {}
+    tables: dict[str, str] = {}
+    table = ""
+    for number, line in enumerate(text.split("\n"), 1):
+        where = f"{source}, line {number}"
+        if len(line) > LONGEST_ENTRY:
+            raise UserError(
+                f"has more than {LONGEST_ENTRY:,} characters; expected one value a line", where
             )
-            raise UserError(f"{key} is {kind}; expected a number", where)
-        else:
-            if not is_number(raw_text):
-                raise UserError(f"{key} = {raw_text} is not a number that INPUT takes", where)
-            texts[key] = raw_text
+        if '"""' in line or "'''" in line:
+            raise UserError("has a text of several lines; expected one value a line", where)
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        if header := re.fullmatch(r"\s*\[([A-Za-z0-9_-]+)\]\s*(#.*)?", line):
+            table = header[1]
+            tables[table] = where
+            continue
+        if (match := re.match(_ENTRY, line)) is None:
+            if re.match(r"\s*\d+ *[A-Za-z?]", line):
+                raise UserError(
+                    "is a BASIC program, not a scene; impact88 basic runs it, and run and verify "
+                    "take another copy of the listing as --listing",
+                    source,
+                )
+            raise UserError("is not TOML; expected NAME = VALUE", where)
+        key = next(group for group in match.groups()[:3] if group is not None)
+        if table:
+            if key not in ("value", "source"):
+                raise UserError(f"{table} is a table; expected a number", where)
+            key = table if key == "value" else table + SOURCE
+        if key in lines:
+            raise UserError(f"{key} is given twice (first in line {lines[key]})", where)
+        lines[key] = number
+        texts |= _toml_values(key, match[4], where)
+    for table, where in tables.items():
+        if table not in texts:
+            raise UserError(f"{table} is a table; expected a number", where)
     return texts
 
 
-def _raw_values(text: str, source: str) -> dict[str, tuple[int, str]]:
-    """Line and raw text of each entry's value, a comment cut off."""
-    raw: dict[str, tuple[int, str]] = {}
-    table = ""
-    for number, line in enumerate(text.split("\n"), 1):
-        if len(line) > LONGEST_ENTRY:
-            raise UserError(
-                f"has more than {LONGEST_ENTRY:,} characters; expected one value a line",
-                f"{source}, line {number}",
-            )
-        if '"""' in line or "'''" in line:
-            raise UserError(
-                "text over several lines is not used here; expected one value a line",
-                f"{source}, line {number}",
-            )
-        if header := re.match(r"[ \t]*\[([A-Za-z0-9_-]+)\]", line):
-            table = header[1] + "."
-        elif match := re.match(_ENTRY, line):
-            key = table + next(group for group in match.groups()[:3] if group is not None)
-            if key in raw:
-                raise UserError(
-                    f"{key} is given twice (first in line {raw[key][0]})",
-                    f"{source}, line {number}",
-                )
-            raw[key] = (number, match.group(4).partition("#")[0].strip())
-    return raw
+def _toml_values(key: str, text: str, where: str) -> dict[str, str]:
+    """The text of an entry by its key, and of what says where its value comes from."""
+    import tomllib
 
-
-def _syntax_error(
-    text: str, message: str, raw: Mapping[str, tuple[int, str]], source: str
-) -> UserError:
-    """What TOML refuses, with the spelling it would take when the value is one INPUT takes."""
-    if re.match(r"\s*\d+ *[A-Za-z?]", text):
-        return UserError(
-            "is a BASIC program, not a scene; impact88 basic runs it, and run and verify take "
-            "another copy of the listing as --listing",
-            source,
-        )
-    place = re.search(r"\(at line (\d+)", message)
-    number = int(place.group(1)) if place else text.count("\n") + 1
-    where = f"{source}, line {number}"
-    for key, (line, value) in raw.items():
-        if line == number and is_number(value):
-            whole = re.sub(r"^([+-]?)\.", r"\g<1>0.", value)
-            whole = re.sub(r"\.(?![0-9])", ".0", whole)
-            bare = f"{whole} or " if _plain_toml(whole) else ""
-            return UserError(f'{key} = {value} is not TOML; write {bare}"{value}"', where)
-        if line == number and not value:
-            return UserError(f"{key} has no value; expected a number", where)
-    return UserError(f"not TOML: {message}", where)
+    raw = text.partition("#")[0].strip()
+    try:
+        value = tomllib.loads(f"x = {text}")["x"]
+    except RecursionError:
+        raise UserError("nested too deeply; expected one value a line", where) from None
+    except tomllib.TOMLDecodeError as error:
+        if not raw:
+            raise UserError(f"{key} has no value; expected a number", where) from None
+        if not is_number(raw):
+            reason = str(error).partition(" (at line")[0]
+            raise UserError(f"{key} = {quoted(raw)} is not TOML: {reason}", where) from None
+        whole = re.sub(r"\.(?![0-9])", ".0", re.sub(r"^([+-]?)\.", r"\g<1>0.", raw))
+        bare = f"{whole} or " if _plain_toml(whole) else ""
+        raise UserError(f'{key} = {raw} is not TOML; write {bare}"{raw}"', where) from None
+    texts = {}
+    if isinstance(value, dict) and set(value) <= {"value", "source"} and "value" in value:
+        if "source" in value:
+            texts[key + SOURCE] = str(value["source"])
+        value = value["value"]
+        inside = re.search(r"\bvalue\s*=\s*([^,}]*)", raw)
+        raw = inside[1].strip() if inside else ""
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        kind = {bool: "a truth value", list: "a list", dict: "a table"}.get(type(value), "a date")
+        raise UserError(f"{key} is {kind}; expected a number", where)
+    if not isinstance(value, str) and not is_number(raw):
+        raise UserError(f"{key} = {raw} is not a number that INPUT takes", where)
+    return {key: value if isinstance(value, str) else raw, **texts}
 
 
 SIGNS = """\
