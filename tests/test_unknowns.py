@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from impact88 import sample, solve, solve_for
 from impact88.bench.populations import scenes
 from impact88.errors import UserError
-from impact88.reconstruction.model import initial_velocities
+from impact88.reconstruction.model import initial_impact
 from impact88.reconstruction.outcome import outcome
 from impact88.reconstruction.unknowns import (
     COEFFICIENTS,
@@ -119,7 +119,7 @@ def test_reference_cases_to_1e_12_of_their_condition(case: Case) -> None:
 
 @pytest.mark.parametrize("case", cases_of("inverse"), ids=str)
 def test_the_closed_form_inverse_too(case: Case) -> None:
-    found = initial_velocities(case.given)
+    found = initial_impact(case.given)
     amplification = float(solve_for(case.given)[0].worst)
     assert largest_error(found, case.velocities) <= 1e-12 * amplification
 
@@ -326,10 +326,10 @@ def test_closed_form_reconstruction_over_arrays_agrees_with_the_general_solver()
     known = without(table_3(), *INITIAL)
     columns = {n: v * rng.uniform(0.9, 1.1, 200) for n, v in known.items()} | {"MUP": 0.3}
     (general,) = solve_for(columns)
-    closed = initial_velocities(columns)
+    closed = initial_impact(columns)
     for name in (*INITIAL, "PN", "PT", "PM"):
         np.testing.assert_allclose(closed[name], general[name], rtol=1e-10, atol=1e-10)
-    assert not np.isfinite(initial_velocities(columns | {"MUP": -10.0})["UX"]).any()
+    assert not np.isfinite(initial_impact(columns | {"MUP": -10.0})["UX"]).any()
 
 
 # -- errors
@@ -493,7 +493,7 @@ def test_point_masses_are_reconstructed_too(scene: dict[str, float]) -> None:
     known = {n: v for n, v in scene.items() if n not in (*names, "MU", "PN", "EM")}
     (found,) = solve_for(known)
     assert set(found.unknown) == set(names)
-    closed = initial_velocities({**known, "EM": scene["EM"]})
+    closed = initial_impact({**known, "EM": scene["EM"]})
     for name in names:
         tolerance = 1e-12 * float(found.worst) * 100
         assert float(found[name]) == pytest.approx(scene[name], abs=tolerance)

@@ -261,7 +261,7 @@ def test_barrier_reconstruction_has_energies():
     known = {n: v for n, v in wall.items() if n not in (*INITIAL, "MU")} | {
         n: after[n] for n in (*FINAL, "MUP")
     }
-    found = reconstruction_model(known, ["KI", "KF", "LOSS", "STATUS"])
+    found = reconstruction_model(known, ["KI", "KF", "LOSS", "STATUS"])[0]
     for name in ("KI", "KF", "LOSS"):
         assert float(found[name]) == pytest.approx(after[name], rel=1e-10)
     assert int(found["STATUS"]) == int(after["STATUS"])

@@ -35,7 +35,7 @@ from ..names import FINAL_STATE, VELOCITIES
 from ..reconstruction.contact import moved
 from ..reconstruction.geometry import Geometry
 from ..reconstruction.impulse import forces
-from ..reconstruction.outcome import energies
+from ..reconstruction.state import State
 from .deltav import delta_v
 
 Array = NDArray[np.float64]
@@ -270,7 +270,7 @@ def closure(collision: Collision) -> Closure:
     moment_on_b = ib * wb - mb * (here.d2 * by - here.d1 * bx)
     return Closure(
         collision.number,
-        float(energies(here, given)["LOSS"]),
+        float(State.of_known(given)["LOSS"]),
         *(float(x) for x in (ma * ax, -mb * bx, ma * ay, -mb * by, moment_on_a, -moment_on_b)),
     )
 

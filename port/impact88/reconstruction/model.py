@@ -23,21 +23,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.solve import quantities, solve
+from ..closedform.solve import quantities
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from .geometry import Geometry
-from .outcome import energies, status, velocity_changes
+from .outcome import status
+from .state import State
 
 Array = NDArray[Any]
-Model = Callable[[Mapping[str, Any], Sequence[str]], dict[str, Array]]
-"""Columns (arrays or numbers by name) and the outputs wanted -> arrays by name."""
 Divided = tuple[dict[str, Array], list[Array]]
 """Arrays by name, and what divides them: where one of these is zero, some of them are infinite."""
-DividedModel = Callable[[Mapping[str, Any], Sequence[str], float | None], Divided]
+Model = Callable[[Mapping[str, Any], Sequence[str], float | None], Divided]
+"""Columns (arrays or numbers by name), the outputs wanted, and MU's sign as
+`closedform.solve.quantities` has it."""
 
 
-def initial_velocities(columns: Mapping[str, Any]) -> dict[str, Array]:
-    """UX UY WA VX VY WB, and the impulses PN PT PM, from the six final velocities.
+def initial_impact(columns: Mapping[str, Any]) -> State:
+    """The impact of six final velocities, with the velocities before and the impulses PN PT PM.
 
     ``columns``: numbers or arrays that broadcast: DA DB GA PA PB TA TB MA MB IA IB, M (6 where left
     out), the coefficients E, EM and MUP (the *signed* P_t/P_n, as printed; line 400's rule needs
@@ -45,21 +46,19 @@ def initial_velocities(columns: Mapping[str, Any]) -> dict[str, Array]:
     Where there is no solution (e = 0, e_m = 0, the pivot's -10, singular friction) the values are
     NaN or infinite. Point masses (M = 4) keep their spins and need no e_m.
     """
+    values = {name: np.asarray(value, np.float64) for name, value in columns.items()}
     geometry = Geometry.of(columns)
-    e, em, mu = (np.asarray(columns[name], np.float64) for name in ("E", "EM", "MUP"))
-    final = [np.asarray(columns[name], np.float64) for name in FINAL_STATE]
+    e, em, mu = (values[name] for name in ("E", "EM", "MUP"))
     with np.errstate(all="ignore"):
         mu = np.where(mu == PIVOT, np.nan, mu)
-        normal, _, spin = geometry.relative(final)
+        normal, _, spin = geometry.relative([values[name] for name in FINAL_STATE])
         a, b = geometry.inverse_ia, geometry.inverse_ib
         moment = np.where(geometry.point, 0.0, (1 - em) / em * spin / geometry.inverse_spin_inertia)
         turned = (geometry.an * a - geometry.bn * b) * moment
         pn = ((1 + 1 / e) * normal - turned) / _along_impulse(geometry, mu)
-        pt = mu * pn
-        changes = geometry.changes(pn, pt, moment)
-        initial = [after - change for after, change in zip(final, changes, strict=True)]
-    names = (*VELOCITIES, "PN", "PT", "PM")
-    return dict(zip(names, (*initial, pn, pt, moment), strict=True))
+        impulse = {"PN": pn, "PT": mu * pn, "PM": moment}
+        state = State({**values, **impulse}, geometry, from_after=VELOCITIES)
+    return state
 
 
 def _along_impulse(geometry: Geometry, mu: Array) -> Array:
@@ -71,51 +70,31 @@ def _along_impulse(geometry: Geometry, mu: Array) -> Array:
     return result
 
 
-def forward_with_denominators(
-    columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None
+def forward_model(
+    columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None = None
 ) -> Divided:
-    """`forward_model` (``sign``: as `closedform.solve.quantities`)."""
+    """Equations 13-18 solved for the final velocities."""
     names = ["determinant", "critical_denominator"] if "MUC" in outputs else ["determinant"]
     values = quantities(columns, (*outputs, *names), sign)
     return {name: values[name] for name in outputs}, [values[name] for name in names]
 
 
-def reconstruction_with_denominators(
-    columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None
+def reconstruction_model(
+    columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None = None
 ) -> Divided:
-    """`reconstruction_model` (``sign`` counts for nothing)."""
-    values = reconstruction_model(columns, [*outputs, *(VELOCITIES if "MUC" in outputs else ())])
-    e, em, mu = (np.asarray(columns[name], np.float64) for name in ("E", "EM", "MUP"))
-    denominators = [e, em, _along_impulse(Geometry.of(columns), mu)]
-    if "MUC" in outputs:
-        given = {**columns, **values, "MU": 0.0}
-        scene = {name: given[name] for name in SCENE if name in given}
-        denominators += quantities(scene, ["critical_denominator"]).values()
-    return {name: values[name] for name in outputs}, denominators
-
-
-def forward_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Array]:
-    """Equations 13-18 solved for the final velocities, by `impact88.solve`."""
-    return dict(solve(columns, outputs))
-
-
-def reconstruction_model(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Array]:
-    """Equations 13-18 solved for the initial velocities, by `initial_velocities`, and what follows;
-    STATUS is that of the impact found."""
-    values = {
-        **{name: np.asarray(value, np.float64) for name, value in columns.items()},
-        **initial_velocities(columns),
-    }
-    values["SA"] = np.hypot(values["UX"], values["UY"])
-    values["SB"] = np.hypot(values["VX"], values["VY"])
-    geometry = Geometry.of(values)
-    values |= velocity_changes(values)
-    if {"KI", "KF", "LOSS", "STATUS"}.intersection(outputs):
-        values |= energies(geometry, values)
+    """Equations 13-18 solved for the initial velocities, and what follows; STATUS is that of the
+    impact found, ``sign`` counts for nothing."""
+    state = initial_impact(columns)
+    before = dict(zip(VELOCITIES, state.before, strict=True))
+    denominators = [state.values["E"], state.values["EM"]]
+    denominators.append(_along_impulse(state.here, state.values["MUP"]))
+    result = {n: state[n] for n in outputs if n not in ("MUC", "STATUS")}
     if "MUC" in outputs:
         # the critical friction depends on MU's sign as little as on MU
-        scene = {name: values[name] for name in SCENE if name in values} | {"MU": 0.0}
-        values["MUC"] = forward_model(scene, ["MUC"])["MUC"]
+        whole = {**state.values, **before, "MU": 0.0}
+        scene = {name: whole[name] for name in SCENE if name in whole}
+        result["MUC"], zero = quantities(scene, ("MUC", "critical_denominator")).values()
+        denominators.append(zero)
     if "STATUS" in outputs:
-        values["STATUS"] = status(geometry, values)
-    return {name: values[name] for name in outputs}
+        result["STATUS"] = status(state, {**state.values, **before})
+    return result, denominators

@@ -51,6 +51,19 @@ class State:
         self.here = Geometry.of(values) if geometry is None else geometry
         self.from_after = from_after
 
+    @classmethod
+    def of_known(cls, values: Mapping[str, Any]) -> State:
+        """An impact of which these velocities, before and after, and impulses are known; what they
+        do not tell is NaN."""
+        early, late = (
+            [values.get(n, np.nan) for n in names] for names in (VELOCITIES, FINAL_STATE)
+        )
+        state = cls({**dict.fromkeys(IMPULSES, np.nan), **values})
+        state.before, state.after = early, late
+        state.changes = [after - before for before, after in zip(early, late, strict=True)]
+        state.energy_lost = state.initial_energy - state._energy(late)
+        return state
+
     @cached_property
     def impulse(self) -> list[Any]:
         return [self.values[name] for name in IMPULSES]
@@ -158,9 +171,21 @@ class State:
         spin = self.relative_after[2]
         return spin, spin + moment * self.here.inverse_spin_inertia
 
-    def _size_of_change(self, inverse_mass: Any) -> Any:
-        pn, pt, _ = self.impulse
-        return np.sqrt(pn * pn + pt * pt) * inverse_mass
+    def contact_velocities(self) -> dict[str, Any]:
+        """XA YA XB YB of the contact points, and XAF ... YBF (listing lines 340, 700 and 710)."""
+        velocities, here = {}, self.here
+        arms = (("A", 0, here.d3, -here.d4), ("B", 3, -here.d1, here.d2))
+        for suffix, six in (("", self.before), ("F", self.after)):
+            for vehicle, first, arm_x, arm_y in arms:
+                x, y, spin = six[first : first + 3]
+                spin = np.where(here.point, 0.0, spin)
+                velocities[f"X{vehicle}{suffix}"] = x + arm_x * spin
+                velocities[f"Y{vehicle}{suffix}"] = y + arm_y * spin
+        return velocities
+
+    def _size_of_change(self, first: int) -> Any:
+        x, y = self.changes[first : first + 2]
+        return np.sqrt(x * x + y * y)
 
     def _change(self, vehicle: str) -> tuple[Any, Any]:
         """A vehicle's change of velocity along its length, forward, and across, to its right."""
@@ -194,8 +219,8 @@ class State:
 
 
 _QUANTITIES: dict[str, Callable[[State], Any]] = {
-    "DVA": lambda state: state._size_of_change(state.here.inverse_ma),
-    "DVB": lambda state: state._size_of_change(state.here.inverse_mb),
+    "DVA": lambda state: state._size_of_change(0),
+    "DVB": lambda state: state._size_of_change(3),
     "DVAF": lambda state: state._change("A")[0],
     "DVAR": lambda state: state._change("A")[1],
     "DVBF": lambda state: state._change("B")[0],

@@ -32,14 +32,7 @@ from ..errors import UserError
 from ..mappings import within_limits
 from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
 from ..reconstruction.contact import MOVES, moved, placed
-from ..reconstruction.model import (
-    DividedModel,
-    Model,
-    forward_model,
-    forward_with_denominators,
-    reconstruction_model,
-    reconstruction_with_denominators,
-)
+from ..reconstruction.model import Model, forward_model, reconstruction_model
 from ..scene import check_mapping
 from .boundstable import Bound, Bounds
 from .draws import drive_of, ranks, spread_of
@@ -201,7 +194,6 @@ class _Box:
     """The problem over the box of its inputs' limits, k inputs that vary and m outputs."""
 
     model: Model
-    divided: DividedModel
     known: dict[str, float]
     inputs: dict[str, Uncertain]
     outputs: tuple[str, ...]
@@ -239,13 +231,12 @@ class _Box:
                 raise UserError("its limits are too far apart for double precision", name)
         forward = problem == "forward"
         model = forward_model if forward else reconstruction_model
-        divided = forward_with_denominators if forward else reconstruction_with_denominators
         for name in exclude:
             if name not in WARNINGS:
                 raise UserError(f"{name!r} is not a warning; expected some of {' '.join(WARNINGS)}")
         excluded = sum({WARNINGS[name] for name in exclude})
         share = "MU" in given and given["MU"].share
-        return cls(model, divided, known, inputs, wanted, limits, excluded, share)
+        return cls(model, known, inputs, wanted, limits, excluded, share)
 
     def columns(self, point: Array) -> dict[str, Array]:
         """Points of the unit cube, n x k -> the inputs that vary, n each; exact at the limits."""
@@ -261,7 +252,7 @@ class _Box:
     def solved(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
         """The outputs at n sets of inputs, n each (a lone number where nothing varies)."""
         with np.errstate(all="ignore"):
-            return self.model(self.scenes(columns), outputs)
+            return self.model(self.scenes(columns), outputs, None)[0]
 
     def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
         """All inputs, the contact point where its own axes, CX and CY have it."""
@@ -295,7 +286,7 @@ class _Box:
         def values(points: Array) -> Array:
             columns = self.scenes(self.columns(points))
             with np.errstate(all="ignore"):
-                solved, denominators = self.divided(columns, names, sign)
+                solved, denominators = self.model(columns, names, sign)
             results = [np.array(solved[name]) for name in self.outputs]
             if self.excluded:
                 left_out = self.left_out(solved)
