@@ -650,7 +650,7 @@ def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
     try:
         first, first_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
         wait_until(lambda: asking._asking == "page" and asking._worker is not None)
-        process = asking._worker.process
+        process = asking._worker[0]
         other, other_outcome = in_thread(lambda: asking.ask("other", "bounds_answer", **question))
         newer, newer_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
         for thread in (first, other, newer):
@@ -690,7 +690,7 @@ def test_stopping_ends_what_a_page_waits_for_and_no_other_pages() -> None:
     try:
         thread, outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
         wait_until(lambda: asking._asking == "page" and asking._worker is not None)
-        process = asking._worker.process
+        process = asking._worker[0]
         assert process is not None
         asking.stop("other")
         assert process.is_alive()
@@ -793,7 +793,7 @@ def test_a_port_that_is_taken_is_said_in_one_line() -> None:
 
 
 def test_without_the_extra_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr(serving, "find_spec", lambda name: None)
     with pytest.raises(UserError, match=r"pip install 'impact88\[desk\]'") as caught:
         serving.serve(0, False, lambda address: pytest.fail("it must not start"))
     assert "Flask and waitress" in str(caught.value)

@@ -13,8 +13,8 @@ bodies and headers of its own.
 - `app`: addresses and what answers them
 - `halfopen`: connections that send no whole request
 - `workers`: processes for what takes long, so that a newer question can end an older one
-- `paper`, `collision`, `reconstruction`: what the views are answered
-- `page`: what the template is given
+- `paper`, `collision`, `reconstruction`: the answers of the views; `forms`: their entries
+- `page`: the template's values
 - ``templates/``, ``static/``: the page, one style sheet, JavaScript modules
 
 No mechanics, no reading of numbers and no wording of a verdict stands here: this room calls what

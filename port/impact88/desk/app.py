@@ -1,9 +1,8 @@
-"""The desk's addresses, and what answers them.
+"""The desk's addresses, all below the token.
 
-Everything lies below the token. The page is read once; then its scripts ask, with JSON or with a
-file's bytes, and are answered with JSON, or with the file that is to be saved. Input that cannot be
-used is status 400 with ``{"problem": ...}``, the sentence a command would end with; a question that
-a newer one has replaced is 409.
+The page is read once; its scripts then send JSON or a file's bytes, and receive JSON or a file.
+Unusable input is status 400 with ``{"problem": ...}``, the sentence a command would print; a
+question replaced by a newer one is 409.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from ..names import SCENE
 from ..reconstruction.knowable import KNOWABLE
 from ..version import __version__
 from . import collision, page, reconstruction
+from .forms import filled_in
 from .guard import HEADERS, LARGEST_BODY, refusal
-from .uploads import filled_in
 from .workers import Bench, BrokenError, SupersededError
 
 BENCHES = {
@@ -38,21 +37,18 @@ BENCHES = {
 
 
 class Desk:
-    """What outlives a request: a bench for each kind of work that takes long."""
+    """A bench for each kind of slow work."""
 
     def __init__(self) -> None:
         self.benches = {name: Bench(module) for name, module in BENCHES.items()}
-        self._warming = threading.Lock()
+        self._warm = False
 
     def warm(self) -> None:
-        """Load and start, once and aside, what the first questions will need."""
-        if self._warming.acquire(blocking=False):
-            threading.Thread(target=self._warm, daemon=True).start()
-
-    def _warm(self) -> None:
-        for bench in self.benches.values():
-            bench.warm()
-        collision.warm()
+        """Start, once and in the background, what the first questions will need."""
+        if not self._warm:
+            self._warm = True
+            starts = [*(bench.warm for bench in self.benches.values()), collision.warm]
+            threading.Thread(target=lambda: [start() for start in starts], daemon=True).start()
 
     def close(self) -> None:
         """End all processes."""
@@ -79,15 +75,12 @@ def application(desk: Desk, port: int, token: str) -> Flask:
         response.headers.update(HEADERS)
         return response
 
-    @app.errorhandler(Exception)
-    def told(error: Exception) -> Any:
-        return _told(error)
-
+    app.register_error_handler(Exception, _problem)
     app.register_blueprint(_addresses(desk), url_prefix=f"/{token}")
     return app
 
 
-def _told(error: Exception) -> Any:
+def _problem(error: Exception) -> Any:
     """An error as JSON, in the words a command would use."""
     if isinstance(error, UserError):
         return {"problem": str(error)}, 400
@@ -105,9 +98,14 @@ _REFUSED = {413: f"more than {LARGEST_BODY:,} bytes, the limit here"}
 def _addresses(desk: Desk) -> Blueprint:
     routes = Blueprint("desk", __name__)
 
+    def sender() -> str:
+        return request.headers.get("X-Desk-Page", "")[:64]
+
     def asked(bench: str, function: str, **arguments: Any) -> Any:
-        who = request.headers.get("X-Desk-Page", "")[:64]
-        return desk.benches[bench].ask(who, function, **arguments)
+        return desk.benches[bench].ask(sender(), function, **arguments)
+
+    def table(macro: str, content: Any) -> str:
+        return str(flask.get_template_attribute("answers.html", macro)(content))
 
     @routes.get("/")
     def whole_page() -> str:
@@ -136,11 +134,11 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/collision")
     def collision_answer() -> Any:
-        told = collision.answer(**_form())
-        if "answer" in told:
-            told["first"] = flask.get_template_attribute("answers.html", "first")(told["answer"])
-            told["all"] = flask.get_template_attribute("answers.html", "results")(told["results"])
-        return told
+        answer = collision.answer(**_form())
+        if "answer" in answer:
+            answer["first"] = table("first", answer["answer"])
+            answer["all"] = table("results", answer["results"])
+        return answer
 
     @routes.post("/figure")
     def figure() -> Response:
@@ -150,8 +148,7 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.post("/bounds")
     def bounds() -> Any:
         found = asked("bounds", "bounds_answer", **_form())
-        table = flask.get_template_attribute("answers.html", "bounds")
-        return {"found": found, "table": table(found)}
+        return {"found": found, "table": table("bounds", found)}
 
     @routes.post("/scene-file")
     def scene_file() -> Response:
@@ -166,9 +163,8 @@ def _addresses(desk: Desk) -> Blueprint:
             text, name = reconstruction.known_file(**_form()), "known.toml"
         else:
             abort(404)
-        return _saved(
-            asked("bounds", "case_report", text=text, name=name), "text/html", "case.html"
-        )
+        written = asked("bounds", "case_report", text=text, name=name)
+        return _saved(written, "text/html", "case.html")
 
     @routes.post("/scene")
     def scene() -> Any:
@@ -180,9 +176,8 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
-        told = asked("reconstruction", "answer", **_form())
-        tables = flask.get_template_attribute("answers.html", "solutions")
-        return {**told, "tables": tables(told["solutions"])}
+        answer = asked("reconstruction", "answer", **_form())
+        return {**answer, "tables": table("solutions", answer["solutions"])}
 
     @routes.post("/known-file")
     def known_file() -> Response:
@@ -200,7 +195,7 @@ def _addresses(desk: Desk) -> Blueprint:
     def stop(bench: str) -> Any:
         if bench not in desk.benches:
             abort(404)
-        desk.benches[bench].stop(request.headers.get("X-Desk-Page", "")[:64])
+        desk.benches[bench].stop(sender())
         return {}
 
     return routes
@@ -233,18 +228,14 @@ def _name() -> str:
 
 
 def _form() -> dict[str, Any]:
-    """A form's ``values``, texts by name, and its ``units``. Raises UserError."""
-    return {"values": _texts("values"), "units": _units()}
-
-
-def _units() -> str:
-    """The system of units chosen; nothing for any consistent ones. Raises UserError."""
+    """A form's ``values``, texts by name, and its system of ``units``, empty for any consistent
+    ones. Raises UserError."""
     units = _text("units")
     if units and units not in dict(page.SYSTEMS):
         raise UserError(
             f"{units!r} is not a system of units; expected {', '.join(dict(page.SYSTEMS))}"
         )
-    return units
+    return {"values": _texts("values"), "units": units}
 
 
 def _text(name: str) -> str:

@@ -1,4 +1,4 @@
-"""What the Collision view is answered: 1988 printout, exact results, warnings, bounds, figure.
+"""The answers of the Collision view: 1988 printout, exact results, warnings, bounds, figure.
 
 The form sends 21 texts. A text that INPUT takes for a number goes into the program as it stands;
 one that says a range (`uncertainty.uncertain`) is kept for the bounds, and its nominal value goes
@@ -30,9 +30,7 @@ from ..scene import (
 )
 from ..schemas import stamped
 from ..uncertainty import uncertain
-from .entries import entries, without_rounding
-from .entries import told as told_units
-from .uploads import OUTLINES, outline_lines
+from .forms import OUTLINES, entries, outline_lines, units_shown, without_rounding
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
@@ -42,7 +40,6 @@ _DIGITS = 12
 """Digits of an exact result, as many as double precision is sure of."""
 _ROUNDING = 1e-14
 """Share of the largest value of its kind below which a result shows as 0: a hundred roundings."""
-_NOT_SHOWN = ("STATUS",)
 _ANSWER_DIGITS = 4
 """Digits of the answer: more than the inputs of any collision are known to."""
 _ANSWER = (
@@ -82,7 +79,7 @@ class Form(NamedTuple):
 
 
 def warm() -> None:
-    """Load what the first answer needs."""
+    """Import what the first answer needs."""
     answer(dict(sample(1)))
     figure(dict(sample(1)))
 
@@ -128,12 +125,11 @@ def _number_text(name: str, text: str, ranges: list[str]) -> str:
 
 
 def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
-    """What is known of the form's collision.
+    """The answer for a form.
 
-    ``problems``, ``missing``, ``ranges``: see `Form`; ``units``: see `entries.told`. Where there is
-    a scene, ``answer`` is what is asked of it first (see `_answer`), ``oracle`` what `impact88
-    oracle` answers for it, ``page`` its printout, ``screen`` the screen at its end (see `_screen`),
-    ``results`` the rows of a table and ``warnings`` sentences.
+    ``problems``, ``missing``, ``ranges``: see `Form`; ``units``: see `units_shown`. For a complete
+    scene also ``answer``, the main results (`_answer`); ``oracle``, what `impact88 oracle` answers;
+    ``page``, its printout; ``screen`` (`_screen`); ``results``, rows of a table; ``warnings``.
     """
     from ..checking.oracle import look_up
     from ..judging import beside
@@ -145,7 +141,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
         "missing": form.missing,
         "ranges": form.ranges,
         "remarks": form.remarks,
-        "units": told_units(form.units),
+        "units": units_shown(form.units),
     }
     if form.whole:
         scene = Scene(form.texts, source="the form")
@@ -187,8 +183,8 @@ def _answer(
 
 
 def _screen(scene: Scene) -> list[list[tuple[str, str]]]:
-    """The 24 rows of the Apple's screen when the listing has ended, from the emulator's memory: for
-    each stretch its kind (normal, inverse, flashing) and text."""
+    """The 24 rows of the Apple's screen after the run, from the emulator's memory: stretches, each
+    with its kind (normal, inverse, flashing) and text."""
     from ..program.emulated import Emulated
 
     emulated = Emulated(scene)
@@ -213,27 +209,21 @@ def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[d
 
     system = system_of(units)
     found = {name: one["double"] for name, one in results.items() if one["double"] is not None}
-    values = without_rounding(found, _ROUNDING)
-
-    def shown(name: str) -> str:
-        label = system.unit(name)
-        return f"{number(values[name] * system.factor(name))} {label}" if label else ""
-
-    return [
-        {
-            "name": name,
-            "symbol": quantity.symbol,
-            "meaning": quantity.meaning,
-            "unit": quantity.unit,
-            "printed": results[name]["printed"] or "",
-            "exact": number(values[name], _DIGITS),
-            "shown": shown(name),
-            "value": values[name] * system.factor(name),
-            "label": system.unit(name),
-        }
-        for name, quantity in RESULTS.items()
-        if name in values and name not in _NOT_SHOWN
-    ]
+    rows = []
+    for name, exact in without_rounding(found, _ROUNDING).items():
+        value, label = exact * system.factor(name), system.unit(name)
+        if name != "STATUS":
+            rows.append(
+                {
+                    **RESULTS[name]._asdict(),
+                    "printed": results[name]["printed"] or "",
+                    "exact": number(exact, _DIGITS),
+                    "shown": f"{number(value)} {label}" if label else "",
+                    "value": value,
+                    "label": label,
+                }
+            )
+    return rows
 
 
 def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:

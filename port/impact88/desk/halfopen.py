@@ -50,11 +50,8 @@ def guarded(server: Any) -> None:
 
     def handle_accept() -> None:
         accept()
-        waiting = [
-            one
-            for one in server.active_channels.values()
-            if not (one.requests or one.total_outbufs_len)
-        ]
+        channels = server.active_channels.values()
+        waiting = [one for one in channels if not (one.requests or one.total_outbufs_len)]
         if len(waiting) > WAITING:
             min(waiting, key=lambda one: (one.served, one.last_activity)).handle_close()
 

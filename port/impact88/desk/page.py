@@ -35,9 +35,7 @@ GROUPS = (
 
 
 KNOWN_GROUPS = (
-    *GROUPS[:2],
-    _group("Before the impact, A", "UX UY WA"),
-    _group("Before the impact, B", "VX VY WB"),
+    *GROUPS[:4],
     _group("After the impact, A", "VAX VAY WAF"),
     _group("After the impact, B", "VBX VBY WBF"),
     _group("Contact", "GA M"),
@@ -66,12 +64,7 @@ PUBLISHED = ("run1-as-printed.txt", "run2-as-printed.txt", "table3-as-printed.tx
 
 def symbol(text: str) -> Markup:
     """A symbol of the chapter as HTML: what follows ``_`` is a subscript."""
-    pieces = re.split("_([A-Za-z0-9]+)", text)
-    marked = (
-        Markup("<sub>{}</sub>").format(piece) if place % 2 else escape(piece)
-        for place, piece in enumerate(pieces)
-    )
-    return Markup("").join(marked)
+    return Markup(re.sub("_([A-Za-z0-9]+)", r"<sub>\1</sub>", str(escape(text))))
 
 
 def unit(label: str) -> str:

@@ -1,6 +1,6 @@
-"""What the Paper view is answered: the verdicts that `impact88 verify` gives, and its report.
+"""The answers of the Paper view: the verdicts of `impact88 verify`, and its report.
 
-A paper is a name and the bytes of its file, or of what has become of its text on the page.
+A paper is a name and the bytes of its file, or of its text as edited on the page.
 """
 
 from __future__ import annotations
@@ -92,8 +92,8 @@ def _words(result: Verification) -> dict[str, Any]:
 
 
 def report(papers: Sequence[Mapping[str, str]], words: Mapping[str, str]) -> str:
-    """The page that `impact88 verify --report` writes for some papers, each with ``name`` and
-    ``data`` (base 64); ``words``: what is to stand on it as given. Raises UserError."""
+    """The page that `impact88 verify --report` writes for papers, each with ``name`` and ``data``
+    (base 64); ``words``: printed on it as given. Raises UserError."""
     given = {name: str(words.get(name) or "").strip() or None for name in WORDS}
     for name, text in given.items():
         if text and len(text) > LONGEST_WORDS:

@@ -1,4 +1,4 @@
-"""What the Reconstruction view is answered: what `impact88 reconstruct` finds for what is known.
+"""The answers of the Reconstruction view: what `impact88 reconstruct` finds.
 
 What computes is imported on first use: the page is shown before numpy is there.
 """
@@ -16,26 +16,25 @@ from ..reconstruction.knowable import KNOWABLE
 from ..scene import known_template, sample
 from ..schemas import stamped
 from ..uncertainty import uncertain
-from .entries import Entries, entries, without_rounding
-from .entries import told as told_units
-from .uploads import OUTLINES, outline_lines
+from .forms import OUTLINES, Entries, entries, outline_lines, units_shown, without_rounding
+from .page import digits
 
 if TYPE_CHECKING:
     from ..uncertainty.uncertain import Uncertain
-    from ..units import System
 
 DRAWS = 20_000
 """Random draws for the quantiles."""
 _DIGITS = 6
-_DIGITS_OF_A_SPREAD = 3
+_COLUMNS = {"±": 3, "5 %": 6, "95 %": 6, "lower": 6, "upper": 6, "error amplified": 3}
+"""Columns of a table, and the digits shown."""
 _ROUNDING = 1e-10
 """Share of the largest value of its kind below which a value is shown as 0: values go on with
 twelve digits, and errors are seldom amplified a hundred times."""
 _DIGITS_TO_GO_ON = 12
 """Digits of a value that goes on into another computation."""
-_AMPLIFIED = "error amplified"
-_DEVIATION = "±"
-_LOWER, _UPPER = "lower", "upper"
+_ASKED = ("DVA", "DVB", "LOSS")
+"""Shown with what was solved for."""
+_SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
 
 
 def warm() -> None:
@@ -46,7 +45,7 @@ def warm() -> None:
 def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     """The solutions for what is known.
 
-    ``units``: the system of bare numbers, or nothing; in the answer see `entries.told`.
+    ``units``: the system of bare numbers, or nothing; in the answer see `units_shown`.
     ``problems``: by name, what is wrong with a value; ``waiting``: why there is no solution;
     ``object``: what `impact88 reconstruct --json` prints; ``solutions``: for each ``printed``, what
     the command prints as text, and the ``rows`` and ``columns`` of a table, ``adjusted`` values,
@@ -61,7 +60,7 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
         except UserError as error:
             problems[name] = str(error)
     told: dict[str, Any] = {"problems": problems, "waiting": "", "object": None, "solutions": []}
-    told["units"] = told_units(given.units)
+    told["units"] = units_shown(given.units)
     if problems:
         told["waiting"] = f"To be corrected: {' '.join(problems)}."
         return told
@@ -100,79 +99,56 @@ def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, 
     from ..units import system_of
 
     system = system_of(given.units)
+
+    def what(name: str) -> dict[str, Any]:
+        return {**quantity(name)._asdict(), "unit": system.label(quantity(name).unit)}
+
     found = values["values"]
     exact = {name: value for name, value in found.items() if value is not None}
     shown = without_rounding(exact, _ROUNDING)
-    rows = [_row(name, value, shown.get(name), values, system) for name, value in found.items()]
-    named = (_DEVIATION, "5 %", "95 %", _LOWER, _UPPER, _AMPLIFIED)
+    rows = []
+    for name, value in found.items():
+        spread = values.get("uncertainty", {}).get(name, {})
+        quantiles = spread.get("quantiles", {})
+        numbers = {
+            "±": spread.get("first_order"),
+            "5 %": quantiles.get("0.05"),
+            "95 %": quantiles.get("0.95"),
+            "lower": spread.get("lower"),
+            "upper": spread.get("upper"),
+            "error amplified": values.get("amplification", {}).get(name),
+        }
+        known = name in values["known"]
+        rows.append(
+            {
+                **what(name),
+                "text": digits(shown.get(name), _DIGITS),
+                "value": value,
+                "known": known,
+                "solved": name in values.get("solved_for", _SOUGHT) and not known,
+                "columns": {head: digits(x, _COLUMNS[head]) for head, x in numbers.items()},
+                "numbers": numbers,
+            }
+        )
+    adjusted = [
+        {
+            **what(one["name"]),
+            "measured": digits(one["measured"], _DIGITS),
+            "tolerance": digits(one["tolerance"], _COLUMNS["±"]),
+            "adjusted": digits(one["adjusted"], _DIGITS),
+            "moved": f"{one['moved'] + 0.0:.2f}",
+        }
+        for one in values.get("adjusted", ())
+        if values["redundancy"]
+    ]
     return {
         "printed": printed,
         "rows": rows,
         "first": [row for row in rows if row["solved"] or row["name"] in _ASKED],
-        "columns": [name for name in named if any(row["columns"].get(name) for row in rows)],
-        "adjusted": [
-            _adjusted(one, system) for one in values.get("adjusted", ()) if values["redundancy"]
-        ],
+        "columns": [head for head in _COLUMNS if any(row["columns"][head] for row in rows)],
+        "adjusted": adjusted,
         "warnings": values["warnings"],
-        "scene": _scene({} if given.units else given.texts, values["values"]),
-    }
-
-
-def _row(
-    name: str,
-    value: float | None,
-    shown: float | None,
-    values: Mapping[str, Any],
-    system: System,
-) -> dict[str, Any]:
-    spread = values.get("uncertainty", {}).get(name, {})
-    quantiles = spread.get("quantiles", {})
-    columns = {
-        _DEVIATION: spread.get("first_order"),
-        _AMPLIFIED: values.get("amplification", {}).get(name),
-    }
-    bounds = {
-        "5 %": quantiles.get("0.05"),
-        "95 %": quantiles.get("0.95"),
-        _LOWER: spread.get("lower"),
-        _UPPER: spread.get("upper"),
-    }
-    return {
-        **_what(name, system),
-        "text": _text(shown, _DIGITS),
-        "value": value,
-        "known": name in values["known"],
-        "solved": name in values.get("solved_for", _SOUGHT) and name not in values["known"],
-        "columns": {
-            **{head: _text(one, _DIGITS_OF_A_SPREAD) for head, one in columns.items()},
-            **{head: _text(one, _DIGITS) for head, one in bounds.items()},
-        },
-        "numbers": {**columns, **bounds},
-    }
-
-
-_ASKED = ("DVA", "DVB", "LOSS")
-"""Shown with what was solved for."""
-_SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
-
-
-def _what(name: str, system: System) -> dict[str, str]:
-    what = quantity(name)
-    unit = system.label(what.unit)
-    return {"name": name, "symbol": what.symbol, "meaning": what.meaning, "unit": unit}
-
-
-def _text(value: float | None, digits: int) -> str:
-    return "" if value is None else number(value, digits)
-
-
-def _adjusted(one: Mapping[str, Any], system: System) -> dict[str, Any]:
-    return {
-        **_what(one["name"], system),
-        "measured": _text(one["measured"], _DIGITS),
-        "tolerance": _text(one["tolerance"], _DIGITS_OF_A_SPREAD),
-        "adjusted": _text(one["adjusted"], _DIGITS),
-        "moved": f"{one['moved'] + 0.0:.2f}",
+        "scene": _scene({} if given.units else given.texts, found),
     }
 
 

@@ -8,6 +8,7 @@ import sys
 import threading
 import webbrowser
 from collections.abc import Callable
+from importlib.util import find_spec
 from typing import Any
 
 from ..errors import UserError
@@ -15,7 +16,7 @@ from .guard import LARGEST_BODY
 
 HOST = "127.0.0.1"
 THREADS = 8
-"""Requests answered at a time: a browser keeps some connections open, and computing waits in one"""
+"""Requests answered at a time; computing waits in one."""
 LARGEST_HEADER = 32_768
 CONNECTIONS = 256
 """Connections at a time: four times those that may wait (`halfopen.WAITING`), and fewer than the
@@ -45,8 +46,8 @@ def serve(port: int, browser: bool, tell: Callable[[str], object]) -> None:
 
     Raises UserError where Flask or waitress is missing or the port cannot be had.
     """
-    missing = _missing()
-    if missing:
+    wanted = {"flask": "Flask", "waitress": "waitress"}
+    if missing := " and ".join(wanted[module] for module in wanted if find_spec(module) is None):
         raise UserError(
             f"the desk needs {missing}, which is not installed; pip install 'impact88[desk]'"
         )
@@ -59,14 +60,6 @@ def serve(port: int, browser: bool, tell: Callable[[str], object]) -> None:
             # the connection is queued by the socket, so the browser starts while we import
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
         _run(listener, number, token)
-
-
-def _missing() -> str:
-    """The names of the packages that are not installed, for a sentence."""
-    from importlib.util import find_spec
-
-    wanted = {"flask": "Flask", "waitress": "waitress"}
-    return " and ".join(name for module, name in wanted.items() if find_spec(module) is None)
 
 
 def _run(listener: socket.socket, port: int, token: str) -> None:

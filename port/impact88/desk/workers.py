@@ -13,7 +13,7 @@ import threading
 from importlib import import_module
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..errors import UserError
 
@@ -30,30 +30,17 @@ class BrokenError(Exception):
     """The process ended by itself, or said that a fault of this project stopped it."""
 
 
-class Worker(NamedTuple):
-    """A process, and the line to it."""
-
-    process: SpawnProcess
-    line: Connection
-
-    def end(self) -> None:
-        """End the process at once."""
-        self.process.kill()
-        self.process.join()
-
-
 class Bench:
     """One process that answers one question at a time.
 
     ``module``: the module of this room whose functions answer, loaded before the first question.
-
     Questions of one ``page`` replace each other; those of different pages wait for their turn.
     """
 
     def __init__(self, module: str) -> None:
         self._module = module
         self._turn = threading.Condition()
-        self._worker: Worker | None = None
+        self._worker: tuple[SpawnProcess, Connection] | None = None
         self._asking: str | None = None
         self._latest: dict[str, int] = {}
         self._closed = False
@@ -82,10 +69,10 @@ class Bench:
             worker = self._ready()
         kind, answer = "ended", None
         try:
-            worker.line.send((function, arguments))
+            worker[1].send((function, arguments))
             kind = "late"
-            if worker.line.poll(ANSWERED_WITHIN):
-                kind, answer = worker.line.recv()
+            if worker[1].poll(ANSWERED_WITHIN):
+                kind, answer = worker[1].recv()
         except (OSError, EOFError):
             kind = "ended"
         finally:
@@ -125,20 +112,22 @@ class Bench:
             self._end()
             self._turn.notify_all()
 
-    def _ready(self) -> Worker:
-        if self._worker is None or not self._worker.process.is_alive():
+    def _ready(self) -> tuple[SpawnProcess, Connection]:
+        if self._worker is None or not self._worker[0].is_alive():
             context = multiprocessing.get_context("spawn")
             ours, theirs = context.Pipe()
             process = context.Process(target=_work, args=(self._module, theirs), daemon=True)
             process.start()
             theirs.close()
-            self._worker = Worker(process, ours)
+            self._worker = process, ours
         return self._worker
 
     def _end(self) -> None:
-        worker, self._worker = self._worker, None
-        if worker is not None:
-            worker.end()
+        if self._worker is not None:
+            process, _ = self._worker
+            self._worker = None
+            process.kill()
+            process.join()
 
 
 def _work(name: str, line: Connection) -> None:
