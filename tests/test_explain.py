@@ -15,7 +15,8 @@ from impact88.program.run import run
 from impact88.reading.numerals import as_printed
 from impact88.reading.printout import FIELDS, read_printouts
 from impact88.recovery import replays
-from impact88.recovery.misprints import misreadings, opposite, slip
+from impact88.recovery.slips import slip
+from impact88.recovery.typedtext import opposite
 from impact88.reporting.examination import Verdict, verify
 from impact88.scene import Scene, sample
 from test_printout import SAMPLE
@@ -167,10 +168,22 @@ def test_another_m() -> None:
     assert result.scene["M"] == "6"
 
 
-def test_slips_are_symmetric_enough() -> None:
-    for kind, other in misreadings("-14.52"):
-        assert slip("-14.52", other) == kind
-    assert slip("14.52", "25.15") is None
+@pytest.mark.parametrize(
+    ("other", "kind"),
+    [
+        ("-14.57", "digit misread"),
+        ("14.52", "sign misread"),
+        ("-1.452", "decimal point misread"),
+        ("-41.52", "digits swapped"),
+        ("-114.52", "digit lost or added"),
+        ("-19.57", "two digits misread"),
+        ("-14.52", None),
+        ("-25.15", None),
+    ],
+)
+def test_slips_are_told_apart(other: str, kind: str | None) -> None:
+    assert slip("-14.52", other) == kind
+    assert slip(other, "-14.52") == kind
 
 
 @pytest.mark.parametrize(

@@ -42,6 +42,13 @@ ANGLES = tuple(name for name, field in FIELDS.items() if field.line == 650)
 """The angles, in the order of line 650; typed and printed in degrees."""
 INPUTS = tuple(name for name, field in FIELDS.items() if field.places is None and name != "KI")
 """Fields that print what was put in; MUP is MU after line 400."""
+
+
+def scene_name(name: str) -> str:
+    """The scene's value that a printed input stands for."""
+    return "MU" if name == "MUP" else name
+
+
 REPLIES = {"A": ("UX", "UY", "WA"), "B": ("VX", "VY", "WB")}
 """What the prompts of lines 200 and 220 ask for."""
 FINAL_SPINS = tuple(name for name, field in FIELDS.items() if field.line == 760)

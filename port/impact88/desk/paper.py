@@ -13,7 +13,6 @@ from ..errors import UserError
 from ..files import packaged_bytes
 from ..reading import plaintext as pasted
 from ..reading.printout import LARGEST_FILE
-from ..reading.wordplaces import laid_out
 from ..reporting import verification, wording
 from ..reporting.casefile import report as report_page
 from ..reporting.examination import examine_bytes
@@ -68,7 +67,7 @@ def _text(examined: Examined, data: bytes) -> str | None:
     picture, what was read on its only page."""
     try:
         text = pasted.decoded(data, examined.file)
-        return (laid_out(text, examined.file) if "<" in text[:1000] else None) or text
+        return pasted.laid_out(text, examined.file)
     except UserError:
         return examined.results[0].text if len(examined.results) == 1 else None
 

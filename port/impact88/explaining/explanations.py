@@ -19,13 +19,13 @@ from typing import Any
 import numpy as np
 
 from ..doubles import double
-from ..fields import INPUTS
+from ..fields import INPUTS, scene_name
 from ..judging.judgement import Judged, Status, same_value
 from ..reading.numerals import printable
-from ..recovery import misprints
-from ..recovery.choices import mu_turned, scene_name
-from ..recovery.rereading import Change, Reread, Rereading
+from ..recovery import slips
 from ..recovery.search import in_doubles
+from ..recovery.slips import Change, Reread, Rereading
+from ..recovery.typedtext import mu_turned
 from . import hypotheses, machines, programs
 from .predictions import NOT_APPLESOFT, Cause, Evidence, in_last_places
 
@@ -51,16 +51,8 @@ _ENOUGH = 26.0
 """Causes that take seconds to try are tried where none asks for so few bits: two slips (21)."""
 _BY_COPY = 12
 """Slips, of each kind of ranking, that are tried in a copy of the listing."""
-_KINDS = {
-    misprints.DIGIT: 10.0,
-    misprints.SIGN: 9.5,
-    misprints.POINT: 10.5,
-    misprints.SWAP: 11.0,
-    misprints.COUNT: 12.5,
-    misprints.TWO_DIGITS: 19.0,
-}
-"""Bits of a slip; one more for each after the first, and up to 1.6 for digits that look unlike."""
-_UNLIKE, _EACH = 0.4, 1.0
+_EACH = 1.0
+"""Bits of each slip after the first, besides its own."""
 _LAST_PLACE = 8.0
 """Bits more for a result misread by one in its last place, where another arithmetic is likelier;
 and for misread inputs on a page on which nothing worse is wrong."""
@@ -230,14 +222,14 @@ class _Page:
         """The single slips of printed inputs, those first whose results are nearest to the page's
         by double precision; that differs from what the program prints as in the scene recovered."""
         scene, assumed = self.recovered.scene, self.recovered.assumed
-        slips = [
+        tried = [
             Change(kind, name, text, other)
             for name, text in assumed.items()
-            for kind, other in misprints.misreadings(text)
-            if printable(other)
+            for other, kind in slips.misreadings(text).items()
+            if printable(other) and kind != slips.TWO_DIGITS
         ]
-        columns = {name: np.full(len(slips) + 1, double(text)) for name, text in scene.items()}
-        for row, one in enumerate(slips, 1):
+        columns = {name: np.full(len(tried) + 1, double(text)) for name, text in scene.items()}
+        for row, one in enumerate(tried, 1):
             turned = one.field == "MUP" and mu_turned(scene["MU"], one.printed)
             columns[scene_name(one.field)][row] = double(one.would_be) * (-1 if turned else 1)
         fields = self.recovered.outcome.fields
@@ -245,8 +237,8 @@ class _Page:
             name: column - column[0] + double(fields[name])
             for name, column in in_doubles(columns, self.evidence.named(fields)).items()
         }
-        order = np.argsort(self.evidence.far(found, len(slips) + 1)[1:], kind="stable")
-        return [slips[index] for index in order]
+        order = np.argsort(self.evidence.far(found, len(tried) + 1)[1:], kind="stable")
+        return [tried[index] for index in order]
 
     def exchanged_and_slipped(
         self, exchanges: Iterable[hypotheses.Hypothesis], rereading: Rereading
@@ -291,10 +283,7 @@ class _Page:
             should = self.recovered.scene.get(name[6:]) if reply else fields.get(name)
             if check is None or check.printed is None or should is None:
                 continue
-            kind = misprints.slip(check.printed, should)
-            if kind is None and misprints.differ_in_two(check.printed, should):
-                kind = misprints.TWO_DIGITS
-            if kind:
+            if kind := slips.slip(check.printed, should):
                 found.append(Change(kind, name, check.printed, should))
         return tuple(found)
 
@@ -344,9 +333,9 @@ class _Page:
         one = next((one for one in self.shown.labels if label and one.name == name), reading)
         line, column = (one.line, one.column) if one else (None, None)
         look = ""
-        if one and (label or kind in misprints.KINDS_OF_SLIPS):
+        if one and (label or kind in slips.BITS):
             at, glyphs = (line, column), (printed, would_be)
-            if kind == misprints.DIGIT and reading is not None:
+            if kind == slips.DIGIT and reading is not None:
                 pairs = enumerate(zip(printed, would_be, strict=False))
                 index = next((i for i, (read, true) in pairs if read != true), 0)
                 if index < len(reading.region):
@@ -369,9 +358,7 @@ def _differing(found: Judged) -> frozenset[str]:
 
 
 def _believed(change: Change) -> float:
-    bits = _KINDS.get(change.kind, 0.0)
-    if change.kind == misprints.DIGIT:
-        bits += _UNLIKE * misprints.likeness(change.printed, change.would_be)
+    bits = change.bits
     if change.field not in INPUTS:
         bits += _LAST_PLACE * in_last_places(change.field, change.printed, change.would_be)
     return bits

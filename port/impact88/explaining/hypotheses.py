@@ -19,14 +19,14 @@ import numpy as np
 from ..doubles import double, doubles_of
 from ..equations.edits import assigned, written_out
 from ..equations.evaluation import value
-from ..fields import FIELDS, INPUTS
+from ..fields import FIELDS, INPUTS, scene_name
 from ..files import packaged_text
 from ..names import PIVOT
 from ..reading import numerals
 from ..recovery import replays
-from ..recovery.choices import Column, scene_name, with_opposite_mu
-from ..recovery.rereading import Change
-from ..recovery.search import in_doubles
+from ..recovery.search import Column, in_doubles
+from ..recovery.slips import Change
+from ..recovery.typedtext import with_opposite_mu
 from .predictions import Cause, Evidence, Range, around, as_printed, digits_of
 
 _REPLAYED = 40

@@ -19,7 +19,7 @@ from ..fields import ANGLES, FIELDS, INPUTS
 from ..program.arithmetics import APPLESOFT, FLOAT64, Arithmetic
 from ..reading import numerals
 from ..recovery import replays
-from ..recovery.choices import with_opposite_mu
+from ..recovery.typedtext import with_opposite_mu
 from .predictions import (
     CUTS,
     NOT_APPLESOFT,

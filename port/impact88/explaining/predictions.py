@@ -17,8 +17,8 @@ from ..reading.numerals import value_of
 from ..reading.printout import Printout
 from ..recovery.recovered import Recovered
 from ..recovery.replays import Outcome
-from ..recovery.rereading import Change
 from ..recovery.search import AGREES, expected_results
+from ..recovery.slips import Change
 
 Range = tuple[Decimal, Decimal]
 

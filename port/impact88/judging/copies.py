@@ -15,17 +15,15 @@ from itertools import product
 from typing import NamedTuple
 
 from ..errors import UserError
-from ..fields import ANGLES, FIELDS, ZERO_DETERMINANT, outcome_fields
+from ..fields import ANGLES, FIELDS, ZERO_DETERMINANT, outcome_fields, scene_name
 from ..program.listingcopy import ListingCopy
 from ..program.run import run
 from ..reading.fieldlabels import LabelState
 from ..reading.numerals import value_of
 from ..reading.printout import Printout, read_printouts
-from ..recovery.choices import scene_name, with_opposite_mu
-from ..recovery.misprints import opposite
 from ..recovery.recovered import Recovered
 from ..recovery.replays import Outcome
-from ..recovery.typedtext import texts_that_print, typed_for
+from ..recovery.typedtext import opposite, texts_that_print, typed_for, with_opposite_mu
 from ..scene import sample
 from .judgement import FieldCheck, Judged, Status, judge
 

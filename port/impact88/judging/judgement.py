@@ -14,11 +14,9 @@ from enum import StrEnum
 from typing import Any
 
 from ..fields import ANGLES, FIELDS, FINAL_SPINS
-from ..reading.anglerow import cut_as
-from ..reading.numerals import Doubt, Match, Region, Spot, compare
+from ..reading.numerals import Doubt, Match, Region, Spot, compare, cut_as
 from ..reading.printout import Printout, Reading
-from ..recovery.choices import reply_ways, without_mark
-from ..recovery.recovered import Recovered
+from ..recovery.recovered import Recovered, reply_ways, without_mark
 from ..recovery.typedtext import stored_and_printed
 
 
@@ -177,7 +175,7 @@ def _angle_row(
         status, spots = status_of(match, region, str(text)), match.spots
         if not region:
             status = Status.NOT_READ
-        elif start and region[0].joined:
+        elif start and not region[0].gap:
             spots = (Spot(0, "", "", Doubt.BLANK), *spots)
             status = Status.DOUBTFUL if status is Status.READ else status
         row[name] = region, status, spots

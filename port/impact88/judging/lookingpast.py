@@ -13,8 +13,8 @@ from functools import cached_property
 
 from ..reading.printout import Printout
 from ..recovery.recovered import Recovered
-from ..recovery.rereading import Reread, Rereading
 from ..recovery.search import Scored
+from ..recovery.slips import Reread, Rereading
 from .judgement import Judged, Status, Verdict, judge, settled
 
 _TRIED = 8

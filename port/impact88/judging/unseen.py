@@ -13,11 +13,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from ..doubles import double
-from ..fields import ANGLES, FIELDS, INPUTS
+from ..fields import ANGLES, FIELDS, INPUTS, scene_name
 from ..reading.numerals import printable
 from ..recovery import replays
-from ..recovery.choices import mu_turned, scene_name
-from ..recovery.misprints import opposite
+from ..recovery.typedtext import mu_turned, opposite
 
 _SUMS = (("PA", "TA"), ("PB", "TB"))
 _LAST_PLACES = 2.0

@@ -1,9 +1,11 @@
-"""Aligning a text with the program's page by dynamic programming.
+"""Aligning a text with the program's page, by dynamic programming.
 
-The page is a known template seen through noise, so the text is read as the cheapest way through its
-states: a glyph opens the next state or stays in one, states may be missed, whole lines may be
-missing, and text outside costs little. One forward pass over the text (numpy rows over the states),
-one trace back; memory is bounded by reading long texts in windows, so time grows as the text does.
+The page is a template seen through noise: every glyph of a label is a state, every number is one
+state that holds any number of glyphs, and before every line stands a state for what may lie between
+lines. A text is read as the cheapest way through them: a glyph opens the next state or stays in
+one, states and whole lines may be missing, and text outside costs little. Costs are in units of one
+wrong letter. One forward pass over the text (numpy rows over the states), one trace back; long
+texts are read in windows, so time grows as the text does.
 """
 
 from __future__ import annotations
@@ -11,11 +13,236 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .glyphs import Glyph
-from .template import ANGLE_ROW, RESULTS, WITHIN, code, template
+from ..fields import ANGLES
+from .glyphs import NUMERIC, UNSEEN, Glyph, label_cost, letters, printed_for
+
+Floats = NDArray[np.float64]
+
+REPLY_A, REPLY_B = "REPLY_A", "REPLY_B"
+"""Slots of the replies to the two prompts."""
+
+LINES: tuple[tuple[str, float], ...] = (
+    ("ENTERTHEINITIALVELOCITYCOMPONENTSOFMA:VAX,VAY,WA?{REPLY_A}", 0.3),
+    ("ENTERTHEINITIALVELOCITYCOMPONENTSOFMB:VBX,VBY,WB?{REPLY_B}", 0.3),
+    ("MA={MA}MB={MB}IA={IA}IB={IB}", 2.0),
+    ("DA={DA}DB={DB}", 2.0),
+    ("PAPBTATBGA", 1.2),
+    ("{PA}{PB}{TA}{TB}{GA}", 2.0),
+    ("PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}", 0.0),
+    ("UX={UX}UY={UY}WA={WA}XA={XA}YA={YA}", 2.0),
+    ("VX={VX}VY={VY}WB={WB}XB={XB}YB={YB}", 2.0),
+    ("E={E}MU={MUP}EM={EM}", 2.0),
+    ("INITIALKE={KI}KELOSS={LOSS}%", 2.0),
+    ("*****", 0.3),
+    ("VAX={VAX}VAY={VAY}(XA={XAF}YA={YAF})", 2.0),
+    ("VBX={VBX}VBY={VBY}(XB={XBF}YB={YBF})", 2.0),
+    ("WA={WAF}WB={WBF}", 0.8),
+    ("*****", 0.3),
+)
+"""What lines 200 to 770 print, fields in braces; angles also as some people retype them; with what
+it costs to miss a line whole."""
+PROMPTS, HEADING, ANGLE_ROW, LABELLED_ANGLES, RESULTS, SPINS = 2, 4, 5, 6, 12, 14
+"""Places in `LINES`; the prompts are those before the first."""
+STARS = (11, 15)
+_LOOSE_WORDS = {"INITIALKE=": 7, "KELOSS=": 2}
+"""Letters of labels that retyped pages leave out, as they do prompts."""
+
+_RETYPED = 1.5
+"""What it costs to begin it: the row of angles is what the program prints. Two columns of
+names and numbers are read with up to 2.0, no longer with 2.5."""
+
+_MISS = {"=": 0.45, "(": 0.25, ")": 0.25, "%": 0.3, "*": 0.25, ":": 0.2, ",": 0.2, "?": 0.3}
+"""What it costs to miss a glyph of a label; other letters `LETTER_LOST`."""
+LETTER_LOST = 0.65
+"""Of letters that nobody leaves out."""
+_LOOSE = 0.25
+"""The same for words that retyped pages leave out (INITIAL, KE before LOSS, the prompts)."""
+_FIGURE = 0.3
+"""What a figure costs more where a letter of a label is wrong."""
+INSERTED = 1.0
+_SLOT_ALIKE, _SLOT_LETTER, _SLOT_OTHER, _SLOT_EQUALS = 0.3, 0.55, 0.9, 1.6
+_BETWEEN, _BETWEEN_DIGIT, _BETWEEN_SIGN, _OUTSIDE = 0.5, 0.9, 0.4, 0.45
+_BIG = 1e6
+_NO_NUMBER = 0.9
+_LOOSE_SIGN = 0.15
+"""What an equals sign costs before which no letter of its label was read."""
+_TORN = 1.6
+"""What it costs to take a figure right after a figure for a letter of a label."""
+_UNLABELLED = (0.1, 0.1, 0.0, 0.0, 1.6)
+"""What a number costs before which no equals sign was read, by the gap before it: a number is not
+to be taken to pieces."""
+
+WITHIN = 4
+"""The gap before a figure that stands right after a figure; below it the gaps of `glyphs.Gap`."""
+GAPS = 5
+KINDS = 128
+"""Glyphs are told apart by this many codes; the last is for all others."""
+
+
+class Label(NamedTuple):
+    """What names a number on the page: the field (of a prompt, its reply's slot), the label's
+    letters, and the template's states of these letters."""
+
+    name: str
+    text: str
+    states: tuple[int, ...]
+
+
+def code(char: str) -> int:
+    """The code of a glyph."""
+    number = ord(char)
+    if number < KINDS - 1:
+        return number
+    return ord("O") if char in "©®°Ø" else ord("Y") if char == "¥" else KINDS - 1
+
+
+class Template(NamedTuple):
+    """The states as arrays.
+
+    By state: ``enter`` and ``stay`` (code by state): cost of a glyph that opens it, and of one more
+    glyph in it; ``gap_enter``, ``gap_stay`` (gap by state): of the gap before the glyph;
+    ``unlabelled`` (gap by state): of a number without its label's last glyph; ``miss``: of passing
+    without a glyph. ``between``: the states before the lines; ``absent``: of missing each line;
+    ``closes``: whether text may end after a state. ``line``: where a state belongs; ``slots``:
+    state -> field name; ``letters``: state -> a label's letter; ``labels``: what names each number.
+    """
+
+    enter: Floats
+    stay: Floats
+    gap_enter: Floats
+    gap_stay: Floats
+    unlabelled: Floats
+    miss: Floats
+    between: NDArray[np.intp]
+    absent: Floats
+    closes: NDArray[np.bool_]
+    line: list[int]
+    slots: dict[int, str]
+    letters: dict[int, str]
+    labels: tuple[Label, ...]
+
+
+@lru_cache(maxsize=1)
+def template() -> Template:
+    """The template's states, the first of which is the text outside any printout."""
+    kinds = [("outside", "", -1)]
+    labels = []
+    for number, (line, _) in enumerate(LINES):
+        kinds.append(("between", "", number))
+        for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", line):
+            loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
+            parts = [(text, name)] if name else []
+            if number == HEADING:
+                parts = [(angle, angle) for angle in ANGLES] if text else []
+            for label, named in parts:
+                at = len(kinds) + "".join(ANGLES).find(label) * (number == HEADING)
+                states = [at + place for place, one in enumerate(label) if one.isalpha()]
+                if states:
+                    labels.append(Label(named, "".join(filter(str.isalpha, label)), tuple(states)))
+            for place, letter in enumerate(text):
+                kinds.append(("loose" if place < loose else "letter", letter, number))
+            if name:
+                kinds.append(("slot", name, number))
+    size = len(kinds)
+    enter, stay = np.zeros((KINDS, size)), np.zeros((KINDS, size))
+    gap_enter, gap_stay, unlabelled = (np.zeros((GAPS, size)) for _ in range(3))
+    miss = np.zeros(size)
+    glyphs = [chr(number) for number in range(KINDS)]
+    for state, (kind, name, number) in enumerate(kinds):
+        if kind == "outside":
+            stay[:, state] = enter[:, state] = _OUTSIDE
+        elif kind == "between":
+            enter[:, state] = stay[:, state] = [_between(glyph) for glyph in glyphs]
+            gap_enter[WITHIN, state] = _TORN / 2
+        elif kind == "slot":
+            enter[:, state] = stay[:, state] = [_in_slot(glyph) for glyph in glyphs]
+            gap_stay[:, state] = (0, 0.45, 0.8, 0.6, 0)
+            miss[state] = _NO_NUMBER
+            if kinds[state - 1][1] == "=":
+                unlabelled[:, state] = _UNLABELLED
+            if number < PROMPTS:
+                for part in ",?;":
+                    enter[ord(part), state] = stay[ord(part), state] = 0.05
+                gap_stay[:, state] = (0, 0.02, 0.1, 0.5, 0)
+                miss[state] = 0.2
+            elif number == ANGLE_ROW:
+                gap_stay[:, state] = (0, 0.9, 1.8, 0.8, 0)
+                if name != ANGLES[0]:
+                    gap_enter[[0, WITHIN], state] = 2.2
+        else:
+            enter[:, state] = [as_letter(name, glyph) for glyph in glyphs]
+            gap_enter[WITHIN, state] = _TORN
+            if name == "=":
+                unlabelled[:, state] = _LOOSE_SIGN
+            stay[:, state] = INSERTED
+            stay[ord("0") : ord("9") + 1, state] = INSERTED + 0.5
+            if number < PROMPTS:
+                for part in "_{}":
+                    stay[ord(part), state] = 0.05
+            miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, LETTER_LOST)
+    retyped = kinds.index(("between", "", LABELLED_ANGLES)) + 1
+    enter[:, retyped] += _RETYPED
+    miss[retyped] += _RETYPED
+    miss[1] = 1000.0  # a printout begins at a price, not by missing what is outside
+    closes = [kind in ("slot", "between") or name in (")", "%", "*") for kind, name, _ in kinds]
+    return Template(
+        enter,
+        stay,
+        gap_enter,
+        gap_stay,
+        unlabelled,
+        miss,
+        between=np.array([state for state, kind in enumerate(kinds) if kind[0] == "between"]),
+        absent=np.array([absent for _, absent in LINES]),
+        closes=np.array(closes),
+        line=[number for _, _, number in kinds],
+        slots={at: name for at, (kind, name, _) in enumerate(kinds) if kind == "slot"},
+        letters={
+            at: name for at, (kind, name, _) in enumerate(kinds) if kind in ("letter", "loose")
+        },
+        labels=tuple(labels),
+    )
+
+
+def _in_slot(char: str) -> float:
+    """The cost of a glyph where a number stands."""
+    if char.isdigit():
+        return 0.0
+    if char in NUMERIC or char == "?":
+        return 0.2 if char == "E" else 0.08
+    if char == "=":
+        return _SLOT_EQUALS
+    if printed_for(char):
+        return _SLOT_LETTER if char.isalpha() and char not in "OQLISBZ" else _SLOT_ALIKE
+    return _SLOT_OTHER
+
+
+def _between(char: str) -> float:
+    """The cost of a glyph between lines or outside."""
+    if char.isdigit():
+        return _BETWEEN_DIGIT
+    return _BETWEEN_SIGN if char in "|.,-_~:;'`" else _BETWEEN
+
+
+def as_letter(letter: str, char: str) -> float:
+    """The cost of reading a letter of a label as a glyph."""
+    if letter == "=" and char in "-~_":
+        return _MISS["="] + 0.2  # rather the number's sign, the label's own glyph missing
+    cost = label_cost(letter, char)
+    if letter == "*" and not char.isdigit():
+        return min(cost, 0.5)
+    if not char.isdigit():
+        return cost
+    return cost + (1.25 if letter == "=" and cost < UNSEEN else _FIGURE * (cost == UNSEEN))
+
+
+# --- texts ---------------------------------------------------------------------------------------
 
 WINDOW = 9000
 """Glyphs aligned at a time: a dozen printouts."""
@@ -23,7 +250,6 @@ _BEGIN, _END = 2.2, 0.8
 """What it costs that a printout begins or ends."""
 _WITHIN = 6.0
 """What it costs more that one begins with the angles, which numbers in a note look like."""
-_BIG = 1e6
 _FIGURES = frozenset("0123456789.")
 
 
@@ -71,7 +297,7 @@ def align(glyphs: Sequence[Glyph], budget: Budget | None = None) -> Iterator[Ali
     while start < len(glyphs):
         window = glyphs[start : start + WINDOW]
         last = start + len(window) >= len(glyphs)
-        if len(_LABELS.findall("".join(glyph.char for glyph in window))) < _FEW_LABELS:
+        if len(_LABELS.findall(letters(window))) < _FEW_LABELS:
             start += len(window)
             continue
         if budget.left <= 0:
@@ -139,7 +365,7 @@ def _gaps(glyphs: Sequence[Glyph]) -> list[int]:
     gaps = []
     before = ""
     for place, glyph in enumerate(glyphs):
-        gap = 0 if glyph.wrapped else int(glyph.gap)
+        gap = int(glyph.gap)
         figures = glyph.char in _FIGURES or _exponent(glyphs[place : place + 3])
         gaps.append(WITHIN if figures and before in _FIGURES and not gap else gap)
         before = glyph.char

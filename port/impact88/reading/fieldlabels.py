@@ -13,9 +13,8 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..fields import ANGLES
-from .channel import UNSEEN
-from .glyphs import Gap, Page
-from .template import LETTER_LOST, REPLY_A, REPLY_B, Label, as_letter, template
+from .alignment import LETTER_LOST, REPLY_A, REPLY_B, Label, as_letter, template
+from .glyphs import UNSEEN, Gap, Page
 
 PROMPTS = (REPLY_A, REPLY_B)
 _LETTERS = 2

@@ -3,21 +3,21 @@
 `compare` says how well the glyphs are explained by a printed text, and where they are not: a clean
 digit that is another digit contradicts, whatever it looks like; a glyph that stands in no number
 (a letter, a speck, a blank) is doubt. `candidates` are the texts that glyphs may have been, those
-that need least believing first. Both price a glyph by the same channel.
+that need least believing first. `cut_in_five` and `cut_as` do the same for the row of angles, which
+only blanks part. All price a glyph by the same channel.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from decimal import Decimal, InvalidOperation
 from enum import StrEnum
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 from ..applesoft.decimaltext import lay_out
-from .channel import printed_for
-from .glyphs import ILLEGIBLE, NUMERIC, Gap, Glyph
+from .glyphs import ILLEGIBLE, NUMERIC, Gap, Region, letters, printed_for
 
 LONGEST = 64
 """Glyphs of a number's place that are looked at; what follows is left over."""
@@ -59,20 +59,20 @@ class Match(NamedTuple):
         return any(spot.doubt is Doubt.CONTRADICTS for spot in self.spots)
 
 
-Region = tuple[Glyph, ...]
-_Key = tuple[tuple[str, Gap, bool], ...]
-"""Glyph, the gap before it, and whether nothing parts it from the glyph before."""
+_Key = tuple[tuple[str, Gap], ...]
+"""Glyphs and the gaps before them."""
 
 _PRINTABLE = re.compile(r"-?(?:0|[1-9][0-9]*|(?=[.]))(?:[.][0-9]*[1-9])?(?:E[+-][0-9]{2})?")
 _NUMBER = re.compile(r"[+-]?(?=[.]?[0-9])[0-9]*(?:[.][0-9]*)?(?:E[+-]?[0-9]{1,2})?")
 
 _CONTRADICTION = 3.0
 _FOREIGN = 1.0
-"""What a glyph costs that no figure was read as."""
-_ILLEGIBLE_MARK = 0.7
-_SPECK, _SPECK_INSIDE, _BLANK_INSIDE = 0.4, 0.7, 0.3
-_BLANK_FOR_POINT, _DASH_FOR_POINT = 1.0, 0.6
-_RETYPED, _CUT_OFF = 0.2, 0.3
+"""What a glyph costs that no figure was read as, and a blank where a point is printed."""
+_ILLEGIBLE_MARK, _SPECK_INSIDE = 0.7, 0.7
+_DASH_FOR_POINT = 0.6
+_SPECK = 0.4
+_BLANK_INSIDE, _CUT_OFF = 0.3, 0.3
+_RETYPED = 0.2
 _IN_PIECES = 0.45
 """What a lone 0 costs that was taken to pieces."""
 _WIDEST = 400
@@ -120,20 +120,14 @@ def as_printed(text: str) -> str | None:
     return lay_out(sign, digits.ljust(9, "0"), value.adjusted() - 8) if len(digits) <= 9 else None
 
 
-def plain(region: Sequence[Glyph]) -> str:
-    """The glyphs as one string."""
-    return "".join(glyph.char for glyph in region)
-
-
-def clean(region: Sequence[Glyph]) -> str | None:
+def clean(region: Region) -> str | None:
     """The number that the glyphs are beyond doubt: nothing but a number, no blank in it."""
-    text = plain(region)
-    joined = all(glyph.joined for glyph in region[1:])
-    return text if joined and is_number(text) else None
+    text = letters(region)
+    return text if is_number(text) and not any(glyph.gap for glyph in region[1:]) else None
 
 
 def _key(region: Region) -> _Key:
-    return tuple((glyph.char, glyph.gap, glyph.joined) for glyph in region[:LONGEST])
+    return tuple(glyph[:2] for glyph in region[:LONGEST])
 
 
 # --- what glyphs are, given what is printed ------------------------------------------------------
@@ -144,7 +138,7 @@ def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = F
 
     ``cut``: whether the text ends at the region. ``sign_free``: whether a minus before the number
     may belong to the label."""
-    text = plain(region)
+    text = letters(region)
     other = clean(region)
     if other == printed:
         return Match(0.0, (), len(printed))
@@ -188,7 +182,7 @@ def _steps(
     if i < len(region):
         if j < len(printed):
             cost, doubt = _substitution(region, i, printed[j])
-            if j > 0 and not region[i][2]:
+            if j > 0 and region[i][1]:
                 cost, doubt = cost + _BLANK_INSIDE, doubt or Doubt.BLANK
             yield 1, 1, cost, doubt
         yield 1, 0, *_extra(region, i, printed, j, sign_free)
@@ -223,10 +217,10 @@ def _substitution(region: _Key, i: int, printed: str) -> tuple[float, Doubt | No
 
 def _extra(region: _Key, i: int, printed: str, j: int, sign_free: bool) -> tuple[float, Doubt]:
     """A glyph for which the program prints nothing."""
-    char, _, joined = region[i]
-    after, after_joined = ("", False) if i + 1 == len(region) else region[i + 1][::2]
-    parted = (i > 0 and not joined) or (bool(after) and not after_joined)
-    if char == "0" and j < 2 and printed[j : j + 1] == "." == after and after_joined:
+    char, gap = region[i]
+    after, gap_after = region[i + 1] if i + 1 < len(region) else ("", Gap.NONE)
+    parted = (i and gap) or gap_after
+    if char == "0" and j < 2 and printed[j : j + 1] == "." == after and not gap_after:
         return _RETYPED, Doubt.RETYPED
     if char == "+" and after and j == 0:
         return _RETYPED, Doubt.RETYPED
@@ -245,7 +239,7 @@ def _extra(region: _Key, i: int, printed: str, j: int, sign_free: bool) -> tuple
         return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
     inside = 0 < j < len(printed)
     if (char == "." and _between_digits(region, i)) or (
-        char in _FULL and inside and joined and after_joined
+        char in _FULL and inside and not gap and after and not gap_after
     ):
         return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
     if char == ".":
@@ -259,7 +253,7 @@ def _lost(region: _Key, i: int, printed: str, j: int, cut: bool) -> tuple[float,
     if cut and i == len(region) and j:
         return _CUT_OFF, Doubt.CUT
     if printed[j] == "." and 0 < i < len(region) and region[i][1] is Gap.BLANK:
-        return _BLANK_FOR_POINT, Doubt.ILLEGIBLE
+        return _FOREIGN, Doubt.ILLEGIBLE
     if any(part[0] not in NUMERIC or part[0] == "E" for part in region[max(i - 1, 0) : i + 1]):
         # a glyph beside it is foreign, and may be more than one character run together
         return _FOREIGN, Doubt.ILLEGIBLE
@@ -268,21 +262,19 @@ def _lost(region: _Key, i: int, printed: str, j: int, cut: bool) -> tuple[float,
 
 def _between_digits(region: _Key, i: int) -> bool:
     """Whether a glyph stands within figures, where no sign stands."""
-    if not 0 < i < len(region) - 1:
+    if not 0 < i < len(region) - 1 or region[i][1] or region[i + 1][1]:
         return False
-    figures = region[i - 1][0].isdigit() and region[i + 1][0].isdigit()
-    return figures and region[i][2] and region[i + 1][2]
+    return region[i - 1][0].isdigit() and region[i + 1][0].isdigit()
 
 
 def _in_a_note(region: _Key, i: int) -> bool:
     """Whether a digit after the number stands well apart from it: after a wide gap or a line's end,
     or after a word that is not a number."""
-    words = [place for place in range(1, i + 1) if not region[place][2]]
-    if not words:
-        return False
+    words = [place for place in range(1, i + 1) if region[place][1]]
     if any(region[place][1] is not Gap.BLANK for place in words):
         return True
-    return any(part[0].isalpha() and part[0] != "E" for part in region[words[0] : words[-1]])
+    noted = region[words[0] : words[-1]] if words else ()
+    return any(char.isalpha() and char != "E" for char, _ in noted)
 
 
 def _in_pieces(chars: str) -> bool:
@@ -307,14 +299,14 @@ def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[
 
 @lru_cache(maxsize=20000)
 def _candidates(region: _Key, most: int, sign_free: bool) -> tuple[tuple[str, float], ...]:
-    chars = "".join(part[0] for part in region)
-    letters = sum(char not in "0123456789OIL.-" for char in chars)
-    if 3 < len(chars) < 2 * letters and not any(map(str.isdigit, chars)):
+    chars = "".join(char for char, _ in region)
+    strange = sum(char not in "0123456789OIL.-" for char in chars)
+    if 3 < len(chars) < 2 * strange and not any(map(str.isdigit, chars)):
         return ()
     ways: dict[str, float] = {"": 0.0}
     stopped: dict[str, float] = {}
     wild = 0
-    for index, (char, gap, joined) in enumerate(region):
+    for index, (char, gap) in enumerate(region):
         following: dict[str, float] = {}
         foreign = (char not in NUMERIC and not printed_for(char)) or char == ILLEGIBLE
         wild += foreign
@@ -324,11 +316,11 @@ def _candidates(region: _Key, most: int, sign_free: bool) -> tuple[tuple[str, fl
         stop = _SPECK * (len(region) - index) * 0.5 + apart * rest
         skip = _SPECK_INSIDE if index + 1 < len(region) else _SPECK
         for text, cost in ways.items():
-            parted = not joined and bool(text)
+            parted = gap and text
             blank = _BLANK_INSIDE if parted else 0.0
             some = [(text + one, cost + blank + price) for one, price in may_be]
             if parted and gap is Gap.BLANK and char.isdigit() and "." not in text:
-                some.append((f"{text}.{char}", cost + _BLANK_FOR_POINT))
+                some.append((f"{text}.{char}", cost + _FOREIGN))
             if char in "-.+" or (char == "0" and text in ("", "-")):
                 free = char == "-" and sign_free and index == 0
                 some.append((text, cost + (_RETYPED if free else _SPECK_INSIDE)))
@@ -367,6 +359,83 @@ def _may_be(region: _Key, index: int, wild: bool) -> list[tuple[str, float]]:
         price = _ILLEGIBLE_MARK if char == ILLEGIBLE else _FOREIGN
         return [(one, price) for one in ("-0123456789" if not index else ".0123456789")]
     return list(printed_for(char).items()) if char != ILLEGIBLE else []
+
+
+# --- the row of angles ---------------------------------------------------------------------------
+
+_LONGEST_ROW = 60
+_CUTS = 400
+_FEW_GAPS, _SHORT = 4, 16
+_SURPLUS = 12
+"""Glyphs that a number's part of the row may hold beyond its own."""
+_NOT_THERE = 4.0
+"""What it costs that nothing is read of a number."""
+_JOINED, _JOINED_SIGN = 2.0, 0.7
+"""What it costs to cut where no gap is, and before a sign."""
+_UNCUT = {Gap.NONE: 0.0, Gap.BLANK: 0.8, Gap.WIDE: 1.6, Gap.LINE: 1.2}
+"""What a gap inside a number costs more."""
+
+
+def cut_in_five(region: Region, most: int = _CUTS) -> list[tuple[tuple[str, ...], float]]:
+    """The ways to cut glyphs into five numbers, the likeliest first, with what each costs. Glyphs
+    beyond the `_LONGEST_ROW`th are not looked at."""
+
+    @cache
+    def piece(i: int, j: int) -> list[tuple[str, float]]:
+        part = region[i:j]
+        uncut = sum(_UNCUT[glyph.gap] for glyph in part[1:])
+        if uncut > 4 or not 0 < len(part) <= 24:
+            return []
+        return [(text, cost + uncut) for text, cost in candidates(part, 14) if cost < 4]
+
+    found = _cut(region[:_LONGEST_ROW], 5, lambda _, i, j: piece(i, j), most)
+    return [(tuple(text for text, _, _ in way), cost) for cost, way in found]
+
+
+def cut_as(region: Region, printed: tuple[str, ...]) -> list[tuple[int, int]]:
+    """Where each of the printed texts stands among the glyphs of a row, as ``(start, stop)``; both
+    the same where nothing is read of it. Nothing where the row cannot be cut so."""
+
+    def piece(number: int, i: int, j: int) -> list[tuple[str, float]]:
+        text = printed[number]
+        if j - i > len(text) + _SURPLUS:
+            return []
+        return [(text, _NOT_THERE if i == j else compare(region[i:j], text).cost)]
+
+    found = _cut(region[:_LONGEST_ROW], len(printed), piece, 1)
+    return [(i, j) for _, i, j in found[0][1]] if found else []
+
+
+_Way = tuple[float, tuple[tuple[str, int, int], ...]]
+
+
+def _cut(
+    region: Region,
+    count: int,
+    piece: Callable[[int, int, int], Iterable[tuple[str, float]]],
+    most: int,
+) -> list[_Way]:
+    """The cheapest ways to cut a row into so many numbers: cost, and each number with its place.
+    ``piece``: what the n-th number may be from glyph to glyph, with what each costs."""
+    length = len(region)
+    places = [at for at in range(1, length) if region[at].gap or region[at].char in "-~"]
+    if len(places) < _FEW_GAPS or length <= _SHORT:
+        places = [*range(1, length)]
+    ways: dict[int, list[_Way]] = {0: [(0.0, ())]}
+    for number in range(count):
+        following: dict[int, list[_Way]] = {}
+        for i, so_far in ways.items():
+            price = 0.0
+            if 0 < i < length and not region[i].gap:
+                price = _JOINED_SIGN if region[i].char in "-~" else _JOINED
+            for j in (length,) if number == count - 1 else (0, *places, length):
+                for text, cost in piece(number, i, j) if i <= j else ():
+                    paid = cost + (price if i < j else 0.0)
+                    following.setdefault(j, []).extend(
+                        (before + paid, (*parts, (text, i, j))) for before, parts in so_far
+                    )
+        ways = {place: sorted(set(some))[:most] for place, some in following.items()}
+    return ways.get(length, [])
 
 
 __all__ = ["Doubt", "Match", "Region", "Spot", "candidates", "clean", "compare", "printable"]

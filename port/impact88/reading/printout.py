@@ -17,19 +17,26 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from .. import files
 from ..applesoft.errorcodes import CODES
 from ..errors import UserError
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT, label
 from . import glyphs, numerals
 from . import plaintext as pasted
-from .alignment import Aligned, Budget, align
-from .anglerow import cut_in_five
-from .channel import printed_for
+from .alignment import (
+    LABELLED_ANGLES,
+    PROMPTS,
+    REPLY_A,
+    REPLY_B,
+    SPINS,
+    STARS,
+    Aligned,
+    Budget,
+    align,
+    template,
+)
 from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
-from .glyphs import Gap, Page
-from .numerals import Region
-from .template import LABELLED_ANGLES, REPLY_A, REPLY_B, RESULTS, SPINS, STARS, template
+from .glyphs import Gap, Page, letters, printed_for
+from .numerals import Region, cut_in_five
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -59,10 +66,9 @@ class Reading:
     """One number as read.
 
     ``text``: what it is taken for, ``?`` for illegible glyphs; ``line``, ``column`` (from 1),
-    ``start``, ``stop`` (offsets in the text): where it stands; ``region``: its glyphs;
-    ``alternatives``: other numbers it may be; ``cut``: whether the text, or a line as wide as the
-    page, ends right at it, so that more of it may have stood there; ``sign_free``: whether a minus
-    before it may be the label's own sign, damaged."""
+    ``start``, ``stop`` (offsets in the text): where it stands; ``region``: its glyphs; ``cut``:
+    whether the text, or a line as wide as the page, ends right at it, so that more of it may have
+    stood there; ``sign_free``: whether a minus before it may be the label's own sign, damaged."""
 
     text: str
     line: int
@@ -70,7 +76,6 @@ class Reading:
     start: int
     stop: int
     region: Region
-    alternatives: tuple[str, ...] = ()
     cut: bool = False
     sign_free: bool = False
 
@@ -82,8 +87,8 @@ class Reading:
     @property
     def typed(self) -> bool:
         """Whether a person may have typed it so: in one piece, with O for 0 and l for 1 at worst"""
-        whole = all(glyph.joined for glyph in self.region[1:])
-        return whole and all(glyph.char in _TYPED for glyph in self.region)
+        joined = not any(glyph.gap for glyph in self.region[1:])
+        return joined and all(glyph.char in _TYPED for glyph in self.region)
 
 
 class Piece(NamedTuple):
@@ -195,19 +200,12 @@ class Printout:
 
     def reading(self, region: Region) -> Reading | None:
         """A part of the row of angles as a number; None when it is none."""
-        return _reading(self.page, region) if self.page and region else None
+        return _reading(self.page, region) if self.page else None
 
     def text(self, name: str) -> str | None:
         """The text of a field, None when it was not read."""
         reading = self.fields.get(name)
         return reading.text if reading else None
-
-
-def read_file(path: str) -> list[Printout]:
-    """The printouts in a file (``-``: standard input), in any usual encoding.
-
-    Raises UserError when it is too large, is not text or holds no printout."""
-    return read_bytes(files.read_bytes(path, LARGEST_FILE), files.called(path))
 
 
 def read_bytes(data: bytes, where: str) -> list[Printout]:
@@ -223,10 +221,7 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     >>> printout.fields["MA"].text
     '143.5'
     """
-    if "<" in text[:1000] or text.startswith("level\t"):
-        from .wordplaces import laid_out
-
-        text = laid_out(text, where) or text
+    text = pasted.laid_out(text, where)
     page = Page(pasted.unwrapped(text))
     budget = Budget()
     shown = [printout for part in _parts(page, budget) for printout in part]
@@ -288,7 +283,7 @@ def _keep_text(
 ) -> None:
     """A stretch of text as left over, unless nothing shows there."""
     text = page.text[start:stop] if start < stop else ""
-    plain = glyphs.squeeze(text)
+    plain = letters(Page(text).glyphs)
     if plain and not _SLOT_COMMAND.fullmatch(plain):
         begin = start + len(text) - len(text.lstrip())
         place = page.place(begin)
@@ -323,32 +318,30 @@ def _left_out(text: str, unwrapped: str) -> list[str]:
 
 # --- where a run ended ---------------------------------------------------------------------------
 
-_LOOSE = {"I": "[IL1|!]", "L": "[IL1|!]", "O": "[O0Q]", "S": "[S5]", "B": "[B8]", "Z": "[Z2]"}
+_ALIKE = {"I": "[IL1|!]", "L": "[IL1|!]", "O": "[O0Q]", "S": "[S5]", "B": "[B8]", "Z": "[Z2]"}
+_DIGITS = str.maketrans("OQIL|!", "001111")
 
 
 def _loosely(words: str) -> str:
     """A pattern for printed words without their blanks, letters that look like digits either way"""
-    return "".join(
-        "['’`]?" if letter == "'" else _LOOSE.get(letter, re.escape(letter))
-        for letter in words.replace(" ", "")
-    )
+    alike = {**_ALIKE, "'": "['’`]?", " ": ""}
+    return "".join(alike.get(letter, re.escape(letter)) for letter in words)
 
 
+_MESSAGES = {f"?{message} ERROR": _loosely(message) for message in CODES}
 _ENDING = re.compile(
-    rf"\??(?P<message>{'|'.join(map(_loosely, CODES))})"
+    rf"\??(?P<message>{'|'.join(_MESSAGES.values())})"
     r"ERR[O0Q]R(?:[IL1|!]N(?P<at>[0-9OQIL|!]{1,5}))?"
     rf"|(?P<zero>{_loosely(ZERO_DETERMINANT)})"
 )
-_DIGITS = str.maketrans("OQIL|!", "001111")
 
 
 def _ending(match: re.Match[str]) -> str:
     """An error message as Applesoft prints it, or ZERO DETERMINANT."""
-    if match.group("zero"):
+    if match["zero"]:
         return ZERO_DETERMINANT
-    message = next(one for one in CODES if re.fullmatch(_loosely(one), match.group("message")))
-    at = match.group("at")
-    return f"?{message} ERROR" + (f" IN {at.translate(_DIGITS)}" if at else "")
+    message = next(one for one, way in _MESSAGES.items() if re.fullmatch(way, match["message"]))
+    return message + (f" IN {match['at'].translate(_DIGITS)}" if match["at"] else "")
 
 
 # --- printouts -----------------------------------------------------------------------------------
@@ -356,7 +349,7 @@ def _ending(match: re.Match[str]) -> str:
 
 def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
     """The printouts of each stretch of text up to where a run ended early."""
-    text = numerals.plain(page.glyphs)
+    text = letters(page.glyphs)
     start = 0
     for match in [*_ENDING.finditer(text), None]:
         if budget.spent:
@@ -388,13 +381,31 @@ class _Reader:
         self._worded: set[int] = set()
         self._part_labels()
         self._part_row()
-        cropped = self._cropped() and [
-            name for name, (start, _) in self._slots.items() if self._glyphs[start].gap is Gap.LINE
-        ]
         start, stop = page.span(self._start, base + aligned.stop)
         self._printout = Printout(*page.place(start), start, stop, page=page)
-        for name in cropped or ():
-            self._remark(name, "begins where the margin is cut off", self._slots.pop(name)[0])
+        if self._cropped():
+            first = [name for name, (at, _) in self._slots.items() if self._begins_line(at)]
+            for name in first:
+                self._remark(name, "begins where the margin is cut off", self._slots.pop(name)[0])
+
+    def _state(self, index: int) -> int:
+        """The state of a glyph; that outside for one which is none of the printout's."""
+        at = index - self._start
+        return self._states[at] if 0 <= at < len(self._states) else 0
+
+    def _letter(self, index: int) -> str:
+        """The letter of a label that a glyph is taken for, "" where it is taken for none."""
+        return template().letters.get(self._state(index), "")
+
+    def _line(self, index: int) -> int:
+        """The line of the program's page that a glyph belongs to."""
+        return template().line[self._state(index)]
+
+    def _begins_line(self, index: int) -> bool:
+        return self._glyphs[index].gap is Gap.LINE
+
+    def _indices(self) -> range:
+        return range(self._start, self._start + len(self._states))
 
     def _part_labels(self) -> None:
         """A word that stands apart from the number before it, and is joined to the next by its
@@ -409,14 +420,13 @@ class _Reader:
 
     def _cropped(self) -> bool:
         """Whether most lines that begin with a label lack its first letter, three at least."""
-        page = template()
-        begins = [
-            state - 1 in page.letters and state - 1 not in self._states
-            for index, state in enumerate(self._states)
-            if self._glyphs[self._start + index].gap is Gap.LINE
-            and page.letters.get(state, "*") != "*"
+        letters_of = template().letters
+        lost = [
+            (before := self._state(index) - 1) in letters_of and before not in self._states
+            for index in self._indices()
+            if self._begins_line(index) and self._letter(index) not in ("", "*")
         ]
-        return sum(begins) > max(2, len(begins) / 2)
+        return sum(lost) > max(2, len(lost) / 2)
 
     def _part_row(self) -> None:
         """A line of five clean numbers is the row of angles; what stands below it is none of it."""
@@ -424,21 +434,14 @@ class _Reader:
         if not spans:
             return
         start, stop = min(spans)[0], max(spans)[1]
-        starts = [start]
-        for index in range(start + 1, stop):
-            glyph = self._glyphs[index]
-            if glyph.gap is Gap.LINE and not glyph.wrapped:
-                stop = index
-                break
-            if not glyph.joined:
-                starts.append(index)
+        stop = next((at for at in range(start + 1, stop) if self._begins_line(at)), stop)
+        starts = [start, *(at for at in range(start + 1, stop) if self._glyphs[at].gap)]
         parts = list(zip(starts, [*starts[1:], stop], strict=True))
         if len(parts) == len(ANGLES) and all(numerals.clean(self._glyphs[i:j]) for i, j in parts):
             self._slots.update(zip(ANGLES, parts, strict=True))
-            page = template()
-            for index in range(stop - self._start, len(self._states)):
-                if page.line[self._states[index]] == LABELLED_ANGLES:
-                    self._states[index] = int(page.between[LABELLED_ANGLES])
+            for index in range(stop, self._indices().stop):
+                if self._line(index) == LABELLED_ANGLES:
+                    self._states[index - self._start] = int(template().between[LABELLED_ANGLES])
 
     def read(self) -> Printout | None:
         """The printout; None when there is nothing of one."""
@@ -448,7 +451,7 @@ class _Reader:
                 self._read_number(name, start, stop)
         if not self._worth_telling():
             return None
-        shown.spin_line = self._letters((SPINS,)) >= 2
+        shown.spin_line = self._letters_read((SPINS,)) >= 2
         for name in () if shown.spin_line else FINAL_SPINS:  # a footer, a page number
             shown.fields.pop(name, None)
             self._slots.pop(name, None)
@@ -457,8 +460,7 @@ class _Reader:
                 self._read_reply(name, self._slots[name][0])
         if any(name in self._slots for name in ANGLES):
             self._read_angles()
-        lines = template().line
-        shown.ended = any(lines[state] == STARS[1] for state in self._states)
+        shown.ended = any(self._line(index) == STARS[1] for index in self._indices())
         self._keep_left_over()
         read = {name: self._slots[name] for name in shown.fields if name in self._slots}
         marks = shown.marks + self._misread("*") if len(shown.fields) >= _PART else READERS
@@ -467,49 +469,44 @@ class _Reader:
         shown.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
         return shown
 
-    def _letters(self, lines: Sequence[int] = ()) -> int:
+    def _letters_read(self, lines: Sequence[int] = ()) -> int:
         """How many letters of labels were read as they are printed, in some lines or all."""
-        page = template()
         return sum(
-            self._glyphs[self._start + index].char == page.letters.get(state)
-            for index, state in enumerate(self._states)
-            if state and (not lines or page.line[state] in lines)
+            self._glyphs[index].char == self._letter(index)
+            for index in self._indices()
+            if not lines or self._line(index) in lines
         )
 
-    def _misread(self, letters: str, wrong: Collection[str] = ()) -> int:
+    def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
         """How many of some letters of labels, but of wrong ones, and asterisks were read as other
         letters or figures."""
-        page = template()
-        others = {state for one in page.labels if one.name in wrong for state in one.states}
-        count = before = 0
-        for index, state in enumerate(self._states):
-            letter = "" if state in others else page.letters.get(state, "")
-            glyph = self._glyphs[self._start + index]
-            if state != before and letter and letter in letters:
-                count += glyph.char != letter and glyph.char.isalnum()
-            before = state
-        return count
+        others = {state for one in template().labels if one.name in wrong for state in one.states}
+        return sum(
+            self._glyphs[index].char != letter and self._glyphs[index].char.isalnum()
+            for index in self._indices()
+            if self._state(index) not in (*others, self._state(index - 1))
+            and (letter := self._letter(index)) and letter in letters_of
+        )  # fmt: skip
 
     def _worth_telling(self) -> bool:
         """Whether a label and its number, or a prompt, was read."""
-        if self._letters((0, 1)) >= _PROMPT_LETTERS:
+        if self._letters_read((0, 1)) >= _PROMPT_LETTERS:
             return True
         shown = self._printout.fields
         numbers = {name for name, one in shown.items() if any(map(str.isdigit, one.text))}
         if len(numbers & set(ANGLES)) < _MOST_ANGLES:
             numbers -= set(ANGLES)
         labelled = sum(map(self._labelled, numbers))
-        letters = self._letters()
-        return (labelled >= 1 and letters >= 4) or (labelled >= 2 and letters >= 3)
+        read = self._letters_read()
+        return (labelled >= 1 and read >= 4) or (labelled >= 2 and read >= 3)
 
     def _labelled(self, name: str) -> bool:
         """Whether a letter right before a number was read as its label's."""
-        page = template()
-        place = self._slots[name][0] - self._start - 1
-        while place >= 0 and (letter := page.letters.get(self._states[place])):
-            if letter.isalpha() and self._glyphs[self._start + place].char == letter:
+        index = self._slots[name][0] - 1
+        while letter := self._letter(index):
+            if letter.isalpha() and self._glyphs[index].char == letter:
                 return True
-            place -= 1
+            index -= 1
         return name in ANGLES
 
     def _remark(self, name: str, message: str, index: int) -> None:
@@ -517,11 +514,9 @@ class _Reader:
         self._printout.remarks.append(Remark(name, message, *place))
 
     def _read_number(self, name: str, start: int, stop: int) -> None:
-        before = start - 1 - self._start
-        sign = template().letters.get(self._states[before]) if before >= 0 else None
-        unsigned = sign != "=" or self._glyphs[start - 1].char != "="
-        region = tuple(self._glyphs[start:stop])
-        reading = _reading(self._page, region, unsigned and name not in ANGLES) if region else None
+        signed = self._letter(start - 1) == "=" == self._glyphs[start - 1].char
+        region = self._glyphs[start:stop]
+        reading = _reading(self._page, region, not signed and name not in ANGLES)
         if reading is None:
             shown = self._page.shown(start, stop)
             self._remark(name, f"{_quoted(shown)}: expected a number", start)
@@ -536,7 +531,7 @@ class _Reader:
             return
         start = min(self._slots[name][0] for name in names)
         stop = max(self._slots[name][1] for name in names)
-        shown.angle_row = tuple(self._glyphs[start:stop])
+        shown.angle_row = self._glyphs[start:stop]
         shown.angles = cut_in_five(shown.angle_row)
         if not shown.angles and len(names) < len(ANGLES):
             what = _quoted(self._page.shown(start, stop))
@@ -544,24 +539,19 @@ class _Reader:
 
     def _read_reply(self, name: str, start: int) -> None:
         """The three numbers typed at a prompt, after any that INPUT refused."""
-        stop = start
-        page = template()
-        line = page.line[self._states[start - self._start]]
-        while stop - self._start < len(self._states):
-            state = self._states[stop - self._start]
-            if state == 0 or (state in page.letters and page.line[state] != line):
-                break
+        stop, line = start, self._line(start)
+        while self._state(stop) and (not self._letter(stop) or self._line(stop) == line):
             stop += 1
         names = REPLIES["A" if name == REPLY_A else "B"]
-        parts = _reply_parts(tuple(self._glyphs[start:stop]))
+        parts = _reply_parts(self._glyphs[start:stop])
         printed = self._printout.text(names[0])
         before = self._glyphs[start - 1].char != "?" and _before_reply(parts[0], printed)
         if before:
-            what = _quoted(numerals.plain(parts[0][:before]))
+            what = _quoted(letters(parts[0][:before]))
             self._remark("", f"reply: {what} before the first number", start)
             parts = [parts[0][before:], *parts[1:]]
         if len(parts) > len(names) and all(map(numerals.clean, parts[:3])):
-            extra = "".join(map(numerals.plain, parts[3:]))
+            extra = "".join(map(letters, parts[3:]))
             self._remark("", f"reply: {_quoted(extra)} after the third number", start)
             parts = parts[: len(names)]
         if len(parts) != len(names):
@@ -570,7 +560,7 @@ class _Reader:
                 self._remark("", f"reply {shown} is not three numbers", start)
             return
         for field_name, region in zip(names, parts, strict=True):
-            reading = _reading(self._page, region) if region else None
+            reading = _reading(self._page, region)
             if reading is not None and glyphs.ILLEGIBLE not in reading.text:
                 self._printout.replies[field_name] = reading
 
@@ -578,72 +568,70 @@ class _Reader:
         """Runs of glyphs between lines or put into labels, on the lines of the page; and which
         lines those are (`_keep_other_lines` keeps the others)."""
         lines: dict[int, list[int]] = {}
-        for index in range(self._start, self._start + len(self._states)):
+        for index in self._indices():
             lines.setdefault(self._page.place(self._glyphs[index].offset)[0], []).append(index)
         numbers = {index for span in self._slots.values() for index in range(*span)}
-        taken: set[int] = set()
+        taken = set()
         for number, line in lines.items():
             numbered = not numbers.isdisjoint(line)
-            if not numbered and not self._is_of_the_page(line):
-                continue
-            taken.add(number)
-            run: list[int] = []
-            for index in [*line, -1]:
-                if index >= 0 and index not in self._worded | numbers and self._loose(index):
-                    run.append(index)
-                elif run:
-                    start, stop = self._page.span(run[0], run[-1] + 1)
-                    _keep_text(self._page, self._printout, start, stop, numbered)
-                    run = []
+            if numbered or self._is_of_the_page(number, line):
+                taken.add(number)
+                loose = [at for at in line if at not in self._worded | numbers and self._loose(at)]
+                for first, last in _runs(loose):
+                    span = self._page.span(first, last + 1)
+                    _keep_text(self._page, self._printout, *span, numbered)
         self._printout.taken = frozenset(taken)
 
     def _loose(self, index: int) -> bool:
         """Whether a glyph that is part of no number belongs to no label."""
-        page = template()
-        at = index - self._start
-        state, char = self._states[at], self._glyphs[index].char
-        letter = page.letters.get(state)
-        if letter is None:
-            return not (page.line[state] < 2 and state in page.slots)
-        again = (
-            at > 0
-            and state == self._states[at - 1]
-            and not (page.line[state] < 2 and char in "_{}")
-        )
+        state, char = self._state(index), self._glyphs[index].char
+        of_prompt = self._line(index) < PROMPTS
+        letter = self._letter(index)
+        if not letter:
+            return not (of_prompt and state in template().slots)
+        again = state == self._state(index - 1) and not (of_prompt and char in "_{}")
         return again or (letter in _NEXT_TO_NUMBERS and char.isdigit())
 
-    def _is_of_the_page(self, line: Sequence[int]) -> bool:
+    def _is_of_the_page(self, number: int, line: Sequence[int]) -> bool:
         """Whether a line on which no number stands is one of the program's: half of it are letters
         as it prints them, or it is a row of asterisks, however they were read."""
-        page = template()
-        states = [self._states[index - self._start] for index in line]
-        pairs = zip(states, (self._glyphs[index].char for index in line), strict=True)
-        exact = sum(page.letters.get(state) == char for state, char in pairs)
-        stars = all(page.line[state] in STARS for state in states)
-        count = self._page.glyphs_on(line[0])
+        exact = sum(self._letter(index) == self._glyphs[index].char for index in line)
+        stars = all(self._line(index) in STARS for index in line)
+        count = len(Page(self._page.text.split("\n")[number - 1]).glyphs)
         return 2 * exact >= count or (stars and count <= _MOST_STARS)
+
+
+def _runs(indices: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """The first and last of each run of numbers that follow one another."""
+    first = None
+    for at, index in enumerate(indices):
+        first = index if first is None else first
+        if indices[at + 1 : at + 2] != [index + 1]:
+            yield first, index
+            first = None
 
 
 def _reading(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
     """A region of a page as a number, None when nothing of one is there."""
+    if not region:
+        return None
     begin, end = region[0].offset, region[-1].offset + 1
     text = numerals.clean(region)
-    ways: list[str] = []
     if text is None:
-        ways = [way for way, _ in numerals.candidates(region, 6, sign_free)]
-        text = _illegibly(region) if not ways or _foreign_inside(region) else ways[0]
+        ways = numerals.candidates(region, 6, sign_free)
+        text = _illegibly(region) if not ways or _foreign_inside(region) else ways[0][0]
     if text is None:
         return None
     cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
     cut = cut or page.place(end - 1)[1] == page.width
-    return Reading(text, *page.place(begin), begin, end, region, tuple(ways[1:]), cut, sign_free)
+    return Reading(text, *page.place(begin), begin, end, region, cut, sign_free)
 
 
 def _foreign_inside(region: Region) -> bool:
     """Whether a glyph that looks like no figure stands within a number."""
     figures = [place for place, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
     return any(
-        glyph.char not in glyphs.NUMERIC and not printed_for(glyph.char) and glyph.joined
+        glyph.char not in glyphs.NUMERIC and not printed_for(glyph.char) and not glyph.gap
         for glyph in region[figures[0] + 1 : figures[-1] + 1]
     )
 
@@ -661,7 +649,7 @@ def _illegibly(region: Region) -> str | None:
 def _reply_parts(region: Region) -> list[Region]:
     """The glyphs of a reply, parted at its commas, or where INPUT asked for more; after what it
     refused, before what it ignored."""
-    text = numerals.plain(region)
+    text = letters(region)
     begin = max(text.rfind("REENTER") + len("REENTER"), 0) if "REENTER" in text else 0
     stops = (text.find(word, begin) for word in ("?EXTRAIGNORED", "PR#"))
     region = region[begin : min([stop for stop in stops if stop >= 0], default=len(text))]
@@ -669,7 +657,7 @@ def _reply_parts(region: Region) -> list[Region]:
         region = region[1:]
     parts: list[Region] = [()]
     for place, glyph in enumerate(region):
-        asked = glyph.char == "?" and numerals.plain(region[place : place + 2]) == "??"
+        asked = glyph.char == "?" and letters(region[place : place + 2]) == "??"
         if glyph.char in ",;" or (asked and glyph.gap is Gap.LINE):
             parts.append(())
         elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
@@ -683,22 +671,10 @@ def _before_reply(first: Region, printed: str | None) -> int:
     value = numerals.value_of(printed or "")
     if value is None:
         return 0
-    text = numerals.plain(first)
+    text = letters(first)
     places = range(1, min(_OF_PROMPT, len(first) - 1) + 1)
     return next((at for at in places if numerals.value_of(text[at:]) == value), 0)
 
 
 def _quoted(text: str) -> str:
     return repr(text if len(text) <= 30 else text[:27] + "...")
-
-
-__all__ = [
-    "FIELDS",
-    "RESULTS",
-    "Piece",
-    "Printout",
-    "Reading",
-    "Remark",
-    "read_file",
-    "read_printouts",
-]

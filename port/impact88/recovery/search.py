@@ -18,14 +18,12 @@ from numpy.typing import NDArray
 from ..closedform import energy as closed_form
 from ..closedform.solve import solve
 from ..doubles import double
-from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ..names import PIVOT, VELOCITIES
 from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
 from . import replays
-from .choices import Column, mu_turned, scene_name
-from .misprints import opposite
-from .typedtext import stored_and_printed, texts_that_print, typed_for
+from .typedtext import mu_turned, opposite, stored_and_printed, texts_that_print, typed_for
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
@@ -58,6 +56,15 @@ _TELLING = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "XAF", "YAF", "XBF", "YBF"
 _ROUGH = 4e-7
 """Relative error allowed to the Apple's arithmetic in screening."""
 RESULTS = tuple(name for name in FIELDS if name not in INPUTS)
+
+
+class Column(NamedTuple):
+    """What an input, or the row of angles, may be: the fields, and the texts that may be printed
+    for them (``typed``: that may have been typed), each with what it costs, cheapest first."""
+
+    names: tuple[str, ...]
+    options: list[tuple[tuple[str, ...], float]]
+    typed: bool = False
 
 
 class Scored(NamedTuple):

@@ -9,12 +9,14 @@ change its last bit (72.80 is 7280 divided twice by ten, 72.8 is 728 divided onc
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
 from decimal import ROUND_HALF_EVEN, Decimal
 from functools import lru_cache
 
 from ..applesoft import decimaltext
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import Number, divide, multiply, rounded, to_stored
+from ..doubles import double
 from ..reading.numerals import value_of
 
 _TYPED_ZEROS = 3
@@ -87,6 +89,23 @@ def typed_for(printed: str, angle: bool) -> str | None:
             return printed
     texts = texts_that_print(printed, angle)
     return texts[0] if texts else None
+
+
+def opposite(text: str) -> str:
+    """A number with the other sign; it may be written with a plus sign and blanks."""
+    size = text.strip()
+    return size[1:] if size.startswith("-") else "-" + size.removeprefix("+")
+
+
+def mu_turned(typed: str, printed: str) -> bool:
+    """Whether line 400 gave MU the other sign than it was typed with."""
+    return (double(typed) < 0) != printed.startswith("-")
+
+
+def with_opposite_mu(scene: Mapping[str, str]) -> Iterator[dict[str, str]]:
+    """The scene with MU typed with the other sign; none where MU has no sign."""
+    if double(scene["MU"] or "0"):
+        yield {**scene, "MU": opposite(scene["MU"])}
 
 
 def _keep(texts: dict[bytes, str], text: str, printed: str, angle: bool) -> None:

@@ -6,13 +6,12 @@ from collections.abc import Mapping, Sequence
 
 from ..errors import printable
 from ..explaining.explanations import LABEL_WRONG, LABELS_EXCHANGED, Explanation
-from ..fields import ANGLES, INPUTS
+from ..fields import ANGLES, INPUTS, scene_name
 from ..judging.judgement import FieldCheck, Judged, Status, Verdict, misread_at_all, swapped_digits
 from ..program.listingcopy import ListingCopy
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
 from ..reading.printout import Piece, Printout
-from ..recovery.choices import scene_name
 from ..recovery.recovered import Recovered
 from ..recovery.typedtext import stored_and_printed
 
