@@ -143,8 +143,6 @@ def test_a_label_that_the_reader_of_the_page_made_another_is_damaged() -> None:
 def test_a_line_that_is_none_of_the_programs_is_told_whole(
     text: str, bars: bool, where: str
 ) -> None:
-    if where == "inside" and "CORRECTION" in text:
-        pytest.skip("its numbers are taken for the row of angles again: INCOMPLETE")
     first, second = SAMPLE.split("UX=", 1)
     page = {
         "above": f"{text}\n\n{SAMPLE}",

@@ -11,7 +11,7 @@ texts are read in windows, so time grows as the text does.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -81,8 +81,9 @@ to be taken to pieces."""
 WITHIN = 4
 """The gap before a figure that stands right after a figure; below it the gaps of `glyphs.Gap`."""
 GAPS = 5
-KINDS = 128
-"""Glyphs are told apart by this many codes; the last is for all others."""
+KINDS, NOTE = 128, 0
+"""Glyphs are told apart by this many codes; the last is for all others, and `NOTE` for those known
+to be none of the program's."""
 
 
 class Label(NamedTuple):
@@ -126,6 +127,9 @@ class Template(NamedTuple):
     slots: dict[int, str]
     letters: dict[int, str]
     labels: tuple[Label, ...]
+
+
+_NOT_PRINTED = ("outside", "between")
 
 
 @lru_cache(maxsize=1)
@@ -189,6 +193,7 @@ def template() -> Template:
     retyped = kinds.index(("between", "", LABELLED_ANGLES)) + 1
     enter[:, retyped] += _RETYPED
     miss[retyped] += _RETYPED
+    enter[NOTE] = stay[NOTE] = [0.0 if kind in _NOT_PRINTED else _BIG for kind, _, _ in kinds]
     miss[1] = 1000.0  # a printout begins at a price, not by missing what is outside
     closes = [kind in ("slot", "between") or name in (")", "%", "*") for kind, name, _ in kinds]
     return Template(
@@ -289,11 +294,13 @@ class Aligned:
     slots: dict[str, tuple[int, int]]
 
 
-def align(glyphs: Sequence[Glyph], budget: Budget | None = None) -> Iterator[Aligned]:
+def align(
+    glyphs: Sequence[Glyph], budget: Budget, notes: Collection[int] = ()
+) -> Iterator[Aligned]:
     """The printouts in a row of glyphs, in order, each with what its glyphs are taken for; as many
-    as the budget allows."""
+    as the budget allows. ``notes``: glyphs known to be none of the program's."""
     start = 0
-    budget = budget or Budget()
+    codes = [NOTE if place in notes else code(glyph.char) for place, glyph in enumerate(glyphs)]
     while start < len(glyphs):
         window = glyphs[start : start + WINDOW]
         last = start + len(window) >= len(glyphs)
@@ -303,7 +310,7 @@ def align(glyphs: Sequence[Glyph], budget: Budget | None = None) -> Iterator[Ali
         if budget.left <= 0:
             budget.stopped = start
             return
-        parts = _merged(_parts(_states(window)))
+        parts = _merged(_parts(_states(window, codes[start : start + WINDOW])))
         taken = parts if last else parts[:-1] or parts[:1]
         budget.spend(len(window), any(stop - begin >= _PAGE for begin, stop, _ in taken))
         for part in taken:
@@ -380,12 +387,11 @@ def _exponent(glyphs: Sequence[Glyph]) -> bool:
     return rest[0].char in "+-" and rest[1].char.isdigit()
 
 
-def _states(glyphs: Sequence[Glyph]) -> list[int]:
+def _states(glyphs: Sequence[Glyph], codes: Sequence[int]) -> list[int]:
     """The state of every glyph on the cheapest way."""
     page = template()
     size = page.miss.size
     count = len(glyphs)
-    codes = [code(glyph.char) for glyph in glyphs]
     gaps = _gaps(glyphs)
     enter = {
         key: page.enter[key[0]] + page.gap_enter[key[1]]

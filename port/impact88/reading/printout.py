@@ -58,6 +58,9 @@ _OF_PROMPT = 4
 """Glyphs of ``Wa ?`` that are read into the reply at most."""
 _MOST_STARS = 7
 """Glyphs that a row of five asterisks is read as at most."""
+_NOTE = 5
+"""So many letters that are none of a label's, four a number, make a line a note: ``BREAK IN 640``.
+The program's labels have three letters a number at most but on the line of the energies."""
 _RESULTS = ("VAX", "VAY", "VBX", "VBY")
 
 
@@ -355,7 +358,10 @@ def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
         if budget.spent:
             return
         stop = match.start() if match else len(text)
-        aligned = list(align(page.glyphs[start:stop], budget))
+        part = page.glyphs[start:stop]
+        aligned = list(align(part, budget))
+        if notes := _notes(part, aligned):
+            aligned = list(align(part, budget, notes))
         if budget.stopped is not None:
             budget.stopped += start
         shown = [printout for one in aligned if (printout := _Reader(page, start, one).read())]
@@ -367,6 +373,28 @@ def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
             shown[-1].taken |= {page.place(begin)[0], page.place(shown[-1].stop - 1)[0]}
             start = match.end()
         yield shown
+
+
+def _notes(glyphs: Region, found: Sequence[Aligned]) -> set[int]:
+    """The glyphs of lines whose numbers were taken for the page's, but of whose letters more than
+    half, five at least and four a number, are none of its labels'."""
+    own, numbers = set(), set()
+    for one in found:
+        for place, state in enumerate(one.states, one.start):
+            if template().letters.get(state) == glyphs[place].char:
+                own.add(place)
+        for name, span in one.slots.items():
+            numbers.update(range(*span) if name in FIELDS else ())
+    starts = [0, *(at for at, glyph in enumerate(glyphs) if at and glyph.gap is Gap.LINE)]
+    notes: set[int] = set()
+    for start, stop in zip(starts, [*starts[1:], len(glyphs)], strict=True):
+        words = {place for place in range(start, stop) if glyphs[place].char.isalpha()}
+        foreign = len(words - own)
+        text = "".join(" "[: glyph.gap] + glyph.char for glyph in glyphs[start:stop])
+        count = len(re.findall(r"[0-9.]+", text))
+        if foreign >= max(_NOTE, 4 * count, len(words) / 2) and numbers & set(range(start, stop)):
+            notes.update(range(start, stop))
+    return notes
 
 
 class _Reader:
