@@ -378,7 +378,8 @@ def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
 def _notes(glyphs: Region, found: Sequence[Aligned]) -> set[int]:
     """The glyphs of lines whose numbers were taken for the page's, but of whose letters more than
     half, five at least and four a number, are none of its labels'."""
-    own, numbers = set(), set()
+    own: set[int] = set()
+    numbers: set[int] = set()
     for one in found:
         for place, state in enumerate(one.states, one.start):
             if template().letters.get(state) == glyphs[place].char:
