@@ -10,11 +10,8 @@
 #define NINE_DIGITS 999999999.25
 #define EIGHT_DIGITS 99999999.90625
 
-static inline double times_ten(double x)
-{
-    x = real_rounded(x);
-    return real_add(x * 4, x) * 2;
-}
+/* 4x + x, doubled: of 32 bits, so that nothing is cut off. */
+static inline double times_ten(double x) { return real_rounded(x) * 10.0; }
 
 static inline double over_ten(double x) { return real_divide(x, 10.0); }
 
@@ -86,55 +83,55 @@ EXPORT CLONES void read_numbers(const char *p, int64_t count, double *values, ui
     }
 }
 
-/* The characters of n * 10^d, n of at most nine digits: see applesoft/decimaltext.py, lay_out. */
-static inline __attribute__((always_inline)) void lay_out(
-    uint32_t n, int64_t d, int negative, uint32_t *out)
+/* The nine digits of n, and how many there are behind the first before zeros alone are left. */
+static inline int64_t nine_digits(uint32_t n, char *digits)
 {
-    char digits[32] = {0}, text[48];
-    memset(text, 0, sizeof text);
-    if (n == 0) {
-        text[0] = '0';
+    uint64_t first = n / 100000000, eight = n % 100000000, tens;
+    eight = eight / 10000 | eight % 10000 << 32;
+    tens = (eight * 10486 >> 20) & 0x7F0000007F;
+    eight = tens | (eight - 100 * tens) << 16;
+    tens = (eight * 103 >> 10) & 0x000F000F000F000F;
+    eight = tens | (eight - 10 * tens) << 8;
+    /* a bit for each byte that is not zero, and for those before it */
+    uint64_t kept = (eight + 0x7F7F7F7F7F7F7F7F) & 0x8080808080808080;
+    kept |= kept >> 8, kept |= kept >> 16, kept |= kept >> 32;
+    eight |= 0x3030303030303030;
+    digits[0] = (char)('0' + first);
+    memcpy(digits + 1, &eight, 8);
+    return (int64_t)((kept >> 7) * 0x0101010101010101 >> 56);
+}
+
+/* Nine digits times 10^d as PRINT sets them: see applesoft/decimaltext.py, lay_out. */
+static inline void lay_out(const char *digits, int64_t last, int64_t d, int negative, char *text)
+{
+    int64_t plain = d >= -10 && d <= 0, point = plain ? d + 9 : 1, end;
+    char *to = text + negative;
+    text[0] = '-';
+    if (point < 0) { /* below .1 */
+        to[0] = '.', to[1] = '0';
+        memcpy(to + 2, digits, 16);
+        end = last + 3;
     } else {
-        uint64_t first = n / 100000000, eight = n % 100000000, tens;
-        eight = eight / 10000 | eight % 10000 << 32;
-        tens = (eight * 10486 >> 20) & 0x7F0000007F;
-        eight = tens | (eight - 100 * tens) << 16;
-        tens = (eight * 103 >> 10) & 0x000F000F000F000F;
-        eight = tens | (eight - 10 * tens) << 8;
-        int64_t last = 0; /* the last digit that is not zero */
-        for (uint64_t rest = eight; rest; rest >>= 8) last++;
-        last = eight ? last : 0;
-        eight |= 0x3030303030303030;
-        digits[0] = (char)('0' + first);
-        memcpy(digits + 1, &eight, 8);
-        int64_t plain = d >= -10 && d <= 0, point = plain ? d + 9 : 1, end;
-        char *to = text + negative;
-        text[0] = '-';
-        if (point < 0) { /* below .1 */
-            to[0] = '.', to[1] = '0';
-            memcpy(to + 2, digits, 16);
-            end = last + 3;
-        } else {
-            memcpy(to, digits, 16);
-            to[point] = '.';
-            memcpy(to + point + 1, digits + point, 16);
-            end = last < point ? point : last + 2;
-        }
-        memset(to + end, 0, 16);
-        if (!plain) {
-            int64_t exponent = d + 8, size = exponent < 0 ? -exponent : exponent;
-            to[end] = 'E', to[end + 1] = exponent < 0 ? '-' : '+';
-            to[end + 2] = (char)('0' + size / 10), to[end + 3] = (char)('0' + size % 10);
-        }
+        memcpy(to, digits, 16);
+        to[point] = '.';
+        memcpy(to + point + 1, digits + point, 16);
+        end = last < point ? point : last + 2;
     }
-    for (int i = 0; i < TEXT_WIDTH; i++) out[i] = (unsigned char)text[i];
+    memset(to + end, 0, 16);
+    if (!plain) {
+        int64_t exponent = d + 8, size = exponent < 0 ? -exponent : exponent;
+        to[end] = 'E', to[end + 1] = exponent < 0 ? '-' : '+';
+        to[end + 2] = (char)('0' + size / 10), to[end + 3] = (char)('0' + size % 10);
+    }
 }
 
 /* What PRINT writes of each: TEXT_WIDTH characters of four bytes, as numpy keeps text. */
 EXPORT CLONES void write_numbers(const double *x, int64_t count, uint32_t *texts, uint8_t *odd)
 {
     double v[STRIP], d[STRIP], size[STRIP];
-    int64_t strange[STRIP];
+    int64_t strange[STRIP], last[STRIP];
+    char digits[STRIP][32] = {{0}}, text[STRIP][48];
+    static const char zero[16] = "0";
     const int lanes = STRIP;
     for (int64_t start = 0; start < count; start += STRIP, x += STRIP) {
         int64_t many = count - start < STRIP ? count - start : STRIP, any = 0;
@@ -181,9 +178,14 @@ EXPORT CLONES void write_numbers(const double *x, int64_t count, uint32_t *texts
             v[i] = size[i] != 0.0 ? sum : v[i];
             strange[i] |= !(v[i] < 1e9);
         }
+        /* three passes: what has just been written by the byte is slow to read again */
+        for (int64_t i = 0; i < many; i++) last[i] = nine_digits(strange[i] ? 0 : (uint32_t)v[i], digits[i]);
         for (int64_t i = 0; i < many; i++) {
             odd[start + i] = strange[i] != 0;
-            lay_out(strange[i] ? 0 : (uint32_t)v[i], (int64_t)d[i], x[i] < 0, texts + TEXT_WIDTH * (start + i));
+            if (strange[i] || v[i] < 1.0) memcpy(text[i], zero, 16);
+            else lay_out(digits[i], last[i], (int64_t)d[i], x[i] < 0, text[i]);
         }
+        for (int64_t i = 0; i < many; i++, texts += TEXT_WIDTH)
+            for (int k = 0; k < TEXT_WIDTH; k++) texts[k] = (unsigned char)text[i][k];
     }
 }
