@@ -63,7 +63,7 @@ def in_doubles(name: str, values: Any) -> Array:
 
     if type(values) is str:
         return np.float64(_double(name, values))  # type: ignore[return-value]
-    if isinstance(values, np.ma.MaskedArray):
+    if hasattr(values, "mask") and isinstance(values, np.ma.MaskedArray):  # np.ma is a late import
         if values.dtype.kind not in "fiub":
             raise UserError(f"holds {values.dtype} values; expected numbers", f"column {name}")
         return np.ma.filled(values.astype(np.float64), np.nan)

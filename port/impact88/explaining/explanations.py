@@ -31,7 +31,6 @@ from .predictions import NOT_APPLESOFT, Cause, Evidence, in_last_places
 
 MOST = 6
 """Explanations given at most."""
-NO_SINGLE_SLIP = "no single slip explains this"
 LABELS_EXCHANGED, LABEL_WRONG = "labels exchanged", "another label"
 _LABEL = 10.0
 """Bits of wrong labels on numbers that are what the program prints: as a digit misread."""

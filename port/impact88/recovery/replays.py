@@ -71,6 +71,7 @@ def run_columns(
         # a list of one keeps the result an array however much the scenes share
         scene_columns[name] = column[0] if same and name != "M" else column
     replayed = replay(scene_columns)
+    replayed.write_fields(names)
     endings = replayed.error.tolist()
     for index in replayed.zero_determinant.nonzero()[0].tolist():
         endings[index] = ZERO_DETERMINANT

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -124,9 +124,9 @@ class Replay:
             self._write([name])
         return self._fields[name]
 
-    def write_fields(self) -> None:
-        """Write all fields now, which takes less time than one after another."""
-        names = [name for name in field_names() if name not in self._fields]
+    def write_fields(self, names: Sequence[str] = tuple(FIELDS)) -> None:
+        """Write fields now, by default all, which takes less time than one after another."""
+        names = [name for name in names if name not in self._fields]
         at_a_time = max(1, _AT_A_TIME // self.count)
         for start in range(0, len(names), at_a_time):
             self._write(names[start : start + at_a_time])

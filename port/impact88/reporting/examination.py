@@ -8,23 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from time import process_time
+from typing import TYPE_CHECKING
 
 from .. import files
 from ..errors import UserError
-from ..explaining.explanations import explain, explain_copy
 from ..judging import beside
-from ..judging.copies import CopyPages
 from ..judging.judgement import Judged, Status, Verdict, judge
 from ..judging.lookingpast import LookingPast
 from ..judging.unseen import Program, unseen
 from ..names import SCENE
-from ..program.listingcopy import ListingCopy
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
 from ..recovery.replays import run_all, run_once
 from . import provenance, wording
 from .verification import Examined, Verification
+
+if TYPE_CHECKING:
+    from ..judging.copies import CopyPages
+    from ..program.listingcopy import ListingCopy
 
 PICTURE_STARTS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"%PDF-")
 """How PNG, JPEG, TIFF (of either byte order) and PDF files begin."""
@@ -95,7 +97,11 @@ def _verified(
         raise UserError(f"{files.called(path)}: is larger than {LARGEST_FILE:,} bytes of text")
     where = files.called(path)
     text = decoded(data, where)
-    pages = CopyPages(copy) if copy else None
+    pages = None
+    if copy:
+        from ..judging.copies import CopyPages
+
+        pages = CopyPages(copy)
     text, lines, besides = pages.prepared(text) if pages else (text, [], {})
     every = read_printouts(text, where)
     begun, read = process_time(), 1
@@ -161,6 +167,8 @@ def verify(
     result = _result(better or found, file, number)
     result.remarks += late
     if result.verdict is Verdict.DIFFERS:
+        from ..explaining.explanations import explain
+
         # what was reread tries the page's inputs alone
         rereads = None if recovered.apart else past.rereads
         result.explanations = explain(found, rereads, in_time)
@@ -183,6 +191,8 @@ def _against(pages: CopyPages, found: Judged, file: str, number: int) -> Verific
     """The verdict on a printout as a page of an office's copy of the listing."""
     result = _result(found, file, number)
     if result.verdict is Verdict.DIFFERS:
+        from ..explaining.explanations import explain_copy
+
         result.explanations = explain_copy(found, pages.put_right)
     copy = pages.copy
     result.findings = wording.of_copy(copy, found, run_once(found.recovered.scene).fields)

@@ -7,17 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import notebook
 from ..errors import shown
-from ..explaining.explanations import NO_SINGLE_SLIP, Explanation
 from ..files import called
 from ..judging.judgement import FieldCheck, Status, Verdict
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.printout import Piece
 from ..schemas import stamped
 from . import wording
+
+if TYPE_CHECKING:
+    from ..explaining.explanations import Explanation
+
+NO_SINGLE_SLIP = "no single slip explains this"
 
 
 @dataclass
@@ -210,7 +214,7 @@ def summary(result: Verification) -> list[str]:
             f"ends with {ending.printed or 'no error'}, "
             f"recomputed: {ending.recomputed or 'no error'}"
         )
-    return said
+    return said or [NO_SINGLE_SLIP]
 
 
 DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
@@ -251,7 +255,7 @@ def _explained(result: Verification) -> list[str]:
             said.append(f"   or, which this page cannot distinguish: {wording.cause(one)}")
         before = one.rank
         said += [f"   look at {where}" for where in one.look[:4]]
-    return said or [NO_SINGLE_SLIP]
+    return said
 
 
 # --- as text --------------------------------------------------------------------------------------

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from ..errors import printable
-from ..explaining.explanations import LABEL_WRONG, LABELS_EXCHANGED, Explanation
 from ..fields import ANGLES, INPUTS, scene_name
 from ..judging.judgement import FieldCheck, Judged, Status, Verdict, misread_at_all, swapped_digits
-from ..program.listingcopy import ListingCopy
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
 from ..reading.printout import Piece, Printout
 from ..recovery.recovered import Recovered
 from ..recovery.typedtext import stored_and_printed
+
+if TYPE_CHECKING:
+    from ..explaining.explanations import Explanation
+    from ..program.listingcopy import ListingCopy
 
 TITLES = {
     Verdict.IDENTICAL: "IDENTICAL",
@@ -200,6 +203,8 @@ def commas(page: Printout) -> bool:
 
 def cause(one: Explanation) -> str:
     """An explanation in one line."""
+    from ..explaining.explanations import LABEL_WRONG, LABELS_EXCHANGED
+
     what = one.kind
     said = [f"{each['printed']}, would be {each['would_be']}" for each in one.changes]
     if one.kind == LABELS_EXCHANGED:
