@@ -12,17 +12,19 @@ no other data; expect an error of a few ft/s.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError
 from ..mappings import columns
 from ..names import missing
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
 
 AS_USED = 2 / 3
 """The factor with which the chapter computed Table 2 and Section VII; the default."""
@@ -34,7 +36,6 @@ GIVEN = ("MA", "MB", "SA", "SB", "LOSS")
 """What Equation 19 asks for."""
 
 
-@np.errstate(all="ignore")  # what is not finite is said in words
 def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Array]:
     """DVA and DVB by Equation 19, by default with the factor 2/3 that Table 2 has.
 
@@ -46,14 +47,24 @@ def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Arra
     >>> {name: round(float(value), 2) for name, value in found.items()}
     {'DVA': 39.1, 'DVB': 25.89}
     """
-    known = columns(known)
+    if not set(map(type, known.values())) <= {float}:  # else no numpy is needed
+        known = columns(known)
     absent = [name for name in GIVEN if name not in known]
     if absent:
         raise UserError(missing(absent))
-    a, b, speed_a, speed_b, loss = (np.asarray(known[name], np.float64) for name in GIVEN)
-    momentum = np.hypot(a * speed_a, b * speed_b)
-    with np.errstate(invalid="ignore"):
-        change = factor * np.sqrt(loss / 100) * momentum
+    given = [known[name] for name in GIVEN]
+    if all(type(x) is float and x > 0 for x in given):
+        return _changes(factor, math, *given)
+    import numpy as np
+
+    with np.errstate(all="ignore"):  # what is not finite is said in words
+        return _changes(factor, np, *(np.asarray(x, np.float64) for x in given))
+
+
+def _changes(factor: float, by: Any, *given: Any) -> dict[str, Any]:
+    """Equation 19 of the values `GIVEN`, with the square roots of ``by``, math or numpy."""
+    a, b, speed_a, speed_b, loss = given
+    change = factor * by.sqrt(loss / 100) * by.hypot(a * speed_a, b * speed_b)
     return {"DVA": change / a, "DVB": change / b}
 
 
@@ -61,8 +72,7 @@ ERROR = "rms 3.8, largest 8.2 ft/s over the 22 velocity changes of Table 2"
 """How far Equation 19 is from the measured velocity changes; a test holds the numbers."""
 
 
-@np.errstate(all="ignore")
-def loss_of(known: Mapping[str, Any], factor: float = AS_USED) -> Array:
+def loss_of(known: Mapping[str, float], factor: float = AS_USED) -> float:
     """Equation 19 the other way: LOSS in percent that a velocity change implies.
 
     ``known``: MA MB SA SB and DVA or DVB. Raises UserError for a name that is missing.
@@ -72,16 +82,16 @@ def loss_of(known: Mapping[str, Any], factor: float = AS_USED) -> Array:
     if absent or vehicle is None:
         raise UserError(missing(absent or ["DVA"]))
     unit = delta_v({**known, "LOSS": 100.0}, factor)[f"DV{vehicle}"]
-    return np.asarray(100 * np.square(np.asarray(known[f"DV{vehicle}"]) / unit))
+    share = float(known[f"DV{vehicle}"] / unit) if unit else math.nan
+    return 100 * share * share
 
 
-@np.errstate(all="ignore")
-def loss_of_energy(known: Mapping[str, Any]) -> Array:
+def loss_of_energy(known: Mapping[str, float]) -> float:
     """LOSS in percent of the energy EL that crush (or whatever else) has taken: of the kinetic
     energy of MA MB at SA SB, no spins."""
-    square_a, square_b = np.square(known["SA"]), np.square(known["SB"])
-    initial = (known["MA"] * square_a + known["MB"] * square_b) / 2
-    return np.asarray(100 * np.asarray(known["EL"], np.float64) / initial)
+    a, b = known["SA"], known["SB"]
+    initial = (known["MA"] * a * a + known["MB"] * b * b) / 2
+    return 100 * known["EL"] / initial if initial else math.inf
 
 
 def initial_velocity(change: float, along: float, across: float) -> float:
@@ -97,7 +107,7 @@ def initial_velocity(change: float, along: float, across: float) -> float:
             f"a velocity change of {change:.4g} is less than the final velocity {abs(across):.4g} "
             "across its direction of approach"
         )
-    root = float(np.sqrt(square))
+    root = math.sqrt(square)
     return max((along - root, along + root), key=abs)
 
 
