@@ -62,18 +62,17 @@ class Spread(NamedTuple):
 
 
 class Findings(NamedTuple):
-    """What was found: an impact's ``values`` with all that follows, the ``spreads`` of ``main``
-    results, what drives each, ``remarks`` in sentences, and the ``scene`` that is drawn."""
+    """An impact's ``values`` with all that follows, the ``spreads`` of its ``main`` results, the
+    ``drivers`` of each, ``remarks`` in sentences, and the ``scene`` that is drawn; ``inverse``:
+    whether it was reconstructed."""
 
-    kind: str
+    inverse: bool
     values: Mapping[str, float]
     main: Sequence[str]
     spreads: Mapping[str, Spread]
     drivers: Mapping[str, Sequence[str]]
-    driving: str
     remarks: Sequence[str]
     scene: Mapping[str, float]
-    method: Sequence[str]
     settings: str
 
 
@@ -123,7 +122,9 @@ def report(
         case=case,
         paper=paper or ("letter" if units.name in ("us", "chapter", "") else "a4"),
         files=[(source, data)],
-        kind=found.kind,
+        inverse=found.inverse,
+        uncertain=bool(found.spreads),
+        base=base_of(units),
         units="any consistent set" if units is RULES else f"those of the file ({units.name})",
         answer=_sentences(found, units),
         tables=tables,
@@ -131,14 +132,9 @@ def report(
         figure_caption=drawing.description if drawing else "",
         remarks=[*entries.remarks.values(), *found.remarks],
         doubtful=bool(found.remarks),
-        method=[*found.method, _UNITS.format(base=base_of(units))],
-        limits=_LIMITS,
         settings=found.settings,
     )
     return Report(page, tables)
-
-
-# --- what is found -------------------------------------------------------------------------------
 
 
 def _forward(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
@@ -186,14 +182,9 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
             for name, share in found.warnings.items()
         ]
         settings = f"{samples:,} random draws, seed {seed}."
-    method = [_FORWARD, _RANGES if spreads else _NO_RANGES]
     scene = {name: float(nominal[name]) for name in SCENE}
-    kind = "Velocities after the impact from those before it"
-    driving = "how far the result goes while one input goes through its limits, largest first"
     main = ("SAF", "SBF", *FORWARD)
-    return Findings(
-        *(kind, values, main, spreads, drivers, driving, remarks, scene, method, settings)
-    )
+    return Findings(False, values, main, spreads, drivers, remarks, scene, settings)
 
 
 def _inverse(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
@@ -235,15 +226,7 @@ def _inverse(entries: Entries, source: str, samples: int, seed: int, units: Syst
     if scene["M"] == 4 or "EM" not in scene:
         scene["EM"] = 0.0  # which nothing drawn depends on
     settings = f"{samples:,} random draws, seed {seed}." if spread.draws else ""
-    kind = "Velocities reconstructed from what is known of the impact"
-    method = [_INVERSE, _TOLERANCES if spread.names else _NO_RANGES]
-    driving = "share of the variance, largest first"
-    return Findings(
-        *(kind, values, wanted, spreads, drivers, driving, remarks, scene, method, settings)
-    )
-
-
-# --- how it is said ------------------------------------------------------------------------------
+    return Findings(True, values, wanted, spreads, drivers, remarks, scene, settings)
 
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
@@ -335,7 +318,11 @@ def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
             for name, ranked in found.drivers.items()
             if ranked
         ]
-        caption = found.driving
+        caption = (
+            "share of the variance, largest first"
+            if found.inverse
+            else "how far the result goes while one input goes through its limits, largest first"
+        )
         headings = ["", "result", "driven by"]
         tables.append(Table("What drives the result", headings, rows, (0, 1, 2), caption=caption))
     rows = [
@@ -346,43 +333,3 @@ def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
     ]
     tables.append(Table("The impact in full", ["", "quantity", "value", "unit"], rows, (0, 1, 3)))
     return tables
-
-
-_FORWARD = (
-    "The velocities after the impact follow from those before it by Equations 13 to 18 of R. M. "
-    "Brach, Vehicle Collision Analysis (1988): momentum along x and y (13, 14), restitution e of "
-    "the normal relative velocity at the contact point (15), tangential over normal impulse μ "
-    "(16), angular momentum (17), and moment restitution e_m (18). They are solved in closed form "
-    "in double precision."
-)
-_INVERSE = (
-    "What is not known is solved for from Equations 13 to 18 of R. M. Brach, Vehicle Collision "
-    "Analysis (1988): momentum along x and y (13, 14), restitution e (15), friction μ (16), "
-    "angular momentum (17), moment restitution e_m (18). The equations hold exactly; where more "
-    "is known than needed, the values known within limits are adjusted by least squares, weighted "
-    "by their tolerances."
-)
-_RANGES = (
-    "Inputs known within limits are drawn at random, uniformly unless the file says otherwise, and "
-    "each draw is solved: standard deviation and percentiles are those of the draws. The bounds "
-    "are the smallest and largest results found for any inputs within their limits."
-)
-_TOLERANCES = (
-    "The standard deviation is to first order, from the tolerances of what is known; the 5 and "
-    "95 % come from random draws of it; the bounds are the smallest and largest values found "
-    "with every known value within its limits."
-)
-_NO_RANGES = "No input was given a tolerance, so no uncertainty is stated."
-_UNITS = (
-    "Values with units are converted once, by exact fractions; the computation is in {base}, "
-    "angles in degrees and spins in radians per unit of time. PDOF is where the force comes from, "
-    "clockwise from the vehicle's front."
-)
-_LIMITS = (
-    "The vehicles are rigid bodies in the plane, the impulse acts at one point, and other forces "
-    "during contact are neglected: tire forces, restraint by a third body, rotation out of the "
-    "plane.",
-    "Coefficients, contact point and orientation of the contact plane are inputs. They are not "
-    "verified here, and the result is no better than they are.",
-    "A bound is attained by inputs within the stated limits; inputs outside them are not covered.",
-)
