@@ -1,7 +1,7 @@
 """Panels of a chart: two axes with round numbers, what is drawn between them, and a key.
 
-Nothing is told by colour alone: marks, dashes and lightness differ as well, so a grey copy reads
-the same. Nothing is hatched: some renderers of SVG paint patterns black.
+Marks, dashes and lightness differ as well as colours, so a grey copy reads the same. Nothing is
+hatched: some renderers of SVG paint patterns black.
 """
 
 from __future__ import annotations
@@ -154,19 +154,15 @@ class Panel:
 
     def shade(self, low: float, high: float, colour: str) -> None:
         """A stretch of the horizontal axis, behind everything."""
-        left, right = self.x(low), self.x(high)
-        box = Box(left, self.box.bottom, right, self.box.top)
-        corners = (complex(x, y) for x, y in _corners(box))
-        path = Path(tuple(corners), None, fill=colour, role="shade")
-        self.drawing.items.insert(self._ground, path)
+        box = Box(self.x(low), self.box.bottom, self.x(high), self.box.top)
+        self.drawing.items.insert(self._ground, Path(box.corners, None, fill=colour, role="shade"))
 
     def bar(self, low: float, high: float, y: float, half: float, fill: str, role: str) -> None:
         """A bar from ``low`` to ``high`` at ``y``, ``half`` a mm to either side."""
         middle = self.y(y)
         left, right = sorted((self.x(low), self.x(high)))
         box = Box(left, middle - half, right, middle + half)
-        corners = tuple(complex(x, y) for x, y in _corners(box))
-        self.drawing.items.append(Path(corners, d.BLUE, 0.2, fill=fill, role=role))
+        self.drawing.items.append(Path(box.corners, d.BLUE, 0.2, fill=fill, role=role))
 
     def mark(
         self,
@@ -181,11 +177,6 @@ class Panel:
         at = self.at(x, y)
         if math.isfinite(abs(at)):
             self.drawing.items.append(mark(at, shape, colour, filled, role))
-
-
-def _corners(box: Box) -> tuple[tuple[float, float], ...]:
-    left, bottom, right, top = box
-    return ((left, bottom), (right, bottom), (right, top), (left, top))
 
 
 def mark(at: complex, shape: str, colour: str, filled: bool = True, role: str = "mark") -> Path:
@@ -208,8 +199,7 @@ def key(drawing: Drawing, y: float, *entries: tuple[str, str, Any], note: str = 
         if isinstance(look, str):
             drawing.items.append(mark(start + sample / 2, look[0], colour, look[-1] != " ", "key"))
         elif look is None:
-            half = 1j * 0.9
-            ends = (start + half, start + sample + half, start + sample - half, start - half)
+            ends = Box(x, start.imag - 0.9, x + sample, start.imag + 0.9).corners
             drawing.items.append(Path(ends, GREY, 0.15, fill=colour, role="key"))
         else:
             drawing.items.append(Path((start, start + sample), colour, 0.4, look, role="key"))

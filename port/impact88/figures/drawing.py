@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -98,6 +99,14 @@ class Box(NamedTuple):
         """From bottom to top."""
         return self.top - self.bottom
 
+    @property
+    def corners(self) -> tuple[complex, ...]:
+        """From the lower left one counterclockwise."""
+        left, bottom, right, top = self
+        return tuple(
+            complex(x, y) for x, y in ((left, bottom), (right, bottom), (right, top), (left, top))
+        )
+
     def overlaps(self, other: Box) -> bool:
         """Whether the two share area."""
         return (
@@ -159,18 +168,8 @@ class Drawing:
 
 def pieces(text: str) -> list[tuple[str, bool]]:
     """``text`` cut at its subscripts: (piece, whether it is one)."""
-    result: list[tuple[str, bool]] = []
-    rest = text
-    while "_" in rest:
-        before, _, rest = rest.partition("_")
-        if before:
-            result.append((before, False))
-        if rest.startswith("{") and "}" in rest:
-            below, _, rest = rest[1:].partition("}")
-        else:
-            below, rest = rest[:1], rest[1:]
-        result.append((below, True))
-    return [*result, (rest, False)] if rest else result
+    found = re.finditer(r"_\{([^}]*)\}|_(.?)|[^_]+", text)
+    return [(m[1] or m[2] or "", True) if m[0][0] == "_" else (m[0], False) for m in found]
 
 
 def text_width(text: str, size: float, bold: bool = False) -> float:
@@ -290,8 +289,7 @@ def circle(center: complex, radius: float) -> tuple[complex, ...]:
 
 def dashes(points: Sequence[complex], pattern: Sequence[float]) -> list[tuple[complex, ...]]:
     """The drawn pieces of a line dashed by ``pattern`` (drawn, left out, drawn ... in mm)."""
-    drawn, piece = [], [points[0]]
-    count, left = 0, pattern[0]
+    drawn, piece, count, left = [], [points[0]], 0, pattern[0]
     for start, end in pairwise(points):
         length, done = abs(end - start), 0.0
         while length - done > left:

@@ -20,6 +20,8 @@ REACHES = (0.9, 2.0, 3.4, 5.0, 7.0, 10.0, 14.0, 20.0)
 """Distances in mm tried between the point named and the nearest edge of the text."""
 LEADER_FROM = 3.6
 """Beyond this distance a thin line leads from the label to its point."""
+GAP = 0.9
+"""Least distance in mm of two texts."""
 STEP = 0.4
 """Distance in mm of the points that lines are looked at by: a fifth of a text's height."""
 WEIGHTS = {
@@ -61,28 +63,25 @@ def place(drawing: Drawing, labels: Sequence[Label], frame: Box) -> None:
         with np.errstate(divide="ignore"):
             inner = np.minimum(half.real / np.abs(along.real), half.imag / np.abs(along.imag))
         middles = label.at + (reach + inner) * along
-        boxes = Box(
-            *(middles.real - half.real, middles.imag - half.imag),
-            *(middles.real + half.real, middles.imag + half.imag),
-        )
+        low, high = middles[:, None] - half, middles[:, None] + half
         wish = label.towards / abs(label.towards) if label.towards else 0j
         cost = 0.6 * reach + 1.5 * (1 - (wish.conjugate() * along).real) + (reach > LEADER_FROM)
-        for other in taken:
-            cost += 1e4 * _shared(boxes, other)
-        inside = (boxes.left >= frame.left) & (boxes.right <= frame.right)
-        cost += 1e3 * ~(inside & (boxes.bottom >= frame.bottom) & (boxes.top <= frame.top))
-        cost += 1.5 * (_covered(boxes, points) @ weights)
+        left, bottom, right, top = np.array(taken).reshape(-1, 4).T
+        near = (low.real < right + GAP) & (high.real > left - GAP)
+        near &= (low.imag < top + GAP) & (high.imag > bottom - GAP)
+        inside = (low.real >= frame.left) & (high.real <= frame.right)
+        inside &= (low.imag >= frame.bottom) & (high.imag <= frame.top)
+        covered = (low.real < points.real) & (points.real < high.real)
+        covered &= (low.imag < points.imag) & (points.imag < high.imag)
+        cost += 1e4 * near.sum(1) + 1e3 * ~inside[:, 0] + 1.5 * (covered @ weights)
         best = int(np.argmin(cost))
-        start = complex(middles[best]) - half - complex(box.left, box.bottom)
-        text = text._replace(at=start)
+        text = text._replace(at=complex(low[best, 0]) - complex(box.left, box.bottom))
         box = text_box(text)
         if reach[best] > LEADER_FROM:
-            near = complex(
-                min(max(label.at.real, box.left), box.right),
-                min(max(label.at.imag, box.bottom), box.top),
-            )
-            away = label.at + min(0.8 / abs(near - label.at), 1.0) * (near - label.at)
-            drawing.items.append(Path((away, near), label.colour, 0.12, role="leader"))
+            near_x = min(max(label.at.real, box.left), box.right)
+            end = complex(near_x, min(max(label.at.imag, box.bottom), box.top))
+            start = label.at + min(0.8 / abs(end - label.at), 1.0) * (end - label.at)
+            drawing.items.append(Path((start, end), label.colour, 0.12, role="leader"))
         drawing.items.append(text)
         taken.append(box)
 
@@ -98,20 +97,3 @@ def _samples(path: Path) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
     ]
     points = np.concatenate(runs) if runs else np.empty(0, complex)
     return points, np.full(len(points), weight)
-
-
-def _shared(boxes: Box, other: Box, gap: float = 0.9) -> NDArray[np.bool_]:
-    """Which boxes (of arrays) come nearer than ``gap`` to another."""
-    return np.asarray(
-        (boxes.left < other.right + gap)
-        & (boxes.right > other.left - gap)
-        & (boxes.bottom < other.top + gap)
-        & (boxes.top > other.bottom - gap)
-    )
-
-
-def _covered(boxes: Box, points: NDArray[np.complex128]) -> NDArray[np.bool_]:
-    """Which points lie in which of the boxes."""
-    left, bottom, right, top = (np.asarray(side)[:, None] for side in boxes)
-    x, y = points.real, points.imag
-    return np.asarray((left < x) & (x < right) & (bottom < y) & (y < top))

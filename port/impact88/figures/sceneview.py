@@ -285,9 +285,6 @@ def draw_bodies(items: list[Path | Text], vehicles: Sequence[Vehicle], at: View)
         line((back + 0.16 * across, nose, back - 0.16 * across), 0.3, "heading")
 
 
-# --- below the drawing ---------------------------------------------------------------------------
-
-
 def _round_below(value: float) -> float:
     """The largest 1, 2 or 5 times a power of ten that is not above ``value``."""
     if not value > 0:
