@@ -15,7 +15,7 @@ one. A bare number without any system of units stays the text it is, digit for d
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from fractions import Fraction
 from itertools import pairwise
 from math import inf
@@ -60,14 +60,16 @@ _NUMBER = rf"\d{{1,3}}(?:,\d{{3}})+(?:\.\d*)?(?![\d,])|(?:\d+ )?\d+ ?/ ?\d+|{_DE
 _AFTER = r"[a-zA-Z°%²³^]"
 _PART = re.compile(rf"({_NUMBER})(?![\d,/]) ?(?:({UNIT})(?!{_AFTER})|(?!{_AFTER})) ?")
 _SIGN = re.compile(r"([-+]?) ?")
-_FORMS = {
-    "uniform": (re.compile(r"uniform (.+)"), (2,)),
-    "triangular": (re.compile(r"triangular (.+)"), (3,)),
-    "normal": (re.compile(r"normal (.+?)(?: within (.+?) ?\.\. ?(.+))?"), (2, 1, 1)),
-    "around": (re.compile(r"(.*?) ?(?:\+-|±|\+/-) ?(.+)"), (1, 1)),
-    "range": (re.compile(r"(.+?) ?\.\. ?(.+)"), (1, 1)),
-}
-"""Notations of a value known within limits: the pattern, and how many amounts each part holds."""
+_FORMS = (
+    ("uniform", r"uniform (.+)", (2,), "uniform {} {}"),
+    ("triangular", r"triangular (.+)", (3,), "triangular {} {} {}"),
+    ("normal", r"normal (.+?) within (.+?) ?\.\. ?(.+)", (2, 1, 1), "normal {} {} within {} .. {}"),
+    ("normal", r"normal (.+)", (2,), "normal {} {}"),
+    ("around", rf"(.*?) ?(?:\+-|±|\+/-) ?({_DECIMAL}) ?%", (1, 1), "{} +- {}%"),
+    ("around", r"(.*?) ?(?:\+-|±|\+/-) ?(.+)", (1, 1), "{} +- {}"),
+    ("range", r"(.+?) ?\.\. ?(.+)", (1, 1), "{} .. {}"),
+)
+"""Notations of a value known within limits: pattern, how many amounts each part holds, layout."""
 _PHRASES: dict[str, tuple[re.Pattern[str], tuple[str, ...]]] = {
     "estimate": (re.compile(r"estimate(?: (.+))?"), ("",)),
     "skid": (re.compile(r"skid (.+) at (.+)"), (LENGTH, NUMBER)),
@@ -91,11 +93,13 @@ class Amount(NamedTuple):
 
 class Notation(NamedTuple):
     """A text taken apart: its ``kind`` ("fixed" or one of the notations above), its ``amounts`` in
-    order (the middle of ``around`` may be None), and whether the last is a share in percent."""
+    order (the middle of ``around`` may be None), whether the last is a share in percent, and its
+    ``layout``."""
 
     kind: str
     amounts: tuple[Amount | None, ...]
     share: bool = False
+    layout: str = "{}"
 
 
 def parse(text: str) -> Notation:
@@ -103,19 +107,12 @@ def parse(text: str) -> Notation:
     words = " ".join(text.replace("⁻¹", "^-1").replace("⁻²", "^-2").translate(_MEANT).split())
     if "..." in words:
         raise ValueError(text)
-    for kind, (pattern, counts) in _FORMS.items():
-        if not (match := pattern.fullmatch(words)):
-            continue
-        if kind == "around":
-            share = bool(re.fullmatch(rf"{_DECIMAL} ?%", match[2]))
-            middle = _amount(match[1]) if match[1] else None
-            half = match[2].rstrip("% ") if share else match[2]
-            return Notation(kind, (middle, _amount(half)), share)
-        amounts: list[Amount] = []
-        for part, count in zip(match.groups(), counts, strict=True):
-            if part is not None:
-                amounts += _split(part, count)
-        return Notation(kind, tuple(amounts))
+    for kind, pattern, counts, layout in _FORMS:
+        if match := re.fullmatch(pattern, words):
+            amounts: list[Amount | None] = []
+            for part, count in zip(match.groups(), counts, strict=True):
+                amounts += _split(part, count) if part or kind != "around" else [None]
+            return Notation(kind, tuple(amounts), layout.endswith("%"), layout)
     if is_number(words) and not re.search(r"\d \d", words):
         return Notation("fixed", (Amount("", ((words, ""),)),))
     return Notation("fixed", (_amount(words),))
@@ -192,8 +189,7 @@ class _Value:
 
     def based(self, system: System, strict: bool) -> str:
         """The text in base units; ``strict``: bare numbers that measure something are refused."""
-        units = set(self.units)
-        common = units.pop() if len(units) == 1 else None
+        common = self.units[0] if len(set(self.units)) == 1 else None
         numbers = []
         for at, amount in enumerate(self.notation.amounts):
             if amount is None or (at == 1 and self.notation.share):
@@ -205,36 +201,26 @@ class _Value:
                     f"{self.name} = {self.text} has no unit, and others have", self.source
                 )
             numbers.append(self._number(amount, common or system.usual.get(self.rule, ""), system))
-        return _written(self.notation, numbers)
+        return self.notation.layout.format(*numbers).lstrip()
 
     def _number(self, amount: Amount, usual: str, system: System) -> str:
         """One amount as a number of base units: the digits as written where no factor is needed."""
-        sizes = [self._size(unit or usual) for _, unit in amount.parts]
+        known = [size_of(unit or usual, self.rule) for _, unit in amount.parts]
+        sizes = [size[0] if size else Fraction(1) for size in known]
         scale = system.scale(self.rule) if usual or amount.units else Fraction(1)
-        for number, unit in amount.parts:
-            if "," in number and (size_of(unit or usual, self.rule) or ("", ""))[1] != "us":
+        for (number, _), size in zip(amount.parts, known, strict=True):
+            if "," in number and (not size or size[1] != "us"):
                 self._refuse(f"the comma of {number} may be a decimal one")
-        (number, _), size = amount.parts[0], sizes[0]
-        sign = amount.sign
-        if len(sizes) == 1 and size == scale and "/" not in number:
-            return sign + number.replace(",", "")
+        number = amount.parts[0][0]
+        if sizes == [scale] and "/" not in number:
+            return amount.sign + number.replace(",", "")
         try:
-            total = sum(
-                (_fraction(n) * size for (n, _), size in zip(amount.parts, sizes, strict=True)),
-                Fraction(0),
-            )
-            value = float(total / scale)
+            parts = zip(amount.parts, sizes, strict=True)
+            value = float(sum(_fraction(number) * size for (number, _), size in parts) / scale)
         except (OverflowError, ZeroDivisionError):
             self._refuse("too large for a double")
         text = repr(value).removesuffix(".0").upper()
-        return "0" if not value else ("-" if sign == "-" else "") + text
-
-    def _size(self, unit: str) -> Fraction:
-        if not unit:
-            return Fraction(1)
-        found = size_of(unit, self.rule)
-        assert found is not None
-        return found[0]
+        return "0" if not value else ("-" if amount.sign == "-" else "") + text
 
     def _refuse(self, why: str) -> None:
         raise UserError(f"{self.name} = {self.text}: {why}; {ACCEPTED}", self.source)
@@ -263,7 +249,7 @@ def _fraction(text: str) -> Fraction:
 def nominal(text: str) -> str:
     """The single value that stands for a value or range in base units: as written where it is, the
     middle of two limits. Raises ValueError for what is neither, and for a tolerance alone."""
-    kind, amounts, _ = parse(text)
+    kind, amounts, *_ = parse(text)
     first = amounts[1 if kind == "triangular" else 0]
     if first is None:
         raise ValueError(text)
@@ -271,20 +257,6 @@ def nominal(text: str) -> str:
     if kind not in ("range", "uniform"):
         return numbers[0]
     return repr(float(sum(map(_fraction, numbers)) / 2)).removesuffix(".0").upper()
-
-
-def _written(notation: Notation, numbers: Sequence[str]) -> str:
-    """A notation with other numbers."""
-    match notation.kind:
-        case "range":
-            return f"{numbers[0]} .. {numbers[1]}"
-        case "around":
-            return f"{numbers[0]} +- {numbers[1]}{'%' if notation.share else ''}".lstrip()
-        case "normal" if len(numbers) == 4:
-            return f"normal {numbers[0]} {numbers[1]} within {numbers[2]} .. {numbers[3]}"
-        case "fixed":
-            return numbers[0]
-    return " ".join((notation.kind, *numbers))
 
 
 class _Phrase:

@@ -86,6 +86,8 @@ _FACTOR = rf"(?:[a-zA-Z]+(?:\.(?![.\d]))?{_EXPONENT}?|[°%\"]|''?)"
 UNIT = rf"{_FACTOR}(?:(?: ?[-*·/] ?| ){_FACTOR})*"
 """What a unit looks like: symbols with exponents, multiplied and divided."""
 _STEP = re.compile(rf"( ?[-*·/] ?| |)({_FACTOR})")
+_POWER = re.compile(r"(.+?)\.?(?:([²³])|(?:\^|\*\*)?(-?\d))?")
+_EXPONENTS = {"²": 2, "³": 3}
 
 
 @lru_cache(maxsize=4096)
@@ -118,7 +120,9 @@ def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, st
         if not step:
             return None
         at = step.end()
-        symbol, power = _split(step[2])
+        match = _POWER.fullmatch(step[2])
+        assert match is not None
+        symbol, power = match[1].lower(), int(_EXPONENTS.get(match[2]) or match[3] or 1)
         known = SYMBOLS.get(symbol)
         if arc and symbol in _ARC:
             known = (_ANGLE, _ARC[symbol], "")
@@ -135,14 +139,6 @@ def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, st
         return None
     length, mass, time, angle = dimension
     return (length, mass, time, angle), size, systems.pop() if systems else ""
-
-
-def _split(factor: str) -> tuple[str, int]:
-    """A factor's symbol in small letters, and its power."""
-    match = re.fullmatch(r"(.+?)\.?(?:([²³])|(?:\^|\*\*)?(-?\d))?", factor)
-    assert match is not None
-    power = {"²": "2", "³": "3"}.get(match[2] or "", match[3] or "1")
-    return match[1].lower(), int(power)
 
 
 class System(NamedTuple):

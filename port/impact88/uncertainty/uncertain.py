@@ -164,7 +164,7 @@ def read(text: str, name: str, center: float | None = None, units: str | None = 
     try:
         if is_number(text):
             text = text.replace(" ", "")  # INPUT reads "1 0" as 10
-        kind, amounts, share = parse(text)
+        kind, amounts, share, _ = parse(text)
         numbers = [double(a.sign + a.parts[0][0]) for a in amounts if a]
     except ValueError:
         raise UserError(f"{text!r} is not an amount; {ACCEPTED}", name) from None
