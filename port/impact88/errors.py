@@ -6,9 +6,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-LONGEST_MESSAGE = 500
-LONGEST_PLACE = 200
-LONGEST_QUOTE = 60
+LONGEST_MESSAGE, LONGEST_PLACE, LONGEST_QUOTE = 500, 200, 60
+"""Characters: six lines of a terminal; a path and a line of it; a cell, or a number with its unit.
+"""
 BEYOND_DOUBLES = "the values known lead beyond the range of doubles"
 
 

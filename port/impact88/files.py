@@ -31,7 +31,6 @@ _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
-_WRITE_BUFFER = 1 << 17
 
 
 def _escape(error: UnicodeError) -> tuple[str, int]:
@@ -184,7 +183,7 @@ def _sink(
 ) -> IO[Any]:
     raw = _Sink(file, "w", opener=opener)
     raw.target = target
-    buffered = io.BufferedWriter(raw, _WRITE_BUFFER)
+    buffered = io.BufferedWriter(raw)
     if "b" in mode:
         return buffered
     return io.TextIOWrapper(buffered, encoding="utf-8", errors=ESCAPED, newline=newline)

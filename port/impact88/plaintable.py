@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from .units import System
 
 WIDTH = 96
+"""Columns of a paragraph: those of the widest table."""
 
 
 def number(value: Any, digits: int = 6) -> str:

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 from .stderr import note
 
 SECONDS_BETWEEN_LINES = 2.0
+"""In a log: thirty lines a minute at most."""
 
 
 class Meter(Protocol):

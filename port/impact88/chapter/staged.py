@@ -45,6 +45,7 @@ SPIN_WEIGHT = 25.0
 E_BOUNDS = (0.0, 1.0)
 EM_BOUNDS = (-1.0, 0.0)
 _HALF_DIGIT_COEFFICIENT, _HALF_DIGIT = 0.0005, 0.05
+"""Half of the last digit that Table 2 prints of coefficients, and of loss and velocity changes."""
 _GRIDS = (201, *[21] * 6)
 """Points of each grid in e_m, the next one around the best point of the last: to 5e-9 of e_m. The
 first one separates local minima; twice as many points move no fit of the eleven by 1e-7."""

@@ -37,6 +37,7 @@ from .run_command import MACHINE, check_slot
 LISTING = "impact.bas"
 SLOT_LINE = '190 P$ = "PR# " + "{}"'
 PROGRAM_LIMIT = 1_000_000
+"""Bytes of a program's text; 48K hold some 50,000."""
 LEAVE = "control-Z and RETURN leave" if sys.platform == "win32" else "control-D leaves"
 BANNER = f"impact88 basic: an Apple II Plus. LIST shows the program, {{}}; {LEAVE}."
 _SHOWN_CONTROLS = "\n\a\b"

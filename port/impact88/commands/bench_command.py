@@ -34,8 +34,9 @@ __doc__ = (__doc__ or "").format(
 )
 
 QUICK = 0.05
-PATH_SCENES = 500_000
-FILE_ROWS = 1_000_000
+"""The share of the scenes that --quick times."""
+PATH_SCENES, FILE_ROWS = 500_000, 1_000_000
+"""Scenes of --paths (their columns fit no cache), and rows of --files."""
 COMPONENT_SCENES = 300
 """Scenes of which every result is compared with 50 digits: two milliseconds each."""
 MOST_SCENES = 10_000_000

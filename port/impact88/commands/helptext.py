@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from . import CHAPTER, CHAPTER_MEANING, COMMANDS, GROUPS
 
 NARROWEST, WIDEST = 40, 100
+"""Columns: below, words stand alone; above, lines are too long to read."""
 
 
 class Formatter(argparse.HelpFormatter):

@@ -18,6 +18,7 @@ from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .arrow import ArrowColumn, ArrowTexts, pyarrow
 from .rows import (
+    BLOCK_ROWS,
     Column,
     Reader,
     Rows,
@@ -26,9 +27,6 @@ from .rows import (
     scene_names,
     typed,
 )
-
-BLOCK = 1 << 15
-"""Rows of a block."""
 
 
 class _ArrowReader(Reader):
@@ -85,7 +83,7 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
             from pyarrow import parquet
 
             with parquet.ParquetFile(path, memory_map=True) as file:
-                batches = file.iter_batches(BLOCK, use_threads=pa.cpu_count() > 1)
+                batches = file.iter_batches(BLOCK_ROWS, use_threads=pa.cpu_count() > 1)
                 count = file.metadata.num_rows
                 yield _ArrowReader(file.schema_arrow.names, count, batches, path)
         else:
@@ -93,9 +91,9 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
                 file = pa.ipc.open_file(source)
                 numbers = range(file.num_record_batches)
                 slices = (
-                    batch.slice(first, BLOCK)
+                    batch.slice(first, BLOCK_ROWS)
                     for batch in map(file.get_batch, numbers)
-                    for first in range(0, batch.num_rows, BLOCK)
+                    for first in range(0, batch.num_rows, BLOCK_ROWS)
                 )
                 count = sum(batch.num_rows for batch in map(file.get_batch, numbers))
                 yield _ArrowReader(file.schema.names, count, slices, path)

@@ -14,7 +14,8 @@ from ..errors import UserError, printable, quoted
 from ..files import ESCAPED, LONGEST_LINE, Source, called, encoding_of, replacing
 
 PEEK = 1 << 17
-"""Bytes that can be looked at before they are read."""
+"""Bytes that can be looked at before they are read. A header that is longer is read line by line;
+half and twice as many take as long."""
 
 
 class Lines:

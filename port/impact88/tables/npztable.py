@@ -24,10 +24,10 @@ from ..names import SCENE
 from .rows import Column, Reader, Rows, Writer, scene_names, typed
 
 MOST_ARRAYS = 10_000
-UNPACKED = 256_000_000
-"""Bytes that a small file may unpack to; a larger one `RATIO` times its own."""
-RATIO = 20
-_HEADER = 10_000
+"""A table has some fifty columns."""
+UNPACKED, RATIO = 256_000_000, 20
+"""Bytes that a small file may unpack to; a larger one so many times its own. Doubles pack to a third
+or so; with twice as much a file of 100 MB may take 4 GB of memory."""
 _KINDS = "biufcSU"
 
 
@@ -107,7 +107,7 @@ def _header(data: bytes, where: str) -> tuple[np.dtype[Any], tuple[int, ...], in
             (1, 0): np.lib.format.read_array_header_1_0,
             (2, 0): np.lib.format.read_array_header_2_0,
         }[version]
-        shape, _, dtype = read(file, max_header_size=_HEADER)
+        shape, _, dtype = read(file)
     except MemoryError:
         raise
     except Exception as error:  # whatever a literal's parser raises on arbitrary bytes

@@ -11,8 +11,6 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
 
-BEHIND = 2
-"""Blocks that may wait to be written."""
 _END = object()
 
 
@@ -39,16 +37,15 @@ def ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
 
 @contextmanager
 def behind(write: Callable[..., object]) -> Iterator[Callable[..., None]]:
-    """A function that has ``write`` done in order, later; what it raises is raised by the next
-    call, or at the end."""
-    waiting: list[Future[object]] = []
+    """A function that has ``write`` done in order, later (more than one call that waits gains
+    nothing); what it raises is raised by the next call, or at the end."""
     with ThreadPoolExecutor(1, "write") as pool:
+        waiting: Future[object] = pool.submit(bool)
 
         def later(*arguments: Any) -> None:
-            if len(waiting) >= BEHIND:
-                waiting.pop(0).result()
-            waiting.append(pool.submit(write, *arguments))
+            nonlocal waiting
+            waiting.result()
+            waiting = pool.submit(write, *arguments)
 
         yield later
-        for task in waiting:
-            task.result()
+        waiting.result()
