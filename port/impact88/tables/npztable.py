@@ -26,8 +26,8 @@ from .rows import Column, Reader, Rows, Writer, scene_names, typed
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""
 UNPACKED, RATIO = 256_000_000, 20
-"""Bytes that a small file may unpack to; a larger one so many times its own. Doubles pack to a third
-or so; with twice as much a file of 100 MB may take 4 GB of memory."""
+"""Bytes that a small file may unpack to; a larger one so many times its own. Doubles pack to a
+third; with twice as much a file of 100 MB may take 4 GB of memory."""
 _KINDS = "biufcSU"
 
 
