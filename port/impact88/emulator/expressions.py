@@ -322,8 +322,7 @@ class Expressions(Variables):
         return self.integer_value(address) if kind else self.value(address)
 
     def function_name(self, sp: int) -> int:
-        """FNC: the address of the function named after FN, which is made if there is none. Raises
-        SYNTAX and TYPE MISMATCH.
+        """FNC: the address of the function named after FN, which is made if there is none.
 
         A string's name makes a variable before it is refused: with both marks in its name, that of
         the kind and that of a function, it is an integer.

@@ -416,8 +416,7 @@ class Flow(InputOutput):
         self.fix_links()
 
     def store_line(self, number: int, tokens: bytes) -> None:
-        """A line typed with a number: put in, or taken out if it has no tokens. Raises OUT OF
-        MEMORY."""
+        """A line typed with a number: put in, or taken out if it has no tokens."""
         ram = self.ram
         self.vartab = self.prgend
         known, line = self.find_line(number, self.txttab)

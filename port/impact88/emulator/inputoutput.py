@@ -74,8 +74,7 @@ class InputOutput(Expressions):
             self.put(other)
 
     def show_message(self, text: bytes, address: int = IN_ROM) -> None:
-        """STROUT: a text that is no variable's, as a temporary string. Raises FORMULA TOO
-        COMPLEX."""
+        """STROUT: a text that is no variable's, as a temporary string."""
         self.used(self.temporary(0, address, address >> 8))
         self.fac = len(text), self.fac[1], 0
         self.show(text)

@@ -203,8 +203,7 @@ class Variables(Memory):
         return self.temporary(length, address, page)
 
     def made(self, text: bytes) -> Number:
-        """STRINI and PUTNEW: a temporary with characters. Raises OUT OF MEMORY and FORMULA TOO
-        COMPLEX."""
+        """STRINI and PUTNEW: a temporary with characters."""
         address = self.room(len(text))
         self.ram[address : address + len(text)] = text
         return self.temporary(len(text), address)
@@ -351,8 +350,7 @@ class Variables(Memory):
         return place + 2
 
     def array_element(self, name: int, sp: int, dimensions: int = 0) -> int:
-        """ARRAY: the address of an element; its array is made if there is none. Raises SYNTAX,
-        ILLEGAL QUANTITY, BAD SUBSCRIPT, REDIM'D ARRAY, OUT OF MEMORY."""
+        """ARRAY: the address of an element; its array is made if there is none."""
         kind = self.valtyp, self.inttyp
         found: list[int] = []
         depth = sp - 7
@@ -447,8 +445,7 @@ class Variables(Memory):
         return integer(n - (n >> 15 << 16))
 
     def assign(self, address: int, x: Number) -> None:
-        """SETFOR: a real variable takes a number, rounded, which stays in the accumulator. Raises
-        OVERFLOW."""
+        """SETFOR: a real variable takes a number, rounded, which stays in the accumulator."""
         e, m, s = self.fac = rounded(x) if x[1] & 0xFF else x
         if address < ROM:
             store(self.ram, address, e, m >> 8 & 0x7FFFFFFF | s << 31)
