@@ -140,12 +140,13 @@ class Applesoft:
             numbered = split_number(text)
             number, rest = numbered or (None, text)
             if machine.lock & 0x80:
-                machine.run_locked()
+                machine.set_pointers()
+                machine.go(machine.next_statements)
                 return machine.error
             tokens = tokenise(rest)
             machine.parse(typed, tokens)
             if number is None:
-                machine.execute_direct()
+                machine.go(machine.execute)
             else:
                 machine.store_line(number, tokens)
         except ValueError:

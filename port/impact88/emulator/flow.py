@@ -31,7 +31,6 @@ from .memory import (
     STACK,
     TEMPORARIES,
     is_digit,
-    reading,
 )
 from .tokens import TOKENS
 from .variables import SUBFLG_SIMPLE, store
@@ -202,8 +201,8 @@ class Flow(InputOutput):
         number = self.line_number(sp - 2)
         self.rem_()
         beyond = self.txtptr + 1 if number >> 8 > self.curlin >> 8 else self.txttab
-        address = self.line_address(number, beyond)
-        if address is None:
+        found, address = self.find_line(number, beyond)
+        if not found:
             raise Fault("UNDEF'D STATEMENT", sp)
         self.txtptr = address - 1
         if self.txttab <= start < self.prgend:
@@ -449,7 +448,6 @@ class Flow(InputOutput):
             self.put_word(address, following)
             address = following
         self.prgend = self.vartab
-        self.remember(reading(bytes(ram[self.txttab : self.prgend]), self.txttab))
 
     def new_(self) -> None:
         """NEW. A program that does it comes to its end, from where CONT can go on."""

@@ -256,7 +256,8 @@ class InputOutput(Expressions):
             variables, self.txtptr = self.txtptr, values
             if self.at_end():
                 self._more_values(source, sp)
-            self.next_character()
+            self.txtptr += 1
+            self.character()
             try:
                 refused = self._take_item(source, sp)
             except ApplesoftError as error:

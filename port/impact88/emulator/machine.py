@@ -76,19 +76,10 @@ class Machine(Flow):
         self.txtptr = INPUT_BUFFER
         self.fac = AFTER_TYPING
 
-    def execute_direct(self) -> None:
-        """Do a line typed without a number, and whatever it starts, until the machine is back at
-        the prompt; ``error`` then holds the error that ended it, or None. Raises TooManyStatements
-        and `console.EndOfInput`."""
-        self._go(self.execute)
-
-    def run_locked(self) -> None:
-        """A line typed while LOCK is set: RUN."""
-        self.set_pointers()
-        self._go(self._next_statements)
-
-    def _go(self, step: Callable[[], None]) -> None:
-        """Statements until RESTART, errors handled."""
+    def go(self, step: Callable[[], None]) -> None:
+        """Do a line typed without a number, or RUN (``step``: `execute` or `next_statements`), and
+        whatever follows, until the machine is back at the prompt; ``error`` is then the error that
+        ended it, or None. Raises TooManyStatements and `console.EndOfInput`."""
         self.curlin |= DIRECT
         self.error = None
         self.broken = False
@@ -106,7 +97,7 @@ class Machine(Flow):
                 continue
             except Restart:
                 break
-            step = self._next_statements
+            step = self.next_statements
         if self.curlin < DIRECT:
             self.last_line = self.curlin
             if self.after_line:
@@ -124,7 +115,7 @@ class Machine(Flow):
         self.message(b" ERROR")
         raise Restart
 
-    def _next_statements(self) -> None:
+    def next_statements(self) -> None:
         """NEWSTT: statement after statement. Raises Restart at the program's end."""
         ram, statements = self.ram, self.statements
         line = self.curlin
@@ -146,7 +137,12 @@ class Machine(Flow):
             elif byte != COLON:
                 raise Fault("SYNTAX", self.sp)
             if self.after_line or self.trcflg & 0x80:
-                self._watch(line)
+                if self.after_line and line < DIRECT and line != self.curlin:
+                    self.after_line(line)
+                if self.trcflg & 0x80 and self.curlin < DIRECT:
+                    self.put("#")
+                    self.show_line_number()
+                    self.put(" ")
                 line = self.curlin
             pos += 1
             byte = ram[pos]
@@ -162,15 +158,6 @@ class Machine(Flow):
                 self.txtptr = pos
                 if byte and byte != COLON:
                     self.let(self.sp - 2)
-
-    def _watch(self, before: int) -> None:
-        """Between two statements: a line has been left; TRACE."""
-        if self.after_line and before < DIRECT and before != self.curlin:
-            self.after_line(before)
-        if self.trcflg & 0x80 and self.curlin < DIRECT:
-            self.put("#")
-            self.show_line_number()
-            self.put(" ")
 
     def execute(self) -> None:
         """EXECUTE_STATEMENT: the statement at TXTPTR. Raises SYNTAX."""

@@ -15,8 +15,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from functools import lru_cache
-from typing import NamedTuple
 
 from ..applesoft import decimaltext
 from ..applesoft.console import Console, Device, Keyboard
@@ -97,30 +95,9 @@ Name = tuple[int, int, bool]
 """A name's two bytes as a number, the address behind it, and whether subscripts follow."""
 
 
-def is_letter(byte: int) -> bool:
-    """ISLETC: A to Z; a small letter begins no name."""
-    return 65 <= byte <= 90
-
-
 def is_digit(byte: int) -> bool:
     """0 to 9."""
     return 48 <= byte <= 57
-
-
-class Reading(NamedTuple):
-    """What was found at addresses of the program: names; reals and constants that need no further
-    look, with the address behind them; where GOTO leads; and, under the line numbers, the lines."""
-
-    names: dict[int, Name]
-    atoms: dict[int, tuple[int, int, Number | None]]
-    targets: dict[int, int]
-    lines: dict[int, int]
-
-
-@lru_cache(maxsize=64)
-def reading(image: bytes, start: int) -> Reading:
-    """The same program read before, by whichever machine."""
-    return Reading({}, {}, {}, {})
 
 
 class Memory:
@@ -229,12 +206,11 @@ class Memory:
     charac: int | tuple[str, Number, Number] = 0
 
     def text_changed(self) -> None:
-        self.remember(Reading({}, {}, {}, {}))
-
-    def remember(self, reading: Reading) -> None:
-        """Take what has been read for what there is to read."""
-        self._reading = reading
-        self.names, self.atoms, self.targets, _ = reading
+        """Forget what has been found at addresses of the program: names; reals and constants, each
+        with the address behind it and its name or value; where GOTO leads."""
+        self.names: dict[int, Name] = {}
+        self.atoms: dict[int, tuple[int, int, Number | None]] = {}
+        self.targets: dict[int, int] = {}
 
     def character(self) -> int:
         """CHRGOT: the byte at TXTPTR, or the next one that is no blank."""
@@ -242,11 +218,6 @@ class Memory:
         while (byte := ram[self.txtptr]) == BLANK:
             self.txtptr += 1
         return byte
-
-    def next_character(self) -> int:
-        """CHRGET: the next byte that is no blank."""
-        self.txtptr += 1
-        return self.character()
 
     def at_end(self) -> bool:
         """Whether the statement ends here."""
@@ -334,27 +305,3 @@ class Memory:
                 return found == number, address
             address = ram[address] | ram[address + 1] << 8
         return False, address
-
-    def line_address(self, number: int, beyond: int) -> int | None:
-        """Where a line lies; searched from ``beyond`` on, if the ROM searches from there."""
-        lines = self._reading.lines
-        if not lines:
-            lines.update(self._ordered_lines())
-        if lines:
-            return lines.get(number)
-        found, address = self.find_line(number, beyond)
-        return address if found else None
-
-    def _ordered_lines(self) -> dict[int, int]:
-        """Where each line lies; empty unless the numbers grow and addresses and lines agree."""
-        ram = self.ram
-        lines: dict[int, int] = {}
-        address, last = self.txttab, -1
-        while ram[address + 1]:
-            number = ram[address + 2] | ram[address + 3] << 8
-            following = ram.index(0, address + HEADER) + 1
-            if number <= last or following != ram[address] | ram[address + 1] << 8:
-                return {}
-            lines[number] = address
-            address, last = following, number
-        return lines

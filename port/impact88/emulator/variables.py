@@ -34,7 +34,6 @@ from .memory import (
     TEMPORARIES,
     TEMPORARIES_END,
     Memory,
-    is_letter,
 )
 
 DESCRIPTOR = 3
@@ -69,17 +68,6 @@ ADDRESS_LIMIT = 0xFFFF
 def element_size(name: int) -> int:
     """Bytes of an element of an array, by its name: a real five, a string three, an integer two."""
     return 5 - (name >> 15) - 2 * (name >> 7 & 1)
-
-
-def small_integer(x: Number) -> int:
-    """AYINT: a number as 16 bits. Raises ILLEGAL QUANTITY from 32768 and -32768 on.
-
-    The ROM means to let -32768 through, but its constant has a bit too many: it lets through
-    -32768.0005 only, which is stored as 32767.
-    """
-    if x[0] >= 0x90 and compare(LOWEST, x):
-        raise illegal_quantity()
-    return to_integer(x) & 0xFFFF
 
 
 def positive_integer(x: Number, sp: int) -> int:
@@ -119,7 +107,15 @@ class Variables(Memory):
         """
         ram = self.ram
         self.fretop = self.memsiz
-        places = [*range(TEMPORARIES, self.temppt, DESCRIPTOR), *self._held()]
+        places = [*range(TEMPORARIES, self.temppt, DESCRIPTOR)]
+        places += [
+            place + 2
+            for place in range(self.vartab, self.arytab, VARIABLE_SIZE)
+            if ram[place] < 0x80 <= ram[place + 1]
+        ]
+        for array, size in self._array_places():
+            if ram[array] < 0x80 <= ram[array + 1]:
+                places += range(array + 5 + 2 * ram[array + 4], array + size, DESCRIPTOR)
         strings = [(self.word(place + 1), n, place) for n, place in enumerate(places) if ram[place]]
         for address, _, place in sorted(strings, reverse=True):
             if not self.strend <= address < self.fretop:
@@ -130,21 +126,6 @@ class Variables(Memory):
             self.fretop -= length
             ram[self.fretop : self.fretop + length] = ram[address : address + length]
             self.put_word(place + 1, self.fretop)
-
-    def _held(self) -> list[int]:
-        """Where the descriptors of string variables and elements lie, in memory's order."""
-        ram = self.ram
-        places = [
-            place + 2
-            for place in range(self.vartab, self.arytab, 7)
-            if ram[place] < 0x80 <= ram[place + 1]
-        ]
-        array = self.arytab
-        while array < self.strend and (size := self.word(array + 2)):
-            if ram[array] < 0x80 <= ram[array + 1]:
-                places += range(array + 5 + 2 * ram[array + 4], array + size, DESCRIPTOR)
-            array += size
-        return places
 
     def room(self, length: int) -> int:
         """GETSPA: the address of new room for characters. Raises OUT OF MEMORY."""
@@ -295,7 +276,7 @@ class Variables(Memory):
     def _array_places(self) -> Iterator[tuple[int, int]]:
         """Where each array lies, and its length."""
         place = self.arytab
-        while place < self.strend and (size := self.word(place + 2)) >= ARRAY_HEADER:
+        while place < self.strend and (size := self.word(place + 2)):
             yield place, size
             place += size
 
@@ -316,7 +297,7 @@ class Variables(Memory):
         have a top bit. Raises SYNTAX, BAD SUBSCRIPT, REDIM'D ARRAY, OUT OF MEMORY."""
         known = self.names.get(self.txtptr)
         if not known:
-            if not is_letter(self.character()):
+            if not 65 <= self.character() <= 90:  # ISLETC: A to Z; a small letter begins no name
                 raise Fault("SYNTAX", sp)
             known = self.name_at(self.txtptr)
         name, self.txtptr, subscripts = known
@@ -451,9 +432,17 @@ class Variables(Memory):
             store(self.ram, address, e, m >> 8 & 0x7FFFFFFF | s << 31)
 
     def assign_integer(self, address: int, x: Number, sp: int) -> None:
-        """An integer variable takes a number, rounded. Raises ILLEGAL QUANTITY."""
+        """AYINT: an integer variable takes a number, rounded. Raises ILLEGAL QUANTITY from 32768
+        and -32768 on.
+
+        The ROM means to let -32768 through, but its constant has a bit too many: it lets through
+        -32768.0005 only, which is stored as 32767.
+        """
         try:
-            n = small_integer(rounded(x))
+            x = rounded(x)
+            if x[0] >= 0x90 and compare(LOWEST, x):
+                raise illegal_quantity()
+            n = to_integer(x) & 0xFFFF
         except ApplesoftError as error:
             raise placed(error, sp) from None
         if address < ROM:
