@@ -83,9 +83,11 @@ def test_the_consumer_s_script_does_what_it_says() -> None:
     assert "missing" in consumer.refused()
 
 
-@pytest.mark.parametrize(
-    "checker", [["mypy", "--strict", "--follow-imports=silent"], ["pyright"]], ids=lambda c: c[0]
-)
+CACHE = ROOT / ".mypy_cache" / "consumer"
+MYPY = ["mypy", "--strict", "--follow-imports=silent", "--cache-dir", str(CACHE)]
+
+
+@pytest.mark.parametrize("checker", [MYPY, ["pyright"]], ids=lambda c: c[0])
 def test_type_checkers_see_the_signatures(checker: list[str], tmp_path: Path) -> None:
     """Strict on the script as it is; and a wrong use of each kind is found."""
     if find_spec(checker[0]) is None:
