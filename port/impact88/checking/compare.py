@@ -137,7 +137,8 @@ class Comparison:
     @property
     def summary(self) -> str:
         """One line."""
-        line = f"{self.rows} rows: {self.agreeing} agree, {self.differing} disagree"
+        rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
+        line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
         skipped = sum(self.not_compared.values())
         if skipped:
             line += f", {skipped} not compared"
@@ -209,7 +210,7 @@ def compare_file(
     >>> table = pathlib.Path(tempfile.mkdtemp(), "theirs.jsonl")
     >>> _ = table.write_text(json.dumps(row))
     >>> impact88.compare(table).summary.partition(";")[0]
-    '1 rows: 1 agree, 0 disagree'
+    '1 row: 1 agree, 0 disagree'
     """
     values = texts(values or {})
     path = os.fspath(path)

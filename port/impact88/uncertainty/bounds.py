@@ -345,11 +345,11 @@ def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
     names = placed(input_names(problem), given)
     for name in names:
         if name not in given:
-            raise UserError(f"{name} is missing; a {problem} needs {' '.join(names)}")
+            raise UserError(f"{name} is missing; the {problem} problem needs {' '.join(names)}")
     for name in given:
         if name not in (*names, *MOVES):
             raise UserError(
-                f"is not an input of a {problem}; expected one of {' '.join(names)}", name
+                f"is not an input of the {problem} problem; expected one of {' '.join(names)}", name
             )
     if given["M"].varies or given["M"].nominal not in (4, 6):
         raise UserError("expected 6, or 4 for point masses", "M")
