@@ -47,8 +47,8 @@ def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Arra
     >>> {name: round(float(value), 2) for name, value in found.items()}
     {'DVA': 39.1, 'DVB': 25.89}
     """
-    if not set(map(type, known.values())) <= {float}:  # else no numpy is needed
-        known = columns(known)
+    if type(known) is not dict or not set(map(type, known.values())) <= {float}:
+        known = columns(known)  # which takes numpy
     absent = [name for name in GIVEN if name not in known]
     if absent:
         raise UserError(missing(absent))

@@ -1,8 +1,8 @@
 """Section VII as a worked example: a reconstruction, step by step, computed.
 
 A 90° front-to-side collision whose truth is Table 3. The analyst knows the vehicles and, from
-"trajectory calculations", the final velocities, and that neither vehicle swerved (v_ay = v_bx = 0). Every
-number comes from the modules of this package; what the chapter prints stands beside it.
+"trajectory calculations", the final velocities, and that neither vehicle swerved (v_ay = v_bx = 0).
+Every number comes from the modules of this package; what the chapter prints stands beside it.
 """
 
 from __future__ import annotations
