@@ -15,10 +15,11 @@ from ..progress import progress
 from ..reading.printout import read_printouts
 from ..scan.evidence import RATES, state
 from ..scan.exhibit import exhibit, shown
+from ..scan.grid import Grid
 from ..scan.holding import Cell
 from ..scan.picture import pages_of
 from ..scan.scenes import scenes_in
-from ..scan.sheets import Leaf, Looked, looked
+from ..scan.sheets import Leaf, looked
 from ..scan.typeface import BLANK
 from .verification import Verification
 
@@ -31,12 +32,12 @@ def verified(path: str, data: bytes, seed: str = "") -> Iterator[Verification]:
     seeds = scenes_in(seed)
     with progress(None, "pages read", "page") as meter:
         for page in pages_of(data, path):
-            seen = looked(page.grey, [*seeds, *scenes_in(page.text)])
+            leaves = looked(page.grey, [*seeds, *scenes_in(page.text)])
             found: list[Verification] = []
-            for leaf in seen.leaves:
+            for leaf in leaves:
                 number = len(results) + len(found) + 1
-                result = _verification(path, number, page.number, page.grey.shape, seen, leaf)
-                result.exhibit = partial(exhibit, page.grey, seen, leaf)
+                result = _verification(path, number, page.number, page.grey.shape, leaf)
+                result.exhibit = partial(exhibit, page.grey, leaves, leaf)
                 found.append(result)
             if page.text.strip():
                 _layered(found, page.text)
@@ -82,7 +83,7 @@ def _layered(results: list[Verification], text: str) -> None:
 
 
 def _verification(
-    path: str, number: int, page: int, size: tuple[int, ...], seen: Looked, leaf: Leaf
+    path: str, number: int, page: int, size: tuple[int, ...], leaf: Leaf
 ) -> Verification:
     text = leaf.read.page()
     scene: dict[str, str | None] = dict.fromkeys(SCENE)
@@ -103,7 +104,7 @@ def _verification(
         stop=len(text),
         text=text,
     )
-    result.cells = [_described(cell, page, size, seen) for cell in leaf.cells if _told(cell)]
+    result.cells = [_described(cell, page, size, leaf.grid) for cell in leaf.cells if _told(cell)]
     if leaf.judged.reason:
         result.remarks.append(f"page {page}: {leaf.judged.reason}")
     result.findings += [
@@ -172,11 +173,11 @@ def _reply_checks(leaf: Leaf, side: str, names: tuple[str, ...]) -> Iterator[Fie
         yield _of_cells(leaf, name, "".join(cell.predicted for cell in part), part)
 
 
-def _described(cell: Cell, page: int, size: tuple[int, ...], seen: Looked) -> dict[str, Any]:
+def _described(cell: Cell, page: int, size: tuple[int, ...], grid: Grid) -> dict[str, Any]:
     """A cell as `impact88 verify --json` shows it."""
     return {
         "page": page,
-        "box": box(cell, size, seen),
+        "box": box(cell, size, grid),
         "field": cell.name or None,
         "predicted": cell.predicted,
         "state": state(cell),
@@ -188,18 +189,14 @@ def _described(cell: Cell, page: int, size: tuple[int, ...], seen: Looked) -> di
     }
 
 
-def box(cell: Cell, size: tuple[int, ...], seen: Looked) -> list[float]:
+def box(cell: Cell, size: tuple[int, ...], grid: Grid) -> list[float]:
     """Left, top, right, bottom of a cell in the picture as it lies, in pixels."""
-    assert seen.grid is not None
-    corners = seen.grid.corners[cell.place.line]
-    at = min(max(cell.place.cell, 0), len(corners) - 2)
-    x = corners[at : at + 2, :, 0].ravel()
-    y = corners[at : at + 2, :, 1].ravel()
+    x, y = grid.around(*cell.place).T
     height, width = size[:2]
-    if seen.turns == 1:
+    if grid.turns == 1:
         x, y = width - y, x
-    elif seen.turns == 2:
+    elif grid.turns == 2:
         x, y = width - x, height - y
-    elif seen.turns == 3:
+    elif grid.turns == 3:
         x, y = y, height - x
     return [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())]

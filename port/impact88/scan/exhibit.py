@@ -13,7 +13,7 @@ import numpy as np
 from .evidence import RATES, THRESHOLDS, state
 from .holding import Cell
 from .ink import Floats, Image
-from .sheets import Leaf, Looked
+from .sheets import Leaf
 from .typeface import BLANK, sample_of, typeface_of
 
 _WIDEST = 1400
@@ -26,13 +26,12 @@ _STROKES = {
 }
 
 
-def exhibit(grey: Image, seen: Looked, leaf: Leaf) -> str:
-    """The section as HTML, its pictures within it."""
-    assert seen.grid is not None
-    upright = np.rot90(grey, seen.turns)
+def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> str:
+    """The section on one of a page's printouts as HTML, its pictures within it."""
+    upright = np.rot90(grey, leaf.grid.turns)
     shown = [cell for cell in leaf.cells if cell.predicted != BLANK or state(cell) != "holds"]
     places = [cell for cell in shown if cell.name or state(cell) != "holds"]
-    corners = [_corners(seen, cell) for cell in places]
+    corners = [leaf.grid.around(*cell.place) for cell in places]
     doubted = [
         (cell, at) for cell, at in zip(places, corners, strict=True) if state(cell) != "holds"
     ]
@@ -41,7 +40,7 @@ def exhibit(grey: Image, seen: Looked, leaf: Leaf) -> str:
         _page(upright, places, corners),
         "<p>thin: the character the program prints; dashed: in doubt; thick with a cross: another "
         "character</p>",
-        _strips(upright, seen, doubted[:_MOST_STRIPS], leaf),
+        _strips(upright, leaves, doubted[:_MOST_STRIPS], leaf),
         "<h2>Margins of the numbers' cells</h2>",
         _histogram([cell.margin for cell in leaf.cells if cell.name and cell.predicted != BLANK]),
         f"<p>{escape(RATES)}</p>",
@@ -49,15 +48,6 @@ def exhibit(grey: Image, seen: Looked, leaf: Leaf) -> str:
     if len(doubted) > _MOST_STRIPS:
         parts.insert(4, f"<p>{len(doubted) - _MOST_STRIPS} more such cells are not shown.</p>")
     return "\n".join(parts)
-
-
-def _corners(seen: Looked, cell: Cell) -> Floats:
-    """The corners of a cell in the upright picture, clockwise: shape (4, 2)."""
-    assert seen.grid is not None
-    line = seen.grid.corners[cell.place.line]
-    at = min(max(cell.place.cell, 0), len(line) - 2)
-    around: Floats = line[[at, at + 1, at + 1, at], [0, 0, 1, 1]]
-    return around
 
 
 def _uri(grey: Image, form: str = "PNG") -> str:
@@ -103,13 +93,13 @@ def _page(upright: Image, cells: Sequence[Cell], corners: Sequence[Floats]) -> s
 
 
 def _strips(
-    upright: Image, seen: Looked, doubted: Sequence[tuple[Cell, Floats]], leaf: Leaf
+    upright: Image, leaves: Sequence[Leaf], doubted: Sequence[tuple[Cell, Floats]], leaf: Leaf
 ) -> str:
     if not doubted:
         return ""
-    assert seen.grid is not None
-    everything = [cell for one in seen.leaves for cell in one.cells]
-    sample = sample_of(seen.grid, [cell.place for cell in everything])
+    # the printouts on a grid share their mean characters
+    everything = [cell for one in leaves if one.grid is leaf.grid for cell in one.cells]
+    sample = sample_of(leaf.grid, [cell.place for cell in everything])
     typeface = typeface_of(sample, ["" if cell.cut else cell.predicted for cell in everything])
 
     def glyph(character: str, count: int) -> str:

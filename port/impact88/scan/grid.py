@@ -19,7 +19,7 @@ CELL_WIDTH = 16
 """Pixels across a cell after sampling: the least at which 3 and 8 of a dot matrix stay apart."""
 SLACK = 2
 """Pixels of picture kept on each side of a cell, for the shifts that are tried."""
-_LEAST_HEIGHT, _MOST_LINES = 5, 100
+_LEAST_HEIGHT, _MOST_LINES = 5, 64
 _INKED = 0.25
 """Darkness, of full ink, from which a cell is inked: of 2,405 blank cells one in a thousand is
 darker than 0.27, of 7,648 others one in a thousand is lighter than 0.44."""
@@ -32,6 +32,9 @@ _STRAIN = 0.02
 """What a pitch of keystone or bow costs of the clarity (0 to 1) it gains: without it a page of
 broken type, in which gaps stand within characters, is bent to fit them; twice as much leaves two of
 the given photographs flat."""
+_GUTTER, _COLUMN = 6, 0.25
+"""The least gap between printouts side by side, in 300ths of the page, some three characters of
+160, and the least part of the ink that is a column: angles at the end of their line are none."""
 _STARTS = 5
 """Places from which the fit of the columns starts."""
 
@@ -42,7 +45,7 @@ class Grid:
     SLACK + k CELL_WIDTH, with SLACK rows above and below; ``tops``: each line's place down the page
     in units of the pitch; ``corners``: for each line the cells' corners in the picture, shape
     (cells + 1, 2, 2): left edge k, top or bottom, x and y; ``size``: height and width of the
-    picture."""
+    picture, after the quarter ``turns`` to the left that it was given first."""
 
     pictures: list[Image]
     tops: Floats
@@ -50,6 +53,14 @@ class Grid:
     pitch: float
     clarity: float
     size: tuple[int, ...]
+    turns: int
+
+    def around(self, line: int, cell: int) -> Floats:
+        """The corners of a cell in the upright picture, clockwise: shape (4, 2)."""
+        corners = self.corners[line]
+        at = min(max(cell, 0), len(corners) - 2)
+        around: Floats = corners[[at, at + 1, at + 1, at], [0, 0, 1, 1]]
+        return around
 
     def shows(self, line: int, cell: int) -> bool:
         """Whether a cell lies on the picture, and not beyond an edge that was cut off."""
@@ -85,11 +96,11 @@ class Grid:
 def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
     """Top and bottom of each line of text along ``level``, the height that is constant on it.
 
-    A row belongs to a line where some stretch of it holds ink as densely as type does: a line of
-    five asterisks counts as much as one of eighty letters."""
+    A row belongs to a line where some stretch of it, a character or two, holds ink as densely as
+    type does: a line of one digit counts as much as one of eighty letters."""
     low = level.min()
     rows = (level - low).astype(int)
-    stretch = max(8.0, points.span / 40)
+    stretch = max(8.0, points.span / 80)
     columns = ((points.x - points.x.min()) / stretch).astype(int)
     counts = np.zeros((rows.max() + 1, columns.max() + 2))
     np.add.at(counts, (rows, columns), 1.0)
@@ -97,7 +108,8 @@ def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
     pairs = counts[:, :-1] + counts[:, 1:]
     dense = np.sort(pairs, axis=1)[:, -1]
     typical = np.percentile(dense[dense > 0], 75) if np.any(dense > 0) else 1.0
-    inked = dense > 0.16 * typical
+    grain = np.percentile(dense, 30)  # fewer rows than that are between lines on no page
+    inked = dense > grain + 0.2 * (typical - grain)
     edges = np.flatnonzero(np.diff(np.r_[0, inked.astype(int), 0]))
     return [(low + top, low + bottom) for top, bottom in edges.reshape(-1, 2)]
 
@@ -197,12 +209,35 @@ def _bent(
     return best, float(np.abs(turned.sum()) / weights.sum())
 
 
-def grid_of(ink: Image) -> Grid | None:
-    """The grid of a page that stands upright, None where none is found."""
-    points = points_of(ink)
+def grids_of(ink: Image, turns: int, fold: int) -> list[Grid]:
+    """The grids of a page that stands upright after ``turns`` quarters to the left: one, or those
+    of columns side by side. ``fold``: pixels a side that are taken together to find them."""
+    ink = np.ascontiguousarray(np.rot90(ink, turns))
+    points = points_of(ink, fold)
     if points.few:
-        return None
+        return []
     slope, keystone = slopes(points)
+    grids = [_grid(ink, part, slope, keystone, turns) for part in _columns(points, slope)]
+    return [grid for grid in grids if grid]
+
+
+def _columns(points: Points, slope: float) -> list[Points]:
+    """The ink left and right of a gap that runs down the page with much ink on both sides."""
+    across = points.x + slope * points.y
+    step = points.span / 300
+    counts = np.bincount(((across - across.min()) / step).astype(int)).astype(float)
+    empty = counts < 0.05 * np.mean(counts)  # specks fall into gaps, too
+    runs = np.flatnonzero(np.diff(np.r_[0, empty.astype(int), 0])).reshape(-1, 2)
+    behind = np.cumsum(counts) / len(across)
+    inner = [run for run in runs if _COLUMN < behind[run[0]] < 1 - _COLUMN]
+    start, stop = max(inner, key=lambda run: float(run[1] - run[0]), default=(0, 0))
+    if stop - start < _GUTTER:
+        return [points]
+    left = across < across.min() + step * (start + stop) / 2
+    return [Points(points.x[side], points.y[side], points.span) for side in (left, ~left)]
+
+
+def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int) -> Grid | None:
     x, y, span = points.x, points.y, points.span
     level = y - x * (slope + keystone * y / span)
     lines = _lines(points, level)
@@ -259,7 +294,7 @@ def grid_of(ink: Image) -> Grid | None:
             left + np.arange(count + 1) * pitch, middle + np.array([-0.5, 0.5]) * 1.3 * height
         )
         corners.append(np.stack(place(u, v, line), axis=-1).transpose(1, 0, 2))
-    return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape)
+    return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns)
 
 
 def _bows(u: Floats, v: Floats) -> Floats:
@@ -286,6 +321,8 @@ def _risen(
         for stretch in np.flatnonzero(counts[:, reach:-reach].sum(axis=1) > 40):
             profiles.append(counts[stretch] / np.linalg.norm(counts[stretch]))
             places.append((line, stretch + 0.5, middle * scale / _STRETCH))
+    if not profiles:
+        return np.zeros(4), np.zeros((len(middles), 3))
     every, at = np.array(profiles), np.array(places)
     lines = at[:, 0].astype(int)
     size = 2 * half - 2 * reach

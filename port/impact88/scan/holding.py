@@ -35,6 +35,10 @@ from .typeface import (
 )
 
 _NOISE = 3.0
+_LEAST_NOISE = 0.1
+"""The usual distance of a cell from its mean on an excellent scan, in units of the root of its
+energy; pages drawn by a program have 0.01 to 0.04, and there any other hand is a hundred times as
+far as is usual."""
 _BESIDE = 2
 """Blank cells that are looked at after the last character of a line."""
 
@@ -127,7 +131,7 @@ def held(
         for one in predicted(sheet, read, candidate)
     ]
     names = [character for _, _, character, _ in rows]
-    shown = [grid.shows(*place) for *_, place in rows]
+    shown = [grid.shows(*place) and not sheets[which].beyond(place) for which, *_, place in rows]
     sample = sample_of(grid, [place for *_, place in rows])
     typeface = typeface_of(
         sample, [name if seen else "" for name, seen in zip(names, shown, strict=True)]
@@ -157,7 +161,7 @@ def held(
     usual = np.sqrt(np.maximum(energy[own], 1.0))
     inked = (np.array(names) != BLANK) & ~alone
     relative = distance / usual
-    level = float(np.median(relative[inked])) or 1e-6
+    level = max(float(np.median(relative[inked])), _LEAST_NOISE)
     floor = float(np.percentile(relative[inked], 75))
     distance[alone] = floor * usual[alone]
     numeric = np.array([character in READABLE for character in characters])

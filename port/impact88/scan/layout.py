@@ -50,6 +50,9 @@ _ABSENT, _STRANGE, _WRAPPED = 30.0, 4.0, 2.0
 take two lines of it for one that was broken. A line that is there gains about 3 an inked cell."""
 _FEWEST = 20
 """Numbers of a printout; with fewer lines it is not verified from the picture."""
+_EDGE = 0.85
+"""Lines, of all, in which the edge of the paper is seen, and the cells beside it are blank; no
+column of text is inked in so many beside one that is blank in so many."""
 _GAPS = (1, 14)
 _BLANK_IN_REPLY = -0.3
 
@@ -102,6 +105,11 @@ class Sheet:
     def whole(self) -> bool:
         """Whether every line that a printout must have was found."""
         return all(line in self.rows for line in range(len(LINES)) if line not in OPTIONAL)
+
+    def beyond(self, place: Place) -> bool:
+        """Whether a place is right of where this printout's lines are broken."""
+        rows = self.rows.values()
+        return any(row.used == 2 and place.cell >= row.margin + WRAP for row in rows)
 
     @property
     def numbers(self) -> dict[str, Piece]:
@@ -185,6 +193,7 @@ def _ends(line: str, inked: Floats, blank: Floats) -> list[int]:
 def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     """The printouts on a grid. ``odds``: for each line the log odds that each cell is inked;
     ``tops``: where the lines are, in pitches down the page."""
+    odds = _within_edges(odds)
     first = _margin(odds)
     margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
     keys, rows = [], []
@@ -230,6 +239,20 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
         ends = _ends(fit.text, inked[row], blank[row])
         _place(sheets[-1], line, Row(start, used, margin, fit.text), ends)
     return [sheet for sheet in sheets if len(sheet.numbers) >= _FEWEST]
+
+
+def _within_edges(odds: Sequence[Floats]) -> list[Floats]:
+    """The cells without the edges of the paper, which on a photograph are a column of ink."""
+    width = max(map(len, odds))
+    inked = np.mean([np.pad(row > 0, (0, width - len(row))) for row in odds], axis=0)
+    edge, beside = inked > _EDGE, inked < 1 - _EDGE
+    half = width // 2
+    left = np.flatnonzero(edge[:half] & beside[1 : half + 1])
+    right = np.flatnonzero(edge[half:] & beside[half - 1 : -1])
+    start = left[-1] + 1 if len(left) else 0
+    stop = half + right[0] if len(right) else width
+    outside = np.r_[np.ones(start, bool), np.zeros(stop - start, bool), np.ones(width - stop, bool)]
+    return [np.where(outside[: len(row)], -6.0, row) for row in odds]
 
 
 def _margin(odds: Sequence[Floats]) -> int:

@@ -7,7 +7,11 @@ from functools import lru_cache
 from importlib import resources
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
+from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import squareform
 
 from .grid import CELL_WIDTH, Grid
 from .ink import Floats
@@ -30,6 +34,10 @@ _ROWS, _TOP, _BOTTOM = 24, 4, 20
 _READINGS = 2
 _STYLES = 3
 """How many styles a page may mix: a printer's type lies between those that are known."""
+_SAME = 97
+"""Percentage of the pairs of one letter that are nearer each other than cells of one group."""
+_AGAIN = 0.1
+"""What a character's second group costs a cell, in units of `likeness`."""
 
 
 @lru_cache
@@ -87,6 +95,40 @@ def likeness(sample: Sample, typeface: Typeface) -> Floats:
     return unlike
 
 
+def _apart(sample: Sample) -> Floats:
+    """How far cells are from each other, a blot or the strength of the ribbon aside: shape
+    (cells, cells)."""
+    middle = sample.vectors.shape[1] // 2
+    apart, _ = distances(sample, sample.vectors[:, middle])
+    energy = sample.norms[:, middle] + 1e-6
+    pairs: Floats = np.minimum(apart, apart.T) / np.sqrt(np.sqrt(np.outer(energy, energy)))
+    np.fill_diagonal(pairs, 0)
+    return pairs
+
+
+def _widest(labels: Sample, names: NDArray[np.str_]) -> float:
+    """How far apart two cells of one character are on this page, as its labels show."""
+    same = np.triu(names[:, None] == names[None], 1)
+    return float(np.percentile(_apart(labels)[same], _SAME)) if same.any() else 0.0
+
+
+def _named(sample: Sample, unlike: Floats, widest: float) -> NDArray[np.intp]:
+    """A name for each cell, as an index of `NUMERIC`: cells that are alike have one name, cells
+    that are not have two where that costs little. So a 3 that is most like the 8 of every known
+    style is a 3 where the page has another 8."""
+    tree = linkage(squareform(_apart(sample), checks=False), "average")
+    widest = min([widest, *tree[: 1 - len(NUMERIC), 2][-1:]])  # a page has all digits, or nearly
+    group = fcluster(tree, widest, "distance") - 1
+    members = (group[None] == np.arange(group.max() + 1)[:, None]).astype(float)
+    sizes = members.sum(axis=1, keepdims=True)
+    times = 1 + len(members) // len(NUMERIC)  # a name may be given again, at a price
+    costs = [members @ unlike + again * _AGAIN * sizes for again in range(times + 1)]
+    rows, columns = linear_sum_assignment(np.hstack(costs))
+    names: NDArray[np.intp] = np.zeros(len(members), int)
+    names[rows] = columns % len(NUMERIC)
+    return np.asarray(names[group])
+
+
 def read_numbers(grid: Grid, sheets: list[Sheet]) -> list[Read]:
     """What each number's cells may be. All printouts of a page share its type."""
     places: list[Place] = []
@@ -105,7 +147,9 @@ def read_numbers(grid: Grid, sheets: list[Sheet]) -> list[Read]:
     sample = sample_of(grid, places)
     chosen = np.concatenate([np.arange(part.start, part.stop) for _, _, part in numbers])
     of_numbers = sample.at(chosen)
-    first = likeness(of_numbers, typeface_of(sample, names)).argmin(axis=1)
+    labels = np.array([k for k, name in enumerate(names) if name != BLANK])
+    unlike = likeness(of_numbers, typeface_of(sample, names))
+    first = _named(of_numbers, unlike, _widest(sample.at(labels), np.array(names)[labels]))
     for cell, k in zip(chosen, first, strict=True):
         names[cell] = NUMERIC[k]
     empty = sample.norms.min(axis=1)

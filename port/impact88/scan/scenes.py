@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
@@ -105,10 +106,9 @@ def _first(read: Read) -> Iterator[dict[str, str]]:
     texts = {name: read.text(name) for name in read.costs}
     if all(is_number(texts.get(name, "")) for name in INPUTS):
         direct = {("MU" if name == "MUP" else name): texts[name] for name in INPUTS}
-        for spins in ("6", "4"):
-            yield {**direct, "M": spins}
-            mu = texts["MUP"]
-            yield {**direct, "M": spins, "MU": mu[1:] if mu.startswith("-") else f"-{mu}"}
+        # what was typed may have more figures than are printed, or fewer: 5.749 prints 5.74900001
+        for typed, spins, sign in product((_typed(read), {}), ("6", "4"), (1, -1)):
+            yield {**direct, **typed, "M": spins, "MU": _signed(texts["MUP"], sign)}
     yield from scenes_in(read.page())
 
 
@@ -154,18 +154,16 @@ def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
             continue
         text = one.outcome.fields.get(name) or read.text(name)
         sign = -1 if typed == "MU" and _opposite(one.scene["MU"], text) else 1
-        for at, character in enumerate(text):
-            for other in "0123456789":
-                if character.isdigit() and other != character:
-                    changed = text[:at] + other + text[at + 1 :]
-                    yield {**one.scene, typed: _signed(changed, sign)}
+        for shown in {text, read.text(name)}:  # the last figure may have been read as a nought
+            for at, character in enumerate(shown):
+                for other in "0123456789":
+                    if character.isdigit() and other != character:
+                        changed = shown[:at] + other + shown[at + 1 :]
+                        yield {**one.scene, typed: _signed(changed, sign)}
         yield {**one.scene, typed: _signed(read.text(name) or "0", sign)}
         yield {**one.scene, typed: _signed(text, -1)}
     yield {**one.scene, "M": "4" if one.scene["M"] == "6" else "6"}
-    for side, names in REPLIES.items():
-        typed_texts = reply_texts(read, side)
-        if len(typed_texts) == 3:
-            yield {**one.scene, **dict(zip(names, typed_texts, strict=True))}
+    yield {**one.scene, **_typed(read)}
 
 
 def _opposite(first: str, second: str) -> bool:
@@ -178,9 +176,12 @@ def _signed(text: str, sign: int) -> str:
     return text[1:] if text.startswith("-") else f"-{text}"
 
 
-def reply_texts(read: Read, side: str) -> list[str]:
-    """The three numbers of a reply as read, or fewer."""
-    name = f"REPLY_{side}"
-    if name not in read.costs:
-        return []
-    return read.text(name).split(",")
+def _typed(read: Read) -> dict[str, str]:
+    """The velocities as they were typed, of replies that were read as three numbers."""
+    velocities: dict[str, str] = {}
+    for side, names in REPLIES.items():
+        name = f"REPLY_{side}"
+        texts = read.text(name).replace(" ", "").split(",") if name in read.costs else []
+        if len(texts) == 3 and all(map(is_number, texts)):
+            velocities |= zip(names, texts, strict=True)
+    return velocities

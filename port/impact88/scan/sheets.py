@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
 from ..judging.judgement import Verdict
 from .evidence import Judged, judged, state
-from .grid import Grid, grid_of
+from .grid import Grid, grids_of
 from .holding import Cell, held
 from .ink import Image, ink_of
 from .layout import OPTIONAL, Sheet, sheets_of
@@ -18,15 +19,19 @@ from .naming import read_numbers
 from .scenes import Candidate, Read, scene_of
 from .typeface import BLANK
 
-_UPRIGHT = 400.0
-"""Gain of a printout that is found the right way up; those of the given pages have 800 to 1,400."""
+_UPRIGHT = 600.0
+"""Gain of a printout that is found the right way up: those of 445 pages have 740 and more, upside
+down the best had 410."""
+_LEGIBLE = 300.0
+"""Gain from which a scene is searched for; with less, noise was taken for lines."""
 
 
 @dataclass
 class Leaf:
-    """One printout of a page: where it stands, what was read, the scene found (None: none), its
-    cells held against the program's page, and the verdict."""
+    """One printout of a page: the grid it stands on and where, what was read, the scene found
+    (None: none), its cells held against the program's page, and the verdict."""
 
+    grid: Grid
     sheet: Sheet
     read: Read
     found: Candidate | None
@@ -43,31 +48,21 @@ class Leaf:
         return cells
 
 
-@dataclass
-class Looked:
-    """A page that was looked at: its grid (None: none was found), how many quarter turns to the
-    left it was given first, and its printouts."""
-
-    grid: Grid | None
-    turns: int
-    leaves: list[Leaf]
-
-
-def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> Looked:
+def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
     """All printouts of a page, upright or turned by quarters. ``seeds``: scenes that another reader
     found; they are tried beside those of the picture."""
     ink = ink_of(grey)
-    best: tuple[float, Grid | None, int, list[Sheet]] = (0.0, None, 0, [])
-    for turns in _turns(ink):
-        grid = grid_of(np.ascontiguousarray(np.rot90(ink, turns)))
-        sheets = sheets_of(grid.odds(), grid.tops) if grid else []
+    most, found = 0.0, list[tuple[Grid, list[Sheet]]]()
+    for turns, fold in product(_turns(ink), (1, 2)):
+        grids = grids_of(ink, turns, fold)
+        laid = [(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids]
+        sheets = [sheet for _, some in laid for sheet in some]
         gain = sum(sheet.gain for sheet in sheets)
-        if gain > best[0]:
-            best = (gain, grid, turns, sheets)
+        if gain > most:
+            most, found = gain, laid
         if any(sheet.whole and sheet.gain > _UPRIGHT for sheet in sheets):
             break
-    _, grid, turns, sheets = best
-    return Looked(grid, turns, _leaves(grid, sheets, seeds) if grid else [])
+    return [leaf for one in found for leaf in _leaves(*one, seeds)]
 
 
 def _turns(ink: Image) -> list[int]:
@@ -79,8 +74,8 @@ def _turns(ink: Image) -> list[int]:
 
 
 def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
-    reads = read_numbers(grid, sheets)
-    found = [scene_of(read, seeds) for read in reads]
+    reads = read_numbers(grid, sheets) if sheets else []
+    found = [scene_of(read, seeds) if read.sheet.gain > _LEGIBLE else None for read in reads]
     known = [
         (sheet, read, one) for sheet, read, one in zip(sheets, reads, found, strict=True) if one
     ]
@@ -91,11 +86,11 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]] = (
     for sheet, read, one in zip(sheets, reads, found, strict=True):
         if one is None:
             unread = Judged(Verdict.INCOMPLETE, reason="no scene was found")
-            leaves.append(Leaf(sheet, read, None, [], unread))
+            leaves.append(Leaf(grid, sheet, read, None, [], unread))
             continue
         own = [cell for cell in cells if cell.sheet == which]
         which += 1
-        leaves.append(Leaf(sheet, read, one, own, judged(sheet, one, own)))
+        leaves.append(Leaf(grid, sheet, read, one, own, judged(sheet, one, own)))
     # the printouts of a page share their mean characters: one misplaced spoils them for all
     if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
