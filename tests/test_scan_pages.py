@@ -7,6 +7,7 @@ import json
 import os
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,8 @@ from impact88.reporting.examination import Examined, examine, examine_bytes
 from impact88.scan import sheets
 from impact88.scan.evidence import THRESHOLDS, Judged, state
 from impact88.scan.holding import Cell
-from impact88.scan.layout import Place
+from impact88.scan.layout import Place, Sheet
+from impact88.scan.scenes import Read
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
 Pillow = pytest.importorskip("PIL.Image", reason="the extra scan is not installed")
@@ -110,12 +112,16 @@ def test_what_is_no_page(data: bytes, message: str, tmp_path: Path) -> None:
 def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, beside):
     """Printouts on a page share their mean characters, and one misplaced spoils them for all."""
     given = iter([Judged(Verdict.DIFFERS), Judged(beside)])
-    monkeypatch.setattr(sheets, "read_numbers", lambda grid, found: [None, None])
+    monkeypatch.setattr(
+        sheets, "read_numbers", lambda grid, found: [Read(one, {}) for one in found]
+    )
     monkeypatch.setattr(sheets, "scene_of", lambda *given: object())
     monkeypatch.setattr(sheets, "held", lambda *given: [])
     monkeypatch.setattr(sheets, "_mistaken", lambda cells, found: False)
     monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
-    leaves = sheets._leaves(None, [None, None])
+    monkeypatch.setattr(sheets, "spelled", lambda grid, found: {})
+    grid = SimpleNamespace(odds=list)
+    leaves = sheets._leaves(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
     expected = Verdict.DIFFERS if beside is Verdict.IDENTICAL else Verdict.INCOMPLETE
     assert leaves[0].judged.verdict is expected
     assert bool(leaves[0].judged.reason) is (beside is Verdict.INCOMPLETE)

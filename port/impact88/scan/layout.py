@@ -4,9 +4,10 @@ numbers. Blanks and inked cells decide; no character is read."""
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -88,6 +89,12 @@ class Row(NamedTuple):
             return Place(self.start + 1, column - WRAP + self.margin)
         return Place(self.start, column + self.margin)
 
+    def cells(self, values: Sequence[Floats]) -> Floats:
+        """What is given for the grid's cells, by column of the printed line."""
+        rows = values[self.start : self.start + self.used]
+        first, *rest = (row[self.margin :] if self.margin >= 0 else np.r_[0.0, row] for row in rows)
+        return np.r_[first[:WRAP], rest[0]] if rest else first
+
     def column(self, place: Place) -> int:
         """The column of a place."""
         return place.cell - self.margin + (WRAP if place.line > self.start else 0)
@@ -131,10 +138,18 @@ class _Fit(NamedTuple):
     text: str
 
 
-def _gains(line: str, inked: Floats, blank: Floats) -> tuple[Floats, list[Floats]]:
+def _weights(odds: Floats) -> tuple[Floats, Floats]:
+    """What cells gain when they are taken for inked or blank."""
+    return np.clip(odds, -6, 6) / 2, -np.clip(odds, 0, 6) / 2
+
+
+def _gains(
+    line: str, inked: Floats, blank: Floats, letters: Mapping[str, Floats] = MappingProxyType({})
+) -> tuple[Floats, list[Floats]]:
     """How well rows of cells divide into the parts of a line: the best gain of each row, and the
     gains after each part by the cell it ends before, each of shape (rows, cells + 1). ``inked``,
-    ``blank``: what each cell gains when taken for inked or blank, shape (rows, cells)."""
+    ``blank``: what each cell gains when taken for inked or blank, ``letters``: for a label's
+    character, shape (rows, cells)."""
     rows, cells = inked.shape
     edge = np.zeros((rows, 1))
     filled, emptied, typed = (
@@ -158,7 +173,8 @@ def _gains(line: str, inked: Floats, blank: Floats) -> tuple[Floats, list[Floats
             size = cells + 1 - len(text)
             value = best[:, :size].copy()
             for offset, char in enumerate(text):
-                value += (blank if char == " " else inked)[:, offset : offset + size]
+                weight = blank if char == " " else letters.get(char, inked)
+                value += weight[:, offset : offset + size]
             new[:, len(text) :] = value
         best = new
         after.append(best)
@@ -176,9 +192,11 @@ def _lengths(name: str, text: str, first: bool) -> tuple[int, int] | None:
     return _GAPS if len(text) > 1 else (0, 1)
 
 
-def _ends(line: str, inked: Floats, blank: Floats) -> list[int]:
+def _ends(
+    line: str, inked: Floats, blank: Floats, letters: Mapping[str, Floats] = MappingProxyType({})
+) -> list[int]:
     """Where the parts of a line end in the best division of one row of cells."""
-    _, after = _gains(line, inked[None], blank[None])
+    _, after = _gains(line, inked[None], blank[None], letters)
     ends = [int(np.argmax(after[-1][0]))]
     cuts = [np.r_[0.0, np.cumsum(v)] for v in (inked, blank, np.maximum(inked, _BLANK_IN_REPLY))]
     for which, (name, text) in reversed(list(enumerate(parts(line)))):
@@ -198,17 +216,17 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
     keys, rows = [], []
     for margin in margins:
-        laid = [row[margin:] if margin >= 0 else np.r_[0.0, row] for row in odds]
-        for start, row in enumerate(laid):
+        for start in range(len(odds)):
             keys.append((margin, start, 1))
-            rows.append(row)
-            followed = start + 1 < len(laid) and tops[start + 1] - tops[start] <= 3.2
-            if followed and len(row) >= WRAP and not np.any(row[WRAP:] > 2):
+            laid = Row(start, 1, margin, "").cells(odds)
+            rows.append(laid)
+            followed = start + 1 < len(odds) and tops[start + 1] - tops[start] <= 3.2
+            if followed and len(laid) >= WRAP and not np.any(laid[WRAP:] > 2):
                 keys.append((margin, start, 2))
-                rows.append(np.r_[row[:WRAP], laid[start + 1]])
+                rows.append(Row(start, 2, margin, "").cells(odds))
     width = max(map(len, rows))
     padded = np.stack([np.pad(row, (0, width - len(row))) for row in rows])
-    inked, blank = np.clip(padded, -6, 6) / 2, -np.clip(padded, 0, 6) / 2
+    inked, blank = _weights(padded)
     before = [np.r_[0.0, np.cumsum(np.clip(row, 0, None))] for row in odds]
     lost = np.array(
         [
@@ -239,6 +257,17 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
         ends = _ends(fit.text, inked[row], blank[row])
         _place(sheets[-1], line, Row(start, used, margin, fit.text), ends)
     return [sheet for sheet in sheets if len(sheet.numbers) >= _FEWEST]
+
+
+def relaid(sheet: Sheet, odds: Sequence[Floats], unlike: Mapping[str, Sequence[Floats]]) -> Sheet:
+    """A printout's lines divided once more: ``unlike`` says for each label's character what the
+    grid's cells lose when they are taken for it. A blank within a number looks like a new one."""
+    new = Sheet(gain=sheet.gain)
+    for line, row in sheet.rows.items():
+        inked, blank = _weights(row.cells(odds))
+        letters = {char: (inked - row.cells(lost))[None] for char, lost in unlike.items()}
+        _place(new, line, row, _ends(row.text, inked, blank, letters))
+    return new
 
 
 def _within_edges(odds: Sequence[Floats]) -> list[Floats]:

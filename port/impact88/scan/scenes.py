@@ -37,9 +37,9 @@ class Read:
     _known: dict[tuple[str, str], float] = field(default_factory=dict)
 
     def text(self, name: str) -> str:
-        """The likeliest text of a number; a blank within it is a digit that is missing."""
-        text = "".join(READABLE[k] for k in self.costs[name].argmin(axis=1)).strip()
-        return text if name.startswith("REPLY") else text.replace(" ", "0")
+        """The likeliest text of a number; a blank in it or after it is a digit that is missing."""
+        text = "".join(READABLE[k] for k in self.costs[name].argmin(axis=1))
+        return text.strip() if name.startswith("REPLY") else text.lstrip().replace(" ", "0")
 
     def cost(self, name: str, text: str | None) -> float:
         """What it costs to take a number's cells for a text."""

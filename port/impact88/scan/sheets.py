@@ -14,8 +14,8 @@ from .evidence import Judged, judged, state
 from .grid import Grid, grids_of
 from .holding import Cell, held
 from .ink import Image, ink_of
-from .layout import OPTIONAL, Sheet, sheets_of
-from .naming import read_numbers
+from .layout import OPTIONAL, Sheet, relaid, sheets_of
+from .naming import read_numbers, spelled
 from .scenes import Candidate, Read, scene_of
 from .typeface import BLANK
 
@@ -73,8 +73,31 @@ def _turns(ink: Image) -> list[int]:
     return [0, 2, 1, 3] if down * small.shape[1] >= across * small.shape[0] else [1, 3, 0, 2]
 
 
-def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
-    reads = read_numbers(grid, sheets) if sheets else []
+def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:
+    if not sheets:
+        return []
+    leaves = _judged(grid, sheets, seeds)
+    if _open(leaves):
+        unlike = spelled(grid, sheets)
+        again = [relaid(sheet, grid.odds(), unlike) for sheet in sheets]
+        if again != sheets:
+            leaves = min(leaves, _judged(grid, again, seeds), key=_open)
+    # the printouts of a page share their mean characters: one misplaced spoils them for all
+    if _open(leaves):
+        for leaf in leaves:
+            if leaf.judged.verdict is Verdict.DIFFERS:
+                leaf.judged.verdict = Verdict.INCOMPLETE
+                leaf.judged.reason = "another printout on the page was not read"
+    return leaves
+
+
+def _open(leaves: Sequence[Leaf]) -> int:
+    """How many printouts have no verdict."""
+    return sum(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves)
+
+
+def _judged(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:
+    reads = read_numbers(grid, sheets)
     found = [scene_of(read, seeds) if read.sheet.gain > _LEGIBLE else None for read in reads]
     known = [
         (sheet, read, one) for sheet, read, one in zip(sheets, reads, found, strict=True) if one
@@ -91,12 +114,6 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]] = (
         own = [cell for cell in cells if cell.sheet == which]
         which += 1
         leaves.append(Leaf(grid, sheet, read, one, own, judged(sheet, one, own)))
-    # the printouts of a page share their mean characters: one misplaced spoils them for all
-    if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
-        for leaf in leaves:
-            if leaf.judged.verdict is Verdict.DIFFERS:
-                leaf.judged.verdict = Verdict.INCOMPLETE
-                leaf.judged.reason = "another printout on the page was not read"
     return leaves
 
 
