@@ -98,7 +98,7 @@ def state(cell: Cell) -> str:
         if cell.margin < limits.blank or cell.other in _MARKS:
             return "holds" if cell.margin < limits.differs or not cell.name else "doubtful"
         return "differs" if cell.margin > limits.differs else "doubtful"
-    if cell.unlike:
+    if cell.unlike or (cell.lost and cell.margin > limits.holds):
         return "doubtful"
     if not cell.name:
         if cell.margin < limits.label:
@@ -126,6 +126,8 @@ def _retyped(cell: Cell, others: Sequence[Cell]) -> bool:
 
 def _slight(cell: Cell) -> bool:
     """Whether a doubt leaves every digit beyond doubt: it is about a mark, a speck or a label."""
+    if cell.lost and (not cell.name or cell.predicted in _MARKS):
+        return True
     if not cell.name or cell.predicted == BLANK:
         return cell.margin < 0.5
     marks = cell.predicted in _MARKS and cell.other in _MARKS
