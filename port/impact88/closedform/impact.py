@@ -34,6 +34,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
+from typing import Any
 
 from ..names import PIVOT
 from ..native.formulas import Expression, ExpressionTable
@@ -41,6 +42,15 @@ from .energy import kinetic_energy
 from .statusbits import findings
 
 Pair = tuple[Expression, Expression]
+
+
+def _formula(of: Callable[[Any], Expression]) -> cached_property[Expression]:
+    """A quantity by its formula."""
+    return cached_property(of)
+
+
+def _pair(of: Callable[[Any], Pair]) -> cached_property[Pair]:
+    return cached_property(of)
 
 
 class Impact:
@@ -105,13 +115,8 @@ class Impact:
         s, c = self.table.sine_and_cosine(self.scene[theta] + self.scene[phi] - self.GA)
         return distance * s, -(distance * c)
 
-    @cached_property
-    def _a(self) -> Pair:
-        return self._arms("DA", "PA", "TA")
-
-    @cached_property
-    def _b(self) -> Pair:
-        return self._arms("DB", "PB", "TB")
+    _a = _pair(lambda self: self._arms("DA", "PA", "TA"))
+    _b = _pair(lambda self: self._arms("DB", "PB", "TB"))
 
     def _listing_arms(self, d: str, phi: str, theta: str) -> Pair:
         """Line 330: D3 and D4 of A, D1 and D2 of B."""
@@ -121,59 +126,26 @@ class Impact:
         s, c = self.table.sine_and_cosine(self.scene[theta] + self.scene[phi])
         return distance * s, distance * c
 
-    @cached_property
-    def _D3_D4(self) -> Pair:
-        return self._listing_arms("DA", "PA", "TA")
-
-    @cached_property
-    def _D1_D2(self) -> Pair:
-        return self._listing_arms("DB", "PB", "TB")
+    _D3_D4 = _pair(lambda self: self._listing_arms("DA", "PA", "TA"))
+    _D1_D2 = _pair(lambda self: self._listing_arms("DB", "PB", "TB"))
 
     # -- inertia
 
-    @cached_property
-    def _ma(self) -> Expression:
-        return 1.0 / self.MA
-
-    @cached_property
-    def _mb(self) -> Expression:
-        return 1.0 / self.MB
-
-    @cached_property
-    def _ia(self) -> Expression:
-        return 1.0 / self.IA
-
-    @cached_property
-    def _ib(self) -> Expression:
-        return 1.0 / self.IB
-
-    @cached_property
-    def R(self) -> Expression:
-        return self._ma + self._mb
-
-    @cached_property
-    def Ired(self) -> Expression:
-        return 1.0 / self._spins
-
-    @cached_property
-    def _spins(self) -> Expression:
-        return self._ia + self._ib
-
-    @cached_property
-    def _share_b(self) -> Expression:
-        """Ia/(Ia + Ib): the weight of A's spin in the mean, B's part of a difference of spins."""
-        return self._ib * self.Ired
-
-    @cached_property
-    def J(self) -> Expression:
-        """1/(Ia + Ib), in an order that the largest inertias survive."""
-        return self._ia * self._share_b
+    _ma = _formula(lambda self: 1.0 / self.MA)
+    _mb = _formula(lambda self: 1.0 / self.MB)
+    _ia = _formula(lambda self: 1.0 / self.IA)
+    _ib = _formula(lambda self: 1.0 / self.IB)
+    R = _formula(lambda self: self._ma + self._mb)
+    Ired = _formula(lambda self: 1.0 / self._spins)
+    _spins = _formula(lambda self: self._ia + self._ib)
+    _share_b = _formula(lambda self: self._ib * self.Ired)
+    """Ia/(Ia + Ib): the weight of A's spin in the mean, B's part of a difference of spins."""
+    J = _formula(lambda self: self._ia * self._share_b)
+    """1/(Ia + Ib), in an order that the largest inertias survive."""
 
     # -- relative velocity before impact
 
-    @cached_property
-    def _approach(self) -> Pair:
-        return self.UX - self.VX, self.UY - self.VY
+    _approach = _pair(lambda self: (self.UX - self.VX, self.UY - self.VY))
 
     @cached_property
     def _closing(self) -> Pair:
@@ -184,26 +156,12 @@ class Impact:
     def _with_spins(self, i: int) -> Expression:
         return self._closing[i] + self._a[i] * self.WA + self._b[i] * self.WB
 
-    @cached_property
-    def gn(self) -> Expression:
-        return self._with_spins(0)
-
-    @cached_property
-    def gt(self) -> Expression:
-        return self._with_spins(1)
-
-    @cached_property
-    def _spin_parts(self) -> Pair:
-        """The parts of A's and B's spin in the mean."""
-        return self._share_b * self.WA, (self._ia * self.Ired) * self.WB
-
-    @cached_property
-    def _mean_spin(self) -> Expression:
-        return self._spin_parts[0] + self._spin_parts[1]
-
-    @cached_property
-    def gw(self) -> Expression:
-        return self.WA - self.WB
+    gn = _formula(lambda self: self._with_spins(0))
+    gt = _formula(lambda self: self._with_spins(1))
+    _spin_parts = _pair(lambda self: (self._share_b * self.WA, (self._ia * self.Ired) * self.WB))
+    """The parts of A's and B's spin in the mean."""
+    _mean_spin = _formula(lambda self: self._spin_parts[0] + self._spin_parts[1])
+    gw = _formula(lambda self: self.WA - self.WB)
 
     # -- coefficients
 
@@ -214,27 +172,13 @@ class Impact:
             return self.table.against(self.MU, self.gt)
         return self.sign * self.MU
 
-    @cached_property
-    def z(self) -> Expression:
-        return 1.0 - (self.EM + self.EM)
-
-    @cached_property
-    def w(self) -> Expression:
-        """e gn + the approach of the mass centers."""
-        return self.E * self.gn + self._closing[0]
-
-    @cached_property
-    def _turn(self) -> Expression:
-        """Ired (omega_a - omega_b)."""
-        return self.Ired * self.gw
-
-    @cached_property
-    def sigma(self) -> Pair:
-        return self._a[0] + self._b[0], self._a[1] + self._b[1]
-
-    @cached_property
-    def kappa(self) -> Pair:
-        return self._kappa(0), self._kappa(1)
+    z = _formula(lambda self: 1.0 - (self.EM + self.EM))
+    w = _formula(lambda self: self.E * self.gn + self._closing[0])
+    """e gn + the approach of the mass centers."""
+    _turn = _formula(lambda self: self.Ired * self.gw)
+    """Ired (omega_a - omega_b)."""
+    sigma = _pair(lambda self: (self._a[0] + self._b[0], self._a[1] + self._b[1]))
+    kappa = _pair(lambda self: (self._kappa(0), self._kappa(1)))
 
     def _kappa(self, i: int) -> Expression:
         return self._a[i] * self._ia - self._b[i] * self._ib
@@ -246,23 +190,18 @@ class Impact:
 
     # -- friction: everything along the direction (1, mu) of the impulse
 
-    @cached_property
-    def _along_impulse(self) -> Pair:
-        """A's and B's arm in the direction (1, mu)."""
-        return self._a[0] + self.mu * self._a[1], self._b[0] + self.mu * self._b[1]
-
-    @cached_property
-    def _em_kappa(self) -> Expression:
-        return self.EM * self.kappa[0]
+    _along_impulse = _pair(
+        lambda self: (self._a[0] + self.mu * self._a[1], self._b[0] + self.mu * self._b[1])
+    )
+    """A's and B's arm in the direction (1, mu)."""
+    _em_kappa = _formula(lambda self: self.EM * self.kappa[0])
 
     @cached_property
     def _J_sigma_mu(self) -> Expression:
         a, b = self._along_impulse
         return self.J * (a + b)
 
-    @cached_property
-    def _crossed_mu(self) -> Expression:
-        return self._crossed_spins(*self._along_impulse)
+    _crossed_mu = _formula(lambda self: self._crossed_spins(*self._along_impulse))
 
     @cached_property
     def _friction(self) -> Pair:
@@ -329,13 +268,8 @@ class Impact:
         (ax, ay), (bx, by) = self._xy_arms
         return ax * by - ay * bx
 
-    @cached_property
-    def _R_inverse(self) -> Expression:
-        return 1.0 / self.R
-
-    @cached_property
-    def _JR(self) -> Expression:
-        return self.J * self._R_inverse
+    _R_inverse = _formula(lambda self: 1.0 / self.R)
+    _JR = _formula(lambda self: self.J * self._R_inverse)
 
     @cached_property
     def _across(self) -> Pair:
@@ -343,14 +277,9 @@ class Impact:
         (sx, sy), (kx, ky), (wx, wy) = self._xy_sigma, self._xy_kappa, self._xy_w
         return sx * wy - sy * wx, ky * wx - kx * wy
 
-    @cached_property
-    def _zJ(self) -> Expression:
-        return self.z * self.J
-
-    @cached_property
-    def _levers(self) -> Pair:
-        """a x b (Ia + Ib) and a x b J/R."""
-        return self._spins * self._arms_cross, self._JR * self._arms_cross
+    _zJ = _formula(lambda self: self.z * self.J)
+    _levers = _pair(lambda self: (self._spins * self._arms_cross, self._JR * self._arms_cross))
+    """a x b (Ia + Ib) and a x b J/R."""
 
     @cached_property
     def _pivot_parts(self) -> Pair:
@@ -402,10 +331,8 @@ class Impact:
         (c, s), (x, y) = self._n, self._pivot_xy
         return c * x + s * y, c * y - s * x
 
-    @cached_property
-    def _shares(self) -> Pair:
-        """Of A and B in a change of the relative velocity of the mass centers."""
-        return self._ma * self._R_inverse, self._mb * self._R_inverse
+    _shares = _pair(lambda self: (self._ma * self._R_inverse, self._mb * self._R_inverse))
+    """Of A and B in a change of the relative velocity of the mass centers."""
 
     @cached_property
     def _pivot_short(self) -> Expression:
@@ -423,25 +350,19 @@ class Impact:
 
     # -- denominators, for whoever has to know where results are infinite
 
-    @cached_property
-    def determinant(self) -> Expression:
-        """What divides every impulse: where it is zero, the equations have no solution."""
-        return self._by_kind(lambda: self._friction[1], lambda: self._pivot_determinant)
-
-    @cached_property
-    def critical_denominator(self) -> Expression:
-        """What divides MUC."""
-        return self._pivot_ratio[0]
+    determinant = _formula(
+        lambda self: self._by_kind(lambda: self._friction[1], lambda: self._pivot_determinant)
+    )
+    """What divides every impulse: where it is zero, the equations have no solution."""
+    critical_denominator = _formula(lambda self: self._pivot_ratio[0])
+    """What divides MUC."""
 
     # -- impulse
 
-    @cached_property
-    def PN(self) -> Expression:
-        return self._by_kind(lambda: self._friction_Pn, lambda: self._pivot[0])
-
-    @cached_property
-    def PT(self) -> Expression:
-        return self._by_kind(lambda: self.mu * self._friction_Pn, lambda: self._pivot[1])
+    PN = _formula(lambda self: self._by_kind(lambda: self._friction_Pn, lambda: self._pivot[0]))
+    PT = _formula(
+        lambda self: self._by_kind(lambda: self.mu * self._friction_Pn, lambda: self._pivot[1])
+    )
 
     @cached_property
     def _final_mean(self) -> Expression:
@@ -479,15 +400,10 @@ class Impact:
 
         return self._unless_point(self._by_kind(friction, pivot))
 
-    @cached_property
-    def H(self) -> Expression:
-        """Ired times the final spins' difference."""
-        return self.EM * self._moment
-
-    @cached_property
-    def PM(self) -> Expression:
-        """The moment impulse on A (0 at em = 1)."""
-        return (1.0 - self.EM) * self._moment
+    H = _formula(lambda self: self.EM * self._moment)
+    """Ired times the final spins' difference."""
+    PM = _formula(lambda self: (1.0 - self.EM) * self._moment)
+    """The moment impulse on A (0 at em = 1)."""
 
     @cached_property
     def _friction_xy(self) -> Pair:
@@ -526,37 +442,14 @@ class Impact:
 
     # -- after impact
 
-    @cached_property
-    def VAX(self) -> Expression:
-        return self._velocity("A", 0)
-
-    @cached_property
-    def VAY(self) -> Expression:
-        return self._velocity("A", 1)
-
-    @cached_property
-    def VBX(self) -> Expression:
-        return self._velocity("B", 0)
-
-    @cached_property
-    def VBY(self) -> Expression:
-        return self._velocity("B", 1)
-
-    @cached_property
-    def WAF(self) -> Expression:
-        return self._pass_through("WA", self._spin_a)
-
-    @cached_property
-    def WBF(self) -> Expression:
-        return self._pass_through("WB", self._spin_b)
-
-    @cached_property
-    def _spin_a(self) -> Expression:
-        return self._final_mean + self._ia * self.H
-
-    @cached_property
-    def _spin_b(self) -> Expression:
-        return self._final_mean - self._ib * self.H
+    VAX = _formula(lambda self: self._velocity("A", 0))
+    VAY = _formula(lambda self: self._velocity("A", 1))
+    VBX = _formula(lambda self: self._velocity("B", 0))
+    VBY = _formula(lambda self: self._velocity("B", 1))
+    WAF = _formula(lambda self: self._pass_through("WA", self._spin_a))
+    WBF = _formula(lambda self: self._pass_through("WB", self._spin_b))
+    _spin_a = _formula(lambda self: self._final_mean + self._ia * self.H)
+    _spin_b = _formula(lambda self: self._final_mean - self._ib * self.H)
 
     def _pass_through(self, name: str, spin: Expression) -> Expression:
         if self.point is False:
@@ -567,37 +460,14 @@ class Impact:
 
     # -- contact velocities, lines 340, 700 and 710
 
-    @cached_property
-    def XA(self) -> Expression:
-        return self.UX + self._D3_D4[0] * self.WA
-
-    @cached_property
-    def YA(self) -> Expression:
-        return self.UY - self._D3_D4[1] * self.WA
-
-    @cached_property
-    def XB(self) -> Expression:
-        return self.VX - self._D1_D2[0] * self.WB
-
-    @cached_property
-    def YB(self) -> Expression:
-        return self.VY + self._D1_D2[1] * self.WB
-
-    @cached_property
-    def XAF(self) -> Expression:
-        return self.VAX + self._D3_D4[0] * self._spin_a
-
-    @cached_property
-    def YAF(self) -> Expression:
-        return self.VAY - self._D3_D4[1] * self._spin_a
-
-    @cached_property
-    def XBF(self) -> Expression:
-        return self.VBX - self._D1_D2[0] * self._spin_b
-
-    @cached_property
-    def YBF(self) -> Expression:
-        return self.VBY + self._D1_D2[1] * self._spin_b
+    XA = _formula(lambda self: self.UX + self._D3_D4[0] * self.WA)
+    YA = _formula(lambda self: self.UY - self._D3_D4[1] * self.WA)
+    XB = _formula(lambda self: self.VX - self._D1_D2[0] * self.WB)
+    YB = _formula(lambda self: self.VY + self._D1_D2[1] * self.WB)
+    XAF = _formula(lambda self: self.VAX + self._D3_D4[0] * self._spin_a)
+    YAF = _formula(lambda self: self.VAY - self._D3_D4[1] * self._spin_a)
+    XBF = _formula(lambda self: self.VBX - self._D1_D2[0] * self._spin_b)
+    YBF = _formula(lambda self: self.VBY + self._D1_D2[1] * self._spin_b)
 
     # -- energy
 
@@ -617,9 +487,7 @@ class Impact:
         energy: Expression = kinetic_energy(inertias, velocities)
         return energy
 
-    @cached_property
-    def KI(self) -> Expression:
-        return self._energy((self.UX, self.UY, self.WA, self.VX, self.VY, self.WB))
+    KI = _formula(lambda self: self._energy((self.UX, self.UY, self.WA, self.VX, self.VY, self.WB)))
 
     @cached_property
     def KF(self) -> Expression:
@@ -647,32 +515,16 @@ class Impact:
         turning = self.PM * (self.gw + self._spins * self.H)
         return -(normal + sliding + turning)
 
-    @cached_property
-    def LOSS(self) -> Expression:
-        return (50.0 * self._lost) / self.KI
+    LOSS = _formula(lambda self: (50.0 * self._lost) / self.KI)
 
     # -- sizes and coefficients of the result
 
-    @cached_property
-    def VC(self) -> Expression:
-        return -self.gn
-
-    @cached_property
-    def VS(self) -> Expression:
-        """By Equation 15."""
-        return self.E * -self.gn
-
-    @cached_property
-    def DVA(self) -> Expression:
-        return self._change_size(self._ma)
-
-    @cached_property
-    def DVB(self) -> Expression:
-        return self._change_size(self._mb)
-
-    @cached_property
-    def MUP(self) -> Expression:
-        return self._by_kind(lambda: self.mu, lambda: self.table.constant(PIVOT))
+    VC = _formula(lambda self: -self.gn)
+    VS = _formula(lambda self: self.E * -self.gn)
+    """By Equation 15."""
+    DVA = _formula(lambda self: self._change_size(self._ma))
+    DVB = _formula(lambda self: self._change_size(self._mb))
+    MUP = _formula(lambda self: self._by_kind(lambda: self.mu, lambda: self.table.constant(PIVOT)))
 
     @cached_property
     def MUC(self) -> Expression:
