@@ -113,10 +113,9 @@ def test_paths_and_sizes():
     general = kinds[0]["passes"]
     assert all(path["passes"] < general for path in kinds[1:] if "pivot" not in path["name"])
     chosen = paths.selections(2000, 1)
-    assert chosen[-1]["passes"] == max(path["passes"] for path in chosen)
+    assert chosen[0]["passes"] == max(path["passes"] for path in chosen)
     assert "general" in tables.listing(kinds)
-    assert "six sines" in tables.listing(paths.floor(17_000, 1))
-    grown = paths.sizes([1000, 50_000], 1)
+    grown = paths.sizes([1, 50_000], 1)
     assert grown[1]["extra_mib"] < 16  # working arrays, not the scenes
     assert "50,000" in tables.listing(grown)
 

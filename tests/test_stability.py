@@ -179,7 +179,7 @@ def test_the_two_references_agree():
             scene = scene_at(g, i)
             six = exact(scene)
             with reference.working(scene):
-                t = reference._Terms(scene, None)
+                t = reference.terms(scene)
                 found = reference.velocities(t, reference.impulse(t))
             three = dict(zip(ORDER, found, strict=True))
             assert relative_error(six, three) < 1e-38

@@ -52,7 +52,7 @@ def fifty_digits(scene: Mapping[str, str | float]) -> dict[str, Any]:
         for name, value in scene.items()
     }
     with reference.working(texts):
-        t = reference._Terms(texts, None)
+        t = reference.terms(texts)
         P = reference.impulse(t)
         if P is None:
             return {}
@@ -113,5 +113,5 @@ def _energies(t: Any, P: Any, after: list[Any]) -> dict[str, Any]:
 
 def _critical_friction(texts: Mapping[str, str | float]) -> dict[str, Any]:
     """MUC, the ratio of tangential to normal impulse when the contact point is a pivot."""
-    P = reference.impulse(reference._Terms({**texts, "MU": "-10"}, None))
+    P = reference.impulse(reference.terms({**texts, "MU": "-10"}))
     return {"MUC": P.tangential / P.normal} if P is not None and P.normal else {}

@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -91,10 +91,42 @@ def changes(columns: Mapping[str, Any], A: Array) -> tuple[Array, Array]:
     return b, before
 
 
-def listing_rows(t: Any, zero: Any) -> list[list[Any]]:
-    """The rows of lines 370 to 560 (6 of 7 numbers, or 4 of 5 for a point mass) in the arithmetic
-    of a scene's numbers ``t`` (see `reference._Terms`), whose zero is ``zero``."""
-    g, s, c = t.g, t.s, t.c
+class Terms:
+    """A scene's numbers ``g``, in whatever arithmetic, and lines 300 to 340 on them. ``turn``: sine
+    and cosine of a sum of angles; ``products``: (a, terms, b, terms) -> a·terms + b·terms."""
+
+    def __init__(
+        self,
+        g: Mapping[str, Any],
+        point: bool,
+        pivot: bool,
+        zero: Any,
+        turn: Callable[..., tuple[Any, Any]],
+        products: Callable[[Any, Sequence[Any], Any, Sequence[Any]], Any],
+    ) -> None:
+        self.g, self.point, self.pivot, self.zero = g, point, pivot, zero
+        self.s, self.c = turn(g["GA"])
+        self.D1 = self.D2 = self.D3 = self.D4 = self.WA = self.WB = zero
+        if not point:
+            s, c = turn(g["TB"], g["PB"])
+            self.D1, self.D2 = g["DB"] * s, g["DB"] * c
+            s, c = turn(g["TA"], g["PA"])
+            self.D3, self.D4 = g["DA"] * s, g["DA"] * c
+            self.WA, self.WB = g["WA"], g["WB"]
+        across = g["UX"], self.D3 * self.WA, -g["VX"], self.D1 * self.WB
+        along = g["UY"], -(self.D4 * self.WA), -g["VY"], -(self.D2 * self.WB)
+        self.gn = products(self.s, along, self.c, across)
+        self.gt = products(self.c, along, -self.s, across)
+        self.mu = -g["MU"] if self.gt > zero and not pivot else g["MU"]
+
+    def before(self) -> list[Any]:
+        """The velocities before the impact, in the order of `ORDER`."""
+        return [*(self.g[name] for name in VELOCITIES_OF_BOTH[:4]), self.WA, self.WB]
+
+
+def listing_rows(t: Terms) -> list[list[Any]]:
+    """The rows of lines 370 to 560 (6 of 7 numbers, or 4 of 5 for a point mass)."""
+    g, s, c, zero = t.g, t.s, t.c, t.zero
     MA, MB = g["MA"], g["MB"]
     D1, D2, D3, D4 = t.D1, t.D2, t.D3, t.D4
     UX, UY, VX, VY, WA, WB = g["UX"], g["UY"], g["VX"], g["VY"], t.WA, t.WB

@@ -6,11 +6,12 @@ tests hold them to the six equations of lines 370 to 560.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..errors import UserError
 from ..names import DEFAULT_M, PIVOT
+from .elimination import Terms
 
 try:
     import mpmath as mpmath  # type: ignore[import-untyped]
@@ -54,41 +55,22 @@ def total(*terms: Number) -> Number:
     return result if abs(result) > noise else mpmath.mpf(0)
 
 
-def sine_and_cosine(degrees: Number, pi: Number | None) -> tuple[Number, Number]:
-    """Sine and cosine of an angle in degrees with ``pi`` for pi; exact for right angles without."""
-    if pi is None:
-        return mpmath.sinpi(degrees / 180), mpmath.cospi(degrees / 180)
-    return mpmath.sin(degrees * pi / 180), mpmath.cos(degrees * pi / 180)
+def terms(scene: Mapping[str, Any], pi: Number | None = None) -> Terms:
+    """A scene's numbers, with ``pi`` for pi; without, right angles are exact. Made at working
+    precision."""
+    g = {name: number(value) for name, value in scene.items()}
 
+    def turn(*degrees: Number) -> tuple[Number, Number]:
+        angle = sum(degrees[1:], degrees[0])
+        if pi is None:
+            return mpmath.sinpi(angle / 180), mpmath.cospi(angle / 180)
+        return mpmath.sin(angle * pi / 180), mpmath.cos(angle * pi / 180)
 
-class _Terms:
-    """A scene's numbers in mpmath, and lines 300 to 340 on them. Made at working precision."""
+    def products(a: Number, x: Sequence[Number], b: Number, y: Sequence[Number]) -> Number:
+        return total(*(a * term for term in x), *(b * term for term in y))
 
-    def __init__(self, scene: Mapping[str, Any], pi: Number | None) -> None:
-        self.g = {name: number(value) for name, value in scene.items()}
-        g = self.g
-        self.point = number(scene.get("M", DEFAULT_M)) == 4
-        self.s, self.c = sine_and_cosine(g["GA"], pi)
-        zero = mpmath.mpf(0)
-        if self.point:
-            self.D1 = self.D2 = self.D3 = self.D4 = zero
-            self.WA = self.WB = zero
-        else:
-            s, c = sine_and_cosine(g["TB"] + g["PB"], pi)
-            self.D1, self.D2 = g["DB"] * s, g["DB"] * c
-            s, c = sine_and_cosine(g["TA"] + g["PA"], pi)
-            self.D3, self.D4 = g["DA"] * s, g["DA"] * c
-            self.WA, self.WB = g["WA"], g["WB"]
-        x = (g["UX"], self.D3 * self.WA, -g["VX"], self.D1 * self.WB)
-        y = (g["UY"], -self.D4 * self.WA, -g["VY"], -self.D2 * self.WB)
-        self.gn = total(*(self.c * term for term in x), *(self.s * term for term in y))
-        self.gt = total(*(self.c * term for term in y), *(-self.s * term for term in x))
-        self.pivot = g["MU"] == PIVOT
-        self.mu = -g["MU"] if self.gt > 0 and not self.pivot else g["MU"]
-
-    def before(self) -> list[Number]:
-        """The velocities before the impact, in the order of `ORDER`."""
-        return [*(self.g[name] for name in ("UX", "UY", "VX", "VY")), self.WA, self.WB]
+    point = number(scene.get("M", DEFAULT_M)) == 4
+    return Terms(g, point, g["MU"] == PIVOT, mpmath.mpf(0), turn, products)
 
 
 def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
@@ -140,7 +122,7 @@ class Inverses(NamedTuple):
     ib: Number
 
 
-def inverses(t: _Terms) -> Inverses:
+def inverses(t: Terms) -> Inverses:
     """The inverse masses and inertias of a scene."""
     zero = mpmath.mpf(0)
     spinning = () if t.point else ("IA", "IB")
@@ -148,7 +130,7 @@ def inverses(t: _Terms) -> Inverses:
     return Inverses(*values, *([zero, zero] if t.point else []))
 
 
-def arms(t: _Terms) -> tuple[Number, Number, Number, Number]:
+def arms(t: Terms) -> tuple[Number, Number, Number, Number]:
     """What A's and B's spin add to the relative contact velocity: an, at, bn, bt."""
     s, c = t.s, t.c
     return (
@@ -159,7 +141,7 @@ def arms(t: _Terms) -> tuple[Number, Number, Number, Number]:
     )
 
 
-def impulse(t: _Terms) -> Impulse | None:
+def impulse(t: Terms) -> Impulse | None:
     """The impulse of a scene: Equations 15, 16 (or no slip) and 18 in the unknowns Pn, Pt and M;
     13, 14 and 17 hold because the same impulse acts on both bodies. None if they are singular."""
     zero, one = mpmath.mpf(0), mpmath.mpf(1)
@@ -185,7 +167,7 @@ def impulse(t: _Terms) -> Impulse | None:
     return None if solution is None else Impulse(*solution)
 
 
-def velocities(t: _Terms, P: Impulse) -> list[Number]:
+def velocities(t: Terms, P: Impulse) -> list[Number]:
     """The velocities that an impulse leaves, in the order of `ORDER`."""
     ma, mb, ia, ib = inverses(t)
     an, at, bn, bt = arms(t)

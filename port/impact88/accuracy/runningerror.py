@@ -14,12 +14,14 @@ scene.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import reduce
+from operator import add
 from typing import NamedTuple
 
 from ..applesoft.decimaltext import scan
 from ..names import DEFAULT_M, PIVOT
-from .elimination import LISTING_PI, ORDER, eliminate, listing_rows
+from .elimination import LISTING_PI, ORDER, Terms, eliminate, listing_rows
 
 UNIT = 2.0**-32
 """What rounding a number to five bytes changes of it, at most."""
@@ -95,34 +97,22 @@ class Bounded:
         return self.v < other.v
 
 
-class _Terms:
-    """A scene's numbers and lines 300 to 340, as `elimination.listing_rows` takes them."""
+def _terms(scene: Mapping[str, str]) -> Terms:
+    """A scene's numbers. Raises `Uncertain` where the listing may take another line."""
+    g = {name: _read(text) for name, text in scene.items()}
+    point = g["M"].v == 4 if "M" in g else float(DEFAULT_M) == 4
+    if point and any(g[d].v and g[w].v for d, w in (("DA", "WA"), ("DB", "WB"))):
+        raise Uncertain  # line 340 turns point masses all the same
 
-    def __init__(self, scene: Mapping[str, str]) -> None:
-        self.g = {name: _read(text) for name, text in scene.items()}
-        g = self.g
-        self.point = g["M"].v == 4 if "M" in g else float(DEFAULT_M) == 4
-        self.s, self.c = _turn(g["GA"])
-        zero = Bounded(0.0)
-        self.D1 = self.D2 = self.D3 = self.D4 = self.WA = self.WB = zero
-        if not self.point:
-            s, c = _turn(g["TB"], g["PB"])
-            self.D1, self.D2 = g["DB"] * s, g["DB"] * c
-            s, c = _turn(g["TA"], g["PA"])
-            self.D3, self.D4 = g["DA"] * s, g["DA"] * c
-            self.WA, self.WB = g["WA"], g["WB"]
-        elif any(g[d].v and g[w].v for d, w in (("DA", "WA"), ("DB", "WB"))):
-            raise Uncertain  # line 340 turns point masses all the same
-        across = g["UX"] + self.D3 * self.WA - g["VX"] + self.D1 * self.WB
-        along = g["UY"] - self.D4 * self.WA - g["VY"] - self.D2 * self.WB
-        self.gn = along * self.s + across * self.c
-        slip = along * self.c - across * self.s
-        self.pivot = g["MU"].v == PIVOT
-        if not self.pivot and g["MU"].v and not slip.e < abs(slip.v):
-            raise Uncertain  # line 400 may turn MU, or not
-        self.mu = -g["MU"] if slip.v > 0 and not self.pivot else g["MU"]
-        if not self.pivot and min(g["MU"].v, self.mu.v) - self.mu.e <= PIVOT:
-            raise Uncertain  # line 390 or 510 takes it for a pivot's
+    def products(a: Bounded, x: Sequence[Bounded], b: Bounded, y: Sequence[Bounded]) -> Bounded:
+        return reduce(add, x) * a + reduce(add, y) * b
+
+    t = Terms(g, point, g["MU"].v == PIVOT, Bounded(0.0), _turn, products)
+    if not t.pivot and g["MU"].v and not t.gt.e < abs(t.gt.v):
+        raise Uncertain  # line 400 may turn MU, or not
+    if not t.pivot and min(g["MU"].v, t.mu.v) - t.mu.e <= PIVOT:
+        raise Uncertain  # line 390 or 510 takes it for a pivot's
+    return t
 
 
 class Numeral(NamedTuple):
@@ -166,8 +156,8 @@ def listing_errors(
     by the closed form. None where nothing can be said: uncertain divisors, ZERO DETERMINANT.
     """
     try:
-        t = _Terms(scene)
-        solution = eliminate(listing_rows(t, Bounded(0.0)), Bounded(SMALLEST_PIVOT))
+        t = _terms(scene)
+        solution = eliminate(listing_rows(t), Bounded(SMALLEST_PIVOT))
     except (Uncertain, ZeroDivisionError, OverflowError, ValueError):
         return None
     if solution is None:

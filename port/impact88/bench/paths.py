@@ -1,6 +1,6 @@
 """What skipping saves: every short path and some selections of results, timed side by side; how the
-closed form compares with its floor (sines and cosines), grows with the number of scenes, and what
-reading and writing files costs beside it.
+closed form grows with the number of scenes, from one; and what reading and writing files costs
+beside it.
 
 All on one thread, in processor time: these are comparisons of work, and other programs' turns on
 the machine are no part of it. Every function gives rows: dicts of numbers and names.
@@ -14,14 +14,12 @@ import tempfile
 import time
 import tracemalloc
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..accuracy.elimination import ORDER
 from ..closedform.columns import Buffers, examine, sources
-from ..closedform.degrees import sine_and_cosine
 from ..closedform.fused import plan_for
 from ..closedform.solve import TILE, solve
 from ..names import RESULTS, SCENE
@@ -32,8 +30,8 @@ from .populations import BENCHMARK, Columns, scenes
 Row = dict[str, Any]
 
 GENERAL = "general"
-CALLS = 200
-"""Calls with one scene that are timed together."""
+AT_ONCE = 500
+"""Scenes in calls that are timed together, where a call has fewer."""
 SEED = 1988
 
 PATHS: dict[str, dict[str, float]] = {
@@ -92,92 +90,55 @@ def passes(columns: Any, outputs: Sequence[str]) -> int:
 
 
 def kinds(count: int, repeats: int) -> list[Row]:
-    """All kinds of blocks on ``count`` scenes: passes, nanoseconds a scene with scalars and with
-    full columns of one value, and what of the general path's time both save."""
+    """The six velocities of all kinds of blocks of ``count`` scenes: passes, nanoseconds a scene,
+    and what of the general path's time is saved."""
     general = enlarged(moving(), count)
-    by_scalars: list[dict[str, Any]] = [{**general, **same} for same in PATHS.values()]
-    by_columns = [
-        {**general, **{name: np.full(count, float(value)) for name, value in same.items()}}
-        for same in PATHS.values()
-    ]
-    times = _nanoseconds([_solving(k, ORDER) for k in (*by_scalars, *by_columns)], count, repeats)
-    return [
-        {
-            "name": name,
-            "passes": passes(kind, ORDER),
-            "nanoseconds": scalar,
-            "saved": 1 - scalar / times[0],
-            "as_columns": full,
-            "saved_as_columns": 1 - full / times[0],
-        }
-        for name, kind, scalar, full in zip(
-            PATHS, by_scalars, times[: len(PATHS)], times[len(PATHS) :], strict=True
-        )
-    ]
+    return _compared(
+        {name: ({**general, **same}, tuple(ORDER)) for name, same in PATHS.items()}, count, repeats
+    )
 
 
 def selections(count: int, repeats: int) -> list[Row]:
-    """The same for selections of results; what is saved is of the time for all of them."""
+    """The same of selections of results; what is saved is of the time for all of them."""
     general = enlarged(moving(), count)
-    works = [_solving(general, outputs) for outputs in SELECTIONS.values()]
-    times = _nanoseconds(works, count, repeats)
+    works = {name: (general, outputs) for name, outputs in reversed(SELECTIONS.items())}
+    return _compared(works, count, repeats)
+
+
+def _compared(works: dict[str, tuple[Any, tuple[str, ...]]], count: int, repeats: int) -> list[Row]:
+    """What is saved is of the first one's time."""
+    times = medians([_solving(*work) for work in works.values()], repeats)
     return [
         {
             "name": name,
-            "passes": passes(general, outputs),
-            "nanoseconds": taken,
-            "saved": 1 - taken / times[-1],
+            "passes": passes(*work),
+            "nanoseconds": 1e9 * taken / count,
+            "saved": 1 - taken / times[0],
         }
-        for (name, outputs), taken in zip(SELECTIONS.items(), times, strict=True)
-    ]
-
-
-def floor(count: int, repeats: int) -> list[Row]:
-    """Nanoseconds of the six velocities, against the sines and cosines of three angles that they
-    cannot do without; and of a call with one scene, as plain numbers and as arrays of one."""
-    general = enlarged(moving(), count)
-    angle = general["TA"][:TILE]
-    sine, cosine, *work = (np.empty(TILE) for _ in range(6))
-    many = range(3 * (count // TILE))
-
-    def numpy_sines() -> None:
-        for _ in many:
-            np.sin(angle, out=sine)
-            np.cos(angle, out=cosine)
-
-    def own_sines() -> None:
-        for _ in many:
-            sine_and_cosine(angle, sine, cosine, (work[0], work[1], work[2], work[3]))
-
-    lone = {name: float(values[0]) for name, values in general.items()}
-    one = _solving(lone, ORDER)
-    arrays = _solving({name: np.array([value]) for name, value in lone.items()}, ORDER)
-    works = {
-        "six velocities": (_solving(general, ORDER), count),
-        "six sines and cosines by numpy": (numpy_sines, count),
-        "the same by closedform.degrees": (own_sines, count),
-        "a call with one scene, plain numbers": (lambda: [one() for _ in range(CALLS)], CALLS),
-        "the same as arrays of one": (lambda: [arrays() for _ in range(CALLS)], CALLS),
-    }
-    times = medians([work for work, _ in works.values()], repeats)
-    return [
-        {"name": name, "nanoseconds": 1e9 * taken / size}
-        for (name, (_, size)), taken in zip(works.items(), times, strict=True)
+        for (name, work), taken in zip(works.items(), times, strict=True)
     ]
 
 
 def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
-    """The six velocities for growing numbers of scenes: seconds, nanoseconds a scene, the same into
-    arrays given again and again (``out``), and MiB allocated beside the results."""
+    """The six velocities for growing numbers of scenes: seconds a call, nanoseconds a scene, the
+    same into arrays given again and again (``out``), and MiB allocated beside the results."""
     rows = []
     base = moving()
     for count in counts:
-        columns = enlarged(base, count)
-        room = {name: np.zeros(count) for name in ORDER}
-        into = partial(solve, columns, out=room, threads=1)
-        works = (_solving(columns, ORDER), into)
-        fresh, again = medians(works, repeats if count < 5_000_000 else 1)
-        del room, works, into
+        columns: Any = enlarged(base, count)
+        if count == 1:
+            columns = {name: float(values[0]) for name, values in columns.items()}
+        room = {name: np.zeros(np.shape(columns["MA"])) for name in ORDER}
+        calls = range(max(1, AT_ONCE // count))
+        works = (
+            lambda columns=columns, calls=calls: [solve(columns, ORDER, threads=1) for _ in calls],
+            lambda columns=columns, calls=calls, room=room: [
+                solve(columns, out=room, threads=1) for _ in calls
+            ],
+        )
+        times = medians(works, repeats if count < 5_000_000 else 1)
+        fresh, again = (taken / len(calls) for taken in times)
+        del room, works
         tracemalloc.start()
         solve(columns, ORDER, threads=1)
         extra = tracemalloc.get_traced_memory()[1] - 6 * 8 * count
@@ -191,7 +152,6 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
                 "extra_mib": extra / 2**20,
             }
         )
-        del columns
     return rows
 
 
@@ -232,7 +192,3 @@ def doors(count: int, solve_file: Callable[[str, str], object]) -> list[Row]:
 
 def _solving(columns: Any, outputs: Sequence[str]) -> Callable[[], object]:
     return lambda: solve(columns, outputs, threads=1)
-
-
-def _nanoseconds(works: Sequence[Callable[[], object]], count: int, repeats: int) -> list[float]:
-    return [1e9 * taken / count for taken in medians(works, repeats)]

@@ -40,7 +40,7 @@ PATH_SCENES, FILE_ROWS = 500_000, 1_000_000
 COMPONENT_SCENES = 300
 """Scenes of which every result is compared with 50 digits: two milliseconds each."""
 MOST_SCENES = 10_000_000
-SIZES = (1_000, 10_000, 100_000, 1_000_000, 10_000_000)
+SIZES = (1, 60, 1_000, 10_000, 100_000, 1_000_000, 10_000_000)
 
 
 ARGUMENTS = (
@@ -116,7 +116,6 @@ def _skipping(arguments: argparse.Namespace) -> int:
     if arguments.paths:
         record["paths"] = paths.kinds(PATH_SCENES, repeats)
         record["outputs"] = paths.selections(PATH_SCENES, repeats)
-        record["floor"] = paths.floor(PATH_SCENES, repeats)
     if arguments.files:
         from ..cli import main as command_line
 

@@ -16,8 +16,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 Key = tuple[object, ...]
+
+
+def _operator(name: str, reflected: bool = False) -> Callable[[Expression, Any], Expression]:
+    """The method of an operator; ``reflected``: with the operands the other way round."""
+
+    def method(self: Expression, other: Expression | float) -> Expression:
+        a, b = self, self.table.wrap(other)
+        if reflected:
+            a, b = b, a
+        rule = getattr(self.table, name, None)
+        result: Expression = rule(a, b) if rule else self.table.condition(name, a, b)
+        return result
+
+    return method
 
 
 class Expression:
@@ -52,55 +67,27 @@ class Expression:
     def is_zero(self) -> bool:
         return self.is_constant(0.0)
 
-    def __add__(self, other: Expression | float) -> Expression:
-        return self.table.add(self, self.table.wrap(other))
-
-    def __radd__(self, other: float) -> Expression:
-        return self.table.add(self.table.wrap(other), self)
-
-    def __sub__(self, other: Expression | float) -> Expression:
-        return self.table.subtract(self, self.table.wrap(other))
-
-    def __rsub__(self, other: float) -> Expression:
-        return self.table.subtract(self.table.wrap(other), self)
-
-    def __mul__(self, other: Expression | float) -> Expression:
-        return self.table.multiply(self, self.table.wrap(other))
-
-    def __rmul__(self, other: float) -> Expression:
-        return self.table.multiply(self.table.wrap(other), self)
-
-    def __truediv__(self, other: Expression | float) -> Expression:
-        return self.table.divide(self, self.table.wrap(other))
-
-    def __rtruediv__(self, other: float) -> Expression:
-        return self.table.divide(self.table.wrap(other), self)
+    __add__ = _operator("add")
+    __radd__ = _operator("add", reflected=True)
+    __sub__ = _operator("subtract")
+    __rsub__ = _operator("subtract", reflected=True)
+    __mul__ = _operator("multiply")
+    __rmul__ = _operator("multiply", reflected=True)
+    __truediv__ = _operator("divide")
+    __rtruediv__ = _operator("divide", reflected=True)
+    # conditions; there is no == (expressions are kept apart by what they are)
+    __lt__ = _operator("less")
+    __gt__ = _operator("less", reflected=True)
+    __le__ = _operator("less_or_equal")
+    __ge__ = _operator("less_or_equal", reflected=True)
+    __and__ = _operator("both")
+    __or__ = _operator("either")
 
     def __neg__(self) -> Expression:
         return self.table.negative(self)
 
     def __abs__(self) -> Expression:
         return self.table.absolute(self)
-
-    # conditions; there is no == (expressions are kept apart by what they are)
-
-    def __lt__(self, other: Expression | float) -> Expression:
-        return self.table.condition("less", self, self.table.wrap(other))
-
-    def __gt__(self, other: Expression | float) -> Expression:
-        return self.table.condition("less", self.table.wrap(other), self)
-
-    def __le__(self, other: Expression | float) -> Expression:
-        return self.table.condition("less_or_equal", self, self.table.wrap(other))
-
-    def __ge__(self, other: Expression | float) -> Expression:
-        return self.table.condition("less_or_equal", self.table.wrap(other), self)
-
-    def __and__(self, other: Expression) -> Expression:
-        return self.table.condition("both", self, other)
-
-    def __or__(self, other: Expression) -> Expression:
-        return self.table.condition("either", self, other)
 
     def __invert__(self) -> Expression:
         return self.table.condition("not", self)
