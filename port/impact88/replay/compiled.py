@@ -87,7 +87,7 @@ class Noted(Reals):
         self.expression = expression
         self.unit = unit
         self.stored = stored
-        self.low, self.high, self.full = 1 / LARGE, LARGE, False
+        self.zero = False
 
     @property
     def v(self) -> Any:  # type: ignore[override]
@@ -111,9 +111,9 @@ class Noted(Reals):
     def _sum(self, operation: str, left: Reals | int, right: Reals | int) -> Reals:
         """A known zero is no operand: x + 0 is x rounded, 0 + x is x."""
         left, right = as_real(left), as_real(right)
-        if not right.high:
+        if right.zero:
             return left.rounded()
-        if not left.high:
+        if left.zero:
             return -right if operation == "real_subtract" else right
         return self._make(operation, left, right)
 
@@ -130,10 +130,10 @@ class Noted(Reals):
         return self._sum("real_subtract", left, self)
 
     def __mul__(self, right: Reals | int) -> Reals:
-        return self._make("real_multiply", self, right) if as_real(right).high else ZERO
+        return ZERO if as_real(right).zero else self._make("real_multiply", self, right)
 
     def __rmul__(self, left: Reals | int) -> Reals:
-        return self._make("real_multiply", left, self) if as_real(left).high else ZERO
+        return ZERO if as_real(left).zero else self._make("real_multiply", left, self)
 
     def __truediv__(self, right: Reals | int) -> Reals:
         return self._make("real_divide", self, right)
@@ -147,14 +147,11 @@ class Noted(Reals):
     def __gt__(self, right: Reals | int) -> Any:
         return Condition(self._make("real_less", -self, -as_real(right)).expression)
 
-    def within(self, high: float) -> Noted:
-        return self
+    def exceeds(self, limit: float) -> bool:
+        return False  # else the scene is marked
 
-    def not_below(self, low: float) -> Noted:
-        return self
-
-    def looked_at(self) -> Noted:
-        return self
+    def kept_within_powers(self) -> None:
+        """What is not is marked."""
 
     def floor(self) -> Noted:
         return self._make("real_int", self)
@@ -170,7 +167,6 @@ class Noted(Reals):
         halved = self._make("real_halved", self)
         table = self.expression.table
         halved.expression = table.combine("real_halved", self.expression, table.constant(bits))
-        halved.high = 99.0  # else the scene is marked
         return halved
 
     def whole(self) -> Noted:

@@ -8,12 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from ..applesoft import functions as scalar
 from .reals import (
     ILLEGAL_QUANTITY,
-    OVERFLOW,
     ZERO,
     Reals,
     constant,
@@ -21,7 +18,6 @@ from .reals import (
     from_number,
     select,
 )
-from .unit import Bools
 
 _LOG = [from_number(c) for c in scalar.LOG_COEFFICIENTS]
 _EXP = [from_number(c) for c in scalar.EXP_COEFFICIENTS]
@@ -59,7 +55,7 @@ def log(x: Reals) -> Reals:
     if x.fails(illegal, ILLEGAL_QUANTITY):
         x = select(illegal, ONE, x)
     f = x.fraction()
-    f = (ONE - _SQRT_TWO / (_SQRT_HALF + f)).within(0.172)  # 1 - sqrt 2 / (sqrt 1/2 + 1/2 ... 1)
+    f = ONE - _SQRT_TWO / (_SQRT_HALF + f)  # 1 - sqrt 2 / (sqrt 1/2 + 1/2 ... 1)
     f = _MINUS_HALF + odd_polynomial(_LOG, f)
     return _LN_TWO * (f + x.exponent())
 
@@ -67,27 +63,18 @@ def log(x: Reals) -> Reals:
 def exp(x: Reals) -> Reals:
     """e to the x. Records OVERFLOW; underflows to zero."""
     f = (_LOG2_E * x).with_extension(scalar.EXP_ROUNDING)
-    zero: Bools | None = None
-    if f.high >= 127:
-        v = f.v
-        beyond = np.abs(v) >= 128
-        whole = f.whole().v
-        overflow = (beyond & (v > 0)) | (whole == 127)
-        x._unit().fails(overflow, OVERFLOW)
-        zero = (beyond & (v < 0)) | (whole == -128)
-        v[overflow | zero] = 0.0
+    zero = f.kept_within_powers()
     i = f.whole()
     # f less its floor
-    result = polynomial(_EXP, (-(i - f)).within(1.0)).scaled(i)
+    result = polynomial(_EXP, (-(i - f))).scaled(i)
     if zero is not None:
         result.v[zero] = 0.0
-        result._settle()
     return result
 
 
 def square(x: Reals) -> Reals:
     """x ^ 2, which is EXP (2 * LOG (x)) with the sign left out; 0 ^ 2 is 0."""
-    if not x.high:
+    if x.zero:
         return x
     nothing = x.v == 0
     base = abs(x.rounded())
@@ -99,13 +86,13 @@ def square(x: Reals) -> Reals:
 def sin(x: Reals) -> Reals:
     """Sine of x radians."""
     f = (x.rounded() / _TWO_PI).rounded()
-    f = (f - floor(f)).within(1.0)
+    f = f - floor(f)
     f = _QUARTER - f
     beyond = f.v < 0  # the first quarter turn
     half = _HALF + f
     # beyond it: half where it is negative, else -half; otherwise -f
-    f = -abs(select(beyond, half, f)).within(0.25)
-    f = (_QUARTER + f).within(0.25)
+    f = -abs(select(beyond, half, f))
+    f = _QUARTER + f
     return odd_polynomial(_SIN, select(beyond, -f, f).rounded())
 
 

@@ -12,10 +12,9 @@ The values are always exactly the ROM's; float64 only carries them. Zero may be 
 
     bit 63 sign | 52-62 exponent byte + 894 | 21-51 mantissa without its top bit | 13-20 extension
 
-Every array also knows bounds on its magnitudes. While they exclude overflow and underflow (nearly
-always) those rules cost nothing; when they no longer do, the array is looked at, and only then are
-single scenes treated. An array known to be all zero (``high`` = 0) costs nothing at all: x + 0 is x
-rounded and 0 * x is 0 by the ROM's own rules.
+An array known to be all zero costs nothing: x + 0 is x rounded and 0 * x is 0 by the ROM's own
+rules. All others are looked at for overflow and underflow after every operation, which takes a
+sixth of the time.
 
 The scalar text of these rules is `impact88.applesoft.real`; the same captures drive both.
 """
@@ -45,8 +44,6 @@ LARGEST = 2.0**127
 """One past the largest real: exponent byte 256."""
 SMALLEST = 2.0**-128
 """The smallest real: exponent byte 1, mantissa 80000000."""
-WORTH_A_LOOK = 2.0**-60
-"""A lower bound from which on a few more sums could not rule out underflow."""
 WHOLE = 2.0**31
 """From here on (exponent byte 160) INT leaves a number as it is."""
 
@@ -78,23 +75,19 @@ _BYTES_2_3 = _mask(29, 44)
 _BYTE_0 = _mask(13, 20)
 _BYTES_0_1 = _mask(13, 28)
 
+_LARGEST, _HALF_LARGEST = (np.float64(x).view(np.int64) for x in (LARGEST, LARGEST / 2))
+_SMALLEST = np.float64(SMALLEST).view(np.uint64)
 _BELOW_ONE = np.int64(1022 << 52)  # the exponent of numbers from 1/2 to 1
 _TO_UNITS = _wrapped((1023 + 39 + 1023) << 52)  # less an exponent: the scale that makes it 2^39
 _FROM_UNITS = np.int64(39 << 52)  # takes that scale's power of two back
 _BELOW_256 = np.int64(((1023 + 8) << 52) - 1)  # a sum of fewer units has its upper 32 bits clear
 _EQUAL_CARRY = np.uint64(51)  # how far right: 13 ones are left of a word of ones, else none
 _ONE = np.uint64(1)
-_TWO_BITS = np.uint64(2**62)  # 2.0: above every magnitude's place in a minimum
 _52 = np.uint64(52)  # the bits below the exponent
 
 _TOP = np.int64(1 << 52)  # the mantissa's top bit, put back
 _EIGHT, _LAST_BYTE = np.uint64(8), np.uint64(0xFF)
 _BYTE_SHIFTS = [np.uint64(8 * position) for position in range(5)]  # extension first
-
-# How the bounds on a result's magnitude are kept safe.
-_UP = 1.0 + 2.0**-30  # more than any rounding adds
-_DOWN = 0.9  # less than any cutting off leaves
-_CANCELLED = 2.0**-33  # the least that is left of the larger operand when digits cancel
 
 
 def _nowhere() -> Unit:
@@ -105,32 +98,24 @@ def _nowhere() -> Unit:
 class Reals:
     """An array of reals: float64 values ``v`` and what is known about them.
 
-    ``stored``: the extension is zero; ``low`` <= |x| <= ``high`` for every x that is not zero;
-    ``full``: none is zero; ``unit``: the block they belong to (None: constants). The last axis runs
-    over the scenes, or has length 1 for what all scenes share. Operators do what the ROM does: the
-    left operand is rounded, the right one keeps its extension; Python integers are constants. What
-    is combined with a value of a block belongs to the block, also where it is a known zero; such a
-    result may be a lone number that stands for all rows and scenes.
+    ``stored``: the extension is zero; ``zero``: all are known to be zero; ``unit``: the block they
+    belong to (None: constants). The last axis runs over the scenes, or has length 1 for what all
+    scenes share. Operators do what the ROM does: the left operand is rounded, the right one keeps
+    its extension; Python integers are constants. What is combined with a value of a block belongs
+    to the block, also where it is a known zero; such a result may be a lone number that stands for
+    all rows and scenes.
     """
 
-    __slots__ = ("_defects", "bits", "full", "high", "low", "stored", "unit", "v")
+    __slots__ = ("_defects", "bits", "stored", "unit", "v", "zero")
 
     def __init__(
-        self,
-        v: Floats,
-        unit: Unit | None,
-        low: float,
-        high: float,
-        stored: bool = False,
-        full: bool = False,
+        self, v: Floats, unit: Unit | None, stored: bool = False, zero: bool = False
     ) -> None:
         self.v = v
         self.bits = v.view(np.int64)
         self.unit = unit
-        self.low = low
-        self.high = high
         self.stored = stored
-        self.full = full
+        self.zero = zero
         self._defects: Ints | bool | None = False
 
     def rounded(self) -> Reals:
@@ -141,19 +126,15 @@ class Reals:
         bits = v.view(np.int64)
         np.add(self.bits, _HALF_UNIT, out=bits)
         np.bitwise_and(bits, _32_BITS, out=bits)
-        high = self.high * (1 + 2.0**-31)
-        result = Reals(v, self.unit, self.low, high, True, self.full)
-        if high >= LARGEST:
-            result._settle()
-        return result
+        result = Reals(v, self.unit, True, self.zero)
+        # a carry may overflow, nothing underflows
+        return result._settled() if np.abs(v).max(initial=0.0) >= LARGEST else result
 
     def __neg__(self) -> Reals:
-        v = np.negative(self.v)
-        return Reals(v, self.unit, self.low, self.high, self.stored, self.full)
+        return Reals(np.negative(self.v), self.unit, self.stored, self.zero)
 
     def __abs__(self) -> Reals:
-        v = np.abs(self.v)
-        return Reals(v, self.unit, self.low, self.high, self.stored, self.full)
+        return Reals(np.abs(self.v), self.unit, self.stored, self.zero)
 
     def __add__(self, right: Reals | int) -> Reals:
         return _add(self, right if isinstance(right, Reals) else constant(right), False)
@@ -182,58 +163,53 @@ class Reals:
     def __gt__(self, right: Reals | int) -> Bools:
         return compare(self, right if isinstance(right, Reals) else constant(right)) < 0
 
-    def not_below(self, low: float) -> Reals:
-        """The same, where the caller knows that no magnitude is below ``low``."""
-        return Reals(self.v, self.unit, max(self.low, low), self.high, self.stored, True)
-
-    def looked_at(self) -> Reals:
-        """The same, with bounds found anew where the lower one has sunk towards underflow."""
-        if self.low >= WORTH_A_LOOK:
-            return self
-        return from_floats(self.v, self.unit, self.stored)
-
-    def within(self, high: float) -> Reals:
-        """The same, where the caller knows that no magnitude exceeds ``high``."""
-        self.high = min(self.high, high)
-        return self
+    def exceeds(self, limit: float) -> bool:
+        """Whether any magnitude is above ``limit``."""
+        return bool((np.abs(self.v) > limit).any())
 
     def floor(self) -> Reals:
         """INT, see `floor`."""
-        v = np.floor(self.v)
-        if self.high < WHOLE:
-            return Reals(v, self.unit, 1.0, self.high + 1, True)
-        v = np.where(np.abs(self.v) < WHOLE, v, self.v)
-        return Reals(v, self.unit, 1.0, self.high + 1, self.stored, False)
+        large = np.abs(self.v) >= WHOLE
+        if not large.any():
+            return Reals(np.floor(self.v), self.unit, True, self.zero)
+        return Reals(np.where(large, self.v, np.floor(self.v)), self.unit, self.stored)
 
     # the parts that LOG and EXP take a number apart into, and put it together from
 
     def fraction(self) -> Reals:
         """The mantissa, as a number from 1/2 to 1."""
         v = ((self.bits & _FRACTION) | _BELOW_ONE).view(np.float64)
-        return Reals(v, self.unit, 0.5, 1.0, self.stored, True)
+        return Reals(v, self.unit, self.stored)
 
     def exponent(self) -> Reals:
         """The power of two that goes with `fraction`."""
         v = ((self.bits >> 52) - (BIAS + 128)).astype(np.float64)
-        return Reals(v, self.unit, 1.0, 128.0, True)
+        return Reals(v, self.unit, True)
 
     def with_extension(self, more: int) -> Reals:
         """``more`` added to the extension; a carry runs into the exponent. Zero stays zero."""
         v = (self.bits + np.int64(more << 13)).view(np.float64)
-        if not self.full:
-            v[self.v == 0] = 0.0
-        return Reals(v, self.unit, self.low, self.high * 1.1, False, False)
+        v[self.v == 0] = 0.0
+        return Reals(v, self.unit)
+
+    def kept_within_powers(self) -> Bools | None:
+        """As EXP's power of two: one too large is recorded as OVERFLOW; where it is too small,
+        which makes the result zero, is returned, if it is so anywhere."""
+        beyond, whole = np.abs(self.v) >= 128, self.whole().v
+        overflow = (beyond & (self.v > 0)) | (whole == 127)
+        zero: Bools = (beyond & (self.v < 0)) | (whole == -128)
+        self.fails(overflow, OVERFLOW)
+        self.v[overflow | zero] = 0.0
+        return zero if zero.any() else None
 
     def whole(self) -> Reals:
         """The largest whole number not above the upper 32 bits."""
-        v = np.floor((self.bits & _32_BITS).view(np.float64))
-        return Reals(v, self.unit, 1.0, min(self.high, 127.0) + 1, True)
+        return Reals(np.floor((self.bits & _32_BITS).view(np.float64)), self.unit, True)
 
     def scaled(self, powers: Reals) -> Reals:
         """Times two to ``powers``, whole numbers: by the exponent alone."""
         v = (self.bits + (powers.v.astype(np.int64) << 52)).view(np.float64)
-        most = 2.0**powers.high
-        return Reals(v, self.unit, self.low / most, self.high * most, False, True)
+        return Reals(v, self.unit)
 
     def packed(self) -> Packed:
         """The five bytes a variable would hold, as one number: 0x8468000000 for 14.5."""
@@ -244,27 +220,18 @@ class Reals:
         packed = e << np.uint64(32) | sign << np.uint64(31) | mantissa
         return np.where(self.v == 0, np.uint64(0), packed)
 
-    def _settle(self) -> None:
-        """Look at the values, and apply the rules for exponents out of range where they call for
-        it: underflow is zero, overflow an error."""
-        v, bits = self.v, self.bits
-        sizes = bits & _MAGNITUDE
-        high = float(sizes.max(initial=0).view(np.float64))
-        if high >= LARGEST:
-            failed = np.abs(v) >= LARGEST
-            self._unit().fails(failed, OVERFLOW)
-            v[failed] = 0.0
-            sizes = bits & _MAGNITUDE
-            high = float(sizes.max(initial=0).view(np.float64))
-            self.full = False
+    def _settled(self) -> Reals:
+        """The rules for exponents out of range: underflow is zero, overflow an error."""
+        sizes = self.bits & _MAGNITUDE
+        if sizes.max(initial=0) >= _LARGEST:
+            failed = sizes >= _LARGEST
+            self.fails(failed, OVERFLOW)
+            self.v[failed] = 0.0
+            sizes[failed] = 0
         # zeros become the largest unsigned number
-        least = (sizes.view(np.uint64) - _ONE).min(initial=_TWO_BITS)
-        low = float((least + _ONE).view(np.float64))
-        if low < SMALLEST:
-            v[np.abs(v) < SMALLEST] = 0.0
-            low = SMALLEST
-            self.full = False
-        self.low, self.high = (low, high) if high else (1.0, 0.0)
+        if (sizes.view(np.uint64) - _ONE).min(initial=_SMALLEST) < _SMALLEST - _ONE:
+            self.v[np.abs(self.v) < SMALLEST] = 0.0
+        return self
 
     def fails(self, failed: Any, code: int) -> bool:
         """`Unit.fails`, of the block they belong to."""
@@ -276,15 +243,13 @@ class Reals:
     def _of(self, unit: Unit | None) -> Reals:
         """The same; a constant becomes a value of the block it was combined with, so that an error
         it leads to later on is recorded there."""
-        if self.unit or not unit:
-            return self
-        return Reals(self.v, unit, self.low, self.high, self.stored, self.full)
+        return self if self.unit or not unit else Reals(self.v, unit, self.stored, self.zero)
 
 
 def from_floats(v: Floats, unit: Unit | None, stored: bool = False) -> Reals:
     """Reals from float64 values that are reals already."""
-    reals = Reals(v, unit, 1.0, 0.0, stored)
-    reals._settle()
+    reals = Reals(v, unit, stored)._settled()
+    reals.zero = not v.any()
     return reals
 
 
@@ -301,9 +266,9 @@ def from_number(number: Number) -> Reals:
     """A constant: one real, extension included."""
     e, m, s = number
     if not e:
-        return Reals(np.zeros(1), None, 1.0, 0.0, True)
+        return Reals(np.zeros(1), None, True, zero=True)
     size = m * 2.0 ** (e - 168)
-    return Reals(np.array([-size if s else size]), None, size, size, not m & 0xFF, True)
+    return Reals(np.array([-size if s else size]), None, not m & 0xFF)
 
 
 @lru_cache(maxsize=256)
@@ -317,7 +282,7 @@ ZERO = constant(0)
 
 def zero(unit: Unit | None) -> Reals:
     """Zero in every scene of a block, which records what fails because of it."""
-    return Reals(ZERO.v, unit, 1.0, 0.0, True)
+    return Reals(ZERO.v, unit, True, zero=True)
 
 
 def select(condition: Any, yes: Reals, no: Reals) -> Reals:
@@ -328,10 +293,8 @@ def select(condition: Any, yes: Reals, no: Reals) -> Reals:
     return Reals(
         np.where(condition, yes.v, no.v),
         yes.unit or no.unit,
-        min(yes.low, no.low),
-        max(yes.high, no.high),
         yes.stored and no.stored,
-        yes.full and no.full,
+        yes.zero and no.zero,
     )
 
 
@@ -343,20 +306,17 @@ def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
     sum always has 41 bits, so the extra unit rounds its halving up instead of down.
     """
     left = left.rounded()
-    if not right.high:
+    if right.zero:
         return left._of(right.unit)
-    if not left.high:
+    if left.zero:
         return (-right if subtract else right)._of(left.unit)
     unit = left.unit or right.unit
-    low_left, high_left, low_right, high_right = left.low, left.high, right.low, right.high
-    # apart by a factor of more than two: exponents never equal, no leading bits cancelled but one
-    apart = low_left > 2 * high_right or low_right > 2 * high_left
     exponents = np.maximum(left.bits & _EXPONENT, right.bits & _EXPONENT)
     to_units = (_TO_UNITS - exponents).view(np.float64)
     v, other = np.trunc(left.v * to_units), np.trunc(right.v * to_units)
     v = v - other if subtract else v + other
     bits = v.view(np.int64)
-    if not (apart or right.stored):  # two stored operands give an even sum: the unit is lost
+    if not right.stored:  # two stored operands give an even sum: the unit is lost
         unlike = left.bits ^ right.bits
         if subtract:
             unlike ^= _SIGN
@@ -364,26 +324,10 @@ def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
         # 13 ones where sign and exponent agree, else 0
         bits += (signs_and_exponents - _ONE >> _EQUAL_CARRY).view(np.int64)
     bits &= _40_BITS
-    if not apart:
-        # normalising takes less than 256 units, the upper 32 bits all clear, for zero
-        bits &= _BELOW_256 - (bits & _EXPONENT) >> 63
+    # normalising takes less than 256 units, the upper 32 bits all clear, for zero
+    bits &= _BELOW_256 - (bits & _EXPONENT) >> 63
     v *= (exponents - _FROM_UNITS).view(np.float64)
-
-    high = (high_left + high_right) * _UP
-    full = False
-    if apart:
-        full = left.full if low_left > high_right else right.full
-        low = max(low_left - high_right, low_right - high_left) * _DOWN
-        if not full:
-            low = min(low, low_left, low_right)
-    else:
-        low = max(low_left, low_right) * _CANCELLED
-        if not (left.full and right.full):
-            low = min(low, low_left, low_right)
-    result = Reals(v, unit, low, high, False, full)
-    if high >= LARGEST or low < SMALLEST:
-        result._settle()
-    return result
+    return Reals(v, unit)._settled()
 
 
 def _multiply(left: Reals, right: Reals) -> Reals:
@@ -395,7 +339,7 @@ def _multiply(left: Reals, right: Reals) -> Reals:
     """
     left = left.rounded()
     unit = left.unit or right.unit
-    if not left.high or not right.high:
+    if left.zero or right.zero:
         return zero(unit)
     signs = left.bits ^ right.bits
     a, b = np.abs(left.v), np.abs(right.v)
@@ -412,23 +356,13 @@ def _multiply(left: Reals, right: Reals) -> Reals:
     defects = _defects(right)
     if defects is not None:
         _apply_defect(v, left, right, defects)
-    high = left.high * right.high
-    low = left.low * right.low * _DOWN
-    result = Reals(v, unit, low, high, False, left.full and right.full)
-    if high >= LARGEST / 2 or low < SMALLEST:
-        _settle_product(result, left, right)
-    return result
-
-
-def _settle_product(result: Reals, left: Reals, right: Reals) -> None:
-    """Overflow of a product is judged before it is normalised."""
-    if result.high >= LARGEST / 2 and np.abs(result.v).max() >= LARGEST / 2:
+    result = Reals(v, unit)
+    if (bits & _MAGNITUDE).max() >= _HALF_LARGEST:  # judged before it is normalised
         exponents = ((left.bits & _EXPONENT) >> 52) + ((right.bits & _EXPONENT) >> 52)
-        failed = (exponents >= 384 + 2 * BIAS) & (result.v != 0)
-        result._unit().fails(failed, OVERFLOW)
-        result.v[failed] = 0.0
-        result.full = False
-    result._settle()
+        failed = (exponents >= 384 + 2 * BIAS) & (v != 0)
+        result.fails(failed, OVERFLOW)
+        v[failed] = 0.0
+    return result._settled()
 
 
 def _defects(right: Reals) -> Ints | None:
@@ -487,14 +421,12 @@ def _divide(left: Reals, right: Reals) -> Reals:
     """
     unit = left.unit or right.unit
     right = right.rounded()
-    if not right.full:
-        by_zero = right.v == 0
-        if by_zero.any():
-            (unit or _nowhere()).fails(by_zero, DIVISION_BY_ZERO)
-            right = select(by_zero, constant(1), right)
-        right.full = True
+    by_zero = right.v == 0
+    if by_zero.any():
+        (unit or _nowhere()).fails(by_zero, DIVISION_BY_ZERO)
+        right = select(by_zero, constant(1), right)
     left = left.rounded()
-    if not left.high:
+    if left.zero:
         return zero(unit)
     signs = left.bits ^ right.bits
     a, b = np.abs(left.v), np.abs(right.v)
@@ -509,26 +441,15 @@ def _divide(left: Reals, right: Reals) -> Reals:
     bits &= kept
     bits |= signs & _SIGN
 
-    high = left.high / right.low * _UP
-    low = left.low / right.high * _DOWN
-    result = Reals(v, unit, low, high, False, left.full)
-    if high >= LARGEST / 2 or low < SMALLEST * 4:
-        _settle_quotient(result, left, right)
-    return result
-
-
-def _settle_quotient(result: Reals, left: Reals, right: Reals) -> None:
-    """Overflow of a quotient is judged before it is normalised; exponent 0 loses the sign."""
-    v = result.v
+    result = Reals(v, unit)
     difference = ((left.bits & _EXPONENT) - (right.bits & _EXPONENT)) >> 52
-    failed = (difference >= 127) & (left.v != 0)
+    failed = (difference >= 127) & (left.v != 0)  # judged before it is normalised
     if failed.any():
-        result._unit().fails(failed, OVERFLOW)
+        result.fails(failed, OVERFLOW)
         v[failed] = 0.0
-        result.full = False
-    signless = np.broadcast_to(difference == -128, v.shape)
+    signless = np.broadcast_to(difference == -128, v.shape)  # exponent 0 loses the sign
     v[signless] = np.abs(v[signless])
-    result._settle()
+    return result._settled()
 
 
 def floor(x: Reals) -> Reals:

@@ -135,7 +135,7 @@ class Replay:
         """Write some fields together."""
         columns = self._to_print(names)
         v = columns[0] if len(columns) == 1 else np.concatenate(columns)
-        texts = write(Reals(v, None, 2.0**-128, 2.0**127))
+        texts = write(Reals(v, None))
         ends = np.cumsum([column.size for column in columns])
         for name, field in zip(names, np.split(texts, ends[:-1]), strict=True):
             printed = self._printed(name)

@@ -26,7 +26,7 @@ from ..applesoft import decimaltext as scalar
 from ..fields import ANGLES, FIELDS
 from .polynomials import cos, sin, square
 from .realcolumns import PLACES
-from .reals import LARGEST, ZERO, Reals, constant, floor, from_number, select
+from .reals import ZERO, Reals, constant, floor, from_number, select
 from .unit import Unit, stamp
 
 C_1E3 = from_number(scalar.read("1E3")[0])
@@ -41,6 +41,7 @@ ZERO_DETERMINANT = 1
 SOLVED = stamp(570, 900)
 """The place after line 570's GOSUB 1000."""
 NEAR_OVERFLOW = 2.0**120
+"""Below this no number overflows that is multiplied by what the listing floors by, or added up."""
 
 
 class Kind(NamedTuple):
@@ -174,7 +175,7 @@ def run(
 
     # 600: the angles themselves are worked out when printed
     for position, angle in enumerate((TA, TB, PA, PB, GA)):
-        if angle.high / AG.low > LARGEST / 4:
+        if angle.exceeds(NEAR_OVERFLOW):
             at(600, position)
             _ = (angle / AG).rounded()
 
@@ -218,7 +219,7 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
         RX = unit.still(RX) if J < M else {}
         largest = C_1E_9
         for row in range(J, M + 1) if J < M else ():
-            if A[row, J].high:
+            if not A[row, J].zero:
                 size = abs(A[row, J])
                 taken = ~(size.v < largest.v)
                 largest = select(taken, size, largest)
@@ -230,7 +231,7 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
                 continue
             for column in range(J, M + 2):
                 mine, theirs = A[J, column], A[row, column]
-                if mine.high or theirs.high:
+                if not (mine.zero and theirs.zero):
                     A[J, column] = select(scenes, theirs, mine)
                     A[row, column] = select(scenes, mine, theirs)
         unit.at(1160, order=stamp(570, 100 * J))
@@ -238,18 +239,18 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
         none = abs(AP).v < C_1E_9.v
         if unit.fails(none, ZERO_DETERMINANT):
             AP = select(none, constant(1), AP)
-        AP = AP.not_below(2.0**-30)
-        large = max(A[row, column].high for row in range(1, M + 1) for column in range(J, M + 2))
-        first = J if matrix or large >= NEAR_OVERFLOW else J + 1
-        columns = [column for column in range(first, M + 2) if A[J, column].high]
+        cells = [A[row, column] for row in range(1, M + 1) for column in range(J, M + 2)]
+        large = matrix or any(x.exceeds(NEAR_OVERFLOW) for x in cells)
+        first = J if large else J + 1
+        columns = [column for column in range(first, M + 2) if not A[J, column].zero]
         unit.at(1150, order=stamp(570, 100 * J + 1))
         for column in columns:
             A[J, column] = (A[J, column] / AP).rounded()
         unit.at(1040, order=stamp(570, 100 * J + 2))
-        for row in [row for row in range(1, M + 1) if row != J and A[row, J].high]:
+        for row in [row for row in range(1, M + 1) if row != J and not A[row, J].zero]:
             AR = A[row, J]
             for column in columns:
-                A[row, column] = (A[row, column] - A[J, column] * AR).rounded().looked_at()
+                A[row, column] = (A[row, column] - A[J, column] * AR).rounded()
 
 
 def _line_530(unit: Unit, MU: Reals, A32: Reals, A33: Reals, UY: Reals, VX: Reals) -> Reals:
@@ -283,6 +284,6 @@ def _place(name: str) -> tuple[int, int]:
 
 def _check(unit: Unit, name: str, x: Reals) -> None:
     """Whether printing a velocity overflows. Its digits are worked out when asked for."""
-    if x.high * FLOORED[name].high >= LARGEST / 4:
+    if x.exceeds(NEAR_OVERFLOW / 1e4):
         unit.at(*_place(name))
         shown(name, x)

@@ -16,7 +16,7 @@ from .. import native
 from ..applesoft import decimaltext as scalar
 from ..errors import UserError
 from ..native.program import read_numbers, write_numbers
-from .reals import OVERFLOW, Reals, compare, constant, floor, from_number
+from .reals import OVERFLOW, ZERO, Reals, compare, constant, floor, from_number, select
 from .unit import Bools, Ints, Unit
 
 Characters = npt.NDArray[np.uint8]
@@ -34,8 +34,6 @@ _EXACT_DIGITS = 9
 _END = ord("\n")
 AT_A_TIME = 32768
 """So many numbers are written together, by arrays."""
-PLAIN = 2.0**100
-"""Numbers beyond this, or below its inverse, the compiled reader leaves to the arrays."""
 
 _QUARTER_LIMIT = 2.0**125
 """Four times this is exponent byte 256."""
@@ -44,14 +42,11 @@ _QUARTER_LIMIT = 2.0**125
 def times_ten(x: Reals) -> Reals:
     """MUL10: x rounded, as (4x + x) doubled, of which nothing is cut off. Records OVERFLOW."""
     x = x.rounded()
-    if x.high >= _QUARTER_LIMIT / 4:
-        failed = np.abs(x.v) >= _QUARTER_LIMIT
-        x._unit().fails(failed, OVERFLOW)
-        x = Reals(np.where(failed, 0.0, x.v), x.unit, x.low, _QUARTER_LIMIT, True)
-    result = Reals(x.v * 10, x.unit, x.low * 10, x.high * 10, False, x.full)
-    if result.high >= 2.0**127:
-        result._settle()
-    return result
+    failed = np.abs(x.v) >= _QUARTER_LIMIT
+    if failed.any():
+        x.fails(failed, OVERFLOW)
+        x = select(failed, ZERO, x)
+    return Reals(x.v * 10, x.unit)._settled()
 
 
 def over_ten(x: Reals) -> Reals:
@@ -71,7 +66,7 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
     if native.library is None:
         return _read_together(texts, data, unit, where)
     v, odd = read_numbers(data, len(texts))
-    x = Reals(v, unit, 1 / PLAIN, PLAIN)
+    x = Reals(v, unit)
     rows = np.flatnonzero(odd)
     if rows.size:
         some = [texts[row] for row in rows.tolist()]
@@ -97,7 +92,7 @@ def _read_together(
     if numerals.overflow.any():
         unit.fails(numerals.overflow, OVERFLOW)
     v = numerals.value.astype(np.float64)
-    x = Reals(v, unit, 1.0, max(float(v.max(initial=0.0)), 1.0), True)
+    x = Reals(v, unit, True)
     for more, digit in numerals.further:
         rows = np.flatnonzero(more)
         _treat(x, rows, partial(_next_digit, digit=digit[rows]))
@@ -229,17 +224,15 @@ class _Numerals:
 
 def _next_digit(value: Reals, digit: Characters) -> Reals:
     """Ten times the value, and (ADDACC: that rounded) a digit added."""
-    return times_ten(value) + Reals(digit.astype(np.float64), value.unit, 1.0, 9.0, True)
+    return times_ten(value) + Reals(digit.astype(np.float64), value.unit, True)
 
 
 def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
     """Apply an operation to some rows of ``x`` in place, recording its errors with them."""
     assert x.unit is not None
     part = x.unit.part(rows)
-    result = operation(Reals(x.v[rows], part, x.low, x.high, False, False))
+    result = operation(Reals(x.v[rows], part))
     x.v[rows] = result.v
-    x.low = min(x.low, result.low)
-    x.high = max(x.high, result.high)
     x.stored = False
     x.unit.join(part, rows)
 
@@ -261,7 +254,7 @@ def write(x: Reals) -> Strings:
     for at in range(0, rows.size, AT_A_TIME):
         some = rows[at : at + AT_A_TIME]
         part = unit.part(some)
-        texts[some] = _written_together(Reals(x.v[some], part, x.low, x.high))
+        texts[some] = _written_together(Reals(x.v[some], part))
         unit.join(part, some)
     return texts
 
@@ -292,7 +285,7 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints, Bools]:
     nonzero = v != 0
 
     def part(rows: Ints) -> Reals:
-        return Reals(v[rows], Unit(rows.size), 2.0**-128, 2.0**127, False, True)
+        return Reals(v[rows], Unit(rows.size))
 
     rows = np.flatnonzero(nonzero & (v < 1))
     if rows.size:
@@ -314,11 +307,11 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints, Bools]:
         if doubtful.any():
             rows = rows[~doubtful | (compare(_EIGHT_DIGITS, part(rows)) <= 0)]
         if rows.size:
-            v[rows] = times_ten(part(rows).within(1e8)).v
+            v[rows] = times_ten(part(rows)).v
             d[rows] -= 1
     if done.size:
-        v[done] = (_HALF + part(done).within(2e9)).v
-    return floor(Reals(v, None, 1.0, 2e9)).v.astype(np.int64), d, failed
+        v[done] = (_HALF + part(done)).v
+    return floor(Reals(v, None)).v.astype(np.int64), d, failed
 
 
 _WIDTH = 15
