@@ -35,10 +35,10 @@ from __future__ import annotations
 
 import argparse
 import csv
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager, ExitStack, suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from itertools import chain
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,7 +125,6 @@ def main(arguments: argparse.Namespace) -> int:
     kinds: dict[str, type[_Float64] | type[_Applesoft]]
     kinds = {"float64": _Float64, "applesoft": _Applesoft}
     arithmetic = kinds[arguments.arithmetic](arguments.outputs)
-    complaints = _Complaints(arguments.errors)
     with ExitStack() as stack:
         source = stack.enter_context(
             _sweep(arguments, options.sweeps(arguments.sweep))
@@ -158,7 +157,8 @@ def main(arguments: argparse.Namespace) -> int:
                 bool(arguments.sweep) or not arguments.results_only,
             )
         )
-        stack.enter_context(complaints)
+        complain = stack.enter_context(_complaints(arguments.errors))
+        complaints = 0
         meter = stack.enter_context(progress(source.total, "solve", "B"))
         write = writer.write
         if not may_wait(arguments.output):
@@ -173,12 +173,11 @@ def main(arguments: argparse.Namespace) -> int:
                 rows.others.pop(name, None)
             results = arithmetic(_complete(rows), units.given(given))
             write(rows, units.shown(results))
-            complaints.take(rows.bad)
+            complaints = complain(rows.bad)
             now = source.position()
             meter.update(now - position)
             position = now
-    complaints.summarise()
-    return 1 if complaints.count or arithmetic.errors else 0
+    return 1 if complaints or arithmetic.errors else 0
 
 
 def _filling(arguments: argparse.Namespace) -> Entries | None:
@@ -340,40 +339,28 @@ def _unreadable(text: Any) -> str | None:
     return None
 
 
-class _Complaints:
-    """Bad rows: to a file, or the first of them to stderr."""
-
-    def __init__(self, path: str | None) -> None:
-        self.count = 0
-        self._path = path
-        self._stack = ExitStack()
-        self._write: Callable[[BadCell], object] = self._note
-
-    def __enter__(self) -> _Complaints:
-        if self._path is not None:
-            file: IO[str] = self._stack.enter_context(replacing(self._path))
-            rows = csv.writer(file, lineterminator="\n")
+@contextmanager
+def _complaints(path: str | None) -> Iterator[Callable[[Sequence[BadCell]], int]]:
+    """A function that says of bad cells what is wrong, to a file or of the first to stderr, and
+    returns how many there have been."""
+    count = 0
+    with replacing(path) if path else nullcontext() as file:
+        rows = csv.writer(file, lineterminator="\n") if file else None
+        if rows:
             rows.writerow(BadCell._fields)
-            self._write = rows.writerow
-        return self
 
-    def __exit__(self, *exception: Any) -> None:
-        self._stack.__exit__(*exception)
+        def take(cells: Sequence[BadCell]) -> int:
+            nonlocal count
+            for cell in sorted(cells):
+                count += 1
+                if rows:
+                    rows.writerow(cell)
+                elif count <= SHOWN:
+                    note("solve", str(cell))
+            return count
 
-    def take(self, cells: Sequence[BadCell]) -> None:
-        for cell in sorted(cells):
-            self.count += 1
-            self._write(cell)
-
-    def _note(self, cell: BadCell) -> None:
-        if self.count <= SHOWN:
-            note("solve", str(cell))
-
-    def summarise(self) -> None:
-        if not self.count:
-            return
-        rows = f"{self.count:,} row{'s' if self.count > 1 else ''} could not be solved"
-        if self._path is not None:
-            note("solve", f"{rows}: see {self._path}")
-        elif self.count > SHOWN:
-            note("solve", f"{rows}; --errors FILE lists all of them")
+        yield take
+    if (path and count) or count > SHOWN:
+        where = f": see {path}" if path else "; --errors FILE lists all of them"
+        unsolved = f"{count:,} row{'s' if count > 1 else ''} could not be solved"
+        note("solve", f"{unsolved}{where}")
