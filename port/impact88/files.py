@@ -179,18 +179,18 @@ class _Sink(io.FileIO):
 
 
 def _sink(
-    file: str, target: str, mode: str, newline: str, opener: Callable[[str, int], int] | None = None
+    file: str, target: str, mode: str, opener: Callable[[str, int], int] | None = None
 ) -> IO[Any]:
     raw = _Sink(file, "w", opener=opener)
     raw.target = target
     buffered = io.BufferedWriter(raw)
     if "b" in mode:
         return buffered
-    return io.TextIOWrapper(buffered, encoding="utf-8", errors=ESCAPED, newline=newline)
+    return io.TextIOWrapper(buffered, encoding="utf-8", errors=ESCAPED, newline="\n")
 
 
 @contextmanager
-def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[Any]]:
+def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     """Open a temporary file beside ``path``; rename it to ``path`` when the block ends well.
 
     ``mode`` is ``"w"`` (text, UTF-8) or ``"wb"``. The bytes are on the disk before the rename. When
@@ -202,7 +202,7 @@ def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[An
     target = _target(path)
     if os.path.exists(target) and not os.path.isfile(target):
         try:
-            file = _sink(target, path, mode, newline)
+            file = _sink(target, path, mode)
         except OSError as error:
             raise UserError(f"cannot be written: {_why(error)}", path) from None
         with file:
@@ -214,7 +214,7 @@ def replacing(path: str, mode: str = "w", newline: str = "\n") -> Iterator[IO[An
     # its name is known before it is there: a signal at any moment finds what to remove
     try:
         try:
-            file = _sink(beside, path, mode, newline, _private)
+            file = _sink(beside, path, mode, _private)
         except OSError as error:
             raise UserError(f"cannot be written: {_why(error)}", path) from None
         try:

@@ -32,10 +32,10 @@ def fixed(value: Any, decimals: int) -> str:
     return text.removeprefix("-") if float(text) == 0 else text
 
 
-def decimals_for(values: Sequence[float], digits: int = 6) -> int:
-    """The decimals that show the largest of ``values`` to ``digits`` significant digits."""
+def decimals_for(values: Sequence[float]) -> int:
+    """The decimals that show the largest of ``values`` to six significant digits."""
     largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
-    return max(0, digits - 1 - math.floor(math.log10(largest))) if largest else digits - 1
+    return max(0, 5 - math.floor(math.log10(largest))) if largest else 5
 
 
 def table(

@@ -319,14 +319,14 @@ def profile(collision: Collision, count: int = 11) -> list[Fit]:
 
 
 def undetermined_range(
-    collision: Collision, tolerance: float = 0.1, spin_weight: float = SPIN_WEIGHT
+    collision: Collision, spin_weight: float = SPIN_WEIGHT
 ) -> tuple[float, float]:
-    """The values of EM whose best fit's root-mean-square misfit is within ``tolerance`` ft/s of
-    the least: how little the data fix it."""
+    """The values of EM whose best fit's root-mean-square misfit is within 0.1 ft/s of the least:
+    how little the data fix it."""
     model = _Linear.of(collision, spin_weight)
     grid = np.linspace(*EM_BOUNDS, 401)
     misfit = np.sqrt([model.at(float(em)).sum_of_squares / model.measured for em in grid])
-    close = grid[misfit <= misfit.min() + tolerance]
+    close = grid[misfit <= misfit.min() + 0.1]
     return float(close.min()), float(close.max())
 
 

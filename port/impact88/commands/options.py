@@ -130,10 +130,10 @@ def sample_option(meaning: str = "the scene of a published run") -> Argument:
     return choice("--sample", SAMPLES, meaning, type=int)
 
 
-def draws(default: int, least: int = 0, meaning: str = "random draws") -> tuple[Argument, Argument]:
+def draws(default: int, meaning: str = "random draws") -> tuple[Argument, Argument]:
     """The options ``--samples`` and ``--seed``."""
     meaning += " (default: %(default)s)"
-    return count("--samples", least, MOST_DRAWS, meaning, default=default), seed()
+    return count("--samples", 0, MOST_DRAWS, meaning, default=default), seed()
 
 
 def seed(meaning: str = "which random draws", default: int = 0) -> Argument:
