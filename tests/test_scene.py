@@ -93,6 +93,10 @@ def test_digits_are_kept_as_typed(line, text):
         ("UX = 1\n[part]", ["part is a table"]),
         ("UX = 1\nwhat is this", ["line"]),
         ('UX = 1\ntitle2 = """', ["several lines"]),
+        ("UX = 1\n[UX]\nvalue = 2", ["UX is given twice", "line"]),
+        ("UX = {value = 0x1F, source = 'a, b'}", ["UX = 0x1F", "INPUT"]),
+        ("UX = 1\na.b = 3", ["line", "NAME = VALUE"]),
+        ("10 PRINT 1", ["is a BASIC program"]),
     ],
 )
 def test_what_a_file_gets_wrong_is_said(line, words):
@@ -171,3 +175,15 @@ def test_signs_are_those_of_the_mechanics():
     # the contact point is in front of either, at the angle PA from the front
     left = plan({**scene, "PA": 90})
     assert (-left.vehicles[0].center / left.vehicles[0].front).imag > 0
+
+
+def test_a_value_and_where_it_comes_from_stand_in_a_table_of_either_form() -> None:
+    lines = COMPLETE.replace("UX = -29.04", "").rstrip()
+    for entry in (
+        'UX = {value = -29.04, source = "a, b # c"}',
+        "[UX]\nvalue = -29.04\nsource = 'a, b # c'",
+    ):
+        scene = read(f"{lines}\n{entry}\n")
+        assert (scene["UX"], scene.entries.sources) == ("-29.04", {"UX": "a, b # c"})
+    with pytest.raises(UserError, match=r"line \d+: UX is a table; expected a number"):
+        read(f"{lines}\n[UX]\n")
