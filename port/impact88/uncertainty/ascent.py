@@ -115,8 +115,8 @@ def extremes_of(
     states: Callable[[Array], Array],
     taken: Callable[[int], bool] = lambda points: True,
 ) -> tuple[Array, Array, Flags]:
-    """The lowest values of m functions, negated, then the highest: how high (nan where there is no
-    value), the coordinates there, and whether the climb came to its end.
+    """The lowest and the highest values of m functions, 2 x m: the values (nan where there is
+    none), the coordinates there, and whether the climb came to its end.
 
     Climbers start from the best ``starts`` of each group of the ``points``, given by number, where
     the functions are known; ``gain``: of a function's range, not worth a step; ``states`` from
@@ -137,7 +137,9 @@ def extremes_of(
     winner, every = final.argmax(axis=0), np.arange(2 * count)
     best = final[winner, every]
     at: Array = u.reshape(*first.shape, points.shape[1])[winner, every]
-    return np.where(np.isneginf(best), np.nan, best), at, ended.reshape(first.shape)[winner, every]
+    values = sense[: 2 * count] * np.where(np.isneginf(best), np.nan, best)
+    came = ended.reshape(first.shape)[winner, every]
+    return values.reshape(2, count), at.reshape(2, count, -1), came.reshape(2, count)
 
 
 def below_all(height: Array) -> Array:

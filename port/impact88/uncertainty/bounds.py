@@ -131,15 +131,11 @@ def bounds(
         limits=box.limits,
         bounds={
             name: Bound(
-                nominal=nominal[name],
-                lower=float(searched.lower[place]),
-                upper=float(searched.upper[place]),
-                at_lower=box.inputs_at(searched.at_lower[place]),
-                at_upper=box.inputs_at(searched.at_upper[place]),
-                corner_lower=float(searched.corner_lower[place]),
-                corner_upper=float(searched.corner_upper[place]),
-                lower_warnings=box.warnings_at(searched.at_lower[place]),
-                upper_warnings=box.warnings_at(searched.at_upper[place]),
+                nominal[name],
+                *searched.bound[:, place].tolist(),
+                *map(box.inputs_at, searched.at[:, place]),
+                *searched.corner[:, place].tolist(),
+                *map(box.warnings_at, searched.at[:, place]),
             )
             for place, name in enumerate(box.outputs)
         },
@@ -268,13 +264,12 @@ class _Box:
         if self.model is not forward_model or friction in (0.0, PIVOT) or self.share:
             return extremes(self.piece(None), count, rng)
         slip = extremes(Piece(lambda points: self.slip(points)[:, None], 1), count, rng)
-        ends = np.concatenate([slip.at_lower, slip.at_upper])
-        pieces = []
+        (lowest, highest), pieces = slip.bound[:, 0], []
         for sign in (1.0, -1.0):
             # kept where gt <= 0, changed where gt > 0
-            if slip.lower[0] <= 0 if sign > 0 else slip.upper[0] > 0:
-                apart = 0.0 if sign > 0 else SLIP_APART * float(slip.upper[0] - slip.lower[0])
-                pieces.append(extremes(self.piece(sign, apart), count, rng, ends))
+            if lowest <= 0 if sign > 0 else highest > 0:
+                apart = 0.0 if sign > 0 else SLIP_APART * float(highest - lowest)
+                pieces.append(extremes(self.piece(sign, apart), count, rng, slip.at[:, 0]))
         searched = merged(pieces)
         return replace(searched, evaluations=searched.evaluations + slip.evaluations)
 

@@ -17,7 +17,7 @@ extremes lie no closer. It is no proof that none lies farther.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 from typing import NamedTuple
 
@@ -69,21 +69,22 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True)
 class Extremes:
-    """For m functions of k coordinates: ``lower`` and ``upper`` (m); ``at_lower`` and ``at_upper``
-    (m, k), points of the unit cube; ``corner_lower`` and ``corner_upper`` (m), over the corners
-    evaluated; ``evaluations``, points at which the functions were taken.
+    """The lowest and highest values of m functions of k coordinates: ``bound``, 2 x m; ``at``, 2 x
+    m x k, points of the unit cube; ``corner``, 2 x m, over the corners evaluated; ``evaluations``,
+    points at which the functions were taken.
 
     A function without any finite value has nan everywhere. An extreme is infinite where a pole lies
     inside; its point is then one close to the pole.
     """
 
-    lower: Array
-    upper: Array
-    at_lower: Array
-    at_upper: Array
-    corner_lower: Array
-    corner_upper: Array
+    bound: Array
+    at: Array
+    corner: Array
     evaluations: int
+
+
+_SENSE = np.array([[-1.0], [1.0]])
+"""Of the lowest and the highest."""
 
 
 def extremes(
@@ -108,52 +109,41 @@ def extremes(
     count = values.shape[1]
     ends = np.cumsum([len(group) for group in groups])
     numbers = np.split(np.arange(len(points)), ends[:-1])
-    highest, at, _ = extremes_of(
+    bound, at, _ = extremes_of(
         *(ground, points, values, numbers, STARTS, LEAST_GAIN),
         lambda begin: np.empty((0, len(begin))),
     )
     if np.isnan(values[:, : piece.size]).any() and coordinates:
-        at, highest = ground.stepped(at, highest, rng)
-    corners = np.hstack([-values[: len(groups[0])], values[: len(groups[0])]])
-    corner = below_all(corners).max(axis=0)
-    corner = np.where(np.isneginf(corner), np.nan, corner)
-    found = Extremes(
-        lower=-highest[:count],
-        upper=highest[count:],
-        at_lower=at[:count],
-        at_upper=at[count:],
-        corner_lower=-corner[:count],
-        corner_upper=corner[count:],
-        evaluations=ground.taken,
-    )
+        at, bound = ground.stepped(at, bound, rng)
+    corner = _SENSE * below_all(_SENSE[:, :, None] * values[: len(groups[0])].T).max(axis=2)
+    corner[np.isinf(corner)] = np.nan
     finite = np.isfinite(values[:, piece.size :]).all(axis=1)
     if finite.any():
         pairs = points[finite][rng.integers(finite.sum(), size=(2, POLE_PAIRS))]
         for j in range(piece.size, count):
-            ways = zip(pairs, (found.at_lower[j], found.at_upper[j]), strict=True)
-            _seek_poles(piece, j, found, *(np.vstack(way) for way in ways))
-    kept = {
-        name: column[: piece.size] for name, column in vars(found).items() if name != "evaluations"
-    }
-    return replace(found, **kept)
+            ways = zip(pairs, at[:, j], strict=True)
+            _seek_poles(piece, j, bound, at, *(np.vstack(way) for way in ways))
+    size = piece.size
+    return Extremes(bound[:, :size], at[:, :size], corner[:, :size], ground.taken)
 
 
 def merged(pieces: Sequence[Extremes]) -> Extremes:
     """The extremes over several pieces together."""
-    columns: dict[str, Array] = {}
-    for value, at, order in (
-        ("lower", "at_lower", -1),
-        ("upper", "at_upper", 1),
-        ("corner_lower", None, -1),
-        ("corner_upper", None, 1),
-    ):
-        values = np.stack([getattr(piece, value) for piece in pieces])
-        which = np.where(np.isnan(values), -np.inf, values * order).argmax(axis=0)
-        every = np.arange(len(which))
-        columns[value] = values[which, every]
-        if at:
-            columns[at] = np.stack([getattr(piece, at) for piece in pieces])[which, every]
-    return Extremes(evaluations=sum(p.evaluations for p in pieces), **columns)
+    bound, at, corner = (
+        np.stack([getattr(piece, name) for piece in pieces]) for name in ("bound", "at", "corner")
+    )
+
+    # a pole's are infinite
+    which, where = (
+        np.where(np.isnan(values), -np.inf, _SENSE * values).argmax(axis=0)[None]
+        for values in (bound, corner)
+    )
+    return Extremes(
+        np.take_along_axis(bound, which, 0)[0],
+        np.take_along_axis(at, which[..., None], 0)[0],
+        np.take_along_axis(corner, where, 0)[0],
+        sum(piece.evaluations for piece in pieces),
+    )
 
 
 class _Ground:
@@ -206,11 +196,12 @@ class _Ground:
             )
         return functions.swapaxes(1, 2), walls.swapaxes(1, 2), np.empty((n, 0, k))
 
-    def stepped(self, at: Array, highest: Array, rng: np.random.Generator) -> tuple[Array, Array]:
+    def stepped(self, at: Array, bound: Array, rng: np.random.Generator) -> tuple[Array, Array]:
         """Where functions have no value at some points slopes say nothing of the edge they end at:
         points better than ``at``, by random steps, shorter and shorter."""
-        at, highest = at.copy(), highest.copy()
-        count, every = len(at) // 2, np.arange(len(at))
+        shape, count = at.shape, at.shape[1]
+        at, highest = at.reshape(2 * count, -1).copy(), (_SENSE * bound).ravel()
+        every = np.arange(2 * count)
         for length in STEPS:
             aside = length * rng.standard_normal((len(at), STEPS_AT_ONCE, at.shape[1]))
             tried = np.clip(at[:, None] + aside, 0.0, 1.0)
@@ -221,13 +212,13 @@ class _Ground:
             better = height[every, choice] > below_all(highest)
             at = np.where(better[:, None], tried[every, choice], at)
             highest = np.where(better, height[every, choice], highest)
-        return at, highest
+        return at.reshape(shape), _SENSE * highest.reshape(2, count)
 
 
-def _seek_poles(piece: Piece, j: int, found: Extremes, start: Array, end: Array) -> None:
+def _seek_poles(piece: Piece, j: int, bound: Array, at: Array, start: Array, end: Array) -> None:
     """Look for zeros of denominator ``j`` between two lots of points, take the functions on either
-    side of them, and note in ``found`` those that a pole makes infinite. Zeros outside the piece
-    are none."""
+    side of them, and note in ``bound`` and ``at`` those that a pole makes infinite. Zeros outside
+    the piece are none."""
 
     def between(share: Array) -> Array:
         return start + share[:, None] * (end - start)
@@ -251,14 +242,11 @@ def _seek_poles(piece: Piece, j: int, found: Extremes, start: Array, end: Array)
         far, near = (piece.function(points)[:, : piece.size] for points in places)
         with np.errstate(all="ignore"):
             growing = (np.abs(near) > POLE_GROWTH * np.abs(far)) & (np.abs(far) > 0)
-        for bound, at, sign in (
-            (found.lower, found.at_lower, -1),
-            (found.upper, found.at_upper, 1),
-        ):
+        for which, sign in enumerate((-1, 1)):
             endless = growing & (near * sign > 0)
             for function in np.flatnonzero(endless.any(axis=0)).tolist():
-                bound[function] = sign * np.inf
-                at[function] = places[1][endless[:, function].argmax()]
+                bound[which, function] = sign * np.inf
+                at[which, function] = places[1][endless[:, function].argmax()]
 
 
 def _surface(

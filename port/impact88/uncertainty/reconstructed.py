@@ -173,14 +173,12 @@ def ranges(
     functions = np.concatenate(
         [box.from_nominal(points[i : i + CHUNK])[1] for i in range(0, len(points), CHUNK)]
     )
-    count = functions.shape[1]
     # of each part of the points the best: climbers that stand apart
     parts = [np.arange(i, len(points), STARTS) for i in range(min(STARTS, len(points)))]
-    extreme, at, done = extremes_of(
+    (lower, upper), (at_lower, at_upper), done = extremes_of(
         *(box, points, functions, parts, 1, LEAST_GAIN),
         *(lambda start: box.from_nominal(start)[0], budget),
     )
-    lower, upper = -extreme[:count], extreme[count:]
     endless = set(_endless(box.solver, solution.system.known, names))
     # what divides a coefficient takes both signs
     divided = {name for i, name in enumerate(box.ratios, len(names)) if lower[i] < 0 < upper[i]}
@@ -190,9 +188,9 @@ def ranges(
         else Range(
             float(lower[i]),
             float(upper[i]),
-            box.inputs(at[i]),
-            box.inputs(at[count + i]),
-            bool(done[i] and done[count + i]),
+            box.inputs(at_lower[i]),
+            box.inputs(at_upper[i]),
+            bool(done[:, i].all()),
         )
         for i, name in enumerate(names)
     }
