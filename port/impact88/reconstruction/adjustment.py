@@ -60,9 +60,9 @@ _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
 _STARTS = 60
 _NEAR, _FAR = 0.3, 1.0
 """How far apart starts lie, in scaled variables, in turn."""
-_TIGHTENED_AT_LEAST, _TIGHTENED, _ENOUGH = 4, 12, 10_000
-"""Of the starts so many with tolerances tightened little by little, up to the second number while
-nothing is found, or something not determined; none once the equations have been taken so often."""
+_TIGHTENED_FIRST, _TIGHTENED = 4, 12
+"""Of the starts so many with tolerances tightened little by little, the second number where nothing
+is found by then, or something not determined."""
 _STEPS = 50
 _LONGEST, _LAST = 2.0, 1e-14
 """The longest and the last step in scaled variables, the last as a share of them."""
@@ -108,7 +108,7 @@ class System:
         self, known: Mapping[str, Uncertain], adjusted: bool, progress: Progress = lambda n: None
     ) -> None:
         self.progress = progress
-        self.known, self.adjusted, self.taken = dict(known), adjusted, 0
+        self.known, self.adjusted = dict(known), adjusted
         self.nominal = {name: item.nominal for name, item in known.items()}
         self.point = self.nominal.get("M", 6.0) == 4
         geometry = Geometry.of(self.nominal)
@@ -201,7 +201,6 @@ class System:
 
     def left(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
         """What conditions, then observations leave over, scaled: rows, one column an impact."""
-        self.taken += 1
         targets = {**self.nominal, **(targets or {})}
         rows = [state.law(n) / self._law_scale(n) for n in self.laws]
         rows += [self._exact(state, n, targets) for n in self.exact]
@@ -313,10 +312,10 @@ class System:
         left_over = np.abs(self.left(self.state(x))[:count]).max(axis=0, initial=0.0)
         return x, np.broadcast_to(left_over, x.shape[1:])
 
-    def tightened(self, x: Floats) -> tuple[Floats, float]:
-        """Least squares from one start, and the largest of what conditions leave over there. Tight
-        tolerances among loose ones make a narrow curved valley: all begin loose and are tightened
-        little by little."""
+    def tightened(self, x: Floats) -> tuple[Floats, Floats]:
+        """Least squares from several starts, a column each, and the largest of what conditions
+        leave over at each end. Tight tolerances among loose ones make a narrow curved valley: all
+        begin loose and are tightened little by little."""
         held = np.full(len(self.conditions), _HELD)
         shares = np.array(
             [standard_deviation(self.known[n]) / self.scale(n) for n in self.observations]
@@ -331,52 +330,66 @@ class System:
             loosest *= _TIGHTER
         rows = np.concatenate([held / tightest, np.ones(len(shares))])
         x = self._descended(x, rows[:, None], *_CLOSELY)
-        left_over = np.abs(self.left(self.state(x))[: len(held)]).max(initial=0.0)
-        return x, float(left_over)
+        return x, np.abs(self.left(self.state(x))[: len(held)]).max(axis=0, initial=0.0)
 
     def _descended(self, x: Floats, rows: Floats, steps: int, enough: float) -> Floats:
         """Least squares of what conditions and observations leave over, ``rows`` times as much, in
         damped steps (Levenberg, Marquardt) until three gain less than the share ``enough``."""
-        residual = rows * self.left(self.state(x))
-        squares, damping, idle = _squares(residual), 1e-3, 0
+        x, residual = x.copy(), rows * self.left(self.state(x))
+        squares, damping = _squares(residual), np.full(x.shape[1], 1e-3)
+        idle, going = np.zeros(x.shape[1], int), np.isfinite(squares)
         for _ in range(steps):
-            jacobian = rows * self.slopes(x)
-            u, s, vt, _ = _decomposed(jacobian)
-            while True:
-                inverse = (vt.T * (s / (s * s + damping * s.max(initial=0.0) ** 2))) @ u.T
-                step = -inverse @ residual
-                size = np.abs(step).max(initial=0.0)
-                if not size > _LAST:
-                    return x
-                step *= min(1.0, _LONGEST / size)
-                tried, after = self._bent(x + step, residual + jacobian @ step, inverse, rows)
-                less = _squares(after)
-                if less < squares:
-                    break
-                damping *= 10
-            damping = max(damping / 10, 1e-16)
-            idle = 0 if squares - less > enough * squares else idle + 1
-            x, residual, squares = tried, after, less
-            if idle == 3:
+            who = np.flatnonzero(going)
+            jacobian = rows[:, None] * self.linearized(x[:, who], self.left)[1]
+            finite = np.isfinite(jacobian).all(axis=(0, 1))
+            going[who[~finite]] = False
+            who, jacobian = who[finite], jacobian[:, :, finite].transpose(2, 0, 1)
+            if not len(who):
                 break
+            u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
+            first, trying = squares.copy(), np.arange(len(who))
+            while len(trying):
+                one, width = who[trying], s[trying]
+                damped = width**2 + damping[one, None] * width[:, :1] ** 2
+                inverse = (vt[trying].swapaxes(1, 2) * (width / damped)[:, None]) @ (
+                    u[trying].swapaxes(1, 2)
+                )
+                step = -_times(inverse, residual[:, one])
+                size = np.abs(step).max(axis=0, initial=0.0)
+                going[one] = size > _LAST
+                step *= np.minimum(1.0, _LONGEST / np.where(going[one], size, 1.0))
+                promised = residual[:, one] + _times(jacobian[trying], step)
+                tried, after = self._bent(x[:, one] + step, promised, inverse, rows)
+                less = _squares(after) < squares[one]
+                kept, won = going[one] & less, one[going[one] & less]
+                x[:, won], residual[:, won] = tried[:, kept], after[:, kept]
+                squares[won] = _squares(after)[kept]
+                damping[one] = np.where(
+                    less, np.maximum(damping[one] / 10, 1e-16), damping[one] * 10
+                )
+                trying = trying[going[one] & ~less]
+            gained = first[who] - squares[who] > enough * first[who]
+            idle[who] = np.where(gained, 0, idle[who] + 1)
+            going[who[idle[who] == 3]] = False
         return x
 
     def _bent(
         self, x: Floats, promised: Floats, inverse: Floats, rows: Floats
     ) -> tuple[Floats, Floats]:
-        """A straight step's end brought to where what is left over is what the slopes promised, as
+        """Straight steps' ends brought to where what is left over is what the slopes promised, as
         long as that lessens it: so steps follow narrow curved valleys."""
         after = rows * self.left(self.state(x))
-        squares, straight = _squares(after), _squares(promised)
+        squares, straight, who = _squares(after), _squares(promised), np.arange(x.shape[1])
         for _ in range(_CORRECTIONS):
-            if squares <= 1.1 * straight:
+            who = who[squares[who] > 1.1 * straight[who]]
+            if not len(who):
                 break
-            tried = x - inverse @ (after - promised)
+            tried = x[:, who] - _times(inverse[who], after[:, who] - promised[:, who])
             residual = rows * self.left(self.state(tried))
-            less = _squares(residual)
-            if not less < 0.9 * squares:
-                break
-            x, after, squares = tried, residual, less
+            better = _squares(residual) < 0.9 * squares[who]
+            who = who[better]
+            x[:, who], after[:, who] = tried[:, better], residual[:, better]
+            squares[who] = _squares(after[:, who])
         return x, after
 
     def polished(self, x: Floats) -> tuple[Floats, float]:
@@ -398,7 +411,7 @@ class System:
             return x, np.inf
         before, after = self.left(self.state(begin)), self.left(self.state(x))
         # neither a saddle nor another valley
-        if not least or _squares(after[count:]) > 1.01 * _squares(before[count:]) + 1e-9:
+        if not least or _squares(after[count:])[0] > 1.01 * _squares(before[count:])[0] + 1e-9:
             return x, np.inf
         return x, float(np.abs(after[:count]).max(initial=0.0))
 
@@ -438,8 +451,14 @@ _VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES, *CONTACT} - {*_S
 _COURSE_OF = {speed: course for course, speed in COURSES.items()}
 
 
-def _squares(rows: Floats) -> float:
-    return float(np.square(rows).sum())
+def _squares(rows: Floats) -> Floats:
+    """Of each column."""
+    return np.asarray(np.square(rows).sum(axis=0))
+
+
+def _times(matrices: Floats, columns: Floats) -> Floats:
+    """A matrix for each column."""
+    return np.asarray(np.einsum("nij,jn->in", matrices, columns))
 
 
 def _balanced(matrix: Floats) -> Floats:
@@ -775,18 +794,15 @@ def _solutions(
         if over[i] <= _NEARLY:
             found.follow(ends[:, i : i + 1])
     met = bool((over <= _NEARLY).any())
-    starts = begin.shape[1]
-    for i in range(0 if at_hand else min(starts, _TIGHTENED)):
-        enough = starts == 1 or (i >= _TIGHTENED_AT_LEAST and not found.is_open)
-        if found.solutions and (enough or system.taken > _ENOUGH):
+    few, more = begin[:, :_TIGHTENED_FIRST], begin[:, _TIGHTENED_FIRST:_TIGHTENED]
+    for some in () if at_hand else (few, more):
+        straight = begin.shape[1] == 1 or (some is more and not found.is_open)
+        if not some.size or (found.solutions and straight):
             break
-        try:
-            nearby, left_over = system.tightened(begin[:, i : i + 1])
-        except np.linalg.LinAlgError:
-            continue  # something is not finite there
-        if left_over <= _NEARLY:
+        nearby, left_over = system.tightened(some)
+        for i in np.flatnonzero(left_over <= _NEARLY):
             met = True
-            found.follow(nearby)
+            found.follow(nearby[:, i : i + 1])
     if not (met or np.isfinite(over).any()):
         raise np.linalg.LinAlgError("not finite")
     if met and not found.solutions:
