@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 from impact88 import barrier, sample, solve, solve_for
 from impact88.chapter.barrier import BARRIER, BARRIER_AFTER, VEHICLE
 from impact88.errors import UserError
-from impact88.reconstruction.impulse import clock, facing, forces, principal_direction
+from impact88.reconstruction.geometry import NAMES as GEOMETRY
+from impact88.reconstruction.impulse import clock, facing, forces
+from impact88.reconstruction.state import State
 from reference_cases import cases_of
 
 (CASE,) = cases_of("barrier")
@@ -137,6 +139,11 @@ def test_average_and_peak_force_from_a_contact_time() -> None:
             forces(1.0, time)
 
 
+def pdof(vehicle: str, theta: float, gamma: float, pn: float, pt: float) -> float:
+    vehicles = {**dict.fromkeys(GEOMETRY, 1.0), "TA": theta, "TB": theta, "GA": gamma}
+    return float(State.of_known({**vehicles, "PN": pn, "PT": pt})[f"PDOF{vehicle}"])
+
+
 @pytest.mark.parametrize(
     ("push", "expected", "hour"),
     [
@@ -151,15 +158,15 @@ def test_average_and_peak_force_from_a_contact_time() -> None:
 def test_principal_direction_of_force(
     push: tuple[float, float], expected: float, hour: str
 ) -> None:
-    found = float(principal_direction("A", 0.0, 0.0, *push))
+    found = pdof("A", 0.0, 0.0, *push)
     assert found == pytest.approx(expected)
     assert clock(found) == hour
     # the same push turned with the vehicle and the plane
     for angle in (-170.0, 33.0, 290.0):
-        turned = float(principal_direction("A", angle, angle, *push))
+        turned = pdof("A", angle, angle, *push)
         assert np.cos(np.radians(turned - expected)) == pytest.approx(1.0)
     # B takes the opposite push and faces the other way at equal headings
-    assert float(principal_direction("B", 0.0, 0.0, *push)) == pytest.approx(expected)
+    assert pdof("B", 0.0, 0.0, *push) == pytest.approx(expected)
 
 
 def test_pdof_of_the_published_runs() -> None:
@@ -167,10 +174,10 @@ def test_pdof_of_the_published_runs() -> None:
     B, heading 60°, from its right front."""
     scene = {name: float(text) for name, text in sample(1).items()}
     found = solve(scene, ("PN", "PT"))
-    a = float(principal_direction("A", scene["TA"], scene["GA"], found["PN"], found["PT"]))
-    b = float(principal_direction("B", scene["TB"], scene["GA"], found["PN"], found["PT"]))
+    a = pdof("A", scene["TA"], scene["GA"], found["PN"], found["PT"])
+    b = pdof("B", scene["TB"], scene["GA"], found["PN"], found["PT"])
     assert -30 < a < 0
     assert 0 < b < 90
     # along A's own line of travel: it slows A down
     assert abs(facing("A", scene["TA"])) == 180
-    assert np.isnan(principal_direction("A", 0.0, 0.0, 0.0, 0.0))
+    assert np.isnan(pdof("A", 0.0, 0.0, 0.0, 0.0))

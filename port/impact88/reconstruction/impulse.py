@@ -45,20 +45,6 @@ def facing(vehicle: str, theta: Any) -> Array:
     return np.asarray(theta) + (180.0 if vehicle == "A" else 0.0)
 
 
-def principal_direction(vehicle: str, theta: Any, gamma: Any, pn: Any, pt: Any) -> Array:
-    """PDOF of ``vehicle`` ("A" or "B") in degrees, above -180 and up to 180; NaN without impulse.
-
-    ``theta``, ``gamma``: TA or TB, and GA, in degrees; ``pn``, ``pt``: the impulse on *A* as
-    everywhere (B takes the opposite).
-    """
-    pn, pt = np.asarray(pn, np.float64), np.asarray(pt, np.float64)
-    # where the force comes from is opposite to where it pushes
-    sign = -1.0 if vehicle == "A" else 1.0
-    origin = np.degrees(np.arctan2(sign * pt, sign * pn)) + np.asarray(gamma, np.float64)
-    angle = -np.mod(180.0 - (facing(vehicle, theta) - origin), 360.0) + 180.0
-    return np.where((pn == 0) & (pt == 0), np.nan, angle)
-
-
 def clock(pdof: float) -> str:
     """A PDOF as the nearest hour of the clock: 12 o'clock is the front, 3 o'clock the right."""
     return f"{round(pdof / 30) % 12 or 12} o'clock"

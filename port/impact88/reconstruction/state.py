@@ -155,9 +155,11 @@ class State:
         return _unit(value)
 
     def _pdof(self, name: str) -> Any:
-        vehicle = FORCES[name]
-        clockwise = facing(vehicle, self.values["T" + vehicle]) + 180 - course(*self._vector(name))
-        return clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
+        """Above -180 and up to 180; NaN without impulse."""
+        vehicle, (x, y) = FORCES[name], self._vector(name)
+        clockwise = facing(vehicle, self.values["T" + vehicle]) + 180 - course(x, y)
+        turned = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
+        return np.where((x == 0) & (y == 0), np.nan, turned)
 
     # -- quantities
 
@@ -191,7 +193,8 @@ class State:
         """A vehicle's change of velocity along its length, forward, and across, to its right."""
         first = 0 if vehicle == "A" else 3
         x, y = self.changes[first : first + 2]
-        return in_vehicle_axes(vehicle, self.values["T" + vehicle], x, y)
+        cosine, sine = _unit(facing(vehicle, self.values["T" + vehicle]))
+        return x * cosine + y * sine, x * sine - y * cosine
 
     def _energy(self, velocities: list[Any]) -> Any:
         inertias = [
@@ -235,12 +238,6 @@ _QUANTITIES: dict[str, Callable[[State], Any]] = {
     "PDOFA": lambda state: state._pdof("PDOFA"),
     "PDOFB": lambda state: state._pdof("PDOFB"),
 }
-
-
-def in_vehicle_axes(vehicle: str, theta: Any, x: Any, y: Any) -> tuple[Any, Any]:
-    """A vector's components along a vehicle's length, forward, and across, to its right."""
-    cosine, sine = _unit(facing(vehicle, theta))
-    return x * cosine + y * sine, x * sine - y * cosine
 
 
 def _unit(degrees: Any) -> tuple[Any, Any]:

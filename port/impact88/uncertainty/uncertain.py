@@ -123,27 +123,17 @@ class Uncertain:
 
         if self.kind == "normal" and math.isinf(self.low) and math.isinf(self.high):
             return self.nominal + self.deviation * variates
-        table, slopes = _quantile_table(self)
-        # the table is evenly spaced, so the place in it needs no search
-        place = np.clip(variates, -TABLE_REACH, TABLE_REACH)
-        place += TABLE_REACH
-        place *= TABLE_STEPS / (2 * TABLE_REACH)
-        index = np.minimum(place.astype(np.intp), TABLE_STEPS - 1)
-        place -= index
-        place *= slopes[index]
-        place += table[index]
-        return np.clip(place, self.low, self.high, out=place)
+        return np.clip(np.interp(variates, *_quantile_table(self)), self.low, self.high)
 
 
 @lru_cache(maxsize=64)
 def _quantile_table(item: Uncertain) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The quantiles at evenly spaced standard normal variates, and the steps between them."""
+    """Standard normal variates and the quantiles at them."""
     import numpy as np
 
     places = np.linspace(-TABLE_REACH, TABLE_REACH, TABLE_STEPS + 1)
     standard = NormalDist()
-    table = np.array([item.quantile(standard.cdf(place)) for place in places.tolist()])
-    return table, np.diff(table)
+    return places, np.array([item.quantile(standard.cdf(place)) for place in places.tolist()])
 
 
 def fixed(value: float) -> Uncertain:
