@@ -137,25 +137,20 @@ class Block(NamedTuple):
     - ``unused`` where all scenes are point masses and do not look at it.
 
     ``refused``: a boolean array, True where the numbers cannot be used, or None if nowhere.
-    ``limits``: name -> the least and the most a column may hold for further scenes to be of the
-    same kind; None where limits cannot say so.
     """
 
     fixed: dict[str, Floats]
     varying: dict[str, Floats]
     kinds: tuple[str, ...]
     refused: NDArray[np.bool_] | None
-    limits: dict[str, Limits] | None
 
 
 class _Column(NamedTuple):
     """What `examine` finds of a column: itself (of length 1 if all its numbers are equal), its
-    kind, the limits of that kind, and whether all can be used. Limits of None: the kind cannot be
-    said by limits."""
+    kind, and whether all can be used."""
 
     values: Floats
     kind: str
-    limits: Limits | None
     usable: bool
 
 
@@ -170,8 +165,7 @@ def examine(values: Mapping[str, Floats]) -> Block:
     fixed: dict[str, Floats] = {}
     varying: dict[str, Floats] = {}
     kinds: dict[str, str] = {}
-    limits: dict[str, Limits] = {}
-    usable = sayable = True
+    usable = True
     for name, column in values.items():
         if only_points and name in UNUSED_BY_POINTS:
             kinds[name] = "unused"
@@ -184,17 +178,13 @@ def examine(values: Mapping[str, Floats]) -> Block:
         found = _examined(name, column, least, most)
         kinds[name] = found.kind
         usable = usable and found.usable
-        if found.limits is None:
-            sayable = False
-        elif len(column) > 1:
-            limits[name] = found.limits
         (fixed if len(found.values) == 1 else varying)[name] = found.values
     ordered = tuple(kinds[name] for name in SCENE)
     if usable and _at_rest_where_infinite(kinds):
-        return Block(fixed, varying, ordered, None, limits if sayable else None)
+        return Block(fixed, varying, ordered, None)
     together = {name: fixed[name] if name in fixed else varying[name] for name in SCENE}
     refused = _refused(together, max(map(len, values.values())))
-    return Block(fixed, varying, ordered, refused if refused.any() else None, None)
+    return Block(fixed, varying, ordered, refused if refused.any() else None)
 
 
 def _extremes(columns: Sequence[Floats]) -> list[Limits]:
@@ -221,26 +211,19 @@ def _examined(name: str, column: Floats, least: float, most: float) -> _Column:
             turned = np.fmod(column, 360.0)
         column = np.where(np.abs(column) > LARGE_ANGLE, turned, column)
         kind = _alike_kind(name, float(column[0])) if alike else "array"
-        return _Column(column, kind, None, finite)
+        return _Column(column, kind, finite)
     if name == "M":
-        if alike and least in (4, 6):
-            return _Column(column, _alike_kind(name, least), (least, least), True)
-        return _Column(column, "6" if alike else "mixed", None, False)
+        usable = alike and least in (4, 6)
+        kind = _alike_kind(name, least) if usable else "6" if alike else "mixed"
+        return _Column(column, kind, usable)
     if name in INERTIAS:
         if least > 0 and most == np.inf:
-            if alike:
-                return _Column(column, "inf", (least, most), True)
-            return _Column(column, "array with infinities", None, False)
+            return _Column(column, "inf" if alike else "array with infinities", alike)
         if not (least > 0 and finite):
-            return _Column(column, "scalar" if alike else "array with infinities", None, False)
+            return _Column(column, "scalar" if alike else "array with infinities", False)
     elif name == "MU" and least <= PIVOT <= most and bool((column == PIVOT).any()):
-        if alike:
-            return _Column(column, "pivot", (least, most), True)
-        return _Column(column, "mixed", _ANY, finite)
-    if alike:
-        return _Column(column, _alike_kind(name, least), (least, most), finite)
-    low, high = ORDINARY[name]
-    return _Column(column, "array", (low, high) if low <= least else None, finite)
+        return _Column(column, "pivot" if alike else "mixed", finite)
+    return _Column(column, _alike_kind(name, least) if alike else "array", finite)
 
 
 def _ordinary(name: str) -> Limits:
@@ -263,12 +246,24 @@ def ordinary_kinds(
 ) -> tuple[str, ...] | None:
     """The kinds of a block, as `examine` finds them, from the least and largest number of columns
     and the values of the others; None where its numbers have to be looked at."""
+
+    def ends(name: str) -> Limits:
+        return extremes[name] if name in extremes else (fixed[name], fixed[name])
+
+    point = ends("M") == (4.0, 4.0)
     kinds = []
     for name, (low, high) in ORDINARY.items():
-        least, most = extremes[name] if name in extremes else (fixed[name], fixed[name])
-        if not (low <= least and most <= high):  # NaN is neither
+        least, most = ends(name)
+        if point and name in UNUSED_BY_POINTS:
+            kinds.append("unused")
+        elif low <= least and most <= high:  # NaN is neither
+            kinds.append("array" if least < most else _alike_kind(name, least))
+        elif name == "MU" and least == most == PIVOT:
+            kinds.append("pivot")
+        elif name == "M" and point:
+            kinds.append("4")
+        else:
             return None
-        kinds.append("array" if least < most else _alike_kind(name, least))
     return tuple(kinds)
 
 

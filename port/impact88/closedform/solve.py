@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -23,7 +23,7 @@ from ..native.program import addresses, extremes
 from ..processors import processors
 from ..scene import check_mapping
 from ..status import Status
-from .columns import ORDINARY, Block, Buffers, Limits, Source, examine, ordinary_kinds, sources
+from .columns import ORDINARY, Block, Buffers, Source, examine, ordinary_kinds, sources
 from .fused import CIRCLE, plan_for, program_for
 from .onescene import ALL, PLAIN, in_order, solve_one
 from .share import share_of
@@ -48,8 +48,6 @@ what kind the next ones are."""
 TOGETHER = 1 << 28
 """Bytes up to which results are rows of one array, which is had sooner than arrays of their own (6
 instead of 12 ns a scene for the six velocities of a million) but is kept as long as one of them."""
-SHARED_SPAN = 2 * SHARED_TILE
-"""Scenes a thread takes at a time."""
 WORTH_A_THREAD = 32768
 """Scenes for each thread from which it pays: half a millisecond of the compiled machine."""
 
@@ -145,27 +143,33 @@ def _solved(
         _check_room(out, wanted, shape, [source.values for source in given.values()])
         whole |= {name: out[name] for name in wanted if name in out}
     results: dict[str, Array] = {name: whole[name].reshape(count) for name in wanted}
-    workers = _workers(count, threads, SHARED_SPAN) if wanted else 1
-    if workers == 1:
-        _Worker(given, wanted, results, TILE, sign)([(0, count)] if wanted else [])
-    else:
-        lock = threading.Lock()
-        remaining = ((at, min(at + SHARED_SPAN, count)) for at in range(0, count, SHARED_SPAN))
-
-        def next_span() -> tuple[int, int] | None:
-            with lock:
-                return next(remaining, None)
-
-        from concurrent.futures import ThreadPoolExecutor  # imports logging
-
-        with ThreadPoolExecutor(workers) as pool:
-            jobs = [
-                pool.submit(_Worker(given, wanted, results, SHARED_TILE), iter(next_span, None))
-                for _ in range(workers)
-            ]
-        for job in jobs:
-            job.result()
+    if not wanted:
+        return {}
+    workers = _workers(count, threads, 2 * SHARED_TILE)
+    tile = TILE if workers == 1 else SHARED_TILE
+    _shared_out(lambda *span: _Worker(given, results, tile, sign).solve(*span), count, workers)
     return {name: whole[name] for name in wanted}
+
+
+def _shared_out(work: Callable[[int, int], None], count: int, workers: int) -> None:
+    """Do ``work(start, stop)`` of all scenes, an equal part by each of some threads."""
+    size = -(-count // workers)
+    failures: list[BaseException] = []
+
+    def part(start: int) -> None:
+        try:
+            work(start, min(start + size, count))
+        except BaseException as error:
+            failures.append(error)
+
+    others = [threading.Thread(target=part, args=(k * size,)) for k in range(1, workers)]
+    for thread in others:
+        thread.start()
+    part(0)
+    for thread in others:
+        thread.join()
+    if failures:
+        raise failures[0]
 
 
 def _rooms(
@@ -232,15 +236,17 @@ def solve_plain(
             fixed[name] = value
         else:
             return None
-    if len(shape) != 1 or (count := shape[0]) < 2:
+    count = math.prod(shape)
+    if count < 2:
         return None
     if count <= FEW:
         try:
-            together = np.concatenate(list(arrays.values()), dtype=np.float64, casting="same_kind")
+            flat = [array.reshape(-1) for array in arrays.values()]
+            together = np.concatenate(flat, dtype=np.float64, casting="same_kind")
         except TypeError:  # no numbers
             return None
         where = together.ctypes.data + count * _ROWS[: len(arrays)]
-    elif all(x.dtype == np.float64 and x.strides[0] == 8 for x in arrays.values()):
+    elif all(x.dtype == np.float64 and x.flags.c_contiguous for x in arrays.values()):
         where = addresses(arrays.values())
     else:
         return None
@@ -263,30 +269,27 @@ def solve_plain(
     if count <= FEW:  # all have been looked at
         program.run(read, into, count, CIRCLE, fixed)
         return by_name
+    kind = dict(zip(SCENE, kinds, strict=True))
+    looked_at = [i for i, name in enumerate(arrays) if kind[name] != "unused"]
+    checked = where[looked_at]
     limits = np.array(
         [
-            ORDINARY[name] if low < high else (low, high)
-            for name, low, high in zip(arrays, least, most, strict=True)
+            ORDINARY[name] if kind[name] == "array" else (least[i], most[i])
+            for i, name in enumerate(arrays)
+            if i in looked_at
         ]
     )
     widths = program.width[len(read) :]
-    workers = _workers(count, threads, WORTH_A_THREAD)
-    size = -(-count // workers)
-    done = [False] * workers
+    short: list[int] = []
 
-    def part(k: int) -> None:
-        start = k * size
-        many = min(size, count - start)
-        at, to, checked = read + 8 * start, into + widths * start, where + 8 * start
-        done[k] = program.run(at, to, many, CIRCLE, fixed, checked, limits) == many
+    def part(start: int, stop: int) -> None:
+        at, to = read + 8 * start, into + widths * start
+        done = program.run(at, to, stop - start, CIRCLE, fixed, checked + 8 * start, limits)
+        if done < stop - start:
+            short.append(start)
 
-    others = [threading.Thread(target=part, args=(k,)) for k in range(1, workers)]
-    for thread in others:
-        thread.start()
-    part(0)
-    for thread in others:
-        thread.join()
-    return by_name if all(done) else None
+    _shared_out(part, count, _workers(count, threads, WORTH_A_THREAD))
+    return None if short else by_name
 
 
 def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
@@ -343,54 +346,39 @@ def _workers(count: int, threads: int | None, share: int) -> int:
 
 
 class _Worker:
-    """Solves spans of scenes with working arrays of its own."""
+    """Solves scenes block by block, with working arrays of its own."""
 
     def __init__(
         self,
         given: Mapping[str, Source],
-        wanted: tuple[str, ...],
         results: Mapping[str, Array],
         tile: int,
         sign: float | None = None,
     ) -> None:
-        count = len(next(iter(results.values()), ()))
+        count = len(next(iter(results.values())))
         self.tile = min(tile, count)
         self.size = min(2 * tile, count)
         self.sign = sign
         self.given = given
-        self.wanted = wanted
         self.results = results
-        self.plain = all(source.is_plain for source in given.values())
         self.buffers = Buffers(self.size)
         self.workspaces: dict[int, Any] = {}
 
-    def __call__(self, spans: Iterable[tuple[int, int]]) -> None:
-        with np.errstate(all="ignore"):
-            for start, stop in spans:
-                while start < stop:
-                    start = self.solve_block(start, stop)
+    @np.errstate(all="ignore")
+    def solve(self, start: int, stop: int) -> None:
+        for at in range(start, stop, self.size or 1):
+            self.solve_block(at, min(at + self.size, stop))
 
-    def solve_block(self, start: int, stop: int) -> int:
-        """Solve the block at ``start``, or with the compiled machine all scenes before ``stop`` of
-        the same kind as the first ones; returns where the next one begins."""
-        if native.library is not None and self.plain and stop - start > FEW:
-            block = self.block_of(start, start + FEW)
-            if block.limits is not None:
-                further = {name: source.part(start, stop) for name, source in self.given.items()}
-                done = self.run_program(block, further, start, stop, block.limits)
-                if done > FEW:
-                    return start + done
-        end = min(start + self.size, stop)
+    def solve_block(self, start: int, end: int) -> None:
         block = self.block_of(start, end)
+        results = {name: array[start:end] for name, array in self.results.items()}
         if native.library is None:
-            self.run_plan(block, start, end)
+            self.run_plan(block, results, end - start)
         else:
-            self.run_program(block, block.varying, start, end, {})
+            self.run_program(block, results, end - start)
         if block.refused is not None:
-            for name, result in self.results.items():
-                refusal = Status.NOT_FINITE if name == "STATUS" else np.nan
-                result[start:end][block.refused] = refusal
-        return end
+            for name, result in results.items():
+                result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan
 
     def block_of(self, start: int, end: int) -> Block:
         columns = {
@@ -399,32 +387,16 @@ class _Worker:
         }
         return examine(columns)
 
-    def run_program(
-        self,
-        block: Block,
-        columns: Mapping[str, Array],
-        start: int,
-        stop: int,
-        limits: Mapping[str, Limits],
-    ) -> int:
-        """By the compiled machine; returns how many scenes it has done."""
-        program = program_for(block.kinds, self.wanted, self.sign)
-        where = dict(zip(columns, addresses(columns.values()), strict=True))
-        return program.run(
-            np.array([where[name] for name in program.columns], np.int64),
-            addresses(array[start:stop] for array in self.results.values()),
-            stop - start,
-            CIRCLE,
-            {name: float(values[0]) for name, values in block.fixed.items()},
-            np.array([where[name] for name in limits], np.int64),
-            np.array(list(limits.values()), np.float64),
-        )
+    def run_program(self, block: Block, results: Mapping[str, Array], count: int) -> None:
+        """By the compiled machine."""
+        program = program_for(block.kinds, tuple(results), self.sign)
+        fixed = {name: float(values[0]) for name, values in block.fixed.items()}
+        columns = addresses(block.varying[name] for name in program.columns)
+        program.run(columns, addresses(results.values()), count, CIRCLE, fixed)
 
-    def run_plan(self, block: Block, start: int, stop: int) -> None:
+    def run_plan(self, block: Block, results: Mapping[str, Array], length: int) -> None:
         """By numpy, a tile at a time."""
-        results = {name: array[start:stop] for name, array in self.results.items()}
-        length = stop - start
-        plan = plan_for(block.kinds, self.wanted, self.sign)
+        plan = plan_for(block.kinds, tuple(results), self.sign)
         if id(plan) not in self.workspaces:
             self.workspaces[id(plan)] = plan.workspace(self.tile)
         workspace = self.workspaces[id(plan)]
