@@ -118,6 +118,25 @@ def test_ten_loops_deep_and_no_deeper():
     assert displayed(nested(11)) == f"\n?OUT OF MEMORY ERROR{BEL} IN 110"
 
 
+@pytest.mark.parametrize(
+    ("loops", "subroutines", "last", "room"),
+    [
+        # the stack begins at 248, a loop takes 18 bytes and a subroutine 7; CHKMEM asks for nine
+        # words of a loop, three of a subroutine, and 54 bytes more
+        (5, 12, "FOR Z=1 TO 1", True),  # at 74
+        (0, 25, "FOR Z=1 TO 1", False),  # at 73
+        (4, 16, "GOSUB 900", True),  # at 64
+        (6, 11, "GOSUB 900", False),  # at 63
+    ],
+)
+def test_loops_and_subroutines_share_the_stack(loops, subroutines, last, room):
+    lines = [f"FOR A{number}=1 TO 1" for number in range(loops)]
+    lines += [f"GOSUB {10 * (loops + number + 1)}" for number in range(subroutines)]
+    program = "\n".join(f"{10 * number} {line}" for number, line in enumerate([*lines, last]))
+    error = f"\n?OUT OF MEMORY ERROR{BEL} IN {10 * len(lines)}"
+    assert displayed(f"{program}\n900 END") == ("" if room else error)
+
+
 def test_parentheses_as_deep_as_the_stack():
     def program(n: int) -> str:
         return f"10 PRINT {'(' * n}1{')' * n}"
