@@ -127,6 +127,10 @@ def test_ten_loops_deep_and_no_deeper():
         (0, 25, "FOR Z=1 TO 1", False),  # at 73
         (4, 16, "GOSUB 900", True),  # at 64
         (6, 11, "GOSUB 900", False),  # at 63
+        (2, 21, "X=1", True),  # a formula asks for a word, at 59
+        (4, 16, "X=1", False),  # at 58
+        (6, 9, "X=1+1", True),
+        (1, 22, "X=1+1", False),
     ],
 )
 def test_loops_and_subroutines_share_the_stack(loops, subroutines, last, room):
