@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from importlib.util import resolve_name
 from pathlib import Path
@@ -39,12 +40,15 @@ def imported(name: str) -> set[str]:
     return {module for module in found if module in FILES} - {name}
 
 
-ROOMS = {name: imported(name) for name in FILES}
+@cache
+def rooms() -> dict[str, set[str]]:
+    """The imports of every module: read when a test asks, not when tests are collected."""
+    return {name: imported(name) for name in FILES}
 
 
 def test_no_room_is_both_above_and_below_another() -> None:
     # the package itself holds no more than its version
-    graph = {name: modules - {"impact88"} for name, modules in ROOMS.items()}
+    graph = {name: modules - {"impact88"} for name, modules in rooms().items()}
     try:
         list(TopologicalSorter(graph).static_order())
     except CycleError as error:
@@ -57,7 +61,7 @@ MACHINE = ("impact88.applesoft", "impact88.emulator")
 def test_applesoft_knows_nothing_of_collisions() -> None:
     outside = {
         (name, module)
-        for name, modules in ROOMS.items()
+        for name, modules in rooms().items()
         if name.startswith(MACHINE)
         for module in modules
         if not module.startswith(MACHINE)
@@ -69,7 +73,7 @@ def test_only_commands_import_commands() -> None:
     upper = ("impact88.commands.", "impact88.cli")
     below = {
         (name, module)
-        for name, modules in ROOMS.items()
+        for name, modules in rooms().items()
         if not name.startswith((*upper, "impact88.commands", "impact88.__main__"))
         for module in modules
         if module.startswith(upper)
@@ -86,7 +90,7 @@ def test_faithful_path_imports_no_third_party(name: str) -> None:
     while waiting:
         module = waiting.pop()
         seen.add(module)
-        waiting |= ROOMS[module] - seen
+        waiting |= rooms()[module] - seen
         text = FILES[module].read_text(encoding="utf-8")
         assert not {"numpy", "matplotlib", "mpmath", "scipy", "tqdm"} & {
             (node.names[0].name if isinstance(node, ast.Import) else node.module or "").split(".")[

@@ -158,7 +158,7 @@ SLIPS = [
 
 @pytest.mark.parametrize(
     ("name", "typed", "noise"),
-    [(*slip, noise) for slip in SLIPS for noise in (False, True)][:: 1 if SWEEP else 5],
+    [(*slip, noise) for slip in SLIPS for noise in (False, True)][:: 1 if SWEEP else 8],
 )
 def test_a_slip_in_what_was_given_apart_is_found(name: str, typed: str, noise: bool) -> None:
     """And no reader's mistake is made of it, however bad the scan of the results is."""
