@@ -611,6 +611,8 @@ def test_a_scan_is_read_itself() -> None:
     told = paper.judged(scan.name, scan.read_bytes())
     assert [words["title"] for words in told["printouts"]] == ["IDENTICAL"]
     assert "VAX=" in told["text"]
+    for check in told["objects"][0]["fields"]:
+        assert told["text"][check["start"] : check["stop"]] == check["printed"]
 
 
 def test_a_megabyte_of_one_letter_is_answered_at_once() -> None:

@@ -280,6 +280,31 @@ def test_a_scan_lies_beside_the_text(page: Page, tmp_path: Path) -> None:
     assert not page.at("paper-scan").is_displayed()
 
 
+def test_the_cells_of_a_scan_are_outlined_and_what_is_corrected_is_tried_on_the_picture(
+    page: Page,
+) -> None:
+    pytest.importorskip("PIL", reason="the scan extra is not installed")
+    page.at("paper-files").send_keys(str(ROOT / "golden" / "scans" / "clean-002.png"))
+    until(lambda: "1 DIFFERS" in page.text("paper-summary"), "the verdict", 60)
+    outlined = "return document.querySelectorAll('#paper-scan-frame .cell' + arguments[0]).length"
+    until(lambda: page.run(outlined, ".differs") == 1, "the cell that differs")
+    assert page.run(outlined, ".holds") > 150
+    assert page.run(outlined, ".differs path") == 1
+    page.run("document.querySelector('.cell.differs').dispatchEvent(new MouseEvent('click'))")
+    chosen = page.run(
+        "const t = document.getElementById('paper-text');"
+        "return [t.value, t.selectionStart, t.selectionEnd]"
+    )
+    text, start, end = chosen
+    assert (end - start, text[start]) == (1, "9")
+    page.run(
+        "const t = document.getElementById('paper-text');"
+        "t.setRangeText('2'); t.dispatchEvent(new Event('input'))"
+    )
+    until(lambda: page.run("return document.getElementById('paper-text').value") == text, "it", 60)
+    assert "1 DIFFERS" in page.text("paper-summary")
+
+
 # --- reconstruction -----------------------------------------------------------------------------
 
 

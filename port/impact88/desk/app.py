@@ -119,7 +119,8 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.post("/judge")
     def judge() -> Any:
         bench = "edit" if request.args.get("bench") == "edit" else "paper"
-        return asked(bench, "judged", name=request.args.get("name", ""), data=request.get_data())
+        given = {name: request.args.get(name, "") for name in ("name", "seed")}
+        return asked(bench, "judged", data=request.get_data(), **given)
 
     @routes.post("/published/<name>")
     def published(name: str) -> Response:

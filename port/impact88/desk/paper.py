@@ -31,14 +31,14 @@ def warm() -> None:
     judged("run1", packaged_bytes("impact88.legacy", "run1-as-printed.txt"))
 
 
-def judged(name: str, data: bytes) -> dict[str, Any]:
-    """The verdicts on one paper; ``data`` is its file.
+def judged(name: str, data: bytes, seed: str = "") -> dict[str, Any]:
+    """The verdicts on one paper; ``data`` is its file, ``seed`` what a person made of a picture.
 
     ``text``: the paper as text, which the places below count in, or None where it is none;
     ``problem``: why it cannot be judged, or None; ``objects``: what `impact88 verify --json` prints
     for it; ``printouts``: the words of each of its verdicts.
     """
-    examined = _examined(name, data)
+    examined = _examined(name, data, seed)
     return {
         "name": examined.file,
         "text": _text(examined, data),
@@ -48,11 +48,11 @@ def judged(name: str, data: bytes) -> dict[str, Any]:
     }
 
 
-def _examined(name: str, data: bytes) -> Examined:
+def _examined(name: str, data: bytes, seed: str = "") -> Examined:
     name = base_name(name)
     if len(data) > LARGEST_FILE:
         raise UserError(f"is larger than {LARGEST_FILE:,} bytes, the limit here", name)
-    return examine_bytes(name, data)
+    return examine_bytes(name, data, seed=seed)
 
 
 def base_name(name: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Any
 
@@ -85,9 +85,11 @@ def _layered(results: list[Verification], text: str) -> None:
 def _verification(
     path: str, number: int, page: int, size: tuple[int, ...], leaf: Leaf
 ) -> Verification:
-    text = leaf.read.page()
+    settled = leaf.judged.verdict is not Verdict.INCOMPLETE
+    known = {name: _printed(cells) for name, cells in leaf.by_name.items()} if settled else {}
+    text, starts = leaf.read.page(known)
     scene: dict[str, str | None] = dict.fromkeys(SCENE)
-    if leaf.found and leaf.judged.verdict is not Verdict.INCOMPLETE:
+    if leaf.found and settled:
         scene = {name: leaf.found.scene[name] for name in SCENE}
     result = Verification(
         file=path,
@@ -104,6 +106,10 @@ def _verification(
         stop=len(text),
         text=text,
     )
+    for check in result.fields:
+        if check.printed and check.name in starts:
+            check.start = starts[check.name]
+            check.stop = check.start + len(check.printed)
     result.cells = [_described(cell, page, size, leaf.grid) for cell in leaf.cells if _told(cell)]
     if leaf.judged.reason:
         result.remarks.append(f"page {page}: {leaf.judged.reason}")
@@ -134,10 +140,7 @@ def _check(leaf: Leaf, field: str, name: str) -> FieldCheck:
 
 def _of_cells(leaf: Leaf, name: str, recomputed: str | None, cells: list[Cell]) -> FieldCheck:
     states = [state(cell) for cell in cells]
-    printed = "".join(
-        cell.other if one == "differs" else cell.predicted
-        for cell, one in zip(cells, states, strict=True)
-    )
+    printed = _printed(cells)
     if leaf.judged.verdict is Verdict.INCOMPLETE and "differs" in states:
         status, same = Status.NOT_COMPARED, None
     elif recomputed is None or not cells:
@@ -157,6 +160,11 @@ def _of_cells(leaf: Leaf, name: str, recomputed: str | None, cells: list[Cell]) 
     if cells:
         check.line, check.column = cells[0].place.line + 1, cells[0].place.cell + 1
     return check
+
+
+def _printed(cells: Sequence[Cell]) -> str:
+    """What stands in cells that were held against the page."""
+    return "".join(cell.other if state(cell) == "differs" else cell.predicted for cell in cells)
 
 
 def _reply_checks(leaf: Leaf, side: str, names: tuple[str, ...]) -> Iterator[FieldCheck]:

@@ -6,9 +6,10 @@ This is the one module that knows how text is recovered.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
+from types import MappingProxyType
 
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
@@ -57,15 +58,18 @@ class Read:
             total += _WORST if column < 0 else min(float(row[column]), _WORST)
         return total
 
-    def page(self) -> str:
-        """The printout as text, as far as its lines were found."""
-        lines = []
+    def page(self, known: Mapping[str, str] = MappingProxyType({})) -> tuple[str, dict[str, int]]:
+        """The printout as text, as far as its lines were found, and where its numbers begin.
+        ``known``: numbers of which more is known than was read."""
+        page, starts = "", {}
         for line in range(len(LINES)):
             if line in self.sheet.pieces:
-                row = self.sheet.rows[line]
-                pieces = [self.text(name) if name else text for name, text in parts(row.text)]
-                lines.append("".join(pieces))
-        return "\n".join(lines)
+                page += "\n" * bool(page)
+                for name, text in parts(self.sheet.rows[line].text):
+                    if name:
+                        starts[name] = len(page)
+                    page += known.get(name) or self.text(name) if name else text
+        return page, starts
 
 
 @dataclass
@@ -109,7 +113,7 @@ def _first(read: Read) -> Iterator[dict[str, str]]:
         # what was typed may have more figures than are printed, or fewer: 5.749 prints 5.74900001
         for typed, spins, sign in product((_typed(read), {}), ("6", "4"), (1, -1)):
             yield {**direct, **typed, "M": spins, "MU": _signed(texts["MUP"], sign)}
-    yield from scenes_in(read.page())
+    yield from scenes_in(read.page()[0])
 
 
 def scenes_in(text: str) -> list[dict[str, str]]:

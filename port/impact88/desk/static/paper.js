@@ -16,9 +16,14 @@ class Paper {
     this.row = null; // its place in the list
   }
 
+  /** Whether a picture is judged: its text proposes, and the picture decides. */
+  get pictured() {
+    return this.file !== null && isPicture(this.file);
+  }
+
   /** What is judged: the file as opened, or the text that has become of it. */
   get body() {
-    return this.edited ? new Blob([this.text ?? ""]) : this.file;
+    return this.edited && !this.pictured ? new Blob([this.text ?? ""]) : this.file;
   }
 
   get empty() {
@@ -46,10 +51,11 @@ function taken(paper, answer, sent) {
   if (paper.edited && sent !== paper.text) return; // a newer text is on its way
   paper.answer = answer;
   paper.trouble = answer.problem ?? "";
-  if (answer.text !== null && !paper.edited) paper.text = answer.text;
-  paper.marks = marksOf(answer);
+  const open = paper.edited && verdictsOf(answer).every((one) => one.verdict === "incomplete");
+  if (answer.text !== null && (paper.pictured ? !open : !paper.edited)) paper.text = answer.text;
+  paper.marks = answer.text === paper.text || !paper.pictured ? marksOf(answer) : [];
   showList();
-  if (paper === current) showPaper(!paper.edited);
+  if (paper === current) showPaper(paper.pictured || !paper.edited);
 }
 
 async function judge(paper, bench) {
@@ -61,7 +67,8 @@ async function judge(paper, bench) {
   }
   const sent = paper.text;
   try {
-    const answer = asked("judge", paper.body, { name: paper.name, bench });
+    const seed = paper.edited && paper.pictured ? paper.text : "";
+    const answer = asked("judge", paper.body, { name: paper.name, bench, seed });
     taken(paper, await watched(page("paper-busy"), `Reading ${paper.name}`, bench, answer), sent);
   } catch (error) {
     paper.trouble = error.message;
@@ -311,18 +318,67 @@ function showScan() {
   const { scan } = current;
   page("paper-scan").hidden = !scan;
   page("paper-desk-top").classList.toggle("beside", Boolean(scan));
-  if (frame.dataset.shown === (scan?.address ?? "")) return;
+  page("paper-scan-note").hidden = !(current.pictured && current.answer);
+  if (frame.dataset.shown === (scan?.address ?? "")) {
+    showCells();
+    return;
+  }
   frame.dataset.shown = scan?.address ?? "";
   if (!scan) {
     frame.replaceChildren();
   } else if (!scan.pdf) {
-    frame.replaceChildren(element("img", { src: scan.address, alt: `Scan ${scan.name}` }));
+    const image = element("img", { src: scan.address, alt: `Scan ${scan.name}` });
+    image.addEventListener("load", showCells);
+    frame.replaceChildren(element("div", { className: "scan-sheet" }, image));
   } else if (navigator.pdfViewerEnabled) {
     frame.replaceChildren(element("iframe", { src: `${scan.address}#page=1&view=FitH`, title: `Scan ${scan.name}` }));
   } else {
     frame.replaceChildren(element("p", { className: "note" }, `This browser shows no PDF: ${scan.name}. Save its page as a picture.`));
   }
   zoom();
+}
+
+const STATES = { holds: "as the program prints it", doubtful: "in doubt", differs: "differs" };
+const SVG = "http://www.w3.org/2000/svg";
+
+function drawn(name, properties, ...children) {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(properties)) made.setAttribute(key, value);
+  made.append(...children);
+  return made;
+}
+
+/** The cells of the picture's numbers, outlined on it; one that is clicked is selected in the text. */
+function showCells() {
+  const sheet = page("paper-scan-frame").querySelector(".scan-sheet");
+  const image = sheet?.querySelector("img");
+  sheet?.querySelector("svg")?.remove();
+  if (!image?.naturalWidth || !current.pictured || !current.answer) return;
+  const boxes = [];
+  for (const { verification } of current.printouts) {
+    const counts = new Map();
+    for (const cell of verification.cells ?? []) {
+      const [left, top, right, bottom] = cell.box;
+      const at = counts.get(cell.field) ?? 0;
+      counts.set(cell.field, at + 1);
+      const says = `${cell.field ?? "label"}: ${cell.predicted} expected, ${STATES[cell.state]}`
+        + (cell.state === "holds" ? "" : `, looks like ${cell.runner_up === " " ? "blank" : cell.runner_up}`);
+      const rect = drawn("rect", { x: left, y: top, width: right - left, height: bottom - top }, drawn("title", {}, says));
+      const box = drawn("g", { class: `cell ${cell.state}` }, rect);
+      if (cell.state === "differs") box.append(drawn("path", { d: `M${left} ${top}L${right} ${bottom}M${right} ${top}L${left} ${bottom}` }));
+      const mark = current.marks.find((one) => one.check === verification.fields.find((check) => check.name === cell.field));
+      if (cell.state !== "holds") {
+        for (const [key, value] of [["tabindex", 0], ["role", "button"], ["aria-label", says]]) box.setAttribute(key, value);
+      }
+      if (mark) {
+        const select = () => goTo(mark.start + at, mark.start + at + 1);
+        box.addEventListener("click", select);
+        box.addEventListener("keydown", (event) => event.key === "Enter" && select());
+      }
+      boxes.push(box);
+    }
+  }
+  sheet.append(drawn("svg", { viewBox: `0 0 ${image.naturalWidth} ${image.naturalHeight}` }, ...boxes));
 }
 
 function zoom() {
