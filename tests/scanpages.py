@@ -364,7 +364,7 @@ def main() -> None:
     with (Path(folder) / "truth.jsonl").open("a") as truths:
         for number, (picture, truth) in enumerate(pages(int(count), seed, kinds)):
             name = f"{truth['kind']}-{number % int(count) + 1:03}.png"
-            picture.save(Path(folder) / name)
+            picture.save(Path(folder) / name, compress_level=1)
             truths.write(json.dumps({"file": name, **truth}) + "\n")
             truths.flush()
 
