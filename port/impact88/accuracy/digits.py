@@ -31,7 +31,7 @@ def thirty_digits(scene: Mapping[str, str]) -> dict[str, str]:
     """Result name -> 30 digits; empty when the equations are singular or make no sense. What is no
     number (LOSS where nothing moves, MUC where a pivot feels no impulse) is not in it."""
     if any(len(exponent) > LONGEST_EXPONENT for exponent in _exponents(scene)):
-        return {}  # a number of thousands of digits is nobody's measurement
+        return {}  # a number of thousands of digits is no measurement
     try:
         values = fifty_digits(scene)
     except (ValueError, ZeroDivisionError):

@@ -25,7 +25,7 @@ MARKS = {
     "closed-form-numpy": ("D", ORANGE, False),
     "replay-numpy": ("P", VERMILION, False),
 }
-"""Method -> mark, colour, whether filled: told apart in grey as well."""
+"""Method -> mark, colour, whether filled: distinct in grey as well."""
 WIDTH = 174.0
 """Millimetres: two columns."""
 _ACROSS = 3

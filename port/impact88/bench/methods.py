@@ -170,7 +170,7 @@ METHODS: Sequence[Method] = (
 
 
 COMPONENTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "PN", "PT", "PM", "LOSS", "DVA", "MUC")
-"""Results whose errors are told one by one."""
+"""Results whose errors are listed one by one."""
 
 
 def reference(prepared: Prepared, names: Sequence[str] = ORDER) -> tuple[Floats, Floats]:

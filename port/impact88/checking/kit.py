@@ -2,7 +2,7 @@
 and programs in several languages that read and answer them.
 
 ``vectors.csv`` has the scenes, ``vectors.jsonl`` all that is known of them. Both are the same on
-any machine for the same seed; ``KIT.json`` tells seed, version and hashes.
+any machine for the same seed; ``KIT.json`` has seed, version and hashes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which program gives another's numbers: every small mistake made, alone and two together.
+"""Which program gives the numbers of a table: every small mistake made, alone and two together.
 
 All edits of all spellings are run over a few rows that disagree and a few that agree; those that
 explain any are run over more. Of two mistakes the first is looked for in three ways: *by outputs*

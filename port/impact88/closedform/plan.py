@@ -127,7 +127,7 @@ class Plan:
             else:
                 operation = OPERATIONS[e.operation]
                 if isinstance(operation, np.ufunc):
-                    # it may write over an operand that nobody needs any more
+                    # it may write over an operand that is not needed any more
                     release(e.operands, e)
                 self._steps.append((operation, (*operands, place(e))))
                 release(e.operands, e)

@@ -18,7 +18,7 @@ LARGEST = 1_000_000
 OUTLINES = tuple(name for pair in SIZES.values() for name in pair)
 """Lengths and widths, which a form keeps for its drawing and its file."""
 _WHOSE_BASE = {"us": "chapter", "metric": "si"}
-"""The system whose bare numbers are another's base units."""
+"""The system whose bare numbers are the base units of another."""
 
 
 class Entries(NamedTuple):

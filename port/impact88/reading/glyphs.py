@@ -18,7 +18,7 @@ from math import log10
 from typing import NamedTuple
 
 ILLEGIBLE = "?"
-"""Stands for a character nobody can read."""
+"""Stands for a character that cannot be read."""
 
 _MINUS = "−‐‑‒–—―﹣－⁻"
 _GLYPHS = {

@@ -173,7 +173,7 @@ class Printout:
     @property
     def machine_read(self) -> bool:
         """Whether the text bears the marks of an optical reader: letters of labels and asterisks
-        that nobody would type so, or damaged numbers."""
+        that would not be typed so, or damaged numbers."""
         return self.misread_letters + self.marks >= MACHINE_READ
 
     @property

@@ -91,7 +91,7 @@ _AT_ONCE = 4096
 _RANK, _OPEN = 1e-10, 1e-7
 """Singular values, and shares of a gradient in the null space, up to that are none."""
 _LIKELY = 4.0
-"""Impacts with so many times the least sum of squares are told too."""
+"""Impacts with so many times the least sum of squares are reported, too."""
 _TOLD_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 """Of what is not known, what can be found out best."""
 DEGREES = float(np.degrees(1.0))

@@ -2,7 +2,7 @@
 
 A printed field says most of what an input may have been; a reply at the prompt bears it out, or
 speaks where the field is lost. A clean number is not doubted here: its misreadings are `slips`'.
-Inputs that nothing tells of are given stand-ins, and only what does not depend on them is kept for
+Inputs that nothing determines have stand-ins, and only what does not depend on them is kept for
 comparison.
 """
 
@@ -23,7 +23,7 @@ from .search import Column, Scored, Search
 from .typedtext import stored_and_printed
 
 STAND_IN = "1.7"
-"""Put in place of an input nothing tells of."""
+"""Put in place of an input that nothing determines."""
 _MOST, _ROWS = 40, 400
 """Texts of one input, and cuts of the row of angles, that are tried."""
 _REPLY_DISAGREES = 1.0
@@ -137,7 +137,7 @@ def _independent_of(
 
 class Choices(NamedTuple):
     """What each input may have been; ``typed``: by field, what was typed for a printed text, where
-    a reply or a scene file says so; ``missing``: the scene's values nothing tells of."""
+    a reply or a scene file says so; ``missing``: the scene's values that nothing determines."""
 
     columns: list[Column]
     typed: dict[str, dict[str, str]]

@@ -38,7 +38,7 @@ _UNREAD = 0.6
 _ABSENT = 0.7
 """What it costs that the program prints a result the page does not have."""
 _OTHER_BITS = 0.02
-"""What it costs that a number was typed with zeros nobody sees, by the rank of that text."""
+"""What it costs that a number was typed with zeros that do not show, by the rank of that text."""
 _ENERGIES = 60
 """Combinations of masses and velocities that are tried with the rest."""
 _BELIEF = 0.1

@@ -2,7 +2,7 @@
 
 A printed value has at most nine digits, and need not read back to itself: a typed -64.42 prints as
 -64.4200001. Angles go the longer way of lines 300 and 600, into radians and back, so that -133 may
-print as -132.999999. And a value may have been typed with zeros nobody sees in print, which can
+print as -132.999999. And a value may have been typed with zeros that do not print, which can
 change its last bit (72.80 is 7280 divided twice by ten, 72.8 is 728 divided once).
 """
 

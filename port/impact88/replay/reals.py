@@ -349,7 +349,7 @@ def _multiply(left: Reals, right: Reals) -> Reals:
     error = a * upper - v  # the exact product less the rounded one, when the lower half is added
     error += a * (b - upper)
     bits += error.view(np.int64) >> 63
-    # the parity of the three exponents tells whether the product fell short of the top bit
+    # the parity of the three exponents says whether the product fell short of the top bit
     bits &= ~((signs ^ bits) >> 39 & 0x2000 | 0x1FFF)
     bits |= signs & _SIGN
 

@@ -27,7 +27,7 @@ class Replay:
     """The results of `replay`, a value for each scene; names as in `impact88.names`.
 
     A scene that an error ended keeps what it had computed before, as on the machine, and has no
-    later value: NaN as a float, 0 as a stored real, "" as a printed field (`present` tells).
+    later value: NaN as a float, 0 as a stored real, "" as a printed field (see `present`).
 
     ``code``: 0, or the Applesoft error's code (53, 69, 133), 1 for ZERO DETERMINANT, 2 for an M
     that is neither 4 nor 6 (not replayed). ``line``: the line of the listing that ended the scene

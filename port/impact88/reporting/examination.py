@@ -205,7 +205,7 @@ def _against(pages: CopyPages, found: Judged, file: str, number: int) -> Verific
 
 
 def _result(found: Judged, file: str, number: int) -> Verification:
-    """What is told of a printout that was judged."""
+    """What a judged printout's report says."""
     shown = found.shown
     scene = found.recovered.scene_or_missing()
     status = {check.name: check.status for check in found.fields}

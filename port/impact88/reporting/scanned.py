@@ -129,7 +129,7 @@ def _names(leaf: Leaf) -> list[str]:
 
 
 def _told(cell: Cell) -> bool:
-    """Whether a cell is told of: blanks and labels that hold are not."""
+    """Whether a cell is reported: blanks and labels that hold are not."""
     return bool(cell.name and cell.predicted != BLANK) or state(cell) != "holds"
 
 

@@ -45,7 +45,7 @@ Flags = NDArray[np.bool_]
 SIGMAS = 3.0
 """Where a normal without limits ends, for draws and bounds alike."""
 FAR = 6.0
-"""Standard deviations beyond which nobody looks for a normal value."""
+"""Standard deviations beyond which no normal value is looked for."""
 CHUNK = 1 << 14
 CHORDS = 8
 NEWTONS = 12

@@ -121,7 +121,7 @@ class Apple:
         self._go(limit)
 
     def _go(self, limit: int) -> None:
-        """Run until the ROM waits for a key that nobody has typed. Raises Lost."""
+        """Run until the ROM waits for a key that has not been typed. Raises Lost."""
         try:
             self._run(limit)
         except IndexError:  # an address past $FFFF
