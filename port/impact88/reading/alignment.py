@@ -276,8 +276,8 @@ class Budget:
         self.left = Budget.left if found else self.left - count
 
 
-_PAGE = 150
-"""Glyphs that are a page; the shortest run has 320, and labels without end are none."""
+FRAGMENT = 6
+"""A piece with fewer numbers than this is a fragment: labels without end are no page."""
 _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
 _FEW_LABELS = 4
 """Fewer labels and equals signs in a window than these, and no printout is in it."""
@@ -300,7 +300,6 @@ def align(
     """The printouts in a row of glyphs, in order, each with what its glyphs are taken for; as many
     as the budget allows. ``notes``: glyphs known to be none of the program's."""
     start = 0
-    codes = [NOTE if place in notes else code(glyph.char) for place, glyph in enumerate(glyphs)]
     while start < len(glyphs):
         window = glyphs[start : start + WINDOW]
         last = start + len(window) >= len(glyphs)
@@ -310,11 +309,13 @@ def align(
         if budget.left <= 0:
             budget.stopped = start
             return
-        parts = _merged(_parts(_states(window, codes[start : start + WINDOW])))
+        parts = _merged(
+            _parts(_states(window, [place in notes for place in range(start, start + len(window))]))
+        )
         taken = parts if last else parts[:-1] or parts[:1]
-        budget.spend(len(window), any(stop - begin >= _PAGE for begin, stop, _ in taken))
-        for part in taken:
-            yield _described(*part, start)
+        found = [_described(*part, start) for part in taken]
+        budget.spend(len(window), any(len(one.slots) >= FRAGMENT for one in found))
+        yield from found
         if last:
             return
         if not parts:
@@ -387,11 +388,12 @@ def _exponent(glyphs: Sequence[Glyph]) -> bool:
     return rest[0].char in "+-" and rest[1].char.isdigit()
 
 
-def _states(glyphs: Sequence[Glyph], codes: Sequence[int]) -> list[int]:
+def _states(glyphs: Sequence[Glyph], noted: Sequence[bool]) -> list[int]:
     """The state of every glyph on the cheapest way."""
     page = template()
     size = page.miss.size
     count = len(glyphs)
+    codes = [NOTE if note else code(one.char) for one, note in zip(glyphs, noted, strict=True)]
     gaps = _gaps(glyphs)
     enter = {
         key: page.enter[key[0]] + page.gap_enter[key[1]]

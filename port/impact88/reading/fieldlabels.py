@@ -28,7 +28,8 @@ _EXTRA = 0.68
 """What a letter too many costs."""
 READERS = 3
 """So many other marks of an optical reader, and a label that contradicts is the reader's doing: of
-15,300 labels of given scans 373 read as other words, 7 of them on pages of fewer marks."""
+15,300 labels of given scans 373 read as other words, 7 of them on pages of fewer marks. No two of
+one page read as each other: those are exchanged, whoever read the page."""
 
 
 class LabelState(StrEnum):
@@ -100,9 +101,11 @@ def label_checks(
     read = list(_read(page, start, states, slots))
     alone = [_state(one) for one in read]
     marks += sum(state is LabelState.DAMAGED for state in alone)
+    pairs = {(one.printed, one.read) for one in read}
     checks = []
     for one, state in zip(read, alone, strict=True):
-        if state is LabelState.CONTRADICTORY and marks >= READERS:
+        exchanged = (one.read, one.printed) in pairs
+        if state is LabelState.CONTRADICTORY and marks >= READERS and not exchanged:
             state = LabelState.DAMAGED
         doubt = state is not LabelState.EXACT and _doubtful(one)
         where = page.place(one.start)

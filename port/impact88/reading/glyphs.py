@@ -14,6 +14,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from enum import IntEnum
 from functools import lru_cache
+from itertools import repeat
 from math import log10
 from typing import NamedTuple
 
@@ -66,20 +67,27 @@ class Page:
         self.glyphs = tuple(self._read())
 
     def _read(self) -> Iterator[Glyph]:
-        gap, start = Gap.LINE, 0
-        for offset, character in enumerate(self.text):
-            if character == "\n":
-                full = self.width and offset - start == self.width and gap is Gap.NONE
-                following = self.text[offset + 1 : offset + 2]
-                gap = Gap.NONE if full and not following.isspace() else Gap.LINE
-                start = offset + 1
-            elif character.isspace():
-                if gap is not Gap.LINE:
-                    gap = Gap.WIDE if gap or character == "\t" else Gap.BLANK
-            else:
+        last = 0  # where the glyph before ended
+        for word in re.finditer(r"\S+", self.text):
+            start, text = word.start(), word.group()
+            if text.isascii() and text.isprintable():
+                yield Glyph(text[0].upper(), self._gap(last, start), start)
+                last = word.end()
+                yield from map(Glyph, text[1:].upper(), repeat(Gap.NONE), range(start + 1, last))
+                continue
+            for offset, character in enumerate(text, start):
                 for plain in plain_glyphs(character):
-                    yield Glyph(plain, gap, offset)
-                    gap = Gap.NONE
+                    yield Glyph(plain, self._gap(last, offset), offset)
+                    last = offset + 1
+
+    def _gap(self, last: int, offset: int) -> Gap:
+        """What lies between where a glyph ended and where the next begins."""
+        between = self.text[last:offset]
+        if "\n" in between or not last:
+            full = between == "\n" and self.place(last)[1] == self.width + 1
+            return Gap.NONE if full else Gap.LINE
+        blanks = sum(map(str.isspace, between))
+        return Gap.WIDE if blanks > 1 or "\t" in between else Gap.BLANK if blanks else Gap.NONE
 
     def place(self, offset: int) -> tuple[int, int]:
         """Line and column, counted from 1, of an offset in the text."""

@@ -20,9 +20,10 @@ from typing import NamedTuple
 from ..applesoft.errorcodes import CODES
 from ..errors import UserError
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT, label
-from . import glyphs, numerals
+from . import numerals
 from . import plaintext as pasted
 from .alignment import (
+    FRAGMENT,
     LABELLED_ANGLES,
     PROMPTS,
     REPLY_A,
@@ -35,13 +36,11 @@ from .alignment import (
     template,
 )
 from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
-from .glyphs import Gap, Page, letters, printed_for
+from .glyphs import ILLEGIBLE, NUMERIC, Gap, Page, letters, plain_glyphs, printed_for
 from .numerals import Region, cut_in_five
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
-FRAGMENT = 6
-"""A piece with fewer numbers than this is a fragment."""
 BADLY_READ = 17
 """So many letters and numbers misread, asterisks included: of the given scans that differ 58 of 88
 readings of genuine pages have as many, and 2 of 84 of pages with an altered digit."""
@@ -50,6 +49,7 @@ _PART = 15
 MACHINE_READ = 3
 """So many letters of labels misread, and a machine read the page: people do not type PE for PB."""
 _TYPED = frozenset("0123456789.,-+EOILQ?")
+_SHOWN = 100
 _SLOT_COMMAND = re.compile(r"PR#[0-9]")
 """What line 610 prints where no DOS takes it for a command."""
 _PROMPT_LETTERS, _MOST_ANGLES = 25, 4
@@ -286,8 +286,8 @@ def _keep_text(
 ) -> None:
     """A stretch of text as left over, unless nothing shows there."""
     text = page.text[start:stop] if start < stop else ""
-    plain = letters(Page(text).glyphs)
-    if plain and not _SLOT_COMMAND.fullmatch(plain):
+    printed = "".join(map(plain_glyphs, "".join(text.split())[:_SHOWN]))
+    if printed and not _SLOT_COMMAND.fullmatch(printed):
         begin = start + len(text) - len(text.lstrip())
         place = page.place(begin)
         shown.left_over.append(Piece(" ".join(text.split()), *place, begin, stop, beside, whole))
@@ -298,9 +298,7 @@ def _normalised(text: str) -> list[str]:
     count = Counter(
         unicodedata.name(char, f"U+{ord(char):04X}").lower().replace("u+0000", "NUL")
         for char in text
-        if not " " <= char <= "~"
-        and not char.isspace()
-        and glyphs.plain_glyphs(char) != char.upper()
+        if not " " <= char <= "~" and not char.isspace() and plain_glyphs(char) != char.upper()
     )
     kinds = ", ".join(f"{number} {name}" for name, number in sorted(count.items()))
     return [f"characters read as plain ones or passed over: {kinds}"] if kinds else []
@@ -389,11 +387,13 @@ def _notes(glyphs: Region, found: Sequence[Aligned]) -> set[int]:
     starts = [0, *(at for at, glyph in enumerate(glyphs) if at and glyph.gap is Gap.LINE)]
     notes: set[int] = set()
     for start, stop in zip(starts, [*starts[1:], len(glyphs)], strict=True):
+        if not any(start <= place < stop for place in numbers):
+            continue
         words = {place for place in range(start, stop) if glyphs[place].char.isalpha()}
         foreign = len(words - own)
         text = "".join(" "[: glyph.gap] + glyph.char for glyph in glyphs[start:stop])
         count = len(re.findall(r"[0-9.]+", text))
-        if foreign >= max(_NOTE, 4 * count, len(words) / 2) and numbers & set(range(start, stop)):
+        if foreign >= max(_NOTE, 4 * count, len(words) / 2):
             notes.update(range(start, stop))
     return notes
 
@@ -590,7 +590,7 @@ class _Reader:
             return
         for field_name, region in zip(names, parts, strict=True):
             reading = _reading(self._page, region)
-            if reading is not None and glyphs.ILLEGIBLE not in reading.text:
+            if reading is not None and ILLEGIBLE not in reading.text:
                 self._printout.replies[field_name] = reading
 
     def _keep_left_over(self) -> None:
@@ -660,7 +660,7 @@ def _foreign_inside(region: Region) -> bool:
     """Whether a glyph that looks like no figure stands within a number."""
     figures = [place for place, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
     return any(
-        glyph.char not in glyphs.NUMERIC and not printed_for(glyph.char) and not glyph.gap
+        glyph.char not in NUMERIC and not printed_for(glyph.char) and not glyph.gap
         for glyph in region[figures[0] + 1 : figures[-1] + 1]
     )
 
@@ -669,8 +669,7 @@ def _illegibly(region: Region) -> str | None:
     """A region in which nothing reads as a number, its foreign glyphs as illegible; None when
     there is nothing left."""
     text = "".join(
-        glyph.char if glyph.char in glyphs.NUMERIC else glyphs.ILLEGIBLE
-        for glyph in region[: numerals.LONGEST]
+        glyph.char if glyph.char in NUMERIC else ILLEGIBLE for glyph in region[: numerals.LONGEST]
     )
     return text if any(map(str.isdigit, text)) or text in ("?", "??", "???") else None
 
