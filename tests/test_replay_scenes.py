@@ -19,7 +19,7 @@ import captures
 import impact88
 from impact88.errors import UserError
 from impact88.names import SCENE
-from impact88.replay import Replay, field_names, statements
+from impact88.replay import Replay, blocks, field_names, statements
 from impact88.replay.blocks import replay_scenes
 from impact88.replay.realcolumns import read_columns
 from impact88.replay.reals import from_floats
@@ -28,7 +28,7 @@ from impact88.replay.unit import Unit
 
 pytestmark = pytest.mark.usefixtures("both_machines")
 
-AGAINST_THE_PORT = int(os.environ.get("IMPACT88_REPLAY_SCENES") or 180)
+AGAINST_THE_PORT = int(os.environ.get("IMPACT88_REPLAY_SCENES") or 120)
 LEFT_IN_VARIABLES = ("KI", "KF", "XA", "YA", "XB", "YB")
 
 
@@ -170,7 +170,7 @@ def test_captured_scenes(
 @pytest.mark.captures
 def test_captured_matrices(runs: list[dict[str, Any]]) -> None:
     """One scene at a time, so that a block of one kind is met in every shape."""
-    check_matrix(runs[:: max(1, len(runs) // 30)])
+    check_matrix(runs[:: max(1, len(runs) // 15)])
 
 
 # --- the port -------------------------------------------------------------------------------------
@@ -289,7 +289,7 @@ def test_as_the_port(check: Callable[..., None], awkward: list[dict[str, Any]]) 
 
 def test_as_the_port_one_at_a_time(awkward: list[dict[str, Any]]) -> None:
     """Alone a scene takes other paths: its zeros are known to be zero, its rows exchanged whole."""
-    some = awkward[:15]
+    some = awkward[:8]
     for run in some:
         replayed = impact88.replay(run["scene"])
         for check in CHECKS:
@@ -334,7 +334,7 @@ def rows_of(columns: dict[str, Any], length: int) -> list[dict[str, str]]:
 
 def test_shared_zero_and_mixed_columns_as_the_port() -> None:
     choose = random.Random(2024)
-    for _ in range(AGAINST_THE_PORT // 4):
+    for _ in range(AGAINST_THE_PORT // 8):
         length = choose.choice((1, 2, 3))
         columns = shared_columns(choose, length)
         replayed = impact88.replay(columns)
@@ -374,20 +374,22 @@ def same(one: Replay, other: Replay, count: int) -> None:
         assert np.broadcast_to(one.printed(name), count).tolist() == other.printed(name).tolist()
 
 
-def test_blocks_and_threads_change_nothing(awkward: list[dict[str, Any]]) -> None:
+def test_blocks_and_threads_change_nothing(
+    awkward: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
     scenes = read_columns(columns_of([run["scene"] for run in awkward]))
     whole = replay_scenes(scenes, threads=1)
-    for block in (25, 100):
-        same(whole, replay_scenes(scenes, threads=1, block=block), scenes.size)
+    same(whole, replay_scenes(scenes, threads=1, block=60), scenes.size)
+    monkeypatch.setattr(blocks, "WORTH_A_THREAD", 500)
     many = scenes._replace(
-        values={name: np.resize(v, 16400) for name, v in scenes.values.items()},
-        size=16400,
-        first=np.resize(scenes.first, 16400),
+        values={name: np.resize(v, 1500) for name, v in scenes.values.items()},
+        size=1500,
+        first=np.resize(scenes.first, 1500),
     )
-    one, two = (replay_scenes(many, threads=threads) for threads in (1, 2))
-    assert one.code.tolist() == two.code.tolist()
-    for name in one.names:
-        assert one.reals(name).tolist() == two.reals(name).tolist()
+    shared = replay_scenes(many, threads=2)
+    assert shared.code.tolist() == np.resize(whole.code, 1500).tolist()
+    for name in whole.names:
+        assert shared.reals(name).tolist() == np.resize(whole.reals(name), 1500).tolist()
 
 
 @pytest.mark.parametrize("varied", ["MU", "UX", "WB", "MA", "GA"])

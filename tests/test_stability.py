@@ -65,10 +65,10 @@ def listing_in_double(A, b):
     return eliminate(rows, 1e-9)
 
 
-@pytest.mark.usefixtures("both_machines")
 @pytest.mark.parametrize("name", POPULATIONS)
 def test_backward_stable(name):
-    g = scenes(name, 120, 88)
+    """On the machine at hand: test_native holds both to the same bits."""
+    g = scenes(name, 80, 88)
     error = errors(g, solve(g, FINAL_VELOCITIES))
     assert np.isfinite(error).all()
     most = 2 * BACKWARD_STABLE if name == "evolved" else BACKWARD_STABLE
@@ -124,7 +124,7 @@ def test_impulses_with_long_arms():
 
 @pytest.mark.parametrize("make", [hard_pivots, lorry_and_child, long_arms])
 def test_backward_stable_where_differences_would_lose_digits(make):
-    g = make(120, 5)
+    g = make(80, 5)
     error = errors(g, solve(g, FINAL_VELOCITIES))
     assert np.max(error / sensitivity(g)) <= BACKWARD_STABLE * ROUNDOFF
 
