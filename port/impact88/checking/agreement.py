@@ -31,7 +31,7 @@ from ..equations.evaluation import Run
 from ..equations.spelling import A_IMPULSE, IMPULSES, LISTING, spellings
 from ..errors import quoted
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
-from ..tables.rows import Rows, one_per_row
+from ..tables.rows import Rows
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -213,7 +213,7 @@ def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Flo
     (0 where it is written in binary). An empty cell is NaN and counts as not given; what is no
     number is added to ``rows.bad``. Raises UserError for an array that has not a number for each
     row."""
-    column = one_per_row(rows, name)
+    column = rows.one_per_row(name)
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
         return column.astype(float) * factor, np.zeros(rows.count)
     texts = ["" if cell is None else str(cell).strip() for cell in column]

@@ -25,7 +25,7 @@ from ..mappings import texts
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..plaintable import plain
 from ..progress import progress
-from ..tables.rows import BadCell, Rows, check_scene_columns, numbers, one_per_row
+from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
 from .agreement import Case, Verdict, case_of, joined, read_theirs
@@ -352,8 +352,8 @@ def _count_elimination(
 def _differing(rows: Rows, places: Any, verdict: Verdict, off: Bools, case: Case) -> Iterator[Row]:
     """The rows that disagree, each by its worst result."""
     worst = np.argmax(np.where(off, verdict.relative, -1.0), axis=0)
-    ids = one_per_row(rows, "id") if "id" in rows.others else None
-    written = [one_per_row(rows, name) for name in case.names]
+    ids = rows.one_per_row("id") if "id" in rows.others else None
+    written = [rows.one_per_row(name) for name in case.names]
     for index in places.tolist():
         place = int(worst[index])
         yield Row(

@@ -17,22 +17,13 @@ from ..errors import UserError
 from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .arrow import ArrowColumn, ArrowTexts, pyarrow
-from .rows import (
-    BLOCK_ROWS,
-    Column,
-    Reader,
-    Rows,
-    Writer,
-    one_per_row,
-    scene_names,
-    typed,
-)
+from .rows import BLOCK_ROWS, Column, Reader, Rows, Writer, typed
 
 
 class _ArrowReader(Reader):
     def __init__(self, names: Sequence[str], rows: int, batches: Iterator[Any], where: str) -> None:
         self.total = rows
-        self.names = scene_names(names, where)
+        self._name(names, where)
         self._batches = batches
         self._where = where
         self._given = 0
@@ -152,7 +143,7 @@ class _ArrowWriter(Writer):
 
 
 def _array(name: str, rows: Rows, pa: Any) -> Any:
-    column = one_per_row(rows, name)
+    column = rows.one_per_row(name)
     if isinstance(column, ArrowColumn) and not (isinstance(column, ArrowTexts) and name in SCENE):
         return column.array
     cells = typed(name, column)

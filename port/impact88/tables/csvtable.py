@@ -27,18 +27,7 @@ from ..names import RESULTS, SCENE
 from . import arrow
 from .jsontext import plain
 from .lines import TextFile, open_text, writing
-from .rows import (
-    BLOCK_CHARACTERS,
-    BLOCK_ROWS,
-    BadCell,
-    Column,
-    Reader,
-    Rows,
-    Writer,
-    one_per_row,
-    scene_names,
-    shortest,
-)
+from .rows import BLOCK_CHARACTERS, BLOCK_ROWS, BadCell, Column, Reader, Rows, Writer, shortest
 
 BLOCK_BYTES = 1 << 22
 """A pass over a block of 4 MB takes some milliseconds; blocks of 1 and of 16 MB take as long."""
@@ -193,7 +182,7 @@ class _CsvReader(Reader):
         while named and not named[-1]:
             named = named[:-1]
         self._unnamed = len(names) - len(named)
-        self.names = scene_names(named, lines.where)
+        self._name(named, lines.where)
         if not self.names:
             raise UserError("has no names in its first line; expected a header", lines.where)
 
@@ -321,7 +310,7 @@ class _CsvWriter(Writer):
         self._through_arrow = arrow.available() and hasattr(file, "buffer")
 
     def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
-        columns = [one_per_row(rows, name) for name in self.kept]
+        columns = [rows.one_per_row(name) for name in self.kept]
         texts = [column for column in columns if isinstance(column, arrow.ArrowTexts)]
         if self._through_arrow and len(texts) == len(columns):
             arrays = [column.array for column in texts]

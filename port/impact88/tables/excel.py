@@ -21,15 +21,7 @@ from ..files import replacing
 from ..names import SCENE
 from .jsontext import plain
 from .npztable import check_unpacked
-from .rows import (
-    BLOCK_ROWS,
-    Reader,
-    Rows,
-    Writer,
-    one_per_row,
-    scene_names,
-    typed,
-)
+from .rows import BLOCK_ROWS, Reader, Rows, Writer, typed
 
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
@@ -47,7 +39,7 @@ class _ExcelReader(Reader):
             header.pop()
         if not header:
             raise UserError("its first sheet is empty; expected a header of names", where)
-        self.names = scene_names(header, where)
+        self._name(header, where)
 
     def __iter__(self) -> Iterator[Rows]:
         first, width = 1, len(self.names)
@@ -149,7 +141,7 @@ class _ExcelWriter(Writer):
         self._rows += rows.count
         if self._rows > MOST_ROWS:
             raise UserError(f"a sheet has at most {MOST_ROWS:,} rows; expected to write CSV")
-        columns = [typed(name, one_per_row(rows, name)) for name in self.kept]
+        columns = [typed(name, rows.one_per_row(name)) for name in self.kept]
         columns += [results[name] for name in self.results]
         cells = [c.tolist() if isinstance(c, np.ndarray) else c for c in columns]
         for row in zip(*cells, strict=True):

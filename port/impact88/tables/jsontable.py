@@ -33,7 +33,6 @@ from .rows import (
     Writer,
     heading,
     is_infinite,
-    one_per_row,
     scene_names,
 )
 
@@ -149,7 +148,7 @@ class _JsonWriter(Writer):
         ]
         headings = map(heading, (*names, *self.results))
         keys = [json.dumps(text, ensure_ascii=False) for text in headings]
-        columns = [_cells(name, one_per_row(rows, name)) for name in names]
+        columns = [_cells(name, rows.one_per_row(name)) for name in names]
         columns += [_cells("", results[name]) for name in self.results]
         self._file.writelines(
             "{" + ", ".join(f"{k}: {v}" for k, v in zip(keys, row, strict=True) if v) + "}\n"

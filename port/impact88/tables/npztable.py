@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..errors import UserError, quoted
 from ..files import ESCAPED, replacing
 from ..names import SCENE
-from .rows import Column, Reader, Rows, Writer, scene_names, typed
+from .rows import Column, Reader, Rows, Writer, typed
 
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""
@@ -136,7 +136,7 @@ LARGEST_TEXTS = 256_000_000
 
 class _NpzReader(Reader):
     def __init__(self, arrays: dict[str, NDArray[Any]], where: str) -> None:
-        self.names = scene_names(list(arrays))
+        self._name(list(arrays))
         arrays = dict(zip(self.names, arrays.values(), strict=True))
         scene = {name: array for name, array in arrays.items() if name in SCENE}
         for name, array in scene.items():

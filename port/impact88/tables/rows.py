@@ -76,6 +76,23 @@ class Rows:
         """A column of either kind."""
         return self.columns[name] if name in self.columns else self.others[name]
 
+    def one_per_row(self, name: str) -> Column:
+        """A column with a cell for each row. Raises UserError for an array that has not as many."""
+        if name not in self.columns and name not in self.others:
+            return [ABSENT] * self.count  # no row of this block has the key
+        column = self.kept(name)
+        if not isinstance(column, np.ndarray):
+            return column
+        if column.size == 1:
+            return np.broadcast_to(column.reshape(-1), (self.count,))
+        if column.shape != (self.count,):
+            shape = " by ".join(map(str, column.shape))
+            raise UserError(
+                f"{quoted(name)} is an array of {shape}, not a column of {self.count} rows; "
+                "expected a cell for each row (only .npz results hold it as it is)"
+            )
+        return column
+
     def cell(self, index: int, column: str, reason: str) -> BadCell:
         """A complaint about the row at ``index``, counted from 0."""
         line = self.lines[index] if self.lines is not None else 0
@@ -109,6 +126,10 @@ class Reader:
     def position(self) -> int:
         """How much of the table has been read."""
         return 0
+
+    def _name(self, names: Sequence[str], where: str | None = None) -> None:
+        """Take the names of the columns, see `scene_names`."""
+        self.names = scene_names(names, where)
 
     def _split(self, names: Iterable[str], columns: Iterable[Column]) -> list[dict[str, Column]]:
         """The scene's columns and the others."""
@@ -195,24 +216,6 @@ def filled(column: Column, text: str) -> Column:
     if isinstance(column, arrow.ArrowTexts):
         return column.filled(text)
     return [text if cell in (None, "") else cell for cell in column]
-
-
-def one_per_row(rows: Rows, name: str) -> Column:
-    """A column with a cell for each row. Raises UserError for an array that has not as many."""
-    if name not in rows.columns and name not in rows.others:
-        return [ABSENT] * rows.count  # no row of this block has the key
-    column = rows.kept(name)
-    if not isinstance(column, np.ndarray):
-        return column
-    if column.size == 1:
-        return np.broadcast_to(column.reshape(-1), (rows.count,))
-    if column.shape != (rows.count,):
-        shape = " by ".join(map(str, column.shape))
-        raise UserError(
-            f"{quoted(name)} is an array of {shape}, not a column of {rows.count} rows; expected "
-            "a cell for each row (only .npz results hold it as it is)"
-        )
-    return column
 
 
 def typed(name: str, column: Column) -> NDArray[Any] | list[str]:
