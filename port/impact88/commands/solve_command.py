@@ -55,15 +55,7 @@ from ..scene import VALUE_LIMIT, Entries, Scene, entries_in, sample
 from ..status import Status
 from ..stderr import note
 from ..tables.overlap import ahead, behind, may_wait
-from ..tables.rows import (
-    BadCell,
-    Reader,
-    Rows,
-    check_scene_columns,
-    filled,
-    numbers,
-    point_masses,
-)
+from ..tables.rows import BadCell, Reader, Rows, check_scene_columns, filled, numbers, point_masses
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from ..tables.tableunits import TableUnits
