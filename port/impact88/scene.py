@@ -43,11 +43,6 @@ class Entries:
     entries were understood, for people who see the result; ``given``: the entries as written.
     """
 
-    __slots__ = (
-        *("case", "estimated", "given", "outlines", "remarks", "sources", "title", "units"),
-        "values",
-    )
-
     def __init__(self, values: dict[str, str], given: Mapping[str, str]) -> None:
         self.values = values
         self.given = given

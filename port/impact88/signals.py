@@ -29,14 +29,9 @@ class Terminated(BaseException):
         self.status = 128 + number
 
 
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    signal.signal(number, signal.SIG_IGN)
-    raise KeyboardInterrupt
-
-
 def _leave(number: int, frame: FrameType | None) -> None:
     signal.signal(number, signal.SIG_IGN)
-    raise Terminated(number)
+    raise KeyboardInterrupt if number == signal.SIGINT else Terminated(number)
 
 
 @contextmanager
@@ -46,17 +41,17 @@ def orderly() -> Iterator[None]:
     A signal that the caller ignores (nohup, a shell's background job) or handles stays as it is.
     Outside the main thread, where Python takes no handlers, nothing changes.
     """
-    handlers: dict[int, tuple[Any, Any]] = {
-        signal.SIGINT: (signal.default_int_handler, _interrupt),
-        signal.SIGTERM: (signal.SIG_DFL, _leave),
+    usual: dict[int, Any] = {
+        signal.SIGINT: signal.default_int_handler,
+        signal.SIGTERM: signal.SIG_DFL,
     }
     if sys.platform != "win32":
-        handlers[signal.SIGHUP] = (signal.SIG_DFL, _leave)
+        usual[signal.SIGHUP] = signal.SIG_DFL
     before = {}
     try:
-        for number, (usual, handler) in handlers.items():
-            if signal.getsignal(number) is usual or signal.getsignal(number) == usual:
-                before[number] = signal.signal(number, handler)
+        for number, handler in usual.items():
+            if signal.getsignal(number) == handler:
+                before[number] = signal.signal(number, _leave)
     except ValueError:  # not the main thread
         pass
     try:

@@ -128,11 +128,7 @@ def main(args: argparse.Namespace) -> int:
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
         machine = Applesoft(
-            terminal.read,
-            terminal.show,
-            printer,
-            dos=not args.no_dos,
-            echo=not terminal.typing,
+            terminal.read, terminal.show, printer, dos=not args.no_dos, echo=not terminal.typing
         )
         machine.machine.statements_left = args.max_statements
         load_program(machine, args.program)

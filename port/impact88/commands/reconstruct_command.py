@@ -71,8 +71,7 @@ ARGUMENTS = (
     options.names_option("--outputs", "solve for these only; others may stay unknown"),
     options.value("--for", None, argparse.SUPPRESS, dest="outputs", action="append"),
     *options.draws(
-        20_000,
-        meaning="random draws of values known within limits; 0: neither draws nor bounds",
+        20_000, meaning="random draws of values known within limits; 0: neither draws nor bounds"
     ),
     options.writes("--write-scene", "FILE", "write the impact found as a scene file"),
     options.renamed("--scene", "--write-scene FILE"),

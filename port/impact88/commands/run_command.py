@@ -44,8 +44,7 @@ MACHINE = (
     ),
     options.writes("--printer", "FILE", "where the printer's output goes (default: stdout)"),
     options.flag(
-        "--raw",
-        "every character as the Apple sends it: form feed, bells, NULs and control-D too",
+        "--raw", "every character as the Apple sends it: form feed, bells, NULs and control-D too"
     ),
 )
 """What is plugged into the machine."""
