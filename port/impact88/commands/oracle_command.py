@@ -28,7 +28,7 @@ import argparse
 import codecs
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..checking.oracle import Request, answer
@@ -60,55 +60,46 @@ ARGUMENTS = (
 
 def main(args: argparse.Namespace) -> int:
     """Answer every line, or write test vectors."""
-    if (args.vectors is not None or args.published) and args.scenes != "-":
+    from ..checking import kit, vectors
+
+    wanted = args.vectors is not None
+    if (wanted or args.published) and args.scenes != "-":
         raise UserError("vectors have their own scenes; expected no file beside them")
-    if args.published and (args.vectors is not None or args.only or args.seed):
+    if args.published and (wanted or args.only or args.seed):
         raise UserError("--published are vectors already made; expected nothing beside it")
-    if args.only and args.vectors is None:
-        raise UserError("--class is for test vectors; expected --vectors N with it")
-    if args.to and args.vectors is None:
-        raise UserError("--to is for test vectors; expected --vectors N with it")
+    for option, given in (("--class", args.only), ("--to", args.to)):
+        if given and not wanted:
+            raise UserError(f"{option} is for test vectors; expected --vectors N with it")
     if args.kit is not None:
-        from ..checking.kit import write_kit
-        from ..checking.vectors import PUBLISHED
-
-        for name in write_kit(args.kit, args.vectors or PUBLISHED, args.seed):
-            print(name)
+        print("\n".join(kit.write_kit(args.kit, args.vectors or vectors.PUBLISHED, args.seed)))
         return 0
-    named_csv = (args.output or "").lower().endswith(".csv") and args.to is None
-    if args.vectors is not None and (args.to == "csv" or named_csv):
-        from ..checking.kit import flat
-        from ..checking.vectors import vectors
-
-        sys.stdout.writelines(flat(vectors(args.vectors, args.seed, False, args.only)))
-        return 0
-    counts = {"answered": 0, "refused": 0}
     if args.published:
-        from ..checking.vectors import published
-
-        print(published(), end="")
+        print(vectors.published(), end="")
         return 0
-    if args.vectors is not None:
-        from ..checking.vectors import vectors
-
-        _print(vectors(args.vectors, args.seed, not args.no_reference, args.only), counts)
-    else:
-        for batch in _batches(args.scenes, args.units):
-            _print(answer(batch, not args.no_reference), counts)
-            sys.stdout.flush()
-    if not counts["answered"]:
+    reference = not args.no_reference
+    to = args.to or ("csv" if (args.output or "").lower().endswith(".csv") else "jsonl")
+    if wanted and to == "csv":
+        made = vectors.vectors(args.vectors, args.seed, False, args.only)
+        sys.stdout.writelines(kit.flat(made))
+        return 0
+    batches: Iterable[Iterator[dict[str, Any]]]
+    batches = (answer(batch, reference) for batch in _batches(args.scenes, args.units))
+    if wanted:
+        batches = [vectors.vectors(args.vectors, args.seed, reference, args.only)]
+    answered = refused = 0
+    for found in batches:
+        for line in found:
+            refused += "error" in line
+            answered += "error" not in line
+            print(json.dumps(line, ensure_ascii=False))
+        sys.stdout.flush()
+    if not answered:
         raise UserError(
-            f"no line could be used ({counts['refused']} refused)"
-            if counts["refused"]
+            f"no line could be used ({refused} refused)"
+            if refused
             else 'nothing to answer; expected lines such as {"id": 1, "scene": {...}}'
         )
-    return int(counts["refused"] > 0)
-
-
-def _print(answers: Iterator[dict[str, Any]], counts: dict[str, int]) -> None:
-    for found in answers:
-        counts["refused" if "error" in found else "answered"] += 1
-        print(json.dumps(found, ensure_ascii=False))
+    return int(refused > 0)
 
 
 def _batches(path: str, units: str | None) -> Iterator[list[Request]]:
