@@ -128,7 +128,7 @@ def test_seed_decides(capsys):
         (["--sample", "1", "--range", "UX=+-1", "--range", "ux=+-2"], "given twice"),
         (
             ["--sample", "1", "--range", "VAX=1 .. 2"],
-            "'VAX' is not an input of the forward problem",
+            "'VAX' is not a value of the forward problem",
         ),
         (["--sample", "1", *RANGES, "--correlation", "UX,MU"], "expected A,B=R"),
         (["--sample", "1", *RANGES, "--correlation", "UX,VX=0.5"], "VX does not vary"),

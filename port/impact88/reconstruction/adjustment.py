@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ..errors import UserError
 from ..mappings import within_limits
-from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, check_names
 from ..uncertainty.uncertain import Uncertain, fixed
 from .doublerange import within_doubles
 from .geometry import NAMES as GEOMETRY
@@ -736,9 +736,7 @@ def _preferred(found: list[Reconstruction]) -> list[Reconstruction]:
 
 def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:
     given = within_limits(known)
-    for name in given:
-        if name not in KNOWABLE:
-            raise UserError(f"{name!r} is not a value of an impact; expected {' '.join(KNOWABLE)}")
+    check_names(given, KNOWABLE, "value of an impact")
     m = given.setdefault("M", fixed(6.0))
     if m.varies or m.nominal not in (4, 6):
         raise UserError("M must be 6, or 4 for point masses")

@@ -179,9 +179,8 @@ class _Problem:
         names = tuple(n for n in UNKNOWNS if not (point and n in (*SPINS, "EM")))
         absent = tuple(n for n in names if n not in given and not (n == "MUP" and "MU" in given))
         wanted = absent if unknown is None else tuple(dict.fromkeys(unknown))
+        check_names(wanted, names, "quantity that may be unknown")
         for name in wanted:
-            if name not in names:
-                raise UserError(f"{name!r} is not an unknown; expected some of {' '.join(names)}")
             if name not in absent:
                 raise UserError(f"{name} is both known and wanted; leave it out of one")
         if not wanted:

@@ -30,7 +30,7 @@ from .. import status
 from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
 from ..mappings import within_limits
-from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES
+from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names
 from ..reconstruction.contact import MOVES, moved, placed
 from ..reconstruction.model import Model, forward_model, reconstruction_model
 from ..scene import check_mapping
@@ -103,7 +103,6 @@ def bounds(
     >>> round(found.bounds["DVA"].lower, 2), round(found.bounds["DVA"].upper, 2)
     (13.42, 18.37)
     """
-    _check(samples, sigmas, quantiles)
     check_mapping(values)
     given = dict(values)
     pairs = dict(correlations or {})
@@ -112,7 +111,7 @@ def bounds(
 
         pairs = read_correlations(text, "correlations") | pairs
     box = _Box.of(given, outputs, problem, sigmas, exclude)
-    _check_memory(samples, len(box.outputs))
+    _check(samples, sigmas, quantiles, len(box.outputs))
     correlated = correlation_root(pairs, box.inputs)
     nominal = box.nominal()
     sweeps = box.sweeps()
@@ -167,22 +166,19 @@ MOST_DRAWS = 100_000_000
 """Draws of all outputs together that are kept: 800 MB."""
 
 
-def _check_memory(samples: int, outputs: int) -> None:
-    if samples * outputs > MOST_DRAWS:
-        raise UserError(
+def _check(samples: int, sigmas: float, quantiles: Sequence[float], outputs: int) -> None:
+    for wrong, reason in (
+        (samples < 2, f"{samples} samples are too few; expected 2 or more"),
+        (not 0 < sigmas < np.inf, f"{sigmas:g} standard deviations span nothing; expected above 0"),
+        *((not 0 <= q <= 1, f"{q:g} is not a quantile; expected 0 ... 1") for q in quantiles),
+        (
+            samples * outputs > MOST_DRAWS,
             f"{samples:,} samples of {outputs} outputs are more than {MOST_DRAWS:,} numbers; "
-            "expected fewer samples, or fewer outputs"
-        )
-
-
-def _check(samples: int, sigmas: float, quantiles: Sequence[float]) -> None:
-    if samples < 2:
-        raise UserError(f"{samples} samples are too few; expected 2 or more")
-    if not 0 < sigmas < np.inf:
-        raise UserError(f"{sigmas:g} standard deviations span nothing; expected more than 0")
-    for share in quantiles:
-        if not 0 <= share <= 1:
-            raise UserError(f"{share:g} is not a quantile; expected 0 ... 1")
+            "expected fewer samples, or fewer outputs",
+        ),
+    ):
+        if wrong:
+            raise UserError(reason)
 
 
 @dataclass(frozen=True)
@@ -207,8 +203,7 @@ class _Box:
         sigmas: float,
         exclude: Sequence[str],
     ) -> _Box:
-        if problem not in PROBLEMS:
-            raise UserError(f"{problem!r} is not a problem; expected {' or '.join(PROBLEMS)}")
+        check_names([problem], PROBLEMS, "problem")
         given = within_limits(values)
         given.setdefault("M", fixed(6.0))
         _check_values(given, problem)
@@ -216,9 +211,7 @@ class _Box:
         known = {name: item.nominal for name, item in given.items() if not item.varies}
         usual, allowed = _outputs(problem, given["M"].nominal == 4)
         wanted = tuple(dict.fromkeys(usual if outputs is None else outputs))
-        for name in wanted:
-            if name not in allowed:
-                raise UserError(f"{name!r} is not a result; expected some of {' '.join(allowed)}")
+        check_names(wanted, allowed, "result")
         if not wanted:
             raise UserError(f"no result is asked for; expected some of {' '.join(allowed)}")
         limits = {name: item.limits(sigmas) for name, item in inputs.items()}
@@ -227,9 +220,7 @@ class _Box:
                 raise UserError("its limits are too far apart for double precision", name)
         forward = problem == "forward"
         model = forward_model if forward else reconstruction_model
-        for name in exclude:
-            if name not in WARNINGS:
-                raise UserError(f"{name!r} is not a warning; expected some of {' '.join(WARNINGS)}")
+        check_names(exclude, WARNINGS, "warning")
         excluded = sum({WARNINGS[name] for name in exclude})
         share = "MU" in given and given["MU"].share
         return cls(model, known, inputs, wanted, limits, excluded, share)
@@ -341,11 +332,7 @@ def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
     for name in names:
         if name not in given:
             raise UserError(f"{name} is missing; the {problem} problem needs {' '.join(names)}")
-    for name in given:
-        if name not in (*names, *MOVES):
-            raise UserError(
-                f"is not an input of the {problem} problem; expected one of {' '.join(names)}", name
-            )
+    check_names(given, (*names, *MOVES), f"value of the {problem} problem")
     if given["M"].varies or given["M"].nominal not in (4, 6):
         raise UserError("expected 6, or 4 for point masses", "M")
     name = "MU" if problem == "forward" else "MUP"

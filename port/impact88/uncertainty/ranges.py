@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ..errors import UserError
-from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, VELOCITIES
+from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
 from ..reconstruction.contact import MOVES, moved, placed
 from . import uncertain
 from .uncertain import Uncertain
@@ -55,19 +55,10 @@ def read_inputs(
     entries = {"M": DEFAULT_M, **texts}
     entries.pop("title", None)
     correlations = read_correlations(entries.pop("correlations", ""), source)
-    for name in entries:
-        if name not in (*placed(SCENE, entries), *AFTER, *MOVES):
-            expected = " ".join((*SCENE, *AFTER, "title", "correlations"))
-            raise UserError(f"{name!r} is not a name used here; expected {expected}", source)
     scene = placed(SCENE, entries)
+    check_names(entries, (*scene, *AFTER, *MOVES), "name used here", source)
     wanted = placed((*COMMON, *(BEFORE if problem == "forward" else AFTER)), entries)
-    for name in changes:
-        if name not in (*wanted, *MOVES):
-            raise UserError(
-                f"{name!r} is not an input of the {problem} problem; expected one of "
-                f"{' '.join(wanted)}",
-                "--range",
-            )
+    check_names(changes, (*wanted, *MOVES), f"value of the {problem} problem", "--range")
     values = {
         name: uncertain.read(text, f"{source}, {name}")
         for name, text in entries.items()
