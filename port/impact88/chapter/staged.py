@@ -347,7 +347,7 @@ class _Linear:
     def of(cls, collision: Collision, spin_weight: float = SPIN_WEIGHT) -> _Linear:
         geometry = Geometry.of(collision.scene)
         jacobian = np.array([geometry.changes(*unit) for unit in np.eye(3)], float).T
-        directions = np.array([[float(x) for x in row] for row in geometry.directions()])
+        directions = np.array(geometry.relative([*np.eye(6)]))
         before = np.array([collision.scene[name] for name in VELOCITIES])
         after = np.array([collision.measured[name] for name in FINAL_STATE])
         known = np.isfinite(after)

@@ -130,38 +130,21 @@ class Geometry:
         """1/Ī = 1/I_a + 1/I_b."""
         return self.inverse_ia + self.inverse_ib
 
-    def directions(self) -> tuple[tuple[Array | float, ...], ...]:
-        """Rows n, t and spin: multiplied with (UX UY WA VX VY WB), or the final velocities in that
-        order, they give the relative normal, tangential and angular velocity, A minus B."""
-        c, s = self.cosine, self.sine
-        return (
-            (c, s, self.an, -c, -s, self.bn),
-            (-s, c, self.at, s, -c, self.bt),
-            (0.0, 0.0, 1.0, 0.0, 0.0, -1.0),
-        )
-
-    def inverses(self) -> tuple[Array, ...]:
-        """What an impulse component is multiplied with for each velocity of A, then of B."""
-        a, b = self.inverse_ma, self.inverse_mb
-        return (a, a, self.inverse_ia, b, b, self.inverse_ib)
-
     def relative(self, velocities: Sequence[Any]) -> tuple[Array, Array, Array]:
-        """Relative normal, tangential and angular velocity at the contact point."""
-        normal, tangential, spin = (
-            sum(arm * velocity for arm, velocity in zip(row, velocities, strict=True))
-            for row in self.directions()
-        )
-        return normal, tangential, spin
+        """Relative normal, tangential and angular velocity, A minus B, at the contact point; of UX
+        UY WA VX VY WB or the final velocities in that order."""
+        ux, uy, wa, vx, vy, wb = velocities
+        dx, dy, c, s = ux - vx, uy - vy, self.cosine, self.sine
+        normal = c * dx + s * dy + self.an * wa + self.bn * wb
+        return normal, c * dy - s * dx + self.at * wa + self.bt * wb, wa - wb
 
     def changes(self, pn: Any, pt: Any, moment: Any) -> list[Array]:
         """The changes of the six velocities an impulse makes (the reason no inertia is inverted
         twice: the map is the transpose of `relative`'s, times the inverse inertias)."""
-        impulse = (pn, pt, moment)
-        return [
-            inverse
-            * sum(row[i] * part for row, part in zip(self.directions(), impulse, strict=True))
-            for i, inverse in enumerate(self.inverses())
-        ]
+        x, y = self.cosine * pn - self.sine * pt, self.sine * pn + self.cosine * pt
+        on_a, on_b = self.an * pn + self.at * pt + moment, self.bn * pn + self.bt * pt - moment
+        a, b = self.inverse_ma, self.inverse_mb
+        return [a * x, a * y, self.inverse_ia * on_a, -b * x, -b * y, self.inverse_ib * on_b]
 
     def contact_point(self) -> dict[str, Array]:
         """The contact point from each center of gravity, along the scene's x and y."""

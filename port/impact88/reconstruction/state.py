@@ -10,7 +10,7 @@ part carries a derivative).
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -242,8 +242,12 @@ _QUANTITIES: dict[str, Callable[[State], Any]] = {
 
 def _unit(degrees: Any) -> tuple[Any, Any]:
     """Cosine and sine."""
-    sine, cosine = sin_cos(degrees)
+    sine, cosine = _of_number(degrees) if isinstance(degrees, float) else sin_cos(degrees)
     return cosine, sine
+
+
+_of_number = lru_cache(maxsize=64)(sin_cos)
+"""What is known exactly is asked for again and again."""
 
 
 def course(x: Any, y: Any) -> Any:
