@@ -70,6 +70,11 @@ def sampled(rows: list[Any], count: int, seed: int = 1) -> list[Any]:
     return rows if SWEEP else random.Random(seed).sample(rows, min(count, len(rows)))
 
 
+def first(cases: list[Any], count: int) -> list[Any]:
+    """The first of some cases, or all of them in a sweep."""
+    return cases if SWEEP else cases[:count]
+
+
 def chosen(places: list[Place], rng: random.Random) -> list[Place]:
     """The places of one scene to change: one, or n of them in a sweep."""
     return rng.sample(places, min(SWEEP or 1, len(places)))

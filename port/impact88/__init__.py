@@ -59,8 +59,7 @@ if TYPE_CHECKING:
     from .reconstruction.adjustment import Reconstruction
     from .reconstruction.unknowns import Solution, solve_for
     from .replay import Replay, replay
-    from .reporting.examination import Verification
-    from .reporting.papers import verify
+    from .reporting.examination import Verification, verify
     from .scene import Scene, sample
     from .tables.frames import solve_frame
     from .uncertainty.bounds import bounds
@@ -98,7 +97,7 @@ _LAZY = {
     "solve_frame": "tables.frames",
     "solve_for": "reconstruction.unknowns",
     "status": "",
-    "verify": "reporting.papers",
+    "verify": "reporting.examination",
 }
 """Public name -> the module that holds it (after a colon, the name it has there), or nothing for a
 module of this package. A test holds this table against the imports above."""

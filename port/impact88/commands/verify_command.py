@@ -90,7 +90,7 @@ def main(args: argparse.Namespace) -> int:
     if args.report and any(file.results for file in examined):
         from ..reporting.casefile import write_report
 
-        write_report(args.report, examined, args.date, args.case, args.examiner)
+        write_report(args.report, examined, **{name: getattr(args, name) for name in _ON_REPORT})
     return status
 
 

@@ -106,13 +106,10 @@ class Explanation:
 
 @np.errstate(all="ignore")  # a cause tried may leave a double's range, and then explains nothing
 def explain(
-    found: Judged,
-    rereads: Sequence[Reread] | None = None,
-    in_time: Callable[[], bool] = lambda: True,
+    found: Judged, rereads: Callable[[], Sequence[Reread]], in_time: Callable[[], bool]
 ) -> list[Explanation]:
     """Causes that make more of a differing printout agree, those that ask least first. ``rereads``:
-    slips that were tried already, where those are all there can be; ``in_time``: whether another
-    kind of cause may still be tried."""
+    scenes with slips put right; ``in_time``: whether another kind of cause may still be tried."""
     page = _Page(found)
     offered = page.explanations(page.without_replay())
 
@@ -120,11 +117,10 @@ def explain(
         return in_time() and min((one.weight for one in offered), default=100.0) > _ENOUGH
 
     if not found.recovered.missing and any(not one.startswith("label ") for one in page.base):
-        rereading = Rereading(found.recovered, apart=True)
         tables = hypotheses.Tables(page.evidence)
         offered += page.explanations(
             [
-                *page.rereads(rereading.best() if rereads is None else rereads),
+                *page.rereads(rereads()),
                 *hypotheses.unexplained(page.evidence, tables.nearest),
                 *hypotheses.results_otherwise(page.evidence),
                 *machines.causes(page.evidence),
@@ -134,7 +130,7 @@ def explain(
             offered += page.explanations(page.last_places_alone())
         if wanting():
             searched = hypotheses.unexplained(page.evidence, list(tables.searched()))
-            both = page.exchanged_and_slipped(tables.exchanges(), rereading)
+            both = page.exchanged_and_slipped(tables.exchanges())
             offered += page.explanations([*searched, *both])
         if wanting():
             offered += page.explanations(programs.causes(page.evidence, page.base))
@@ -239,10 +235,9 @@ class _Page:
         order = np.argsort(self.evidence.far(found, len(tried) + 1)[1:], kind="stable")
         return [tried[index] for index in order]
 
-    def exchanged_and_slipped(
-        self, exchanges: Iterable[hypotheses.Hypothesis], rereading: Rereading
-    ) -> Iterator[Cause]:
+    def exchanged_and_slipped(self, exchanges: Iterable[hypotheses.Hypothesis]) -> Iterator[Cause]:
         """Inputs of a side or an axis exchanged, and a slip in another."""
+        rereading = Rereading(self.recovered, apart=True)
         for exchange in exchanges:
             texts = {one.field: exchange.assumed[one.field] for one in exchange.changes}
             for one in rereading.best(texts):

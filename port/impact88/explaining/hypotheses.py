@@ -10,9 +10,9 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from itertools import combinations
+from itertools import combinations, islice
 from math import isfinite
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,7 +33,10 @@ _REPLAYED = 40
 """Rows that are replayed, the nearest of some 700."""
 _NEAR = 0.03
 """How far a unit may be off on average to be searched: 88 for 88.4 is off by 0.005."""
+_ANY_TWO = 20.0
+"""Bits of any two numbers exchanged: then no slip is looked for besides."""
 _SEARCHED, _LAST = 3, 24
+"""Units that are searched, and combinations of each that are replayed."""
 _CANDIDATES, _COMBINATIONS = 40, 60_000
 """Numbers that may have been computed with: of one input, and of all together."""
 _FACTOR = 1e-6
@@ -86,38 +89,29 @@ def table() -> tuple[Row, ...]:
 
 
 class Tables:
-    """The rows that change inputs, for one page."""
+    """The rows that change inputs, for one page. ``nearest``: those to be replayed."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._evidence = evidence
         self._scene, self._printed = evidence.recovered.scene, evidence.recovered.assumed
         self._values = doubles_of({name: text or "0" for name, text in self._scene.items()})
-        rows = [row for row in table() if row.inputs]
-        every = [one for row in rows for one in self._either_sign(row)]
+        every = [one for row in table() if row.inputs for one in self._either_sign(row)]
         far = self._far(every)
-        bits = [one.row.bits for one in every]
         # double precision does not follow line 510 where MU is past the pivot's -10
         past = abs(self._values["MU"]) >= -PIVOT != -self._values["MU"]
-        most = len(every) if past else _REPLAYED
-        order = np.lexsort(np.array([bits, far]))[:most].tolist()
+        order = np.lexsort(np.array([[one.row.bits for one in every], far]))
+        order = order[: len(every) if past else _REPLAYED]
         self.nearest = [every[index] for index in order]
-        self._close = [
-            one for one, index in zip(self.nearest, order, strict=True) if far[index] <= _NEAR
-        ]
+        self._close = [every[index] for index in order if far[index] <= _NEAR]
 
-    def exchanges(self) -> list[Hypothesis]:
+    def exchanges(self) -> Iterator[Hypothesis]:
         """The inputs in each other's place that are printed on the page."""
-        return [
-            one
-            for row in table()
-            if row.inputs
-            and row.bits < 20
-            and all(isinstance(made, ast.Name) for made in row.inputs.values())
-            for one in [self._made(row)]
-            if one
-            and one.changes
-            and {change.field for change in one.changes} <= set(self._printed)
-        ]
+        for row in table():
+            names = all(isinstance(made, ast.Name) for made in row.inputs.values())
+            if row.inputs and names and row.bits < _ANY_TWO:
+                made = self._made(row)
+                if made and {change.field for change in made.changes} <= set(self._printed):
+                    yield made
 
     def _either_sign(self, row: Row) -> Iterator[Hypothesis]:
         made = [self._made(row)]
@@ -140,35 +134,36 @@ class Tables:
                 if (other := _field(made.id)) in self._printed:
                     assumed[_field(name)] = self._printed[other]
                 continue
-            x = self._values[name]
-            found = float(value(made, {**self._values, "x": x}))
+            x, own = self._values[name], self._scene[name]
+            found = self._value(made, x)
             if not isfinite(found):
                 return None
             slack = 0.0
-            if x and _is_conversion(made):
-                # all were rounded to as many decimals, but what fills Applesoft's nine digits
-                own = self._scene[name]
+            times = isinstance(made, ast.BinOp) and isinstance(made.op, ast.Mult | ast.Div)
+            if x and (times or isinstance(made, ast.Call)):
+                # a conversion; all were rounded to as many decimals, but what fills nine digits
                 half = 0.5 * 10.0 ** -(_decimals(own) if digits_of(own) >= 9 else most)
-                ends = [float(value(made, {**self._values, "x": x + way})) for way in (-half, half)]
+                ends = self._value(made, x - half), self._value(made, x + half)
                 slack = within[name] = abs(ends[1] - ends[0]) / 2
             typed[name] = _shortest(found, 0.0 if in_full else slack)
-        changes = tuple(
-            Change(
-                row.kind,
-                name,
-                self._printed.get(name, self._scene[scene_name(name)]),
-                assumed[name]
-                if name in assumed and assumed[name] != self._printed.get(name)
-                else numerals.as_printed(text) or text,
-            )
-            for name in INPUTS
-            if (text := typed.get(scene_name(name))) and text != self._scene[scene_name(name)]
-        )
+        changes = []
+        for name in INPUTS:
+            own, text = self._scene[scene_name(name)], typed.get(scene_name(name))
+            if text and text != own:
+                printed = self._printed.get(name, own)
+                right = assumed.get(name, printed)
+                if right == self._printed.get(name, right):
+                    right = numerals.as_printed(text) or text
+                changes.append(Change(row.kind, name, printed, right))
         if not changes and typed.get("M", self._scene["M"]) == self._scene["M"]:
             return None
-        return Hypothesis(row, {**self._scene, **typed}, changes, assumed, within)
+        return Hypothesis(row, {**self._scene, **typed}, tuple(changes), assumed, within)
 
-    def _far(self, every: Sequence[Hypothesis]) -> np.ndarray:
+    def _value(self, made: ast.expr, x: float) -> float:
+        """An expression of a row, ``x`` being the column itself."""
+        return float(value(made, {**self._values, "x": x}))
+
+    def _far(self, every: Sequence[Hypothesis]) -> Any:
         """How far off the results are, relatively and on average, by double precision."""
         columns = {
             name: np.array([double(one.scene[name] or "0") for one in every])
@@ -176,52 +171,44 @@ class Tables:
         }
         found = in_doubles(columns, self._evidence.named(FIELDS))
         for index, one in enumerate(every):
-            if one.row.results:
-                names = {name: column[index] for name, column in found.items()}
-                for name, made in one.row.results.items():
-                    if name in names:
-                        found[name][index] = value(made, {**names, "x": names[name]})
-        far: np.ndarray = self._evidence.far(found, len(every))
-        return far
+            names = {name: found[name][index] for name in found if one.row.results}
+            for name, made in one.row.results.items():
+                if name in names:
+                    found[name][index] = value(made, {**names, "x": names[name]})
+        return self._evidence.far(found, len(every))
 
     # --- a unit's rounding undone ---
 
     def searched(self) -> Iterator[Hypothesis]:
         """The units that nearly explain the page, with the numbers that explain it best."""
-        if self._scene["M"] == "6":
-            units: dict[tuple[str, str], Hypothesis] = {}
-            for one in self._close:
-                if one.within and not one.row.results:
-                    units.setdefault((one.row.note, " ".join(one.row.inputs)), one)
-            yield from map(self._searched, list(units.values())[:_SEARCHED])
-
-    def _searched(self, unit: Hypothesis) -> Hypothesis:
-        columns = self._columns(unit)
+        units: dict[tuple[str, str], Hypothesis] = {}
+        for one in self._close if self._scene["M"] == "6" else ():
+            if one.within and not one.row.results:
+                units.setdefault((one.row.note, " ".join(one.row.inputs)), one)
         search = self._evidence.recovered.search
-        picks = search.promising(columns, _COMBINATIONS, _LAST)
-        best = min(search.replayed(columns, picks), key=lambda one: one.cost)
-        changes = tuple(
-            change._replace(would_be=numerals.as_printed(text) or text)
-            for change in unit.changes
-            if (text := best.scene[scene_name(change.field)])
-        )
-        return unit._replace(changes=changes, scene=best.scene, within={})
+        for unit in islice(units.values(), _SEARCHED):
+            columns = list(self._columns(unit))
+            picks = search.promising(columns, _COMBINATIONS, _LAST)
+            best = min(search.replayed(columns, picks), key=lambda one: one.cost).scene
+            changes = tuple(
+                change._replace(would_be=numerals.as_printed(text) or text)
+                for change in unit.changes
+                if (text := best[scene_name(change.field)])
+            )
+            yield unit._replace(changes=changes, scene=best, within={})
 
-    def _columns(self, unit: Hypothesis) -> list[Column]:
+    def _columns(self, unit: Hypothesis) -> Iterator[Column]:
         """For the converted inputs every number that may have been computed with."""
-        most = int(_COMBINATIONS ** (1 / len(unit.within)))
-        columns = []
+        most = min(_CANDIDATES, int(_COMBINATIONS ** (1 / len(unit.within))))
         for name in INPUTS:
             own = scene_name(name)
             same = unit.scene[own] == self._scene[own] and name in self._printed
             texts = [self._printed[name] if same else unit.scene[own]]
             if own in unit.within:
-                made = unit.row.inputs[own]
-                exact = float(value(made, {**self._values, "x": self._values[own]}))
-                texts = _near(exact, unit.within[own], min(_CANDIDATES, most))
-            columns.append(Column((name,), [((text,), 0.0) for text in texts], not same))
-        columns.append(Column(("M",), [((unit.scene["M"],), 0.0)], True))
-        return columns
+                exact = self._value(unit.row.inputs[own], self._values[own])
+                texts = _near(exact, unit.within[own], most)
+            yield Column((name,), [((text,), 0.0) for text in texts], not same)
+        yield Column(("M",), [((unit.scene["M"],), 0.0)], True)
 
 
 def unexplained(evidence: Evidence, every: Sequence[Hypothesis]) -> Iterator[Cause]:
@@ -255,13 +242,6 @@ def shown_otherwise(
             if near:
                 ranges[name] = near
     return ranges
-
-
-def _is_conversion(made: ast.expr) -> bool:
-    """Whether a number read so was rounded when it was converted."""
-    return isinstance(made, ast.Call) or (
-        isinstance(made, ast.BinOp) and isinstance(made.op, ast.Mult | ast.Div)
-    )
 
 
 def _field(name: str) -> str:

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from copy import copy
 from decimal import Decimal
 from typing import Any
+
+import numpy as np
 
 from ..fields import ANGLES, FIELDS, INPUTS
 from ..program.arithmetics import APPLESOFT, FLOAT64, Arithmetic
@@ -33,22 +35,24 @@ from .predictions import (
     places_of,
 )
 
-SOME_LINES = 14.2
+_SOME_LINES = 14.2
 """Bits for an office's copy that rounds on some lines: more than for another arithmetic (14), less
 than for a last place misread (18), which a rounded one looks like."""
-_OWN = {"rounded": 13.0, "truncated": 13.0}
-"""Bits for results cut otherwise by the program itself; a bit more by another machine."""
-_DECIMALS = {"rounded": 14.0, "floored": 14.0, "own": 15.0}
+_CUT = 13.0
+"""Bits for results rounded or truncated by the program itself; one more by another machine."""
+_DECIMALS, _OWN_DECIMALS = 14.0, 15.0
+"""Bits for results to other decimals: as many for all of a kind, or for each its own."""
+_SINGLE, _NO_EVIDENCE = 14.5, 4.0
+"""Bits for single precision, and more where the kinetic energy has no more digits in double
+precision either."""
 _SHAKEN = 6
 """Runs in single precision; with twice as many the ranges grow by a tenth."""
 _OPEN_UNITS, _OPEN = 12, 3e-4
 """A result is left open by single precision within so many units of its last printed place, or
 within this part of it; where it is more, the page is no evidence."""
-_NO_EVIDENCE = 4.0
-"""Bits added where the kinetic energy has no more digits in double precision either."""
 _LONG = 7
 """Angles of so many digits came back from radians a little off."""
-_APPLESOFT_DIGITS, SINGLE_DIGITS = 9, 7
+_APPLESOFT_DIGITS, _SINGLE_DIGITS = 9, 7
 
 
 def _with_pi(arithmetic: Arithmetic, pi: Any) -> Arithmetic:
@@ -57,20 +61,13 @@ def _with_pi(arithmetic: Arithmetic, pi: Any) -> Arithmetic:
     return made
 
 
-_MACHINES: tuple[tuple[str, str, float, Callable[[], Arithmetic]], ...] = (
-    ("IEEE double arithmetic", "", 14.0, lambda: FLOAT64),
-    ("IEEE double arithmetic", " with exact pi", 14.5, lambda: _with_pi(FLOAT64, math.pi)),
-    ("IEEE double arithmetic", " with pi = 3.1416", 15.0, lambda: _with_pi(FLOAT64, 3.1416)),
-    *(
-        (
-            "another pi in line 300",
-            f", {text}",
-            14.3,
-            lambda text=text: _with_pi(APPLESOFT, APPLESOFT.number(text)),
-        )
-        for text in ("3.1416", "3.14159", "3.1415927", "3.141592654", "3.14")
-    ),
-)  # fmt: skip
+_DOUBLES: tuple[tuple[str, float, Arithmetic], ...] = (
+    ("", 14.0, FLOAT64),
+    (" with exact pi", 14.5, _with_pi(FLOAT64, math.pi)),
+    (" with pi = 3.1416", 15.0, _with_pi(FLOAT64, 3.1416)),
+)
+_OTHER_PI = 14.3
+_PIS = ("3.1416", "3.14159", "3.1415927", "3.141592654", "3.14")
 
 
 def causes(evidence: Evidence) -> Iterator[Cause]:
@@ -78,7 +75,7 @@ def causes(evidence: Evidence) -> Iterator[Cause]:
     known = all(reading.clean for reading in evidence.shown.fields.values())
     best: dict[str, Cause] = {}
     for one in _causes(evidence):
-        kind = f"{one.kind} {one.note}" if one.bits == SOME_LINES else one.kind
+        kind = f"{one.kind} {one.note}" if one.bits == _SOME_LINES else one.kind
         if kind not in best or len(one.wrong) < len(best[kind].wrong):
             best[kind] = one
     for one in best.values():
@@ -87,32 +84,29 @@ def causes(evidence: Evidence) -> Iterator[Cause]:
 
 
 def _causes(evidence: Evidence) -> Iterator[Cause]:
-    for scene in _either_sign(evidence.recovered.scene):
-        outcome, values = replays.run_whole(scene)
-        page = _Page(evidence, scene, outcome, values)
-        for how, bits in _OWN.items():
-            yield page.cause(f"{how}, not floored", "", bits, page.cut(how))
-            lines = page.lines(how)
-            if lines:
-                where = f"on line{'' if len(lines) == 1 else 's'} {', '.join(map(str, lines))}"
-                yield page.cause(f"{how}, not floored", where, SOME_LINES, page.cut(how, lines))
+    found = evidence.recovered.scene
+    for scene in (found, *with_opposite_mu(found)):
+        page = _Page(evidence, scene, APPLESOFT)
+        for how in ("rounded", "truncated"):
+            yield page.cause(f"{how}, not floored", "", _CUT, page.cut(how))
+            if lines := page.lines(how):
+                where = f"on line{'s' * (len(lines) > 1)} {', '.join(map(str, lines))}"
+                yield page.cause(f"{how}, not floored", where, _SOME_LINES, page.cut(how, lines))
         yield from _other_decimals(page)
     typed, spared = _as_typed(evidence)
-    for scene in _either_sign(typed):
-        for kind, variant, bits, machine in _MACHINES:
-            page = _Page(evidence, scene, *replays.run_whole(scene, machine()), spared)
-            so = "float64 prints so" if not variant else "double precision prints so"
-            if kind.startswith("another"):
-                yield page.cause(kind, variant.removeprefix(", "), bits, {})
-                continue
-            yield page.cause(f"{kind}{variant}", so, bits, {})
-            for how in _OWN:
-                so = f"double precision{variant} prints so"
+    single = all(evidence.digits(name) <= _SINGLE_DIGITS for name in (*INPUTS, "KI"))
+    for scene in (typed, *with_opposite_mu(typed)):
+        for variant, bits, machine in _DOUBLES:
+            page = _Page(evidence, scene, machine, spared)
+            kind, so = f"IEEE double arithmetic{variant}", f"double precision{variant} prints so"
+            yield page.cause(kind, so, bits, {})
+            for how in ("rounded", "truncated"):
                 yield page.cause(f"{kind}, {how}, not floored", so, bits + 1, page.cut(how))
-        if evidence.digits("KI") <= SINGLE_DIGITS and all(
-            evidence.digits(name) <= SINGLE_DIGITS for name in INPUTS
-        ):
-            yield from _single_causes(evidence, scene, spared)
+        for pi in _PIS:
+            page = _Page(evidence, scene, _with_pi(APPLESOFT, APPLESOFT.number(pi)), spared)
+            yield page.cause("another pi in line 300", pi, _OTHER_PI, {})
+        if single:
+            yield from _single_precision(evidence, scene, spared)
 
 
 class _Page:
@@ -122,22 +116,35 @@ class _Page:
         self,
         evidence: Evidence,
         scene: dict[str, str],
-        outcome: replays.Outcome,
-        values: Mapping[str, float],
+        machine: Arithmetic,
         spared: frozenset[str] = frozenset(),
     ) -> None:
-        self.evidence, self.scene, self.outcome = evidence, scene, outcome
+        self.evidence, self.scene = evidence, scene
+        self.outcome, values = replays.run_whole(scene, machine)
         self.values = {name: one for name, one in values.items() if name != "KI"}
         self.energy = values.get("KI", 0.0) if "KI" in evidence.texts else 0.0
-        self._own = as_printed(outcome) | _energy(evidence, values)
-        self._inputs = {n: text for n, text in outcome.fields.items() if n not in spared}
+        self._own = as_printed(self.outcome) | self._energy()
+        self._inputs = {n: text for n, text in self.outcome.fields.items() if n not in spared}
+
+    def _energy(self) -> dict[str, Range]:
+        """The kinetic energy as the page may have it: to nine digits, halves either way, or to
+        more, rounded or cut."""
+        if not self.energy or not math.isfinite(self.energy):
+            return {}
+        if self.evidence.digits("KI") > _APPLESOFT_DIGITS:
+            slack = Decimal("1.001").scaleb(-self.evidence.decimals("KI"))
+        else:
+            last = Decimal(self.energy).adjusted() - _APPLESOFT_DIGITS + 1
+            slack = Decimal("0.5001").scaleb(last)
+        near = around(self.energy, slack)
+        return {"KI": near} if near else {}
 
     def cause(self, kind: str, note: str, bits: float, other: Mapping[str, Range]) -> Cause:
         """What it leaves unexplained, some of its results otherwise."""
         wrong = self.evidence.differing({**self._own, **other}, self.outcome.ending, self._inputs)
         return Cause(kind, note, bits, self.scene, wrong)
 
-    def cut(self, how: str, lines: list[int] | None = None) -> dict[str, Range]:
+    def cut(self, how: str, lines: Iterable[int] | None = None) -> dict[str, Range]:
         """The results, or those of some lines, cut to the listing's decimals."""
         return {
             name: made
@@ -148,37 +155,19 @@ class _Page:
 
     def lines(self, how: str) -> list[int]:
         """The lines whose results the page has so and not floored; none if all are or none is."""
-        made, texts = self.cut(how), self.evidence.texts
-        every: dict[int, list[str]] = {}
-        for name in self.values:
-            every.setdefault(FIELDS[name].line, []).append(name)
-        some = [
-            line
-            for line, names in every.items()
-            if all(name not in texts or self.prints(name, made) for name in names)
-            and any(name in texts and not self.prints(name) for name in names)
-        ]
+        made, read = self.cut(how), self.evidence.texts
+        every = {FIELDS[name].line for name in self.values}
+        some = []
+        for line in sorted(every):
+            names = [name for name in self.values if FIELDS[name].line == line and name in read]
+            if all(self.prints(name, made) for name in names) and not all(map(self.prints, names)):
+                some.append(line)
         return some if len(some) < len(every) else []
 
     def prints(self, name: str, ranges: Mapping[str, Range] | None = None) -> bool:
         """Whether the page has just the number that is predicted."""
         predicted = (ranges or self._own).get(name)
-        number = numerals.value_of(self.evidence.texts[name])
-        return predicted is not None and number is not None and number == predicted[0]
-
-
-def _energy(evidence: Evidence, values: Mapping[str, float]) -> dict[str, Range]:
-    """The kinetic energy as the page may have it: to nine digits, halves either way, or to more,
-    rounded or cut."""
-    if "KI" not in values or "KI" not in evidence.texts or not math.isfinite(values["KI"]):
-        return {}
-    number = Decimal(values["KI"])
-    if evidence.digits("KI") > _APPLESOFT_DIGITS:
-        near = around(values["KI"], Decimal("1.001").scaleb(-evidence.decimals("KI")))
-    else:
-        unit = Decimal(1).scaleb(number.adjusted() - _APPLESOFT_DIGITS + 1)
-        near = around(values["KI"], Decimal("0.5001") * unit)
-    return {"KI": near} if near else {}
+        return predicted is not None and Decimal(self.evidence.texts[name]) == predicted[0]
 
 
 def _other_decimals(page: _Page) -> Iterator[Cause]:
@@ -195,60 +184,56 @@ def _other_decimals(page: _Page) -> Iterator[Cause]:
         for how in ("rounded", "floored"):
             made = {n: cut(page.values[n], most[places_of(n)], how) for n in names}
             ranges = {name: one for name, one in made.items() if one}
-            yield page.cause(kind, f"{how} to {said}", _DECIMALS[how], ranges)
+            yield page.cause(kind, f"{how} to {said}", _DECIMALS, ranges)
     own, longer = {}, 0
     for name in [*names, *(["KI"] if page.energy else [])]:
-        if page.prints(name):
-            continue
         number = Decimal(evidence.texts[name])
         unit = Decimal(1).scaleb(int(number.as_tuple().exponent))
-        single_digits = len(number.as_tuple().digits) == SINGLE_DIGITS
-        error = abs(number) * Decimal("3E-6" if single_digits else "2E-9")
+        if page.prints(name) or unit >= (abs(number) or 1):
+            continue
+        single = len(number.as_tuple().digits) == _SINGLE_DIGITS
+        error = abs(number) * Decimal("3E-6" if single else "2E-9")
         slack = max(unit * Decimal("1.001"), error)
-        near = around(page.energy if name == "KI" else page.values[name], slack)
-        if near and unit < (abs(number) or 1):
+        if near := around(page.energy if name == "KI" else page.values[name], slack):
             own[name] = near
             more = evidence.decimals(name) > places_of(name) or "E" in evidence.texts[name]
             longer += more and name != "KI"
     if longer >= 2:
-        yield page.cause(kind, "each number to decimals of its own", _DECIMALS["own"], own)
+        yield page.cause(kind, "each number to decimals of its own", _OWN_DECIMALS, own)
 
 
 # --- single precision ---
 
 
-def _single_causes(
+def _single_precision(
     evidence: Evidence, scene: dict[str, str], spared: frozenset[str]
 ) -> Iterator[Cause]:
-    runs = [replays.run_whole(scene, single(seed)) for seed in range(_SHAKEN + 1)]
-    exact, values = replays.run_whole(scene, "float64")
-    (plain, _), *_ = runs
-    if exact.ending or any(outcome.ending for outcome, _ in runs):
+    outcomes = [replays.run_once(scene, single(seed)) for seed in range(_SHAKEN + 1)]
+    exact, values = replays.run_whole(scene, FLOAT64)
+    if exact.ending or any(outcome.ending for outcome in outcomes):
         return
-    page = _Page(evidence, scene, plain, {}, spared)
+    page = _Page(evidence, scene, single(0), spared)
     ranges = {
         name: near
-        for name in plain.fields
+        for name in outcomes[0].fields
         if name not in INPUTS
-        and (near := _left_open(name, [outcome.fields.get(name) for outcome, _ in runs]))
+        and (near := _left_open(name, [outcome.fields.get(name) for outcome in outcomes]))
         and name in evidence.texts
         and (name == "KI" or evidence.decimals(name) <= places_of(name))
     }
-    counts = {
+    fits = {
         how: sum(
-            evidence.texts.get(name) is not None
-            and (made := cut(one, places_of(name), how)) is not None
-            and made[0] == Decimal(evidence.texts[name])
-            for name, one in values.items()
-            if name != "KI"
+            cut(values[name], places_of(name), how) == (Decimal(text), Decimal(text))
+            for name, text in evidence.texts.items()
+            if name in values and name != "KI"
         )
         for how in CUTS
     }
-    how = max(counts, key=counts.__getitem__)
+    how = max(fits, key=fits.__getitem__)
     kind = "single-precision arithmetic" + ("" if how == "floored" else f", {how}, not floored")
-    evident = digits_of(exact.fields.get("KI")) > SINGLE_DIGITS
+    evident = digits_of(exact.fields.get("KI")) > _SINGLE_DIGITS
     note = "as GW-BASIC and its like compute and print"
-    yield page.cause(kind, note, 14.5 + (0.0 if evident else _NO_EVIDENCE), ranges)
+    yield page.cause(kind, note, _SINGLE + (0.0 if evident else _NO_EVIDENCE), ranges)
 
 
 def _left_open(name: str, every: list[str | None]) -> Range | None:
@@ -258,7 +243,7 @@ def _left_open(name: str, every: list[str | None]) -> Range | None:
         return None
     size, spread = max(map(abs, numbers)), max(numbers) - min(numbers)
     places = FIELDS[name].places
-    unit = Decimal(1).scaleb(size.adjusted() - SINGLE_DIGITS + 1 if places is None else -places)
+    unit = Decimal(1).scaleb(size.adjusted() - _SINGLE_DIGITS + 1 if places is None else -places)
     if spread > max(_OPEN_UNITS * unit, Decimal(_OPEN) * size):
         return None
     return min(numbers) - spread - unit, max(numbers) + spread + unit
@@ -268,8 +253,6 @@ def single(seed: int) -> Arithmetic:
     """Double precision of which every number that is read, stored or looked up keeps 24 bits, as
     the single-precision BASICs of other machines have them (GW-BASIC, BASICA); with a seed, moved
     by up to one unit of the last bit, whole numbers excepted."""
-    import numpy as np
-
     rng = random.Random(seed)
 
     def store(x: float) -> float:
@@ -280,23 +263,15 @@ def single(seed: int) -> Arithmetic:
         value, end = FLOAT64.read(text, start)
         return float(np.float32(value)), end
 
-    def write(x: float) -> str:
-        digits = "0" if x == 0 else f"{x:.{SINGLE_DIGITS - 1}E}"
-        return FLOAT64.write(float(digits))
-
     made = copy(FLOAT64)
     made._constants = {}
-    made.read, made.LET, made.write = read, store, write
+    made.read, made.LET = read, store
+    made.write = lambda x: FLOAT64.write(float(f"{x or 0.0:.{_SINGLE_DIGITS - 1}E}"))
     made.SIN, made.COS = (lambda x: store(math.sin(x))), (lambda x: store(math.cos(x)))
     return made
 
 
 # --- the scene as another machine was given it ---
-
-
-def _either_sign(scene: dict[str, str]) -> Iterator[dict[str, str]]:
-    yield scene
-    yield from with_opposite_mu(scene)
 
 
 def _as_typed(evidence: Evidence) -> tuple[dict[str, str], frozenset[str]]:

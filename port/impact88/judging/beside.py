@@ -25,14 +25,11 @@ def add_exact_values(scene: Mapping[str, str], checks: Sequence[FieldCheck]) -> 
     wanted = [check for check in checks if check.name in RESULTS and check.name not in INPUTS]
     values = solved(scene, [check.name for check in wanted])
     for check in wanted:
-        value = values.get(check.name)
-        if value is None or value != value:
+        value = values[check.name]
+        if value != value:
             continue
         check.exact = f"{value + 0.0:.{_DIGITS}g}"
-        if check.printed is not None:
-            printed = value_of(check.printed)
-            if printed is None:
-                continue
+        if (printed := value_of(check.printed or "")) is not None:
             difference = printed - Decimal(check.exact)
             check.difference = f"{difference:+.3g}" if difference else "0"
 
@@ -43,7 +40,20 @@ def warnings(scene: Mapping[str, str]) -> list[str]:
     values = solved(scene, ["STATUS", "MUC", "MUP", "XA", "YA", "XB", "YB"]) | doubles_of(scene)
     bits = int(values["STATUS"])
     sentences = [f"{bit.name}: {status.WORDS[bit]}" for bit in status.Status if bits & bit]
-    return sentences + status.admissible_friction(bits, values) + list(_traps(scene))
+    sentences += status.admissible_friction(bits, values)
+    point, mu = values["M"] == 4, values["MU"]
+    if point and (values["DA"] or values["DB"]):
+        sentences.append(
+            "M = 4 with DA or DB not zero: the XA, YA, XB, YB printed after the impact are "
+            "nonsense (line 550 stores a sum where line 700 expects a spin)"
+        )
+    if point and (values["WA"] or values["WB"]):
+        sentences.append("M = 4 with WA or WB not zero: the KE LOSS printed is wrong")
+    if mu == 10:
+        sentences.append("MU = 10 becomes -10 in line 400, which line 510 takes for a pivot")
+    if mu < -10:
+        sentences.append("MU below -10: line 510 zeroes a right-hand side that is not a pivot's")
+    return sentences
 
 
 def solved(scene: Mapping[str, str], outputs: Sequence[str]) -> dict[str, float]:
@@ -52,20 +62,3 @@ def solved(scene: Mapping[str, str], outputs: Sequence[str]) -> dict[str, float]
 
     results = solve(doubles_of(scene), list(outputs))
     return {name: float(results[name]) for name in outputs}
-
-
-def _traps(scene: Mapping[str, str]) -> list[str]:
-    value = doubles_of(scene)
-    traps = []
-    if value["M"] == 4 and (value["DA"] or value["DB"]):
-        traps.append(
-            "M = 4 with DA or DB not zero: the XA, YA, XB, YB printed after the impact are "
-            "nonsense (line 550 stores a sum where line 700 expects a spin)"
-        )
-    if value["M"] == 4 and (value["WA"] or value["WB"]):
-        traps.append("M = 4 with WA or WB not zero: the KE LOSS printed is wrong")
-    if value["MU"] == 10:
-        traps.append("MU = 10 becomes -10 in line 400, which line 510 takes for a pivot")
-    if value["MU"] < -10:
-        traps.append("MU below -10: line 510 zeroes a right-hand side that is not a pivot's")
-    return traps

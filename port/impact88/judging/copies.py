@@ -169,8 +169,8 @@ class CopyPages:
         of_kind = {_plain(line, "#"): line.strip() for line in page.lines}
         wrong = [
             FieldCheck(
-                f"line {number}", line.strip(), of_kind.get(_plain(line, "#"), "nothing"), False,
-                status=Status.CONTRADICTED, line=number,
+                f"line {number}", line.strip(), of_kind.get(_plain(line, "#"), "nothing"),
+                Status.CONTRADICTED, line=number,
             )
             for number, line in besides.items()
             if _plain(line) not in own

@@ -13,7 +13,7 @@ from .. import files
 from ..errors import UserError
 from ..fields import FIELDS
 from ..judging import beside
-from ..judging.judgement import Doubtful, Status, Verdict
+from ..judging.judgement import Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
 from ..reading.fieldlabels import LabelState
 from ..report.frame import render
@@ -26,14 +26,8 @@ _LOOKS = {
     Verdict.DIFFERS: "bad",
     Verdict.INCOMPLETE: "doubt",
 }
-_MARKS = {
-    Status.READ: ("", "✓ exact"),
-    Status.DOUBTFUL: ("doubtful", "? doubtful"),
-    Status.CONTRADICTED: ("differs", "≠ differs"),
-    Status.NOT_READ: ("unknown", "– not read"),
-    Status.NOT_COMPARED: ("unknown", "– not compared"),
-}
-"""How a number's row is shown: class and words."""
+_SIGNS = {Status.READ: "✓", Status.DOUBTFUL: "?", Status.CONTRADICTED: "≠"}
+"""What stands before the state of a number; a dash where it was not read."""
 _HEADINGS = ("number", "printed", "recomputed", "state", "exact", "printed − exact")
 _METHOD = (
     "The inputs printed on a page are recovered, and the 1988 listing is run with them, bit for "
@@ -54,15 +48,10 @@ _LIMITS = (
 )
 
 
-def write_report(
-    path: str,
-    examined: Sequence[Examined],
-    date: str | None = None,
-    case: str | None = None,
-    examiner: str | None = None,
-) -> None:
-    """Write the page for ``examined`` to ``path``, whole or not at all. Raises UserError."""
-    page = report(examined, date, case, examiner)
+def write_report(path: str, examined: Sequence[Examined], **given: str | None) -> None:
+    """Write the page for ``examined`` to ``path``, whole or not at all; ``given`` as for `report`.
+    Raises UserError."""
+    page = report(examined, **given)
     with files.replacing(path) as file:
         file.write(page)
 
@@ -79,23 +68,20 @@ def report(
     read: list[list[str]] = []
     for one in examined:
         where = files.called(one.file)
-        if one.error:
-            read.append([where, "–", "NOT READ", one.error])
+        read += [[where, "–", "NOT READ", one.error]] if one.error else []
         for result in one.results:
-            what = f"{result.number} ({result.where})"
-            read.append(
-                [where, what, wording.TITLES[result.verdict], wording.counts(result.fields)]
-            )
+            what, title = f"{result.number} ({result.where})", wording.TITLES[result.verdict]
+            read.append([where, what, title, wording.counts(result.fields)])
     digests = [(files.called(one.file), one.sha256 or "not read") for one in examined]
     return render(
         "verification.html",
         package=__package__,
-        title=f"Verification of {len(results)} printout{'' if len(results) == 1 else 's'}",
+        title=f"Verification of {len(results)} printout{'s' * (len(results) != 1)}",
         case=case or "",
         examiner=examiner,
         date=date,
         files_read=read,
-        printouts=[_printout(result) for one in examined for result in one.results],
+        printouts=list(map(_printout, results)),
         headings=_HEADINGS,
         meanings=[(wording.TITLES[one], wording.MEANINGS[one]) for one in Verdict],
         key=[(n, q.meaning, q.unit) for n in FIELDS for q in [quantity("MU" if n == "MUP" else n)]],
@@ -125,14 +111,14 @@ def _printout(result: Verification) -> dict[str, Any]:
         "summary": [f"{line[:1].upper()}{line[1:]}." for line in verification.summary(result)],
         "rows": [
             {
-                "look": look,
+                "look": wording.STATES[check.status],
                 "cells": [
-                    check.name, check.printed or "–", check.recomputed or "–", state,
+                    check.name, check.printed or "–", check.recomputed or "–",
+                    f"{_SIGNS.get(check.status, '–')} {wording.STATES[check.status] or 'exact'}",
                     check.exact or "", (check.difference or "").replace("-", "−"),
                 ],
             }
             for check in result.fields
-            for look, state in [_MARKS[Status(check.status)]]
         ],
         "sections": verification.sections(result),
         "drawing": _drawing(result),
@@ -164,8 +150,7 @@ def _as_read(result: Verification) -> Iterator[tuple[str, str]]:
             yield _visible(result.text[place:start]), ""
             yield _visible(result.text[start:stop]) or "_", look
             place = max(stop, start)
-    rest = _visible(result.text[place : result.stop])
-    if rest:
+    if rest := _visible(result.text[place : result.stop]):
         yield rest, ""
 
 
@@ -174,18 +159,17 @@ def _visible(text: str) -> str:
 
 
 def _marks(result: Verification) -> Iterator[tuple[int, int, str]]:
+    """Where the text is marked, and as what."""
     for check in [*result.fields, *result.replies]:
-        if check.start is None or check.stop is None:
+        if check.start is None or check.stop is None or check.status == Status.READ:
             continue
         if check.status == Status.CONTRADICTED:
             yield check.start, check.stop, "differs"
-        elif check.status != Status.READ:
-            for one in check.doubts or [Doubtful(0, 0, check.start, "", "", "")]:
-                yield one.start, one.start + max(1, len(one.read)), "doubtful"
+            continue
+        for start, read in [(one.start, one.read) for one in check.doubts] or [(check.start, "")]:
+            yield start, start + max(1, len(read)), "doubtful"
     for label in result.labels:
         wrong = label.state is LabelState.CONTRADICTORY
         if wrong or label.doubt:
             yield label.start, label.stop, "differs" if wrong else "doubtful"
-    for piece in result.left_over:
-        if piece.beside:
-            yield piece.start, piece.stop, "over"
+    yield from ((piece.start, piece.stop, "over") for piece in result.left_over if piece.beside)

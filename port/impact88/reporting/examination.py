@@ -6,21 +6,26 @@ beside it and never change it.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
+from functools import cache
 from time import process_time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, overload
 
 from .. import files
-from ..errors import UserError
+from ..errors import UserError, quoted
+from ..fields import INPUTS, scene_name
 from ..judging import beside
 from ..judging.judgement import Judged, Status, Verdict, judge
-from ..judging.lookingpast import LookingPast
+from ..judging.lookingpast import looked_past
 from ..judging.unseen import Program, unseen
+from ..mappings import texts
 from ..names import SCENE
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
 from ..recovery.replays import run_all, run_once
+from ..recovery.slips import Rereading
 from . import provenance, wording
 from .verification import Examined, Verification
 
@@ -45,8 +50,8 @@ def examine(
     seed: str = "",
 ) -> Examined:
     """A file (``-``: standard input), every printout in it judged; what cannot be read is told.
-    ``copy``: the listing it is held against, in place of the restored one; ``seed``: what another
-    reader made of a picture."""
+    ``given``: texts of inputs by scene name, known from elsewhere; ``copy``: the listing it is held
+    against, in place of the restored one; ``seed``: what another reader made of a picture."""
     try:
         data = files.read_bytes(path, LARGEST_PICTURE)
     except UserError as error:
@@ -62,40 +67,38 @@ def examine_bytes(
     seed: str = "",
 ) -> Examined:
     """The same of a file's bytes; ``path`` is what it is called."""
-    digest = provenance.sha256(data)
+    examined = Examined(path, provenance.sha256(data))
+    picture = data.startswith(PICTURE_STARTS)
     try:
-        results = list(_verified(path, data, digest, given, copy, seed))
-    except UserError as error:
-        return Examined(path, digest, error=str(error))
-    return Examined(path, digest, results)
-
-
-def _verified(
-    path: str,
-    data: bytes,
-    digest: str,
-    given: Mapping[str, str] | None,
-    copy: ListingCopy | None = None,
-    seed: str = "",
-) -> Iterator[Verification]:
-    if data.startswith(PICTURE_STARTS):
-        if given or copy:
+        if picture and (given or copy):
             other = "a scene apart" if given else "a copy of the listing"
             raise UserError(f"{files.called(path)}: {other} goes with text, not with a picture")
-        try:
-            from .scanned import verified
-        except ImportError as error:
-            raise UserError(
-                f"{files.called(path)}: pictures need {error.name}, which is not installed; "
-                "pip install 'impact88[scan]'"
-            ) from None
-        for result in verified(path, data, seed):
-            result.sha256 = digest
-            yield completed(result)
-        return
-    if len(data) > LARGEST_FILE:
-        raise UserError(f"{files.called(path)}: is larger than {LARGEST_FILE:,} bytes of text")
+        found = _pictured(path, data, seed) if picture else _printed(path, data, given, copy)
+        for result in found:
+            result.sha256 = examined.sha256
+            examined.results.append(result)
+    except UserError as error:
+        return Examined(path, examined.sha256, error=str(error))
+    return examined
+
+
+def _pictured(path: str, data: bytes, seed: str) -> Iterator[Verification]:
+    try:
+        from .scanned import verified
+    except ImportError as error:
+        raise UserError(
+            f"{files.called(path)}: pictures need {error.name}, which is not installed; "
+            "pip install 'impact88[scan]'"
+        ) from None
+    return map(completed, verified(path, data, seed))
+
+
+def _printed(
+    path: str, data: bytes, given: Mapping[str, str] | None, copy: ListingCopy | None
+) -> Iterator[Verification]:
     where = files.called(path)
+    if len(data) > LARGEST_FILE:
+        raise UserError(f"{where}: is larger than {LARGEST_FILE:,} bytes of text")
     text = decoded(data, where)
     pages = None
     if copy:
@@ -108,27 +111,59 @@ def _verified(
     for number, shown in enumerate(every, 1):
         read += not shown.fragment
         if process_time() - begun > BUDGET * read:
-            shown.unread = f"this and what follows was not judged: over {BUDGET:g} s a page"
-            yield unjudged(shown, path, number, digest)
+            said = f"this and what follows was not judged: over {BUDGET:g} s a page"
+            scene: dict[str, str | None] = dict.fromkeys(SCENE)
+            yield Verification(
+                path, number, shown.line, Verdict.INCOMPLETE, scene, [], missing=list(SCENE),
+                remarks=[said], start=shown.start, stop=shown.stop,
+            )  # fmt: skip
             return
         end = shown.place(shown.stop)[0] if number < len(every) else len(lines)
         own = {line: besides.pop(line) for line in sorted(besides) if line <= end}
-        result = verify(shown, path, number, given, pages, own)
+        result = _verified(shown, path, number, given, pages, own)
         result.renumber(lines)
-        result.sha256 = digest
         yield result
 
 
-def unjudged(shown: Printout, file: str, number: int, digest: str) -> Verification:
-    """A printout for which no time was left."""
-    scene: dict[str, str | None] = dict.fromkeys(SCENE)
-    return Verification(
-        file, number, shown.line, Verdict.INCOMPLETE, scene, [], missing=list(SCENE),
-        remarks=[shown.unread], start=shown.start, stop=shown.stop, sha256=digest,
-    )  # fmt: skip
-
-
+@overload
+def verify(printout: Printout, given: Mapping[str, Any] | None = None) -> Verification: ...
+@overload
 def verify(
+    printout: str | bytes | os.PathLike[str], given: Mapping[str, Any] | None = None
+) -> list[Verification]: ...
+def verify(
+    printout: Printout | str | bytes | os.PathLike[str], given: Mapping[str, Any] | None = None
+) -> Verification | list[Verification]:
+    """Say of each printout whether it is what the 1988 program prints, and if not, why.
+
+    ``printout``: a text (a str of more than one line), a file's name or its bytes, for all the
+    printouts in it; or one of `impact88.read_printouts`, for one verdict. ``given``: inputs known
+    from elsewhere than the paper, texts or numbers by the scene's names, with units or without.
+
+    Raises UserError for a file that cannot be read or holds no printout.
+
+    >>> import impact88
+    >>> page = impact88.run(impact88.sample(1)).page
+    >>> [found.verdict.name for found in impact88.verify(page)]
+    ['IDENTICAL']
+    """
+    known = None if given is None else texts(given)
+    if isinstance(printout, Printout):
+        return _verified(printout, given=known)
+    if isinstance(printout, str) and "\n" in printout:
+        printout = printout.encode("utf-8", files.ESCAPED)
+    if isinstance(printout, bytes):
+        found = examine_bytes("text", printout, known)
+    elif isinstance(printout, str | os.PathLike):
+        found = examine(os.fspath(printout), known)
+    else:
+        raise UserError(f"{quoted(printout)}: expected a printout's text, a file's name or bytes")
+    if found.error:
+        raise UserError(found.error)
+    return found.results
+
+
+def _verified(
     shown: Printout,
     file: str = "-",
     number: int = 1,
@@ -136,85 +171,74 @@ def verify(
     pages: CopyPages | None = None,
     besides: Mapping[int, str] | None = None,
 ) -> Verification:
-    """The verdict on one printout, with explanations where it differs.
-
-    ``given``: texts of inputs by scene name, known from elsewhere than the printout. ``pages``:
-    those of a copy of the listing, held against in place of the restored one's; ``besides``: lines
-    that only the copy prints."""
+    """The verdict on one printout, with explanations where it differs. ``pages``: those of a copy
+    of the listing, held against in place of the restored one's; ``besides``: lines that only the
+    copy prints."""
     begun = process_time()
-
-    def in_time() -> bool:
-        return process_time() - begun < BUDGET
-
     recovered = recover(shown, given)
     if pages is not None:
         found = pages.judged(shown, recovered, besides or {})
         return completed(_against(pages, found, file, number), pages.outcomes)
-    past = LookingPast(shown, recovered)
+
+    def in_time() -> bool:
+        return process_time() - begun < BUDGET
+
+    rereads = cache(Rereading(recovered, apart=True).best)
     better = None
-    tried = recovered.row_in_doubt or bool(shown.mislabelled)
+    remarks = []
     if recovered.row_in_doubt:
-        better = None if shown.mislabelled else past.judged()
+        better = None if shown.mislabelled else looked_past(shown, recovered, rereads)
         recovered = recovered if better else without_angles(recovered)
-    found = judge(shown, recovered)
-    late = []
-    if found.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE) and not tried:
-        if in_time():
-            better = past.judged()
-        elif shown.machine_read:
-            found.verdict = Verdict.INCOMPLETE
-            late = [f"what its reader misread was not sought: over {BUDGET:g} s"]
+        found = judge(shown, recovered)
+    else:
+        found = judge(shown, recovered)
+        if not shown.mislabelled and found.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE):
+            if in_time():
+                better = looked_past(shown, recovered, rereads)
+            elif shown.machine_read:
+                found.verdict = Verdict.INCOMPLETE
+                remarks = [f"what its reader misread was not sought: over {BUDGET:g} s"]
     result = _result(better or found, file, number)
-    result.remarks += late
+    result.remarks += remarks
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain
 
-        # what was reread tries the page's inputs alone
-        rereads = None if recovered.apart else past.rereads
         result.explanations = explain(found, rereads, in_time)
     if result.verdict is Verdict.INCOMPLETE and shown.badly_read and result.differing:
         result.remarks.append(
             f"{len(result.differing)} numbers are read otherwise than the program prints them, and "
             "the page is read too poorly to separate alterations from misreadings"
         )
-    apart = [name for name in given or () if _not_printed(result, name)]
     result.findings = [
         *(wording.looked_past(result.fields, result.replies) if better else ()),
         *wording.findings(shown, result.fields, recovered),
-        *wording.given_apart(apart, result.fields),
-        *wording.given_otherwise(given or {}, result.scene, result.fields),
+        *wording.given_apart(given or {}, result.scene, result.fields),
     ]
     return completed(result)
 
 
 def _against(pages: CopyPages, found: Judged, file: str, number: int) -> Verification:
     """The verdict on a printout as a page of an office's copy of the listing."""
-    result = _result(found, file, number)
+    copy, result = pages.copy, _result(found, file, number)
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain_copy
 
         result.explanations = explain_copy(found, pages.put_right)
-    copy = pages.copy
     result.findings = wording.of_copy(copy, found, run_once(found.recovered.scene).fields)
-    result.copy = {
-        "file": copy.file,
-        "sha256": copy.sha256,
-        "lines": [line._asdict() for line in copy.changed_lines()],
-    }
+    changed = [line._asdict() for line in copy.changed_lines()]
+    result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed}
     return result
 
 
 def _result(found: Judged, file: str, number: int) -> Verification:
-    """What a judged printout's report says."""
-    shown = found.shown
-    scene = found.recovered.scene_or_missing()
-    status = {check.name: check.status for check in found.fields}
+    """What is told of a printout that was judged."""
+    shown, scene = found.shown, found.recovered.scene_or_missing()
+    inputs = (check for check in found.fields if check.name in INPUTS)
+    status = {scene_name(check.name): check.status for check in inputs}
     guessed = [
         name
         for name, text in scene.items()
-        if text is not None
-        and name != "M"
-        and status.get("MUP" if name == "MU" else name) != Status.READ
+        if text is not None and name != "M" and status.get(name) != Status.READ
     ]
     return Verification(
         file=file,
@@ -245,9 +269,3 @@ def completed(result: Verification, program: Program = run_all) -> Verification:
         beside.add_exact_values(scene, result.fields)
         result.warnings = beside.warnings(scene)
     return result
-
-
-def _not_printed(result: Verification, name: str) -> bool:
-    """Whether an input was not read from the page; M is printed nowhere."""
-    field = "MUP" if name == "MU" else name
-    return any(check.name == field and check.printed is None for check in result.fields)

@@ -142,21 +142,21 @@ def _of_cells(leaf: Leaf, name: str, recomputed: str | None, cells: list[Cell]) 
     states = [state(cell) for cell in cells]
     printed = _printed(cells)
     if leaf.judged.verdict is Verdict.INCOMPLETE and "differs" in states:
-        status, same = Status.NOT_COMPARED, None
+        status = Status.NOT_COMPARED
     elif recomputed is None or not cells:
-        status, same = Status.NOT_READ, None
+        status = Status.NOT_READ
     elif "differs" in states:
-        status, same = Status.CONTRADICTED, False
+        status = Status.CONTRADICTED
     elif "doubtful" in states:
-        status, same = Status.DOUBTFUL, None
+        status = Status.DOUBTFUL
     else:
-        status, same = Status.READ, True
+        status = Status.READ
     doubts = [
         Doubtful(cell.place.line + 1, cell.place.cell + 1, 0, cell.other, cell.predicted, "picture")
         for cell, one in zip(cells, states, strict=True)
         if one == "doubtful"
     ]
-    check = FieldCheck(name, printed or None, recomputed, same, status=status, doubts=doubts)
+    check = FieldCheck(name, printed or None, recomputed, status, doubts=doubts)
     if cells:
         check.line, check.column = cells[0].place.line + 1, cells[0].place.cell + 1
     return check

@@ -13,6 +13,7 @@ from .. import notebook
 from ..errors import shown
 from ..files import called
 from ..judging.judgement import FieldCheck, Status, Verdict
+from ..plaintable import table
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.printout import Piece
 from ..schemas import stamped
@@ -77,21 +78,16 @@ class Verification:
         return [check for check in self.fields if check.same is False]
 
     @property
-    def doubtful(self) -> list[FieldCheck]:
-        """The numbers, replies included, in which the program's text was not read exactly."""
-        return [one for one in [*self.fields, *self.replies] if one.status == Status.DOUBTFUL]
+    def mislabelled(self) -> list[LabelCheck]:
+        """The labels that name another number than the one that stands there."""
+        return [one for one in self.labels if one.state is LabelState.CONTRADICTORY]
 
     @property
     def disagreements(self) -> int:
-        """How many fields, replies and endings differ: what an explanation has to explain."""
-        ending = [self.ending] if self.ending else []
-        numbers = sum(check.same is False for check in [*self.fields, *self.replies, *ending])
-        return numbers + len(self.mislabelled)
-
-    @property
-    def mislabelled(self) -> list[LabelCheck]:
-        """The labels that say another number than the one that stands there."""
-        return [one for one in self.labels if one.state is LabelState.CONTRADICTORY]
+        """How many fields, replies, labels and endings differ: what a cause has to explain."""
+        others = [*self.replies, *([self.ending] if self.ending else [])]
+        wrong = [check for check in others if check.same is False]
+        return len(self.differing) + len(wrong) + len(self.mislabelled)
 
     @property
     def runnable(self) -> bool:
@@ -109,8 +105,7 @@ class Verification:
             return
         for check in [*self.fields, *self.replies]:
             check.line = lines[check.line - 1] if check.line else None
-            for doubt in check.doubts:
-                doubt.line = lines[doubt.line - 1]
+            check.doubts = [one._replace(line=lines[one.line - 1]) for one in check.doubts]
         self.line = lines[self.line - 1]
         self.labels = [one._replace(line=lines[one.line - 1]) for one in self.labels]
         self.left_over = [one._replace(line=lines[one.line - 1]) for one in self.left_over]
@@ -121,33 +116,29 @@ class Verification:
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
-        whole = {
-            "file": self.file,
-            "sha256": self.sha256,
-            "printout": self.number,
-            "line": self.line,
-            "span": [self.start, self.stop],
-            "verdict": str(self.verdict),
-            "scene": self.scene,
-            "guessed": self.guessed,
-            "fields": [check.as_json() for check in self.fields],
-            "replies": [check.as_json() for check in self.replies],
-            "ending": self.ending.as_json() if self.ending else None,
-            "missing": self.missing,
-            "not_read": self.not_read,
-            "labels": [one.as_json() for one in self.labels],
-            "left_over": [piece._asdict() for piece in self.left_over],
-            "unseen": self.unseen,
-            "explanations": [one.as_json() for one in self.explanations],
-            "findings": self.findings,
-            "warnings": self.warnings,
-            "remarks": self.remarks,
-            **({"listing": self.copy} if self.copy else {}),
-        }
+        whole = {"printout": self.number, "span": [self.start, self.stop]}
+        whole |= {name: _plain(getattr(self, name)) for name in _IN_JSON}
+        if self.copy:
+            whole["listing"] = self.copy
         if self.cells:
-            whole["cells"] = self.cells
-            whole["basis"] = self.basis
+            whole |= {"cells": self.cells, "basis": self.basis}
         return stamped("verify", whole)
+
+
+_IN_JSON = (
+    *("file", "sha256", "line", "verdict", "scene", "guessed", "fields", "replies", "ending"),
+    *("missing", "not_read", "labels", "left_over", "unseen", "explanations", "findings"),
+    *("warnings", "remarks"),
+)
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON takes it."""
+    if isinstance(value, list):
+        return list(map(_plain, value))
+    if hasattr(value, "as_json"):
+        return value.as_json()
+    return value._asdict() if isinstance(value, Piece) else value
 
 
 @dataclass
@@ -180,41 +171,33 @@ class Section(NamedTuple):
 
 def summary(result: Verification) -> list[str]:
     """What a verdict rests on: counts, and by name what is missing."""
-    verdict, fields = result.verdict, result.fields
-    said = []
+    verdict, fields, missing = result.verdict, result.fields, result.missing
+    said = [wording.counts(fields)]
     if verdict is Verdict.IDENTICAL:
         who = f"the copy {result.copy['file']}" if result.copy else "the program"
-        said.append(f"all {len(fields)} printed numbers are what {who} prints, digit for digit")
+        said = [f"all {len(fields)} printed numbers are what {who} prints, digit for digit"]
     elif verdict is Verdict.DIFFERS:
         compared = sum(check.same is not None for check in fields)
-        said.append(f"{compared} printed numbers compared, {len(result.differing)} differ")
-        wrong = len(result.mislabelled)
-        if wrong:
-            said.append(f"{wrong} label{'' if wrong == 1 else 's'} contradict{'s' * (wrong == 1)}")
-    else:
-        said.append(wording.counts(fields))
-    if verdict is Verdict.IDENTICAL_AS_READ:
+        said = [f"{compared} printed numbers compared, {len(result.differing)} differ"]
+        if wrong := len(result.mislabelled):
+            said.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
+    elif verdict is Verdict.IDENTICAL_AS_READ:
         said.append(wording.MEANINGS[verdict])
-    if result.missing:
-        one = len(result.missing) == 1
-        names = ", ".join(result.missing)
-        said.append(
-            f"{names} {'is' if one else 'are'} missing: what depends on {'it' if one else 'them'} "
-            "was not compared"
-        )
-    not_read = [name for name in result.not_read if name not in result.missing]
+    if missing:
+        verb, it = ("is", "it") if len(missing) == 1 else ("are", "them")
+        said.append(f"{', '.join(missing)} {verb} missing: what depends on {it} was not compared")
+    not_read = [name for name in result.not_read if name not in missing]
     if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
         said.append(f"not read: {', '.join(not_read)}")
-    whole = result.missing or not_read or result.page is not None
-    if verdict is Verdict.INCOMPLETE and not whole:
-        said.append("the results are missing, or the page ends before they do")
+    if verdict is Verdict.INCOMPLETE and not (missing or not_read or result.page):
+        said.append("the results are missing, or the page ends before them")
     ending = result.ending
     if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
         said.append(
             f"ends with {ending.printed or 'no error'}, "
             f"recomputed: {ending.recomputed or 'no error'}"
         )
-    return said or [NO_SINGLE_SLIP]
+    return said
 
 
 DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
@@ -224,8 +207,8 @@ EXPLAINED = "possible explanations, best first"
 def sections(result: Verification) -> list[Section]:
     """Everything below the verdict and beside the table, in order; no empty ones."""
     doubtful = wording.labels(result.labels)
-    doubtful += [line for check in result.doubtful for line in wording.doubts(check)]
-    explained = _explained(result) if result.verdict is Verdict.DIFFERS else []
+    for check in [*result.fields, *result.replies]:
+        doubtful += wording.doubts(check) if check.status == Status.DOUBTFUL else []
     notes = [
         f"{check.name}: the reply {check.printed} is not the {check.recomputed} used"
         for check in result.replies
@@ -234,7 +217,7 @@ def sections(result: Verification) -> list[Section]:
     notes += [*result.remarks, *wording.left_over(result.left_over)]
     every = (
         Section(DOUBTFUL, doubtful),
-        Section(EXPLAINED, explained),
+        Section(EXPLAINED, _explained(result) if result.verdict is Verdict.DIFFERS else []),
         Section("the page cannot show", result.unseen),
         Section("what the page shows besides", result.findings),
         Section("beside the verdict", result.warnings),
@@ -248,14 +231,14 @@ def _explained(result: Verification) -> list[str]:
     said: list[str] = []
     before = 0
     for one in result.explanations:
+        cause = wording.cause(one)
         if one.rank != before:
-            of_all = f"explains {one.explains} of {result.disagreements}"
-            said.append(f"{one.rank}. {wording.cause(one)}; {of_all}")
+            said.append(f"{one.rank}. {cause}; explains {one.explains} of {result.disagreements}")
         else:
-            said.append(f"   or, which this page cannot distinguish: {wording.cause(one)}")
+            said.append(f"   or, which this page cannot distinguish: {cause}")
         before = one.rank
         said += [f"   look at {where}" for where in one.look[:4]]
-    return said
+    return said or [NO_SINGLE_SLIP]
 
 
 # --- as text --------------------------------------------------------------------------------------
@@ -265,14 +248,13 @@ def lines(result: Verification, brief: bool = False) -> Iterator[str]:
     """What `impact88 verify` prints of one printout; ``brief``: only verdict and what differs."""
     where = f"{shown(called(result.file))}, printout {result.number} ({result.where})"
     yield f"{where}: {wording.TITLES[result.verdict]}"
-    yield from (f"  {line}" for line in summary(result))
     parts = {one.heading: one.lines for one in sections(result)}
-    yield from (f"  {line}" for line in _some(parts.pop(DOUBTFUL, []), brief))
+    doubtful, notes = parts.pop(DOUBTFUL, []), parts.pop(NOTES, [])
+    yield from (f"  {line}" for line in [*summary(result), *_some(doubtful, brief)])
     checks = result.differing if brief else result.fields
     if checks:
         yield ""
         yield from (f"  {line}" for line in _table(checks, exact=not brief))
-    notes = parts.pop(NOTES, [])
     for heading, said in parts.items():
         if not brief or said is not result.warnings:
             yield ""
@@ -291,25 +273,11 @@ def _some(said: list[str], brief: bool) -> list[str]:
     return [*said[:3], f"and {len(said) - 3} more places"]
 
 
-def _table(checks: Sequence[FieldCheck], exact: bool) -> Iterator[str]:
+def _table(checks: Sequence[FieldCheck], exact: bool) -> list[str]:
     """Rows of printed against recomputed, those that differ marked."""
-    headings = ["", "printed", "recomputed", "exact", "printed-exact"]
-    rows = [headings[: 5 if exact else 3]]
+    rows = [["", "printed", "recomputed", *["exact", "printed-exact"] * exact, ""]]
     for check in checks:
-        row = [check.name, check.printed or "-", check.recomputed or "-"]
-        rows.append(row + [check.exact or "", check.difference or ""] * exact)
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    marks = ["", *(_MARKS[Status(check.status)] for check in checks)]
-    for row, mark in zip(rows, marks, strict=True):
-        cells = [row[0].ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
-        yield "  ".join([*cells, mark]).rstrip()
-
-
-_MARKS = {
-    Status.READ: "",
-    Status.DOUBTFUL: "doubtful",
-    Status.CONTRADICTED: "differs",
-    Status.NOT_READ: "not read",
-    Status.NOT_COMPARED: "not compared",
-}
+        beside = [check.exact or "", check.difference or ""] * exact
+        mark = wording.STATES[check.status]
+        rows.append([check.name, check.printed or "-", check.recomputed or "-", *beside, mark])
+    return table(rows, left=(0, len(rows[0]) - 1))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import printable
 from ..fields import ANGLES, INPUTS, scene_name
-from ..judging.judgement import FieldCheck, Judged, Status, Verdict, misread_at_all, swapped_digits
+from ..judging.judgement import Doubtful, FieldCheck, Judged, Status, Verdict
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
 from ..reading.printout import Piece, Printout
@@ -34,21 +34,28 @@ MEANINGS = {
 }
 """What a verdict says."""
 
+STATES = {
+    Status.READ: "",
+    Status.DOUBTFUL: "doubtful",
+    Status.CONTRADICTED: "differs",
+    Status.NOT_READ: "not read",
+    Status.NOT_COMPARED: "not compared",
+}
+"""How a number is marked that was not read exactly."""
+
 
 def counts(fields: Sequence[FieldCheck]) -> str:
     """How many numbers were read exactly, doubtful, contradicted, not read."""
     number = {status: sum(check.status == status for check in fields) for status in Status}
-    read = number[Status.READ]
-    parts = [f"{read} of {len(fields)} printed numbers read exactly and as the program prints them"]
-    for status, words in (
-        (Status.DOUBTFUL, "read doubtfully"),
-        (Status.CONTRADICTED, "differ" if number[Status.CONTRADICTED] != 1 else "differs"),
-        (Status.NOT_READ, "not read"),
-        (Status.NOT_COMPARED, "not compared"),
-    ):
-        if number[status]:
-            parts.append(f"{number[status]} {words}")
-    return ", ".join(parts)
+    read = f"{number.pop(Status.READ)} of {len(fields)} printed numbers read exactly"
+    words = {**STATES, Status.DOUBTFUL: "read doubtfully"}
+    if number[Status.CONTRADICTED] > 1:
+        words[Status.CONTRADICTED] = "differ"
+    others = [f"{count} {words[status]}" for status, count in number.items() if count]
+    return ", ".join([f"{read} and as the program prints them", *others])
+
+
+# --- numbers and labels --------------------------------------------------------------------------
 
 
 def place(line: int | None, column: int | None) -> str:
@@ -59,47 +66,79 @@ def place(line: int | None, column: int | None) -> str:
 def doubts(check: FieldCheck) -> list[str]:
     """What stands doubtfully in a number, place by place."""
     return [
-        f"{place(one.line, one.column)}: {check.name} "
-        + _doubt(check, one.read, one.printed, one.how)
+        f"{place(one.line, one.column)}: {check.name} {_doubt(check, one)}"
         for one in check.doubts
         if one.how != Doubt.CONTRADICTS
     ] + [f"{where} ({check.name}: the program prints {check.recomputed})" for where in look(check)]
 
 
-def _doubt(check: FieldCheck, read: str, printed: str, how: str) -> str:
+def _doubt(check: FieldCheck, one: Doubtful) -> str:
     program = check.recomputed or ""
-    if how == Doubt.LOOK_ALIKE:
-        return f"read {read!r} where the program prints {printed!r} ({program})"
-    if how == Doubt.ILLEGIBLE:
-        what = f"read {read!r}" if read else "nothing read"
-        return f"illegible, {what} where the program prints {printed!r} ({program})"
-    if how == Doubt.BLANK:
+    if one.how == Doubt.LOOK_ALIKE:
+        return f"read {one.read!r} where the program prints {one.printed!r} ({program})"
+    if one.how == Doubt.ILLEGIBLE:
+        what = f"read {one.read!r}" if one.read else "nothing read"
+        return f"illegible, {what} where the program prints {one.printed!r} ({program})"
+    if one.how == Doubt.BLANK:
         return f"a blank or a joint in it; the program prints {program}"
-    if how == Doubt.RETYPED:
+    if one.how == Doubt.RETYPED:
         return f"read {check.printed}; the program prints {program}, never this form"
-    if how == Doubt.CUT:
+    if one.how == Doubt.CUT:
         return f"cut off; the program prints {program}"
-    return f"{read!r} left over beside {program}"
+    return f"{one.read!r} left over beside {program}"
 
 
 def look(check: FieldCheck) -> list[str]:
     """Where to look on the paper for a misread digit."""
     sentences = []
     for one in check.doubts:
-        if one.how != Doubt.CONTRADICTS:
-            continue
-        where = place(one.line, one.column)
-        if one.read and one.printed:
-            sentences.append(f"{where}: is this {one.read} {_a(one.printed)} {one.printed}?")
-        elif one.read:
-            sentences.append(f"{where}: is this {one.read} part of the number?")
-        else:
-            sentences.append(f"{where}: is {_a(one.printed)} {one.printed} missing here?")
+        printed = f"{'an' if one.printed[:1] == '8' else 'a'} {one.printed}"
+        question = f"is {printed} missing here"
+        if one.read:
+            question = f"is this {one.read} {printed if one.printed else 'part of the number'}"
+        if one.how == Doubt.CONTRADICTS:
+            sentences.append(f"{place(one.line, one.column)}: {question}?")
     return sentences
 
 
-def _a(glyph: str) -> str:
-    return "an" if glyph[:1] == "8" else "a"
+def labels(checks: Sequence[LabelCheck]) -> list[str]:
+    """The labels that are not the program's, those that contradict first."""
+    words = {
+        LabelState.CONTRADICTORY: "labelled {read} where the program prints {printed}",
+        LabelState.DAMAGED: "the label {printed} is read {read}",
+        LabelState.MISSING: "no label before the number where the program prints {printed}",
+    }
+    return [
+        f"line {one.line}: " + text.format(read=printable(one.read), printed=one.printed)
+        for state, text in words.items()
+        for one in checks
+        if one.state is state and (state is LabelState.CONTRADICTORY or one.doubt)
+    ]
+
+
+_MOST_LINES = 12
+"""Lines that do not belong to the program's page are shown up to this many."""
+
+
+def left_over(pieces: Sequence[Piece]) -> list[str]:
+    """What belongs to no number and no label: beside a number, or a whole line."""
+    said = []
+    for piece in pieces:
+        if piece.beside and not piece.whole:
+            text = piece.text if len(piece.text) <= 40 else piece.text[:37] + "..."
+            said.append(f"{place(piece.line, piece.column)}: {text!r} left over beside a number")
+    lines = [piece for piece in pieces if piece.whole]
+    listed = sorted(lines, key=lambda piece: not piece.beside)[:_MOST_LINES]
+    said += [
+        f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
+        for piece in sorted(listed, key=lambda piece: piece.line)
+    ]
+    if more := len(lines) - len(listed):
+        said.append(f"and {more} more lines that do not belong to the program's page")
+    return said
+
+
+# --- findings ------------------------------------------------------------------------------------
 
 
 def findings(page: Printout, fields: Sequence[FieldCheck], recovered: Recovered) -> list[str]:
@@ -113,17 +152,21 @@ def findings(page: Printout, fields: Sequence[FieldCheck], recovered: Recovered)
             f"{', '.join(retyped)} in a form Applesoft never prints (a zero before the point or at "
             "the end, a plus sign): retyped, or made by another program"
         )
-    if commas(page):
+    text = "".join(glyph.char for reading in page.fields.values() for glyph in reading.region[:-1])
+    if text.count(",") >= 3 and "." not in text:
         sentences.append("decimal commas throughout: retyped, or made by another program")
+    m = recovered.scene["M"]
     if recovered.m_unknown and not recovered.missing:
-        m = recovered.scene["M"]
         sentences.append(
             f"no line of final spins: read as M = {m}; with M = {'6' if m == '4' else '4'} the "
             "program prints the same numbers but for that line"
         )
-    elif recovered.scene["M"] == "4" and "M" not in recovered.missing and not page.has_final_spins:
+    elif m == "4" and "M" not in recovered.missing and not page.has_final_spins:
         sentences.append("no line of final spins: the results are those of M = 4, not of M = 6")
     return sentences
+
+
+_MISREADINGS = (Doubt.LOOK_ALIKE, Doubt.ILLEGIBLE, Doubt.CONTRADICTS)
 
 
 def looked_past(fields: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> list[str]:
@@ -131,11 +174,14 @@ def looked_past(fields: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> 
     others = [
         f"{check.name} ({read} for {printed})"
         for check in [*fields, *replies]
-        for printed, read in swapped_digits(check)
+        for printed, read in check.swapped()
     ]
     if not others:
         return []
-    misread = sum(map(misread_at_all, fields))
+    misread = sum(
+        any(one.how in _MISREADINGS and one.read != one.printed for one in check.doubts)
+        for check in fields
+    )
     return [
         f"read as another digit than the program prints: {', '.join(others)}; put down to the "
         f"reader of the page, who misread {misread} of {len(fields)} numbers: if the paper shows "
@@ -163,42 +209,42 @@ def of_copy(copy: ListingCopy, held: Judged, restored: Mapping[str, str]) -> lis
     ]
 
 
-def given_apart(names: Sequence[str], fields: Sequence[FieldCheck]) -> list[str]:
-    """That inputs are not the page's own, and how its results compare with them."""
-    if not names:
-        return []
-    compared = [check for check in fields if check.same is not None]
-    differing = sum(check.same is False for check in compared)
-    agree = f"all {len(compared)} numbers read are what the program prints for them"
-    if not compared:
-        agree = "no number was read to be compared"
-    elif differing:
-        agree = f"{differing} of {len(compared)} numbers read are not what it prints for them"
-    return [f"not on the page, and taken from the scene given apart: {', '.join(names)}; {agree}"]
-
-
-def given_otherwise(
+def given_apart(
     given: Mapping[str, str], scene: Mapping[str, str | None], fields: Sequence[FieldCheck]
 ) -> list[str]:
-    """That inputs were given apart which the page has, and which in its ``scene`` are others."""
-    otherwise = []
-    for check in fields:
-        name = scene_name(check.name)
-        by_page = scene[name] if check.name in INPUTS else None
-        if by_page is None or check.printed is None or name not in given:
+    """Of inputs given apart: that some are not the page's own, and how its results compare with
+    them; and that the page has others, which are used."""
+    absent, otherwise = [], []
+    shown = {scene_name(check.name): check for check in fields if check.name in INPUTS}
+    for name, check in shown.items():
+        text, by_page = given.get(name), scene[name]
+        if text is None or by_page is None:
             continue
-        one, other = (stored_and_printed(text, name in ANGLES) for text in (given[name], by_page))
+        if check.printed is None:
+            absent.append(name)
+            continue
+        one, other = (stored_and_printed(each, name in ANGLES) for each in (text, by_page))
         if one is None or other is None or one[1] != other[1]:
-            otherwise.append(f"{name} {given[name]} (by the page {by_page})")
-    if not otherwise:
-        return []
-    return [f"given apart and different from the page, which is used: {'; '.join(otherwise)}"]
+            otherwise.append(f"{name} {text} (by the page {by_page})")
+    sentences = []
+    if absent:
+        compared = [check.same for check in fields if check.same is not None]
+        agree = f"all {len(compared)} numbers read are what the program prints for them"
+        if not compared:
+            agree = "no number was read to be compared"
+        elif wrong := compared.count(False):
+            agree = f"{wrong} of {len(compared)} numbers read are not what it prints for them"
+        sentences.append(
+            f"not on the page, and taken from the scene given apart: {', '.join(absent)}; {agree}"
+        )
+    if otherwise:
+        sentences.append(
+            f"given apart and different from the page, which is used: {'; '.join(otherwise)}"
+        )
+    return sentences
 
 
-def commas(page: Printout) -> bool:
-    """Whether every decimal point is a comma."""
-    text = "".join(glyph.char for reading in page.fields.values() for glyph in reading.region[:-1])
-    return text.count(",") >= 3 and "." not in text
+# --- explanations --------------------------------------------------------------------------------
 
 
 def cause(one: Explanation) -> str:
@@ -206,57 +252,14 @@ def cause(one: Explanation) -> str:
     from ..explaining.explanations import LABEL_WRONG, LABELS_EXCHANGED
 
     what = one.kind
-    said = [f"{each['printed']}, would be {each['would_be']}" for each in one.changes]
     if one.kind == LABELS_EXCHANGED:
-        pairs = (" and ".join(sorted((one["printed"], one["would_be"]))) for one in one.changes)
+        pairs = (" and ".join(sorted((each["printed"], each["would_be"]))) for each in one.changes)
         what = f"labels {', '.join(dict.fromkeys(pairs))} exchanged"
     elif one.kind == LABEL_WRONG:
         what = "; ".join(f"{each['would_be']} labelled {each['printed']}" for each in one.changes)
     elif one.changes:
-        named = [f"{each['field']} {text}" for each, text in zip(one.changes, said, strict=True)]
-        what += ": " + "; ".join(named[:6])
-    return what + (f" ({one.note})" if one.note else "")
-
-
-_MOST_LINES = 12
-"""Lines that do not belong to the program's page are shown up to this many."""
-
-
-def left_over(pieces: Sequence[Piece]) -> list[str]:
-    """What belongs to no number and no label: beside a number, or a whole line."""
-    beside = [
-        f"{place(piece.line, piece.column)}: {_quoted(piece.text)} left over beside a number"
-        for piece in pieces
-        if piece.beside and not piece.whole
-    ]
-    lines = [piece for piece in pieces if piece.whole]
-    bearing = [piece for piece in lines if piece.beside]
-    listed = (bearing + [one for one in lines if not one.beside])[:_MOST_LINES]
-    whole = [
-        f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
-        for piece in sorted(listed, key=lambda piece: piece.line)
-    ]
-    if len(lines) > len(listed):
-        whole.append(
-            f"and {len(lines) - len(listed)} more lines that do not belong to the program's page"
+        what += ": " + "; ".join(
+            f"{each['field']} {each['printed']}, would be {each['would_be']}"
+            for each in one.changes[:6]
         )
-    return beside + whole
-
-
-def labels(checks: Sequence[LabelCheck]) -> list[str]:
-    """The labels that are not the program's, those that contradict first."""
-    words = {
-        LabelState.CONTRADICTORY: "labelled {read} where the program prints {printed}",
-        LabelState.DAMAGED: "the label {printed} is read {read}",
-        LabelState.MISSING: "no label before the number where the program prints {printed}",
-    }
-    return [
-        f"line {one.line}: " + text.format(read=printable(one.read), printed=one.printed)
-        for state, text in words.items()
-        for one in checks
-        if one.state is state and (state is LabelState.CONTRADICTORY or one.doubt)
-    ]
-
-
-def _quoted(text: str) -> str:
-    return repr(text if len(text) <= 40 else text[:37] + "...")
+    return what + (f" ({one.note})" if one.note else "")

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections import deque
 from typing import Any, NamedTuple
 
+from ..emulator.screen import BASE, HEIGHT, WIDTH, shown_character
 from ..errors import UserError
 from .image import START
 
@@ -21,17 +22,11 @@ KEYBOARD, STROBE = range(0xC000, 0xC010), range(0xC010, 0xC020)
 COUT = 0xFDED
 """The monitor's character output: every character displayed goes through it, in the accumulator."""
 CURSOR_COLUMN = 0x24
-SCREEN = 0x400
-ROWS, COLUMNS = 24, 40
 RETURN = "\r"
-
-_WAITING_POLLS = 4
-_POLL_CYCLES = 60
+_WAITING_POLLS, _POLL_CYCLES = 4, 60
 """The monitor asks every 16 cycles or so; a running program at most once a statement."""
-PLENTY = 80_000_000
-"""Instructions that nothing captured needs."""
-BOOT_PLENTY = 4_000_000
-"""Instructions that switching on does not need."""
+PLENTY, BOOT_PLENTY = 80_000_000, 4_000_000
+"""Instructions that nothing captured needs, and that switching on does not need."""
 
 
 class Lost(UserError):
@@ -106,8 +101,6 @@ class Apple:
         self._output: list[str] = []
         self._column = 0
 
-    # --- running ------------------------------------------------------------------------------
-
     def boot(self, limit: int = BOOT_PLENTY) -> str:
         """Switch on, and wait until the ROM waits for a key. Returns what was displayed."""
         self.cpu.reset()
@@ -122,26 +115,23 @@ class Apple:
 
     def _go(self, limit: int) -> None:
         """Run until the ROM waits for a key that has not been typed. Raises Lost."""
-        try:
-            self._run(limit)
-        except IndexError:  # an address past $FFFF
-            raise Lost(f"the machine ran off the end of memory (${self.cpu.pc:04X})") from None
-
-    def _run(self, limit: int) -> None:
         cpu, memory, step = self.cpu, self.memory, self.cpu.step
         memory.waiting = False
         remaining = limit
-        while not memory.waiting:
-            if cpu.pc == COUT:
-                remaining -= self._display()
-            else:
-                step()
-                remaining -= 1
-            if remaining < 0:
-                raise Lost(
-                    f"the machine does not wait for a key after {limit:,} instructions "
-                    f"(program counter ${cpu.pc:04X})"
-                )
+        try:
+            while not memory.waiting and remaining >= 0:
+                if cpu.pc == COUT:
+                    remaining -= self._display()
+                else:
+                    step()
+                    remaining -= 1
+        except IndexError:  # an address past $FFFF
+            raise Lost(f"the machine ran off the end of memory (${cpu.pc:04X})") from None
+        if remaining < 0:
+            raise Lost(
+                f"the machine does not wait for a key after {limit:,} instructions "
+                f"(program counter ${cpu.pc:04X})"
+            )
         self.instructions += limit - remaining
 
     def _display(self) -> int:
@@ -174,8 +164,6 @@ class Apple:
             cpu.step()
         raise Lost(f"the routine at ${address:04X} does not return")
 
-    # --- looking ------------------------------------------------------------------------------
-
     def take_output(self) -> str:
         """What was displayed since the last call: high bit dropped, RETURN as newline."""
         text = "".join(self._output)
@@ -188,14 +176,9 @@ class Apple:
 
     def screen_text(self) -> str:
         """The 24 rows of the text screen, blanks at the ends of rows left out."""
-        rows = []
-        for row in range(ROWS):
-            base = SCREEN + row % 8 * 0x80 + row // 8 * COLUMNS
-            codes = bytes(self.memory[base : base + COLUMNS])
-            rows.append("".join(map(_shown, codes)).rstrip(" "))
-        return "\n".join(rows) + "\n"
-
-    # --- states -------------------------------------------------------------------------------
+        starts = (BASE + row % 8 * 0x80 + row // 8 * WIDTH for row in range(HEIGHT))
+        rows = (self.memory[start : start + WIDTH] for start in starts)
+        return "".join("".join(map(shown_character, row)).rstrip(" ") + "\n" for row in rows)
 
     def state(self) -> State:
         """The machine as it stands; it must be waiting for a key."""
@@ -210,9 +193,3 @@ class Apple:
         self.memory.keys.clear()
         self.memory.key = 0
         self._output.clear()
-
-
-def _shown(code: int) -> str:
-    """A byte of the text screen as a character, whether normal, inverse or flashing."""
-    code &= 0x7F if code >= 0x80 else 0x3F
-    return chr(code if code & 0x60 else code | 0x40)

@@ -14,9 +14,8 @@ from .apple import Apple
 
 PROGRAM, VARIABLES, ARRAYS, ARRAYS_END = 0x67, 0x69, 0x6B, 0x6D
 """Zero-page pointers to where each begins; what is in between belongs to the one before."""
-_ENTRY = 7
-"""Bytes of a simple variable: two of name, five of value."""
-_NUMBER = 5
+_ENTRY, _NUMBER = 7, 5
+"""Bytes of a simple variable, two of them its name, and of a number."""
 _NOT_ASCII = 0x80
 _SPOKEN = re.compile(r'"[^"]*"?|\bREM\b(.*)')
 """The parts of a line that Applesoft keeps as they are typed."""
@@ -37,20 +36,14 @@ def array(apple: Apple, name: str) -> dict[str, Any] | None:
     """An array of reals: ``dims`` (sizes) and ``data``, first subscript fastest; or None."""
     memory = apple.memory
     place, end = apple.word(ARRAYS), apple.word(ARRAYS_END)
-    while place < end:
-        size, count = apple.word(place + 2), memory[place + 4]
-        start = place + 5 + 2 * count
+    while place < end and (size := apple.word(place + 2)):
+        start = place + 5 + 2 * memory[place + 4]
         if _name(memory[place], memory[place + 1]) == name:
-            sizes = [
-                256 * memory[at] + memory[at + 1] for at in range(start - 2, place + 4, -2)
-            ]  # the last subscript's stands first, the high byte before the low
+            # the last subscript's size stands first, the high byte before the low
+            sizes = [256 * memory[at] + memory[at + 1] for at in range(start - 2, place + 4, -2)]
             data = bytes(memory[start : place + size])
-            return {
-                "dims": sizes,
-                "data": [data[at : at + _NUMBER].hex() for at in range(0, len(data), _NUMBER)],
-            }
-        if size == 0:
-            break
+            cells = [data[at : at + _NUMBER].hex() for at in range(0, len(data), _NUMBER)]
+            return {"dims": sizes, "data": cells}
         place += size
     return None
 
@@ -88,8 +81,6 @@ def _lines(apple: Apple) -> Iterator[tuple[int, tuple[int, bytes]]]:
     """The program in memory: line number, and where its text begins, and the text."""
     place = apple.word(PROGRAM)
     while following := apple.word(place):
-        yield (
-            apple.word(place + 2),
-            (place + 4, bytes(apple.memory[place + 4 : following - 1])),
-        )
+        text = bytes(apple.memory[place + 4 : following - 1])
+        yield apple.word(place + 2), (place + 4, text)
         place = following

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from ..applesoft.console import Console
 from ..checking import captured
-from ..checking.captured import ARITHMETIC, FUZZ, PROGRAMS, SCENES
+from ..checking.captured import ARITHMETIC, FUZZ, SCENES
 from ..checking.selfcheck import GOLDEN_RUNS
 from ..emulator.machine import TooManyStatements
 from ..fields import FIELDS, outcome_fields
@@ -48,7 +48,8 @@ class Difference(NamedTuple):
         """The difference as text, a printout's as a unified diff."""
         if "\n" not in self.rom + self.other:
             return [f"{self.what}: ROM {self.rom}, {self.who} {self.other}"]
-        rom, other = _visible(self.rom), _visible(self.other)
+        marks = {code: f"^{chr(code + 64)}" for code in range(32) if code != 10}  # ^D, ^G
+        rom, other = (text.translate(marks).split("\n") for text in (self.rom, self.other))
         return list(difflib.unified_diff(rom, other, "ROM", self.who, lineterm="", n=2))
 
 
@@ -61,12 +62,6 @@ class Heard(NamedTuple):
     compared: tuple[str, ...]
     differences: list[Difference]
     capture: Any
-
-
-def _visible(text: str) -> list[str]:
-    """Lines with control characters written out: ^D, ^G."""
-    marks = {chr(code): f"^{chr(code + 64)}" for code in range(32) if code != 10}
-    return ["".join(marks.get(one, one) for one in line) for line in text.split("\n")]
 
 
 def hear(session: Session, case: Case) -> Heard:
@@ -92,31 +87,29 @@ def hear_scene(
     for who, its_run in ((PORT, run), (EMULATOR, emulated.run)):
         ported = its_run(scene, dos=False)
         others[who] = Finished(ported.printout, ported.reals, ported.A)
-    differences = [
-        difference for who, other in others.items() for difference in _apart(rom, who, other)
-    ]
+    differences = [one for who, other in others.items() for one in _apart(rom, who, other)]
     differences += _replayed_apart(rom, scene)
-    row = {
+    capture = {
         "id": name,
         "scene": dict(scene),
         "typed_lines": scene.typed_lines(),
         "keyboard": scene.keyboard(),
         **rom._asdict(),
     }
-    return Heard(SCENES, name, (*others, REPLAY), differences, row)
+    return Heard(SCENES, name, (*others, REPLAY), differences, capture)
 
 
 def hear_sample(session: Session, number: int) -> Heard:
     """A published run, held against what was published too: without the lines that a disk system
     takes, which the Apple of 1988 had and this one has not."""
     heard = hear_scene(session, f"sample {number}", sample(number))
-    shown: list[str] = []
-    Console(lambda: None, shown.append, dos=True).put(heard.capture["printout"])
+    pieces: list[str] = []
+    Console(lambda: None, pieces.append, dos=True).put(heard.capture["printout"])
     name = f"printouts/{GOLDEN_RUNS[number]}.txt"
-    published = packaged_bytes("impact88.golden", name).decode()
+    published, shown = packaged_bytes("impact88.golden", name).decode(), "".join(pieces)
     differences = list(heard.differences)
-    if "".join(shown) != published:
-        differences.append(Difference(PUBLISHED, "printout", "".join(shown), published))
+    if shown != published:
+        differences.append(Difference(PUBLISHED, "printout", shown, published))
     return heard._replace(compared=(*heard.compared, PUBLISHED), differences=differences)
 
 
@@ -128,18 +121,15 @@ def _apart(rom: Finished, who: str, other: Finished) -> Iterator[Difference]:
     for name in sorted({*mine, *theirs}):
         if mine.get(name) != theirs.get(name):
             yield Difference(who, name, mine.get(name, "absent"), theirs.get(name, "absent"))
-    if my_array != their_array:
-        yield from _arrays_apart(who, my_array, their_array)
-
-
-def _arrays_apart(who: str, mine: Any, theirs: Any) -> Iterator[Difference]:
-    if not mine or not theirs or mine[0] != theirs[0]:
-        yield Difference(who, "DIM A", str(mine and mine[0]), str(theirs and theirs[0]))
+    if not my_array or not their_array or my_array[0] != their_array[0]:
+        sizes = [str(one and one[0]) for one in (my_array, their_array)]
+        if my_array != their_array:
+            yield Difference(who, "DIM A", *sizes)
         return
-    rows = mine[0][0]
-    for place, (one, other) in enumerate(zip(mine[1], theirs[1], strict=True)):
-        if one != other:
-            yield Difference(who, f"A({place % rows},{place // rows})", one, other)
+    rows = my_array[0][0]
+    for place, (one, another) in enumerate(zip(my_array[1], their_array[1], strict=True)):
+        if one != another:
+            yield Difference(who, f"A({place % rows},{place // rows})", one, another)
 
 
 def _replayed_apart(rom: Finished, scene: Scene) -> Iterator[Difference]:
@@ -160,16 +150,12 @@ def _hear_program(session: Session, case: Case) -> Heard:
     """A program, held against its capture, if it has one, and the emulator: all that is displayed,
     and the screen at the end. One that does not come to an end is a difference."""
     data, fuzz = case.data, case.kind == FUZZ
-    program, keys = (
-        (data["program"], data["keyboard"]) if fuzz else (data["bas"], data.get("in", ""))
-    )
+    program, keys = data["program" if fuzz else "bas"], data.get("keyboard" if fuzz else "in", "")
     before = session.apple.instructions
     rom, differences = {"displayed": "", "screen": ""}, []
     others: dict[str, dict[str, str]] = {}
-    if fuzz:
-        others[CAPTURE] = {"displayed": data["output"]}
-    elif case.kind == PROGRAMS:
-        others[CAPTURE] = {"displayed": data.get("out", "")}
+    if case.kind != OWN:
+        others[CAPTURE] = {"displayed": data.get("output" if fuzz else "out", "")}
         others[CAPTURE] |= {"screen": data["scr"]} if "scr" in data else {}
     others[EMULATOR] = {}
     try:
@@ -192,13 +178,12 @@ def _hear_program(session: Session, case: Case) -> Heard:
         for what, text in other.items()
         if text != rom[what]
     ]
-    compared = tuple(others or (EMULATOR,))
-    if fuzz:
-        return Heard(FUZZ, case.name, compared, differences, {**data, "output": rom["displayed"]})
-    done = {**data, "out": rom["displayed"], "instructions": session.apple.instructions - before}
+    done = {**data, "output" if fuzz else "out": rom["displayed"]}
+    if not fuzz:
+        done["instructions"] = session.apple.instructions - before
     if case.kind == OWN or "scr" in data:
         done["scr"] = rom["screen"]
-    return Heard(case.kind, case.name, compared, differences, done)
+    return Heard(case.kind, case.name, tuple(others or (EMULATOR,)), differences, done)
 
 
 def _hear_call(session: Session, case: Case) -> Heard:
@@ -210,11 +195,8 @@ def _hear_call(session: Session, case: Case) -> Heard:
         HERE: captured.call(operation, first, second, extension),
     }
     asked = " ".join(filter(None, case.data[:4]))
-    differences = [
-        Difference(who, asked, mine, other) for who, other in others.items() if other != mine
-    ]
-    capture = [operation, first, second, extension, rom]
-    return Heard(ARITHMETIC, case.name, tuple(others), differences, capture)
+    differences = [Difference(who, asked, mine, one) for who, one in others.items() if one != mine]
+    return Heard(ARITHMETIC, case.name, tuple(others), differences, [*case.data[:4], rom])
 
 
 # --- the record -----------------------------------------------------------------------------------
@@ -225,9 +207,8 @@ TOLD = 100
 
 def record(image: Image, heard: list[Heard], seconds: float) -> dict[str, Any]:
     """The object `impact88 witness --json` prints."""
-    cases, comparisons, failing = Counter[str](), Counter[str](), Counter[str]()
+    comparisons, failing = Counter[str](), Counter[str]()
     for one in heard:
-        cases[one.kind] += 1
         comparisons.update(f"{one.kind}, {who}" for who in one.compared)
         failing.update({f"{one.kind}, {difference.who}" for difference in one.differences})
     wrong = [one for one in heard if one.differences]
@@ -240,7 +221,7 @@ def record(image: Image, heard: list[Heard], seconds: float) -> dict[str, Any]:
             "captures": provenance.captures_hash(),
         },
         "rom": "Apple II Plus" if image.known else "unknown",
-        "cases": dict(cases),
+        "cases": Counter(one.kind for one in heard),
         "comparisons": {
             name: {"total": total, "right": total - failing[name]}
             for name, total in comparisons.items()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
@@ -30,6 +31,25 @@ class Case(NamedTuple):
 def cases(count: int | None, seed: int = 0) -> list[Case]:
     """Captures, drawn evenly from scenes, programs and the routines of the arithmetic, none twice;
     all of them for ``count`` None."""
+    decks = [deck.copy() for deck in _decks()]
+    if count is None:
+        return [case for deck in decks for case in deck]
+    rng = Random(seed)
+    scenes, programs, *calls = decks
+    rng.shuffle(calls)
+    for deck in (scenes, programs, *calls):
+        rng.shuffle(deck)
+    drawn: list[Case] = []
+    for turn in range(count):
+        arithmetic = calls[turn // 3 % len(calls)]
+        deck = (scenes, programs, arithmetic)[turn % 3] or arithmetic
+        drawn += [deck.pop()] if deck else []
+    return drawn
+
+
+@cache
+def _decks() -> list[list[Case]]:
+    """All packaged captures: scenes, programs, and each routine's calls."""
     golden = captured.golden()
     scenes = [Case(SCENES, row["id"], row) for row in captured.rows(golden, SCENES)]
     programs = [Case(PROGRAMS, *one) for one in captured.programs(golden).items()]
@@ -38,18 +58,7 @@ def cases(count: int | None, seed: int = 0) -> list[Case]:
         [Case(ARITHMETIC, f"{operation}-{place:04d}", row) for place, row in enumerate(rows)]
         for operation, rows in captured.calls(golden).items()
     ]
-    if count is None:
-        return sum(calls, scenes + programs)
-    rng = Random(seed)
-    rng.shuffle(calls)
-    for deck in (scenes, programs, *calls):
-        rng.shuffle(deck)
-    drawn: list[Case] = []
-    for turn in range(count):
-        decks = (scenes, programs, calls[turn // 3 % len(calls)])
-        deck = decks[turn % 3] or decks[2]
-        drawn += [deck.pop()] if deck else []
-    return drawn
+    return [scenes, programs, *calls]
 
 
 def own_programs(folder: str) -> list[Case]:

@@ -22,19 +22,10 @@ WITH_MEMORY = {"add": 0xE7BE, "sub": 0xE7A7, "mul": 0xE97F, "div": 0xEA66, "cmp"
 POWER = 0xEE97
 """Argument to the power of the accumulator."""
 OF_ACCUMULATOR = {
-    "neg": 0xEED0,
-    "abs": 0xEBAF,
-    "sgn": 0xEB90,
-    "int": 0xEC23,
-    "sqr": 0xEE8D,
-    "exp": 0xEF09,
-    "log": 0xE941,
-    "sin": 0xEFF1,
-    "cos": 0xEFEA,
-    "tan": 0xF03A,
-    "atn": 0xF09E,
+    **{"neg": 0xEED0, "abs": 0xEBAF, "sgn": 0xEB90, "int": 0xEC23, "sqr": 0xEE8D, "exp": 0xEF09},
+    **{"log": 0xE941, "sin": 0xEFF1, "cos": 0xEFEA, "tan": 0xF03A, "atn": 0xF09E, "fout": 0xED34},
 }
-READ_NUMBER, WRITE_NUMBER = 0xEC4A, 0xED34
+READ_NUMBER = 0xEC4A
 
 _OPERAND, _STUB, _BACK, _BUFFER = 0x0300, 0x0310, 0x0340, 0x0200
 """Page 3 is the user's; a number to be read stands in the input buffer."""
@@ -66,8 +57,8 @@ def call(apple: Apple, operation: str, first: str, second: str, extension: str) 
         return bytes(apple.memory[start : start + 20]).partition(b"\0")[0].decode("ascii")
     raw = bytes(apple.memory[FAC : FAC_SIGN + 1]).hex()
     low = f"{apple.memory[FAC_EXTENSION]:02x}"
-    error = _execute(apple, [_LDX_IMMEDIATE, _OPERAND & 0xFF, _LDY_IMMEDIATE, _OPERAND >> 8,
-                             *_jsr(STORE_ROUNDED)])  # fmt: skip
+    place = [_LDX_IMMEDIATE, _OPERAND & 0xFF, _LDY_IMMEDIATE, _OPERAND >> 8]
+    error = _execute(apple, [*place, *_jsr(STORE_ROUNDED)])
     if error is not None:
         return f"E{error}"
     return f"{bytes(apple.memory[_OPERAND : _OPERAND + 5]).hex()}:{raw}:{low}"
@@ -80,7 +71,7 @@ def _code(operation: str) -> list[int]:
         return [*operand, *_jsr(WITH_MEMORY[operation])]
     if operation == "pow":  # A and the flags must show the accumulator's exponent
         return [*operand, *_jsr(LOAD_ARGUMENT), _LDA_ZERO, FAC, *_jsr(POWER)]
-    return _jsr(WRITE_NUMBER if operation == "fout" else OF_ACCUMULATOR[operation])
+    return _jsr(OF_ACCUMULATOR[operation])
 
 
 def _jsr(address: int) -> list[int]:

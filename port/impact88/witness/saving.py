@@ -38,18 +38,15 @@ def save(folder: str, heard: Iterable[Heard]) -> None:
         text = golden().joinpath(PROGRAMS, "index.tsv").read_text("utf-8")
         heading, *rows = (line.split("\t") for line in text.splitlines())
         kept = [[*row[:-1], index[row[0]]] for row in rows if row[0] in index]
-        files[os.path.join(PROGRAMS, "index.tsv")] = [
-            "\t".join(row) + "\n" for row in (heading, *kept)
-        ]
+        files[os.path.join(PROGRAMS, "index.tsv")] = ["\t".join(r) + "\n" for r in (heading, *kept)]
     for name, lines in files.items():
         path = os.path.join(folder, name)
         try:
             os.makedirs(os.path.dirname(path), exist_ok=True)
         except OSError as error:
             raise UserError(f"cannot be made: {error.strerror or error}", folder) from None
+        data = "".join(lines).encode("latin-1")
+        if name.endswith(".gz"):  # the same lines give the same bytes on every day
+            data = gzip.compress("".join(f"{line}\n" for line in lines).encode(), mtime=0)
         with replacing(path, "wb") as file:
-            if name.endswith(".gz"):  # the same lines give the same bytes on every day
-                text = "".join(f"{line}\n" for line in lines)
-                file.write(gzip.compress(text.encode(), mtime=0))
-            else:
-                file.write("".join(lines).encode("latin-1"))
+            file.write(data)

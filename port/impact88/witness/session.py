@@ -7,6 +7,7 @@ does not have, are POKEd into its text at the prompt, as was done in the days.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from ..errors import UserError
@@ -45,14 +46,12 @@ class Session:
             raise UserError(f"this ROM does not come to a prompt: {lost}") from None
         last = shown.rstrip()[-1:]
         if last != PROMPT:
-            raise UserError(
-                "this ROM comes to "
-                f"{_OTHER_PROMPTS.get(last, f'{shown[-20:]!r}, no prompt of Applesoft')}"
-            )
+            what = _OTHER_PROMPTS.get(last, f"{shown[-20:]!r}, no prompt of Applesoft")
+            raise UserError(f"this ROM comes to {what}")
         self._fresh = self.apple.state()
-        self._with_listing: State | None = None
 
-    def _type_listing(self) -> State:
+    @cached_property
+    def _with_listing(self) -> State:
         """The machine with the restored listing typed in."""
         self.apple.restore(self._fresh)
         program = packaged_text("impact88.legacy", LISTING)
@@ -68,8 +67,6 @@ class Session:
     def run_scene(self, scene: Scene) -> Finished:
         """RUN the listing on a scene. Raises UserError for a line too long to be typed, and when
         the program does not come to an end. The listing is typed once, for the first scene."""
-        if self._with_listing is None:
-            self._with_listing = self._type_listing()
         self.apple.restore(self._with_listing)
         self.apple.blanks = False
         for line in scene.typed_lines():
@@ -81,9 +78,8 @@ class Session:
         """Type a program in, RUN, then the keys: what is displayed, without the prompts' NULs."""
         self.apple.restore(self._fresh)
         self.apple.blanks = blanks
-        for line in program.split("\n"):
-            if line:
-                self._enter(line)
+        for line in filter(None, program.split("\n")):
+            self._enter(line)
         return self._run(keys).replace("\0", "")
 
     def calculate(self, operation: str, first: str, second: str, extension: str) -> str:
