@@ -98,10 +98,10 @@ def _causes(evidence: Evidence) -> Iterator[Cause]:
     for scene in (typed, *with_opposite_mu(typed)):
         for variant, bits, machine in _DOUBLES:
             page = _Page(evidence, scene, machine, spared)
-            kind, so = f"IEEE double arithmetic{variant}", f"double precision{variant} prints so"
-            yield page.cause(kind, so, bits, {})
+            yield page.cause(f"IEEE double arithmetic{variant}", "", bits, {})
             for how in ("rounded", "truncated"):
-                yield page.cause(f"{kind}, {how}, not floored", so, bits + 1, page.cut(how))
+                kind = f"IEEE double arithmetic, {how}, not floored"
+                yield page.cause(kind, variant.strip(), bits + 1, page.cut(how))
         for pi in _PIS:
             page = _Page(evidence, scene, _with_pi(APPLESOFT, APPLESOFT.number(pi)), spared)
             yield page.cause("another pi in line 300", pi, _OTHER_PI, {})
