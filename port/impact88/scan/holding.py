@@ -83,7 +83,9 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
                 shown = fields.get(name, "") if name else text
             if line in SPACED:  # its gaps are what they are
                 column = row.column(piece.places[0]) if piece.places else column
-                if name:  # a speck may stand for one of its cells
+                if len(shown) == len(piece.places) + 1 and shown.startswith("-"):
+                    column -= 1  # its sign was taken for a blank
+                elif name:  # a speck may stand for one of its cells
                     spare = range(max(0, len(piece.places) - len(shown)) + 1)
                     column += min(spare, key=partial(_beside_cost, read, name, shown))
             if not name and not text.strip():

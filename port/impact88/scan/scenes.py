@@ -38,9 +38,9 @@ class Read:
     _known: dict[tuple[str, str], float] = field(default_factory=dict)
 
     def text(self, name: str) -> str:
-        """The likeliest text of a number; a blank in it or after it is a digit that is missing."""
-        text = "".join(READABLE[k] for k in self.costs[name].argmin(axis=1))
-        return text.strip() if name.startswith("REPLY") else text.lstrip().replace(" ", "0")
+        """The likeliest text of a number; a blank within it is a digit that is missing."""
+        text = "".join(READABLE[k] for k in self.costs[name].argmin(axis=1)).strip()
+        return text if name.startswith("REPLY") else text.replace(" ", "0")
 
     def cost(self, name: str, text: str | None) -> float:
         """What it costs to take a number's cells for a text."""
@@ -53,6 +53,8 @@ class Read:
 
     def _cost(self, costs: Floats, text: str) -> float:
         total = _WORST * max(0, len(text) - len(costs))
+        if len(text) == len(costs) + 1 and text.startswith("-"):
+            text = text[1:]  # a faint sign before an angle is taken for a blank
         for row, character in zip(costs, text.ljust(len(costs)), strict=False):
             column = (READABLE).find(character)
             total += _WORST if column < 0 else min(float(row[column]), _WORST)
@@ -158,7 +160,8 @@ def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
             continue
         text = one.outcome.fields.get(name) or read.text(name)
         sign = -1 if typed == "MU" and _opposite(one.scene["MU"], text) else 1
-        for shown in {text, read.text(name)}:  # the last figure may have been read as a nought
+        seen = read.text(name)  # its last figure may have been altered to a nought, or erased
+        for shown in {text, seen, seen.ljust(len(read.costs[name]), "0")}:
             for at, character in enumerate(shown):
                 for other in "0123456789":
                     if character.isdigit() and other != character:
