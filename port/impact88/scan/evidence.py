@@ -20,8 +20,7 @@ class Thresholds(NamedTuple):
     """``holds``: a cell with a smaller margin is the character predicted; ``differs``: one with a
     larger margin is another; ``label``: a label with a smaller margin holds; ``blank``: blank paper
     with a larger margin is not blank; ``foreign``: a cell this many times as far from a mean as is
-    usual was not made by that type; ``far``: up to here it may still be another character, where it
-    is twice as far from the one predicted; ``kind``: a label that is nearer than this to another
+    usual was not made by that type; ``kind``: a label that is nearer than this to another
     letter's mean is that letter."""
 
     holds: float
@@ -29,13 +28,10 @@ class Thresholds(NamedTuple):
     label: float
     blank: float
     foreign: float
-    far: float
     kind: float
 
 
-THRESHOLDS = Thresholds(
-    holds=-0.12, differs=0.3, label=0.1, blank=-0.15, foreign=20.0, far=50.0, kind=15.0
-)
+THRESHOLDS = Thresholds(holds=-0.12, differs=0.3, label=0.1, blank=-0.15, foreign=20.0, kind=15.0)
 RATES = (
     "Basis of the thresholds: on 71 genuine pages with known truth (clean, hard and photographed; "
     "30 of them kept apart) no cell of a digit has a margin above -0.20, and of 91,377 cells tried "
@@ -98,7 +94,7 @@ def state(cell: Cell) -> str:
         if cell.margin < limits.blank or cell.other in _MARKS:
             return "holds" if cell.margin < limits.differs or not cell.name else "doubtful"
         return "differs" if cell.margin > limits.differs else "doubtful"
-    if cell.unlike or (cell.lost and cell.margin > limits.holds):
+    if (cell.hand and cell.count < 2) or (cell.lost and cell.margin > limits.holds):
         return "doubtful"
     if not cell.name:
         if cell.margin < limits.label:
@@ -111,11 +107,8 @@ def state(cell: Cell) -> str:
         return "holds" if cell.distance < limits.foreign else "doubtful"
     if cell.margin < limits.differs or (cell.predicted in _MARKS and cell.other in f"{BLANK}.,-"):
         return "doubtful"
-    # A blot is like nothing. On 179 genuine pages no cell meets the second condition, the nearest
-    # two come to 0.67 of the distance; pasted and redrawn digits to 0.3 to 0.54, at 21 to 44.
-    near = cell.other_distance < limits.foreign
-    clearly = cell.other_distance < min(limits.far, cell.distance / 2)
-    return "differs" if near or clearly else "doubtful"
+    # a blot is like nothing, another hand's digit like that of a known style
+    return "differs" if cell.other_distance < limits.foreign or cell.hand else "doubtful"
 
 
 def _retyped(cell: Cell, others: Sequence[Cell]) -> bool:
@@ -131,4 +124,4 @@ def _slight(cell: Cell) -> bool:
     if not cell.name or cell.predicted == BLANK:
         return cell.margin < 0.5
     marks = cell.predicted in _MARKS and cell.other in _MARKS
-    return (marks and cell.margin < 0.5) or (not cell.unlike and cell.margin < THRESHOLDS.holds)
+    return (marks and cell.margin < 0.5) or (not cell.hand and cell.margin < THRESHOLDS.holds)

@@ -33,7 +33,7 @@ from .typeface import (
 _ROWS, _TOP, _BOTTOM = 24, 4, 20
 """Prototypes stand on this many rows, a capital's top and foot at these."""
 _READINGS = 2
-_STYLES = 3
+STYLES = 3
 """How many styles a page may mix: a printer's type lies between those that are known."""
 _SPREAD = 1.6
 """How far apart the cells of a group may be, in units of what three quarters of the pairs of one
@@ -79,9 +79,9 @@ def _normal(sample: Sample, top: float, foot: float) -> Vectors:
     return normal
 
 
-def likeness(sample: Sample, typeface: Typeface) -> Floats:
-    """How unlike each cell is to each of `NUMERIC` in the styles that fit the page best: shape
-    (cells, characters), 0 for the same picture, 1 for nothing in common."""
+def likeness(sample: Sample, typeface: Typeface, styles: int | None = STYLES) -> Floats:
+    """How unlike each cell is to each of `NUMERIC` in the ``styles`` that fit best, None for all:
+    shape (cells, characters), 0 for the same picture, 1 for nothing in common."""
     characters, glyphs = prototypes()
     cells = ndimage.gaussian_filter(_normal(sample, *capitals(typeface)), (0, 0.5, 0.5))
     reach = 3
@@ -96,7 +96,7 @@ def likeness(sample: Sample, typeface: Typeface) -> Floats:
             best = np.maximum(best, moved @ flat.T / norm)
     apart = 1 - best.reshape(len(cells), len(glyphs), len(characters))
     total = apart.min(axis=2).sum(axis=0)
-    order = np.argsort(total)[:_STYLES]
+    order = np.argsort(total)[:styles]
     unlike: Floats = apart[:, order].min(axis=1)
     return unlike
 
