@@ -389,6 +389,8 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
             continue
         if header := re.fullmatch(r"\s*\[([A-Za-z0-9_-]+)\]\s*(#.*)?", line):
             table = header[1]
+            if table in lines or table in tables:
+                raise UserError(f"{table} is given twice", where)
             tables[table] = where
             continue
         if (match := re.match(_ENTRY, line)) is None:
