@@ -400,7 +400,7 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
                     "take another copy of the listing as --listing",
                     source,
                 )
-            raise UserError("is not TOML; expected NAME = VALUE", where)
+            raise UserError(f"{quoted(line.strip())} is not an entry; expected NAME = VALUE", where)
         key = next(group for group in match.groups()[:3] if group is not None)
         if table:
             if key not in ("value", "source"):
