@@ -184,7 +184,7 @@ def test_two_numbers_and_two_units_are_their_sum_or_refused() -> None:
     """Number, unit, number, unit, in every order and with anything between them."""
     rng = random.Random(28)
     taken = 0
-    for _ in range(int(os.environ.get("IMPACT88_SWEEP", 1)) * 8000):
+    for _ in range(int(os.environ.get("IMPACT88_SWEEP", 1)) * 3000):
         name = rng.choice(list(SIZES))
         sizes = SIZES[name]
         first, second = rng.choice(list(sizes)), rng.choice([*sizes, ""])

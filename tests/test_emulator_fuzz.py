@@ -8,7 +8,7 @@ import pytest
 
 from emulator_fuzz import Cases, survive
 
-CASES = int(os.environ.get("IMPACT88_FUZZ", "0")) or 400
+CASES = int(os.environ.get("IMPACT88_FUZZ", "0")) or 200
 
 
 @pytest.mark.captures

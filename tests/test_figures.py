@@ -415,7 +415,7 @@ class TestText:
 def found():
     ranges = {"MU": "0.6 .. 1.2", "GA": "+- 10", "UX": "+- 10%", "EM": "-.8 .. -.6"}
     inputs = read_inputs(dict(sample(1)), ranges)
-    return bounds(inputs.values, samples=5000, keep_draws=True)
+    return bounds(inputs.values, samples=2000, keep_draws=True)
 
 
 class TestCanvas:
@@ -444,7 +444,7 @@ class TestCanvas:
         assert sorted(p.suffix for p in tmp_path.iterdir()) == [".pdf", ".png", ".svg"]
 
     def test_nobody_elses_settings_change_a_figure(self, tmp_path, monkeypatch):
-        line = "figure colinear -o {}.pdf"
+        line = "figure force -o {}.pdf"
         monkeypatch.chdir(tmp_path)
         assert main(line.format("usual").split()) == 0
         (tmp_path / "matplotlibrc").write_bytes(b"font.size: 40\nbogus\n\xff\xfe")
@@ -461,7 +461,7 @@ class TestCanvas:
     def test_parameters_set_in_python_stay_outside(self, tmp_path):
         import matplotlib
 
-        drawing = freebody.colinear()
+        drawing = charts.force_and_impulse()
         canvas.save(drawing, str(tmp_path / "usual.pdf"))
         with matplotlib.rc_context({"font.size": 40, "savefig.bbox": "tight"}):
             canvas.save(drawing, str(tmp_path / "set.pdf"))

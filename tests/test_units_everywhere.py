@@ -99,7 +99,7 @@ def solve_json_lines(system: str, path: Path, capsys: Any) -> Amounts:
 
 
 def bounds(system: str, path: Path, capsys: Any) -> Amounts:
-    ranges = ["--range", "UX=+- 5%", "--range", "MA=+- 2%", "--samples", "500"]
+    ranges = ["--range", "UX=+- 5%", "--range", "MA=+- 2%", "--samples", "200"]
     shown = json.loads(_printed(capsys, "bounds", str(path), *ranges, "--json"))
     found = {}
     for name, one in shown["outputs"].items():
@@ -173,7 +173,9 @@ def desk_bounds(system: str, path: Path, capsys: Any) -> Amounts:
     from impact88.desk import collision
 
     values = {**texts(system), "MU": ".3 .. .5"}
-    shown = collision.bounds_answer(values, system)["outputs"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(collision, "DRAWS", 200)
+        shown = collision.bounds_answer(values, system)["outputs"]
     return {n: si(n, one["upper"], one["unit"]) for n, one in shown.items()}
 
 
