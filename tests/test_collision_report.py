@@ -35,7 +35,7 @@ def written(tmp_path: Path, entries: dict[str, str], *options: str) -> str:
     source, page = tmp_path / "case.toml", tmp_path / "case.html"
     lines = [f'{name} = "{text}"' for name, text in entries.items()]
     source.write_text(HEAD + "\n".join(lines) + '\nMA_source = "scale ticket"\n', encoding="utf-8")
-    assert main(["report", str(source), "-o", str(page), "--samples", "100", *options]) == 0
+    assert main(["report", str(source), "-o", str(page), "--samples", "300", *options]) == 0
     return page.read_text("utf-8")
 
 
