@@ -24,6 +24,7 @@ from impact88.figures.configurations import configurations
 from impact88.figures.drawing import (
     Box,
     Drawing,
+    Label,
     Path,
     Text,
     arrow,
@@ -33,7 +34,7 @@ from impact88.figures.drawing import (
     text_width,
     unit,
 )
-from impact88.figures.labels import Label, place
+from impact88.figures.labels import place
 from impact88.figures.scenegeometry import plan
 from impact88.figures.sceneview import scene_drawing, scene_svg
 from impact88.figures.svg import svg
@@ -406,7 +407,8 @@ class TestText:
     def test_labels_keep_off_lines_and_texts(self):
         drawing = Drawing(60, "t", height=60)
         drawing.items += arrow(30 - 55j, 30 - 5j)
-        place(drawing, [Label(30 - 30j, 1, text) for text in "abcdef"], Box(0, -60, 60, 0))
+        drawing.add(*(Label(30 - 30j, 1, text) for text in "abcdef"))
+        place(drawing, Box(0, -60, 60, 0))
         assert overlaps(drawing) == []
         assert not any(text_box(t).left < 30 < text_box(t).right for t in drawing.texts())
 

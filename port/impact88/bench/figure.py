@@ -50,7 +50,7 @@ def work_precision(rows: Sequence[Measured], roof: float) -> Drawing:
         what = POPULATIONS[name].meaning
         for count, line in enumerate([name, *wrapped(what, 52, 6)][::-1]):
             at = complex(left, upper + 5 + 2.8 * count)
-            drawing.items.append(Text(at, line, 6, bold=line == name, role="panel title"))
+            drawing.add(Text(at, line, 6, bold=line == name, role="panel title"))
         label = "relative error of the final velocities" if column == 0 else ""
         panel = Panel(
             *(drawing, box, _TIMES, _ERRORS, "time per scene, s", label),
@@ -109,7 +109,7 @@ def error_distribution(rows: Sequence[Measured]) -> Drawing:
         upper = top - 56 * place
         mine = [row for row in shown if row.population == name]
         heading = Text(complex(12, upper + 5), name, 6, bold=True, role="panel title")
-        drawing.items.append(heading)
+        drawing.add(heading)
         label = "relative error of the final velocities" if not place else ""
         errors = Panel(
             *(drawing, Box(12, upper - 38, 84, upper), _CONDITIONS, _ERRORS, "condition", label),

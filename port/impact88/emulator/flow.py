@@ -21,17 +21,7 @@ from ..applesoft.real import ZERO, Number, add, compare, integer, rounded
 from .expressions import ONE
 from .faults import Fault, Restart
 from .inputoutput import BREAK_CODE, InputOutput
-from .memory import (
-    ADDRESSES,
-    COMMA,
-    DIRECT,
-    GOTO,
-    HEADER,
-    ROM,
-    STACK,
-    TEMPORARIES,
-    is_digit,
-)
+from .memory import ADDRESSES, COMMA, DIRECT, GOTO, HEADER, ROM, STACK, TEMPORARIES, is_digit
 from .tokens import TOKENS
 from .variables import SUBFLG_SIMPLE, store
 

@@ -106,23 +106,23 @@ class Panel:
         for value, text in across:
             at = complex(self.x(value), box.bottom)
             self._tick(at, 1j * box.height if grid else 0, -0.9j)
-            items.append(Text(at - 1j * BELOW, text, anchor="middle", role="x tick"))
+            drawing.add(Text(at - 1j * BELOW, text, anchor="middle", role="x tick"))
         for value, text in up:
             at = complex(box.left, self.y(value))
             self._tick(at, box.width if grid else 0, -0.9)
-            items.append(Text(at - 1.5 - 0.8j, text, anchor="end", role="y tick"))
+            drawing.add(Text(at - 1.5 - 0.8j, text, anchor="end", role="y tick"))
         room = box.width + 8
         middle = complex((box.left + box.right) / 2, box.bottom - BELOW - ROW + 0.2)
         for row, line in enumerate(d.wrapped(x_label, room) if x_label else []):
             at = middle - 1j * ROW * row
-            items.append(Text(at, line, anchor="middle", role="x label"))
+            drawing.add(Text(at, line, anchor="middle", role="x label"))
         if y_label:
-            items.append(Text(complex(box.left - 1, box.top + 1.8), y_label, role="y label"))
+            drawing.add(Text(complex(box.left - 1, box.top + 1.8), y_label, role="y label"))
 
     def _tick(self, at: complex, inward: complex, outward: complex) -> None:
         if inward:
-            self.drawing.items.append(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
-        self.drawing.items.append(Path((at, at + outward), BLACK, 0.2, role="tick"))
+            self.drawing.add(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
+        self.drawing.add(Path((at, at + outward), BLACK, 0.2, role="tick"))
 
     def at(self, x: float, y: float) -> complex:
         """Where a pair of numbers is on paper."""
@@ -144,7 +144,7 @@ class Panel:
         for piece in np.split(points, np.flatnonzero(np.diff(finite)) + 1):
             if len(piece) > 1 and np.isfinite(piece[0]):
                 path = Path(tuple(map(complex, piece)), colour, width, dash, fill, role)
-                self.drawing.items.append(path)
+                self.drawing.add(path)
 
     def rule(
         self, x: float, colour: str = BLACK, dash: tuple[float, ...] = (), role: str = ""
@@ -162,7 +162,7 @@ class Panel:
         middle = self.y(y)
         left, right = sorted((self.x(low), self.x(high)))
         box = Box(left, middle - half, right, middle + half)
-        self.drawing.items.append(Path(box.corners, d.BLUE, 0.2, fill=fill, role=role))
+        self.drawing.add(Path(box.corners, d.BLUE, 0.2, fill=fill, role=role))
 
     def mark(
         self,
@@ -176,7 +176,7 @@ class Panel:
         """A mark at a pair of numbers."""
         at = self.at(x, y)
         if math.isfinite(abs(at)):
-            self.drawing.items.append(mark(at, shape, colour, filled, role))
+            self.drawing.add(mark(at, shape, colour, filled, role))
 
 
 def mark(at: complex, shape: str, colour: str, filled: bool = True, role: str = "mark") -> Path:
@@ -197,15 +197,15 @@ def key(drawing: Drawing, y: float, *entries: tuple[str, str, Any], note: str = 
             x, y = 2.0, y - ROW
         start = complex(x, y + 0.8)
         if isinstance(look, str):
-            drawing.items.append(mark(start + sample / 2, look[0], colour, look[-1] != " ", "key"))
+            drawing.add(mark(start + sample / 2, look[0], colour, look[-1] != " ", "key"))
         elif look is None:
             ends = Box(x, start.imag - 0.9, x + sample, start.imag + 0.9).corners
-            drawing.items.append(Path(ends, GREY, 0.15, fill=colour, role="key"))
+            drawing.add(Path(ends, GREY, 0.15, fill=colour, role="key"))
         else:
-            drawing.items.append(Path((start, start + sample), colour, 0.4, look, role="key"))
-        drawing.items.append(Text(complex(x + sample + 1.2, y), text, role="legend"))
+            drawing.add(Path((start, start + sample), colour, 0.4, look, role="key"))
+        drawing.add(Text(complex(x + sample + 1.2, y), text, role="legend"))
         x += width + 3.0
     if note:
         y -= ROW
-        drawing.items.append(Text(complex(2, y), note, colour=GREY, role="note"))
+        drawing.add(Text(complex(2, y), note, colour=GREY, role="note"))
     return y - ROW

@@ -344,6 +344,6 @@ def force_and_impulse() -> Drawing:
         panel.line(*shape, BLUE, fill=_PALE, role="force")
         panel.line([0, 1], [level] * 2, GREY, 0.2, _DASHED)
         at = panel.at(0.4, 0.35 * mean)
-        drawing.items.append(Text(at, "impulse", anchor="middle"))
+        drawing.add(Text(at, "impulse", anchor="middle"))
     drawing.height = 38 - top
     return drawing

@@ -39,7 +39,7 @@ def configurations() -> Drawing:
         box, left = boxes[count], column * (wide + _GAP)
         tall = scale * max(other.height for other in boxes[2 * row : 2 * row + 2]) + 2 * _PAD
         title = f"{'abcd'[count]}. {category.lower()} (no. {collision.number})"
-        drawing.items.append(Text(complex(left + 1, top - 3.6), title, 7, role="panel title"))
+        drawing.add(Text(complex(left + 1, top - 3.6), title, 7, role="panel title"))
         middle = complex(left + wide / 2, top - _TITLE - tall / 2)
         at = View(middle - scale * complex(box.left + box.right, box.bottom + box.top) / 2, scale)
         bottom = top - _TITLE - tall
@@ -58,14 +58,13 @@ def _tail(vehicle: Vehicle, shapes: Plan, arrow: float) -> complex:
 
 
 def _panel(drawing: Drawing, shapes: Plan, at: View, arrow: float, frame: Box) -> None:
-    draw_bodies(drawing.items, shapes.vehicles, at)
-    labels = []
+    draw_bodies(drawing, shapes.vehicles, at)
     for vehicle in shapes.vehicles:
         colour, center = COLOURS[vehicle.name], at(vehicle.center)
         start, (_, width, dash, _) = at(_tail(vehicle, shapes, arrow)), ARROWS["before"]
         role = f"{vehicle.name} before"
-        drawing.items += d.arrow(start, center, colour, width, dash, 2.0, role)
-        drawing.items.append(Path(d.circle(center, 0.5), colour, 0.3, fill=d.WHITE))
-        labels.append(name_label(vehicle, center, 0.3 + 1j, 8))
-    drawing.items.append(Path(d.circle(at(0), 0.5), d.BLACK, 0.3, fill=d.WHITE))
-    place(drawing, labels, frame)
+        drawing.add(*d.arrow(start, center, colour, width, dash, 2.0, role))
+        drawing.add(Path(d.circle(center, 0.5), colour, 0.3, fill=d.WHITE))
+        drawing.add(name_label(vehicle, center, 0.3 + 1j, 8))
+    drawing.add(Path(d.circle(at(0), 0.5), d.BLACK, 0.3, fill=d.WHITE))
+    place(drawing, frame)

@@ -81,6 +81,18 @@ class Run(NamedTuple):
     size: float
 
 
+class Label(NamedTuple):
+    """A text for the point ``at``, best placed in direction ``towards`` (of any length)."""
+
+    at: complex
+    towards: complex
+    text: str
+    size: float = 8.0
+    colour: str = BLACK
+    bold: bool = False
+    role: str = ""
+
+
 class Box(NamedTuple):
     """A rectangle along the axes."""
 
@@ -141,14 +153,20 @@ def check_drawable(values: Iterable[float], name: str) -> None:
 @dataclass
 class Drawing:
     """A page ``width`` x ``height`` mm with what is drawn on it, lowest first, written ``enlarged``
-    times as large. ``description`` says in words what a reader who cannot see it misses."""
+    times as large; ``labels`` are still to be placed. ``description``: the drawing in words."""
 
     width: float
     title: str
     description: str = ""
     height: float = 0.0
     items: list[Path | Text] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
     enlarged: float = 1.0
+
+    def add(self, *items: Path | Text | Label) -> None:
+        """Draw something over all that is there, or note a label."""
+        self.items += [item for item in items if not isinstance(item, Label)]
+        self.labels += [item for item in items if isinstance(item, Label)]
 
     def texts(self) -> list[Text]:
         """The texts only."""
@@ -162,7 +180,7 @@ class Drawing:
         """Write the title in bold at the top; returns where what follows goes on."""
         lines = wrapped(self.title, (self.width - 4) / BOLD, 7)
         for count, line in enumerate(lines, 1):
-            self.items.append(Text(complex(2, -ROW * count), line, 7, bold=True, role="title"))
+            self.add(Text(complex(2, -ROW * count), line, 7, bold=True, role="title"))
         return -ROW * len(lines)
 
 

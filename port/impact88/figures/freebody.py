@@ -11,8 +11,8 @@ import math
 from typing import Any
 
 from . import drawing as d
-from .drawing import Box, Drawing, Path, Text, View
-from .labels import Label, place
+from .drawing import Box, Drawing, Label, Path, Text, View
+from .labels import place
 from .scenegeometry import Plan, Vehicle, plan
 from .sceneview import ARROWS, COLOURS, IMPULSE, PLANE, TINTS, draw_axes, name_label
 
@@ -37,7 +37,7 @@ def colinear() -> Drawing:
     note = "m (V − v) = impulse, for each vehicle along n and t"
     drawing.height += 3
     at = complex(drawing.width / 2, 1.5 - drawing.height)
-    drawing.items.append(Text(at, note, anchor="middle", colour=d.GREY, role="note"))
+    drawing.add(Text(at, note, anchor="middle", colour=d.GREY, role="note"))
     return drawing
 
 
@@ -73,72 +73,58 @@ def planar(scene: Any = None, velocities: bool = False) -> Drawing:
     drawing.height = scale * box.height + 2 * _MARGIN
     left = (drawing.width - scale * (box.left + box.right)) / 2
     at = View(complex(left, -_MARGIN - scale * box.top), scale)
-    labels: list[Label] = []
     for vehicle in shapes.vehicles:
         moved = View(at(apart[vehicle.name]), scale)
-        _body(drawing.items, labels, shapes, vehicle, moved, scale * size)
+        _body(drawing, shapes, vehicle, moved, scale * size)
         if velocities:
             low, (_, width, dash, head) = vehicle.name.lower(), ARROWS["before"]
             side = -0.9j if vehicle.name == "A" else 0.9j  # where P_t is not
             base = moved(vehicle.center + side * vehicle.width)
             end = base + 8 * vehicle.before.velocity / vehicle.before.speed
             colour = COLOURS[vehicle.name]
-            drawing.items += d.arrow(base, end, colour, width, dash, head, "velocity")
-            labels.append(Label(base, base - end, f"v_{{{low}n}}, v_{{{low}t}}", colour=colour))
-    _plane(drawing.items, labels, shapes, at.origin, scale * size)
+            drawing.add(*d.arrow(base, end, colour, width, dash, head, "velocity"))
+            drawing.add(Label(base, base - end, f"v_{{{low}n}}, v_{{{low}t}}", colour=colour))
+    _plane(drawing, shapes, at.origin, scale * size)
     page = Box(0.6, 0.4 - drawing.height, drawing.width - 0.6, -0.4)
     draw_axes(drawing, page)
-    place(drawing, labels, page)
+    place(drawing, page)
     return drawing
 
 
-def _body(
-    items: list[Path | Text],
-    labels: list[Label],
-    shapes: Plan,
-    vehicle: Vehicle,
-    at: View,
-    size: float,
-) -> None:
+def _body(drawing: Drawing, shapes: Plan, vehicle: Vehicle, at: View, size: float) -> None:
     """One body; of a point mass the impulse acts at its center, and nothing turns it."""
     point = shapes.apart or shapes.numbers["M"] == 4
     colour = COLOURS[vehicle.name]
     body = at.all(vehicle.outline)
-    items.append(Path(body, colour, 0.45, fill=TINTS[vehicle.name], role="body outline"))
+    drawing.add(Path(body, colour, 0.45, fill=TINTS[vehicle.name], role="body outline"))
     center = at(vehicle.center)
     contact = center if point else at(0)
-    labels.insert(0, name_label(vehicle, center, -vehicle.front))
+    drawing.labels.insert(0, name_label(vehicle, center, -vehicle.front))
     if not point:
-        _angles(items, labels, shapes, vehicle, center, contact, size)
+        _angles(drawing, shapes, vehicle, center, contact, size)
 
     # impulses: on A along n and t, on B against them
     sense, minus = (1, "") if vehicle.name == "A" else (-1, "−")
     for along, symbol in ((shapes.normal, "n"), (shapes.tangent, "t")):
         end = contact + 0.3 * size * sense * along
-        items += d.arrow(contact, end, IMPULSE, 0.8, head=2.6, role="impulse")
+        drawing.add(*d.arrow(contact, end, IMPULSE, 0.8, head=2.6, role="impulse"))
         text, role = f"{minus}P_{symbol}", "impulse label"
-        labels.append(Label(end, sense * along, text, 8, IMPULSE, True, role))
+        drawing.add(Label(end, sense * along, text, 8, IMPULSE, True, role))
     if not point:
         outward = -sense * shapes.normal
         opening = d.degrees(outward) + 180
-        items += d.turning_arrow(
-            contact, _MOMENT, sense > 0, IMPULSE, 0.6, (), opening, 200, "moment"
+        drawing.add(
+            *d.turning_arrow(contact, _MOMENT, sense > 0, IMPULSE, 0.6, (), opening, 200, "moment")
         )
         edge = contact + _MOMENT * outward
-        labels.append(Label(edge, outward, f"{minus}M", 8, IMPULSE, True, "moment label"))
-    items.append(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))
+        drawing.add(Label(edge, outward, f"{minus}M", 8, IMPULSE, True, "moment label"))
+    drawing.add(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))
     if not point:
-        items.append(Path(d.circle(contact, 0.5), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
+        drawing.add(Path(d.circle(contact, 0.5), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
 
 
 def _angles(
-    items: list[Path | Text],
-    labels: list[Label],
-    shapes: Plan,
-    vehicle: Vehicle,
-    center: complex,
-    contact: complex,
-    size: float,
+    drawing: Drawing, shapes: Plan, vehicle: Vehicle, center: complex, contact: complex, size: float
 ) -> None:
     """Heading angle, and distance and angle of the contact point."""
     low = vehicle.name.lower()
@@ -146,50 +132,48 @@ def _angles(
     heading = d.degrees(-vehicle.front if vehicle.name == "A" else vehicle.front)
     arm = 0.34 * size
     for end in (-0.5 * size * vehicle.front, 0.5 * size * vehicle.front, arm):
-        _ray(items, center, center + end)
+        _ray(drawing, center, center + end)
     if abs(heading) > 3:
-        labels.append(_angle(items, center, 0.0, heading, 0.28 * size, f"θ_{low}"))
+        drawing.add(_angle(drawing, center, 0.0, heading, 0.28 * size, f"θ_{low}"))
     else:
         text = f"θ_{low} = {heading:.3g}°"
-        labels.append(Label(center + arm, 1 + 0.3j, text, 7.5, _ANGLE))
+        drawing.add(Label(center + arm, 1 + 0.3j, text, 7.5, _ANGLE))
 
     # distance and angle of the contact point from the front
     reach = contact - center
     if abs(reach) > 0.02 * size:
-        items.append(Path((center, contact), d.BLACK, 0.3, (1.0, 0.6), role="distance"))
-        labels.append(Label((center + contact) / 2, 1j * reach, f"d_{low}"))
+        drawing.add(Path((center, contact), d.BLACK, 0.3, (1.0, 0.6), role="distance"))
+        drawing.add(Label((center + contact) / 2, 1j * reach, f"d_{low}"))
         angle = shapes.numbers["P" + vehicle.name]
         if abs(angle) > 3:
             radius = min(0.16 * size, 0.6 * abs(reach))
             front = d.degrees(vehicle.front)
-            labels.append(_angle(items, center, front, angle, radius, f"φ_{low}"))
+            drawing.add(_angle(drawing, center, front, angle, radius, f"φ_{low}"))
 
 
-def _plane(
-    items: list[Path | Text], labels: list[Label], shapes: Plan, contact: complex, size: float
-) -> None:
+def _plane(drawing: Drawing, shapes: Plan, contact: complex, size: float) -> None:
     """The contact plane halfway between the bodies, its axes, and its angle from the y axis."""
     half = 0.36 * size * shapes.tangent
-    items.append(Path((contact - half, contact + half), d.BLACK, 0.3, PLANE, role="contact plane"))
+    drawing.add(Path((contact - half, contact + half), d.BLACK, 0.3, PLANE, role="contact plane"))
     normal = 0.14 * size * shapes.normal
     for start, end, name in ((half - 2 * shapes.tangent, half, "t"), (0, normal, "n")):
-        items += d.arrow(contact + start, contact + end, role=f"{name} axis", head=1.8)
-        labels.append(Label(contact + end, end, name))
+        drawing.add(*d.arrow(contact + start, contact + end, role=f"{name} axis", head=1.8))
+        drawing.add(Label(contact + end, end, name))
     angle = shapes.numbers["GA"]
     if abs(angle) > 3:
-        _ray(items, contact, contact + 0.32j * size)
-        labels.append(_angle(items, contact, 90.0, angle, 0.25 * size, "Γ"))
+        _ray(drawing, contact, contact + 0.32j * size)
+        drawing.add(_angle(drawing, contact, 90.0, angle, 0.25 * size, "Γ"))
 
 
-def _ray(items: list[Path | Text], start: complex, end: complex) -> None:
-    items.append(Path((start, end), _ANGLE, 0.18, (1.6, 0.6), role="ray"))
+def _ray(drawing: Drawing, start: complex, end: complex) -> None:
+    drawing.add(Path((start, end), _ANGLE, 0.18, (1.6, 0.6), role="ray"))
 
 
 def _angle(
-    items: list[Path | Text], center: complex, first: float, turn: float, radius: float, text: str
+    drawing: Drawing, center: complex, first: float, turn: float, radius: float, text: str
 ) -> Label:
     """An angle of ``turn`` degrees from the direction ``first``, and the label that names it."""
     points = d.arc(center, first, math.remainder(turn, 360), radius)
-    items.append(Path(points, _ANGLE, 0.25, role="angle"))
+    drawing.add(Path(points, _ANGLE, 0.25, role="angle"))
     middle = points[len(points) // 2]
     return Label(middle, middle - center, text, 8, _ANGLE, False, "angle label")

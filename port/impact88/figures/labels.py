@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .drawing import BLACK, Box, Drawing, Path, Text, text_box
+from .drawing import Box, Drawing, Path, Text, text_box
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,20 +30,8 @@ WEIGHTS = {
 """What covering a line of the role ending so costs, against 1 for any other."""
 
 
-class Label(NamedTuple):
-    """A text for the point ``at``, best placed in direction ``towards`` (of any length)."""
-
-    at: complex
-    towards: complex
-    text: str
-    size: float = 8.0
-    colour: str = BLACK
-    bold: bool = False
-    role: str = ""
-
-
-def place(drawing: Drawing, labels: Sequence[Label], frame: Box) -> None:
-    """Add the labels to the drawing, first come first served, each at the cheapest place inside
+def place(drawing: Drawing, frame: Box) -> None:
+    """Turn the drawing's labels into texts, in their order, each at the cheapest place inside
     ``frame``: no overlap with a text (unless there is no room at all), then few lines covered,
     near, and in the direction wished for."""
     reach, turn = (
@@ -55,7 +42,7 @@ def place(drawing: Drawing, labels: Sequence[Label], frame: Box) -> None:
     lines = [_samples(path) for path in drawing.paths()]
     points, weights = (np.concatenate(parts) for parts in zip(*lines, strict=True))
     taken = [text_box(text) for text in drawing.texts()]
-    for label in labels:
+    for label in drawing.labels:
         text = Text(0j, label.text, label.size, "start", *label[4:])
         box = text_box(text)
         half = complex(box.width, box.height) / 2
@@ -81,9 +68,10 @@ def place(drawing: Drawing, labels: Sequence[Label], frame: Box) -> None:
             near_x = min(max(label.at.real, box.left), box.right)
             end = complex(near_x, min(max(label.at.imag, box.bottom), box.top))
             start = label.at + min(0.8 / abs(end - label.at), 1.0) * (end - label.at)
-            drawing.items.append(Path((start, end), label.colour, 0.12, role="leader"))
-        drawing.items.append(text)
+            drawing.add(Path((start, end), label.colour, 0.12, role="leader"))
+        drawing.add(text)
         taken.append(box)
+    drawing.labels.clear()
 
 
 def _samples(path: Path) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:

@@ -104,9 +104,7 @@ class Plan(NamedTuple):
 
 
 def plan(
-    scene: Any,
-    result: Mapping[str, Any] | None = None,
-    outlines: Mapping[str, float] | None = None,
+    scene: Any, result: Mapping[str, Any] | None = None, outlines: Mapping[str, float] | None = None
 ) -> Plan:
     """Where everything is. ``scene`` gives the listing's names as texts or numbers; ``result`` has
     VAX, VAY, VBX, VBY and, unless the scene has point masses, WAF and WBF; STATUS where known.

@@ -12,8 +12,8 @@ from typing import Any
 from ..reconstruction.impulse import clock
 from ..units import RULES, System, system_of
 from . import drawing as d
-from .drawing import ROW, Box, Drawing, Path, Text, View, short
-from .labels import Label, place
+from .drawing import ROW, Box, Drawing, Label, Path, Text, View, short
+from .labels import place
 from .scenegeometry import Plan, Vehicle, plan
 from .svg import Svg, svg
 
@@ -54,7 +54,7 @@ def scene_drawing(
     field = _Field(shapes, width, y)
     field.draw(drawing)
     y = _key(drawing, field, field.frame.bottom - ROW, units) - 2.4
-    drawing.items.append(Path((2 + 1j * y, width - 2 + 1j * y), d.GREY, 0.2))
+    drawing.add(Path((2 + 1j * y, width - 2 + 1j * y), d.GREY, 0.2))
     y = table_and_notes(drawing, shapes, y, units)
     return drawing
 
@@ -149,75 +149,74 @@ class _Field:
 
     def draw(self, drawing: Drawing) -> None:
         """Everything, then the labels."""
-        at, items = self.at, drawing.items
-        labels: list[Label] = []
+        at = self.at
         for vehicle in self.shapes.vehicles:
             if vehicle.wall:
-                self._draw_wall(items, labels, vehicle)
+                self._draw_wall(drawing, vehicle)
             else:
                 towards = -vehicle.front
-                labels.append(name_label(vehicle, at(vehicle.center), towards))
-        draw_bodies(items, self.shapes.bodies, at)
-        self._draw_plane(items, labels)
+                drawing.add(name_label(vehicle, at(vehicle.center), towards))
+        draw_bodies(drawing, self.shapes.bodies, at)
+        self._draw_plane(drawing)
         for vehicle in self.shapes.bodies:
-            self._draw_motion(items, labels, vehicle)
-        self._draw_impulse(items, labels)
-        items.append(Path(d.circle(at(0), 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
-        items.append(Path(d.circle(at(0), 0.2), None, fill=d.BLACK))
-        labels.append(Label(at(0), -self.shapes.tangent, "C", role="contact label"))
+            self._draw_motion(drawing, vehicle)
+        self._draw_impulse(drawing)
+        drawing.add(Path(d.circle(at(0), 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
+        drawing.add(Path(d.circle(at(0), 0.2), None, fill=d.BLACK))
+        drawing.add(Label(at(0), -self.shapes.tangent, "C", role="contact label"))
         draw_axes(drawing, self.frame)
-        place(drawing, labels, self.frame)
+        place(drawing, self.frame)
 
-    def _draw_wall(self, items: list[Path | Text], labels: list[Label], vehicle: Vehicle) -> None:
+    def _draw_wall(self, drawing: Drawing, vehicle: Vehicle) -> None:
         first, second, third, fourth = self.at.all(self._face(vehicle))
         colour, role = COLOURS[vehicle.name], f"{vehicle.name} wall"
-        items.append(
-            Path((first, second, third, fourth), None, fill=TINTS[vehicle.name], role=role)
-        )
-        items.append(Path((first, second), colour, 0.7, role=role))
+        drawing.add(Path((first, second, third, fourth), None, fill=TINTS[vehicle.name], role=role))
+        drawing.add(Path((first, second), colour, 0.7, role=role))
         for step in range(12):
             low = first + (second - first) * (step + 0.5) / 12
             high = fourth + (third - fourth) * (step + 1) / 12
-            items.append(Path((low, high), colour, 0.2, role=role))
-        labels.append(name_label(vehicle, (third + fourth) / 2, fourth - first))
+            drawing.add(Path((low, high), colour, 0.2, role=role))
+        drawing.add(name_label(vehicle, (third + fourth) / 2, fourth - first))
 
-    def _draw_plane(self, items: list[Path | Text], labels: list[Label]) -> None:
-        items.append(
+    def _draw_plane(self, drawing: Drawing) -> None:
+        drawing.add(
             Path(self.at.all([-self.half, self.half]), d.BLACK, 0.3, PLANE, role="contact plane")
         )
         corner = 0.72 * self.half
         normal = corner + 0.28 * self.size * self.shapes.normal
         for name, end in (("n", normal), ("t", self.half)):
             start, tip = self.at.all([corner, end])
-            items += d.arrow(start, tip, d.BLACK, 0.35, head=1.8, role=f"{name} axis")
-            labels.append(Label(tip, tip - start, name, role=f"{name} label"))
+            drawing.add(*d.arrow(start, tip, d.BLACK, 0.35, head=1.8, role=f"{name} axis"))
+            drawing.add(Label(tip, tip - start, name, role=f"{name} label"))
 
-    def _draw_motion(self, items: list[Path | Text], labels: list[Label], vehicle: Vehicle) -> None:
+    def _draw_motion(self, drawing: Drawing, vehicle: Vehicle) -> None:
         colour, name = COLOURS[vehicle.name], vehicle.name.lower()
         center = self.at(vehicle.center)
         for kind, ends in self._arrows(vehicle).items():
             symbol, width, dash, head = ARROWS[kind]
             start, end = self.at.all(ends)
             role = f"{vehicle.name} {kind}"
-            items += d.arrow(start, end, colour, width, dash, head, role)
+            drawing.add(*d.arrow(start, end, colour, width, dash, head, role))
             text, at = f"{symbol}_{name}", start if kind == "before" else end
             towards = 2 * at - start - end
-            labels.append(Label(at, towards, text, colour=colour, role=f"{text} label"))
+            drawing.add(Label(at, towards, text, colour=colour, role=f"{text} label"))
         turns = [("ω", vehicle.before, 2.9, (0.9, 0.6)), ("Ω", vehicle.after, 3.9, ())]
         for symbol, motion, radius, dash in turns:
             if motion is None or not abs(motion.spin) > 1e-4 * self.speed / self.size:
                 continue
-            items += d.turning_arrow(
-                *(center, radius, motion.spin > 0, colour, 0.4, dash),
-                opening=d.degrees(-vehicle.front),
-                role=f"{vehicle.name} spin",
+            drawing.add(
+                *d.turning_arrow(
+                    *(center, radius, motion.spin > 0, colour, 0.4, dash),
+                    opening=d.degrees(-vehicle.front),
+                    role=f"{vehicle.name} spin",
+                )
             )
             edge, text = center + radius * vehicle.front, f"{symbol}_{name}"
-            labels.append(Label(edge, vehicle.front, text, colour=colour, role=f"{text} label"))
+            drawing.add(Label(edge, vehicle.front, text, colour=colour, role=f"{text} label"))
         role = f"{vehicle.name} center"
-        items.append(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=role))
+        drawing.add(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=role))
 
-    def _draw_impulse(self, items: list[Path | Text], labels: list[Label]) -> None:
+    def _draw_impulse(self, drawing: Drawing) -> None:
         """The force on each vehicle, and from where on its clock it comes."""
         if not self.force or not self.shapes.impulse:
             return
@@ -227,9 +226,9 @@ class _Field:
             role = "impulse" if acted else "opposite impulse"
             width, head = (0.9, 2.8) if acted else (0.45, 2.2)
             tip = self.at(force)
-            items += d.arrow(self.at(0), tip, IMPULSE, width, head=head, role=role)
+            drawing.add(*d.arrow(self.at(0), tip, IMPULSE, width, head=head, role=role))
             text = f"{'P' if acted else '−P'}, {clock(vehicle.pdof(self.shapes.impulse))}"
-            labels.append(Label(tip, force, text, 7.5, IMPULSE, acted, f"{role} label"))
+            drawing.add(Label(tip, force, text, 7.5, IMPULSE, acted, f"{role} label"))
 
 
 def name_label(vehicle: Vehicle, at: complex, towards: complex, size: float = 10) -> Label:
@@ -252,15 +251,15 @@ def draw_axes(drawing: Drawing, frame: Box) -> None:
     origin = corners[crowd.index(min(crowd))] + 1 + 1j
     for along, name, shift in ((1, "x", 0.7 - 0.7j), (1j, "y", 0.6 - 0.2j)):
         end = origin + 5.5 * along
-        drawing.items += d.arrow(origin, end, d.GREY, 0.25, head=1.5, role=f"{name} axis")
-        drawing.items.append(Text(end + shift, name, 7, colour=d.GREY, role=f"{name} label"))
+        drawing.add(*d.arrow(origin, end, d.GREY, 0.25, head=1.5, role=f"{name} axis"))
+        drawing.add(Text(end + shift, name, 7, colour=d.GREY, role=f"{name} label"))
 
 
-def draw_bodies(items: list[Path | Text], vehicles: Sequence[Vehicle], at: View) -> None:
+def draw_bodies(drawing: Drawing, vehicles: Sequence[Vehicle], at: View) -> None:
     """Vehicles' outlines, what of them is crushed, and marks that show their fronts. All lines lie
     over all grounds: what of one vehicle is crushed lies in the other."""
     for vehicle in vehicles:
-        items.append(Path(at.all(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
+        drawing.add(Path(at.all(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
     for vehicle in vehicles:
         colour, name = COLOURS[vehicle.name], vehicle.name
 
@@ -271,7 +270,7 @@ def draw_bodies(items: list[Path | Text], vehicles: Sequence[Vehicle], at: View)
             dash: tuple[float, ...] = (),
             colour: str = colour,
         ) -> None:
-            items.append(Path(at.all(points), colour, width, dash, role=role))
+            drawing.add(Path(at.all(points), colour, width, dash, role=role))
 
         if vehicle.kept != vehicle.outline:
             line((*vehicle.outline, vehicle.outline[0]), 0.25, f"{name} whole", (0.7, 0.5))
@@ -341,7 +340,7 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
             moved = [p._replace(points=tuple(start + point for point in p.points)) for p in paths]
             drawing.items += moved
             end = max(sample, d.extent(paths[0].points).right) + 1.5 - 0.8j
-            drawing.items.append(Text(start + end, text, role="legend"))
+            drawing.add(Text(start + end, text, role="legend"))
     return y - ROW * (max(len(left), len(middle)) - 1)
 
 
@@ -362,17 +361,17 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
         rows.append((vehicle.name, COLOURS[vehicle.name], cells))
     for name, colour, cells in rows:
         if name:
-            drawing.items.append(Text(complex(2, y), name, colour=colour, bold=True, role="table"))
+            drawing.add(Text(complex(2, y), name, colour=colour, bold=True, role="table"))
         drawing.items += [
             Text(complex(x, y), cell, anchor="end", role="table")
             for x, cell in zip(columns, cells, strict=True)
         ]
         y -= ROW
     line = y + 2.0
-    drawing.items.append(Path((complex(2, line), complex(drawing.width - 2, line)), d.GREY, 0.2))
+    drawing.add(Path((complex(2, line), complex(drawing.width - 2, line)), d.GREY, 0.2))
     for note in _notes(shapes, units):
         for text in d.wrapped(note, drawing.width - 4):
-            drawing.items.append(Text(complex(2, y - 0.9), text, colour=d.GREY, role="note"))
+            drawing.add(Text(complex(2, y - 0.9), text, colour=d.GREY, role="note"))
             y -= ROW
     drawing.height = 0.9 - y
     return y

@@ -58,21 +58,20 @@ def strip_drawing(
         box = boxes[kind]
         low = bottom + scale * (high - box.height) / 2
         at = View(complex(left - scale * box.left, low - scale * box.bottom), scale)
-        draw_bodies(drawing.items, moved, at)
-        labels = []
+        draw_bodies(drawing, moved, at)
         for vehicle in moved:
             tail, tip = at.all((vehicle.center, _tip(vehicle, kind, 0.5 * time)))
             if abs(tip - tail) > 0.5:
                 look, role = ARROWS[kind][1:], f"{vehicle.name} {kind}"
-                drawing.items += d.arrow(tail, tip, COLOURS[vehicle.name], *look, role)
-            labels.append(name_label(vehicle, tail, -vehicle.front))
+                drawing.add(*d.arrow(tail, tip, COLOURS[vehicle.name], *look, role))
+            drawing.add(name_label(vehicle, tail, -vehicle.front))
         if kind == "impact" and shapes.impulse:
             force = 0.5 * size * shapes.impulse / abs(shapes.impulse)
             for end in (force, -force):
-                drawing.items += d.arrow(at(0), at(end), IMPULSE, 0.7, head=2.4, role="impulse")
+                drawing.add(*d.arrow(at(0), at(end), IMPULSE, 0.7, head=2.4, role="impulse"))
         middle = complex(left + scale * box.width / 2, top + 0.8 * ROW)
-        drawing.items.append(Text(middle, kind, 7.5, "middle", bold=True, role="caption"))
-        place(drawing, labels, Box(0.8, bottom, drawing.width - 0.8, top))
+        drawing.add(Text(middle, kind, 7.5, "middle", bold=True, role="caption"))
+        place(drawing, Box(0.8, bottom, drawing.width - 0.8, top))
         left += scale * box.width + _GAP
     table_and_notes(drawing, shapes, bottom, units)
     return drawing

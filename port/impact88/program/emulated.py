@@ -29,12 +29,7 @@ class Emulated:
     """
 
     def __init__(
-        self,
-        scene: Mapping[str, str],
-        *,
-        dos: bool = True,
-        slot: int = 0,
-        text: str | None = None,
+        self, scene: Mapping[str, str], *, dos: bool = True, slot: int = 0, text: str | None = None
     ) -> None:
         scene = scene if isinstance(scene, Scene) else Scene.from_mapping(scene)
         scene.check_typed()
