@@ -789,7 +789,7 @@ def test_a_port_that_is_taken_is_said_in_one_line() -> None:
         done = command("desk", "--no-browser", "--port", str(port))
     assert done.returncode == 2
     assert done.stdout == ""
-    assert done.stderr.startswith(f"impact88 desk: --port: port {port} cannot be had")
+    assert done.stderr.startswith(f"impact88 desk: --port: port {port} is not available")
     assert done.stderr.count("\n") == 1
     assert command("desk", "--port", "65536").returncode == 2
 

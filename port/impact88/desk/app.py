@@ -109,7 +109,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.get("/")
     def whole_page() -> str:
-        desk.warm()  # the page is on its way meanwhile
+        desk.warm()  # while the page is sent
         return flask.render_template("desk.html", **page.contents())
 
     @routes.get("/signs.svg")

@@ -136,7 +136,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     from ..program.run import page
 
     form = read(values, units)
-    told: dict[str, Any] = {
+    whole: dict[str, Any] = {
         "problems": form.problems,
         "missing": form.missing,
         "ranges": form.ranges,
@@ -146,7 +146,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     if form.whole:
         scene = Scene(form.texts, source="the form")
         known = look_up([scene], reference=False)[0]
-        told |= {
+        whole |= {
             "oracle": stamped("oracle", {"id": None, "scene": dict(scene), **known}),
             "answer": _answer(scene, known["results"], form.units),
             "page": page(known["printout"]),
@@ -154,7 +154,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
             "results": _rows(known["results"], form.units),
             "warnings": beside.warnings(scene),
         }
-    return told
+    return whole
 
 
 def _answer(
@@ -174,11 +174,11 @@ def _answer(
             continue
         rule = quantity(names[0]).unit
         shown = {name: system.shown(rule, values[name]) for name in names}
-        told = [
+        texts = [
             {"name": name, "text": number(value, _ANSWER_DIGITS), "value": value}
             for name, value in shown.items()
         ]
-        rows.append({"words": words, "unit": system.label(rule), "values": told})
+        rows.append({"words": words, "unit": system.label(rule), "values": texts})
     return rows
 
 

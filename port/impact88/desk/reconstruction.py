@@ -59,19 +59,19 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
             known[name] = _read(name, text, given.units)
         except UserError as error:
             problems[name] = str(error)
-    told: dict[str, Any] = {"problems": problems, "waiting": "", "object": None, "solutions": []}
-    told["units"] = units_shown(given.units)
+    whole: dict[str, Any] = {"problems": problems, "waiting": "", "object": None, "solutions": []}
+    whole["units"] = units_shown(given.units)
     if problems:
-        told["waiting"] = f"To be corrected: {' '.join(problems)}."
-        return told
+        whole["waiting"] = f"To be corrected: {' '.join(problems)}."
+        return whole
     try:
         solutions = _solved(known, given.units)
     except UserError as error:
-        told["waiting"] = str(error)
-        return told
-    told["object"] = stamped("reconstruct", {"solutions": [numbers for numbers, _ in solutions]})
-    told["solutions"] = [_told(given, numbers, printed) for numbers, printed in solutions]
-    return told
+        whole["waiting"] = str(error)
+        return whole
+    whole["object"] = stamped("reconstruct", {"solutions": [numbers for numbers, _ in solutions]})
+    whole["solutions"] = [_solution(given, numbers, printed) for numbers, printed in solutions]
+    return whole
 
 
 def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dict[str, Any], str]]:
@@ -95,7 +95,7 @@ def _read(name: str, text: str, units: str | None) -> Uncertain:
     return uncertain.read(text, name, units=units)
 
 
-def _told(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, Any]:
+def _solution(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, Any]:
     from ..units import system_of
 
     system = system_of(given.units)

@@ -34,17 +34,17 @@ def listening(port: int) -> socket.socket:
     except OSError as error:
         listener.close()
         raise UserError(
-            f"port {port} cannot be had: {error.strerror or error}; expected another, "
+            f"port {port} is not available: {error.strerror or error}; expected another, "
             "or 0 for any that is free",
             "--port",
         ) from None
     return listener
 
 
-def serve(port: int, browser: bool, tell: Callable[[str], object]) -> None:
-    """Serve the desk until it is interrupted. ``tell`` is given its address once it listens.
+def serve(port: int, browser: bool, announce: Callable[[str], object]) -> None:
+    """Serve the desk until it is interrupted. ``announce`` receives its address once it listens.
 
-    Raises UserError where Flask or waitress is missing or the port cannot be had.
+    Raises UserError where Flask or waitress is missing or the port is not available.
     """
     wanted = {"flask": "Flask", "waitress": "waitress"}
     if missing := " and ".join(wanted[module] for module in wanted if find_spec(module) is None):
@@ -55,7 +55,7 @@ def serve(port: int, browser: bool, tell: Callable[[str], object]) -> None:
         number: int = listener.getsockname()[1]
         token = secrets.token_urlsafe(18)
         address = f"http://{HOST}:{number}/{token}/"
-        tell(address)
+        announce(address)
         if browser:
             # the connection is queued by the socket, so the browser starts while we import
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()

@@ -1,7 +1,7 @@
 """Processes for what takes long, so that the page stays quick and a newer question ends an older.
 
-A thread cannot be ended from outside; a process can. Each kind of work has one, started before it
-is needed, kept between questions and replaced when it had to be ended.
+A process can be ended from outside, a thread cannot. Each kind of work has one, started in advance,
+kept between questions and replaced after it was ended.
 """
 
 from __future__ import annotations

@@ -335,7 +335,7 @@ class Expressions(Variables):
         return address
 
     def _function_call(self, sp: int) -> Number:
-        """FUNCT: the formula of DEF FN, its variable set to the argument meanwhile. Raises UNDEF'D
+        """FUNCT: the formula of DEF FN, with its variable set to the argument. Raises UNDEF'D
         FUNCTION and SYNTAX; an error leaves the argument in the variable."""
         ram = self.ram
         place = self.function_name(sp - 5)

@@ -297,7 +297,7 @@ class Flow(InputOutput):
 
     def handle(self, code: int, stack: int) -> None:
         """HANDLERR: an error goes to ONERR's line, and leaves the stack as it is. Raises UNDEF'D
-        STATEMENT, where the ROM would come back here for ever."""
+        STATEMENT, where the ROM would loop."""
         self.errnum = code
         self.errstk = self.remstk
         self.errlin = self.curlin

@@ -41,7 +41,7 @@ EMPTY = 0xE09A
 ROM = 0xC000
 RTS = 0x60
 APPLE_II_PLUS = {0xFBB3: 0xEA}
-"""The byte of the monitor by which programs tell the machines apart."""
+"""The byte of the monitor by which programs identify the model."""
 PAGE_ZERO = bytes.fromhex("4C3CD4 4C3ADB 000000 00 4C99E1")
 """The jumps with which switching on begins page 0: to the prompt, to print a text, and USR's."""
 FIRST_SEED = from_stored("804FC75200")
@@ -84,7 +84,7 @@ HEADER = 4
 LINE_LIMIT = 0x19
 """LINGET refuses a further digit when the number's high byte has come so far: past 63999."""
 INTEGER, STRING, FUNCTION = 0x8080, 0x0080, 0x8000
-"""Top bits of a name's two bytes in memory that tell its kind; a real has none."""
+"""Top bits of a name's two bytes in memory: its kind; a real has none."""
 
 _NUMERAL = re.compile(rb" *[-+]?[ 0-9]*(?:\.[ 0-9]*)?(?:E *[-+%c%c]?[ 0-9]*)?" % (PLUS, MINUS))
 _NAME = re.compile(rb"([A-Z]) *([A-Z0-9]?)[A-Z0-9 ]*([$%]?) *")

@@ -21,11 +21,10 @@ DOTS_PER_INCH = 300
 
 
 def import_matplotlib() -> None:
-    """Import matplotlib without anybody's settings, unless somebody has imported it already.
+    """Import matplotlib without the user's settings, unless it has been imported already.
 
-    While it is imported it reads MPLBACKEND and a file ``matplotlibrc`` of the current folder or
-    the user's, and fails, or talks on stderr, about what it finds there. Raises UserError naming
-    the extra to install when it is missing.
+    On import it reads MPLBACKEND and a ``matplotlibrc``, and fails or prints on stderr over errors
+    in them. Raises UserError naming the extra to install when it is missing.
     """
     if sys.modules.get("matplotlib") is not None:
         return
@@ -46,7 +45,7 @@ def import_matplotlib() -> None:
 
 @contextlib.contextmanager
 def _quiet() -> Any:
-    """Matplotlib's remarks on fonts, caches and settings are no message of this project's."""
+    """Silence matplotlib's remarks on fonts, caches and settings."""
     logger = logging.getLogger("matplotlib")
     level = logger.level
     logger.setLevel(logging.CRITICAL)

@@ -237,8 +237,8 @@ def _along(
     check_drawable(axis, name)
     axis, own = axis * factors[name], own * factors[name]
     here = {n: float(value) * factors[n] for n, value in solve(numbers, outputs).items()}
-    told = " ".join(f"{_label(output, units)}: {short(here[output])}." for output in outputs)
-    drawing = Drawing(COLUMN, titles[0], f"In this scene: {told}")
+    summary = " ".join(f"{_label(output, units)}: {short(here[output])}." for output in outputs)
+    drawing = Drawing(COLUMN, titles[0], f"In this scene: {summary}")
     top = drawing.heading() - _TOP
     entries: list[tuple[str, str, Any]] = []
     for group in groups:

@@ -31,8 +31,8 @@ def configurations() -> Drawing:
     wide = (d.COLUMN - _GAP) / 2
     # one scale for all four: real cars of comparable size
     scale = min((wide - 2 * _PAD) / box.width for box in boxes)
-    told = "Staged collisions: " + "; ".join(category.lower() for category in chosen) + "."
-    drawing = Drawing(d.COLUMN, "Experimental collision configurations", told)
+    description = "Staged collisions: " + "; ".join(category.lower() for category in chosen) + "."
+    drawing = Drawing(d.COLUMN, "Experimental collision configurations", description)
     top = 0.0
     for count, (category, collision) in enumerate(chosen.items()):
         row, column = divmod(count, 2)

@@ -78,7 +78,7 @@ def strip_drawing(
 
 
 def _carried(vehicle: Vehicle, motion: Motion, time: float) -> Vehicle:
-    """A vehicle a time later, or earlier, whole and as it moved and turned meanwhile."""
+    """A vehicle, uncrushed, after it has moved and turned for a time, which may be negative."""
     center = vehicle.center + time * motion.velocity
     turn = cmath.rect(1.0, motion.spin * time)
     outline = tuple(center + turn * (point - vehicle.center) for point in vehicle.outline)

@@ -57,8 +57,8 @@ def _path(path: Path) -> str:
 
 
 HALO = "halo"
-"""The class of the white text behind each text. It is a text of its own, because not every renderer
-paints a stroke before the fill (``paint-order``)."""
+"""Class of the white text behind each text: a separate element, because not every renderer paints a
+stroke before the fill (``paint-order``)."""
 
 
 def _text(text: Text) -> str:
