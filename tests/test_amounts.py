@@ -205,7 +205,7 @@ def test_two_numbers_and_two_units_are_their_sum_or_refused() -> None:
         base = 1 if said[1] in METRIC else FOOT if name != "MA" else SLUG
         total = sum(Fraction(said[at]) * sizes[said[at + 1]] for at in (0, 2))
         assert found == pytest.approx(float(total / base), rel=1e-15), text
-    assert taken > 200
+    assert taken > 70
 
 
 class TestLimits:
