@@ -28,20 +28,31 @@ ODD = "ODD"
 """The result that marks a scene: 1, else 0."""
 
 
-class Condition:
-    """Where something holds, scene by scene; `any` scene may be one."""
+def _noting(name: str) -> Callable[[Noting, Any], Noting]:
+    def method(self: Noting, other: Any) -> Noting:
+        operand = other.expression if isinstance(other, Noting) else float(np.ravel(other)[0])
+        return Noting(getattr(self.expression, name)(operand))
+
+    return method
+
+
+class Noting:
+    """An expression where an array of numbers or conditions would be; `any` scene may be one where
+    a condition holds."""
 
     def __init__(self, expression: Expression) -> None:
         self.expression = expression
 
-    def __and__(self, other: Condition) -> Condition:
-        return Condition(self.expression & other.expression)
+    __lt__, __le__, __ge__ = (_noting(name) for name in ("__lt__", "__le__", "__ge__"))
+    __and__, __or__ = (_noting(name) for name in ("__and__", "__or__"))
 
-    def __or__(self, other: Condition) -> Condition:
-        return Condition(self.expression | other.expression)
+    def __eq__(self, number: Any) -> Noting:  # type: ignore[override]
+        return Noting(self.expression.table.equals(self.expression, number))
 
-    def __invert__(self) -> Condition:
-        return Condition(~self.expression)
+    __hash__ = None  # type: ignore[assignment]
+
+    def __invert__(self) -> Noting:
+        return Noting(~self.expression)
 
     def any(self) -> bool:
         return True
@@ -50,32 +61,6 @@ class Condition:
         table, unit = self.expression.table, yes.unit or no.unit
         chosen = table.choose(self.expression, noted(table, yes), noted(table, no))
         return Noted(chosen, unit, yes.stored and no.stored)
-
-
-class _Values:
-    """The numbers of a `Noted`, to be compared with those of another or with a number."""
-
-    def __init__(self, expression: Expression) -> None:
-        self.expression = expression
-
-    def _other(self, other: Any) -> Expression | float:
-        return other.expression if isinstance(other, _Values) else float(np.ravel(other)[0])
-
-    def __lt__(self, other: Any) -> Condition:
-        return Condition(self.expression < self._other(other))
-
-    def __le__(self, other: Any) -> Condition:
-        return Condition(self.expression <= self._other(other))
-
-    def __ge__(self, other: Any) -> Condition:
-        return Condition(self.expression >= self._other(other))
-
-    def __eq__(self, other: Any) -> Condition:  # type: ignore[override]
-        number = self._other(other)
-        assert isinstance(number, float)
-        return Condition(self.expression.table.equals(self.expression, number))
-
-    __hash__ = None  # type: ignore[assignment]
 
 
 class Noted(Reals):
@@ -91,7 +76,7 @@ class Noted(Reals):
 
     @property
     def v(self) -> Any:  # type: ignore[override]
-        return _Values(self.expression)
+        return Noting(self.expression)
 
     def _make(self, operation: str, *operands: Reals | int, stored: bool = False) -> Noted:
         table = self.expression.table
@@ -142,10 +127,10 @@ class Noted(Reals):
         return self._make("real_divide", left, self)
 
     def __lt__(self, right: Reals | int) -> Any:
-        return Condition(self._make("real_less", self, right).expression)
+        return Noting(self._make("real_less", self, right).expression)
 
     def __gt__(self, right: Reals | int) -> Any:
-        return Condition(self._make("real_less", -self, -as_real(right)).expression)
+        return Noting(self._make("real_less", -self, -as_real(right)).expression)
 
     def exceeds(self, limit: float) -> bool:
         return False  # else the scene is marked
@@ -197,7 +182,7 @@ class _Notes(Unit):
         """What is marked needlessly is computed all the same."""
 
     def fails(self, failed: Any, code: int) -> bool:
-        if isinstance(failed, Condition):
+        if isinstance(failed, Noting):
             self.marked = self.marked.table.condition("either", self.marked, failed.expression)
         elif np.any(failed):  # in every scene
             self.marked = self.marked.table.constant(1.0)
