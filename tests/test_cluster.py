@@ -18,7 +18,7 @@ pandas = pytest.importorskip("pandas")
 PARTS, ROWS = 4, 500
 
 
-def test_parts_on_two_workers_are_the_bits_of_one_process(tmp_path: Path) -> None:
+def test_partitions_written_by_two_processes_are_the_bits_of_one(tmp_path: Path) -> None:
     columns = {
         name: np.broadcast_to(np.asarray(column, float), (PARTS * ROWS,))
         for name, column in scenes(BENCHMARK[0], PARTS * ROWS, 8).items()
@@ -35,7 +35,10 @@ def test_parts_on_two_workers_are_the_bits_of_one_process(tmp_path: Path) -> Non
         import dask.dataframe
 
         frame = dask.dataframe.read_parquet(sorted(map(str, tmp_path.glob("draws-*.parquet"))))
-        solved = frame.map_partitions(impact88.solve_frame, "DVA,LOSS,STATUS", threads=1).compute()
+        solved = frame.map_partitions(impact88.solve_frame, "DVA,LOSS,STATUS", threads=1)
+        solved.to_parquet(tmp_path / "solved")
+    assert len(list((tmp_path / "solved").glob("*.parquet"))) == PARTS
+    solved = pandas.read_parquet(tmp_path / "solved")
     expected = impact88.solve(columns, "DVA,LOSS,STATUS")
     for name, column in expected.items():
         assert np.array_equal(solved[name].to_numpy(), column, equal_nan=True)
