@@ -7,6 +7,7 @@ point masses) with exact pi, by the closed form of `closedform.impact`.
 from __future__ import annotations
 
 import math
+import sys
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
@@ -48,6 +49,12 @@ what kind the next ones are."""
 TOGETHER = 1 << 28
 """Bytes up to which results are rows of one array, which is had sooner than arrays of their own (6
 instead of 12 ns a scene for the six velocities of a million) but is kept as long as one of them."""
+KEPT = 1 << 26
+"""Bytes up to which the memory of results is used again once nobody holds any of them: paging in
+fresh memory takes 6 of 26 ns a scene for the six velocities of a million, and more for all results.
+Half of it spares that to half as many scenes."""
+WORTH_KEEPING = 1 << 17
+"""Bytes from which fresh memory has to be paged in; less is had from what was freed."""
 WORTH_A_THREAD = 32768
 """Scenes for each thread from which it pays: half a millisecond of the compiled machine."""
 
@@ -172,19 +179,33 @@ def _shared_out(work: Callable[[int, int], None], count: int, workers: int) -> N
         raise failures[0]
 
 
+_kept: list[Array] = []
+
+
+def _memory(count: int) -> Array:
+    """So many float64, those of an earlier call where no array refers to them any more."""
+    block = _kept.pop() if _kept else None
+    if block is None or block.size != count or sys.getrefcount(block) > 2:  # here, and the argument
+        block = np.empty(count)
+    if WORTH_KEEPING <= block.nbytes <= KEPT:
+        _kept[:] = [block]
+    return block
+
+
 def _rooms(
     names: Sequence[str], shape: tuple[int, ...]
 ) -> tuple[dict[str, Array], NDArray[np.int64]]:
     """Arrays for results, and where they begin."""
-    size = 8 * math.prod(shape)
-    many = max(1, TOGETHER // max(1, size))
+    count = math.prod(shape)
+    many = max(1, TOGETHER // max(1, 8 * count))
     rooms: dict[str, Array] = {}
     where = np.empty(len(names), np.int64)
     for at in range(0, len(names), many):
-        together = np.empty((len(names[at : at + many]), *shape))
-        rows = together if shape else [together[i, ...] for i in range(len(together))]
-        rooms.update(zip(names[at:], rows, strict=False))
-        where[at : at + many] = together.ctypes.data + size * np.arange(len(together))
+        some = names[at : at + many]
+        together = _memory(len(some) * count).reshape(len(some), *shape)
+        rows = together if shape else [together[i, ...] for i in range(len(some))]
+        rooms.update(zip(some, rows, strict=True))
+        where[at : at + many] = together.ctypes.data + 8 * count * np.arange(len(some))
     if "STATUS" in rooms:
         rooms["STATUS"] = np.empty(shape, np.uint16)
         where[names.index("STATUS")] = rooms["STATUS"].ctypes.data
