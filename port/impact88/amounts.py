@@ -15,7 +15,7 @@ one. A bare number without any system of units stays the text it is, digit for d
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from itertools import pairwise
 from math import inf
@@ -182,11 +182,6 @@ class _Value:
         """The units it has."""
         return [unit for amount in self.notation.amounts if amount for unit in amount.units]
 
-    @property
-    def used(self) -> list[tuple[str, str]]:
-        """Its units, each with what it measures."""
-        return [(unit, self.rule) for unit in self.units]
-
     def based(self, system: System, strict: bool) -> str:
         """The text in base units; ``strict``: bare numbers that measure something are refused."""
         common = self.units[0] if len(set(self.units)) == 1 else None
@@ -259,37 +254,30 @@ def nominal(text: str) -> str:
     return repr(float(sum(map(_fraction, numbers)) / 2)).removesuffix(".0").upper()
 
 
-class _Phrase:
-    """A phrase and the values it holds."""
-
-    def __init__(self, words: str, parts: list[_Value]) -> None:
-        self.words, self.parts = words, parts
-        self.used = [use for part in parts for use in part.used]
-
-    def based(self, system: System, strict: bool) -> str:
-        """The phrase with its values in base units."""
-        return self.words.format(*(part.based(system, strict) for part in self.parts))
-
-
-def _taken_apart(name: str, text: str, source: str) -> _Value | _Phrase | None:
-    """What an entry holds; None for what is read elsewhere, or refused there."""
+def _taken_apart(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
+    """The values an entry holds, and its text with ``{}`` in place of each; no values where it is
+    read elsewhere, or refused there."""
     if name in WORDS or not any(character.isdigit() for character in text):
-        return None
+        return text, []
     try:
         rule = quantity(name).unit
     except KeyError:
-        return None
+        return text, []
     if name in SHARED and "%" in text:
-        return None
+        return text, []
     words = " ".join(text.split())
     pattern, rules = _PHRASES.get(words.partition(" ")[0], (None, ()))
     if match := pattern and pattern.fullmatch(words):
         ends = [0, *(place for at in range(len(rules)) for place in match.span(at + 1)), None]
         between = [words[a:b] for a, b in zip(ends[::2], ends[1::2], strict=True)]
         parts = zip(match.groups(), rules, strict=True)
-        values = [_Value(name, part, own or rule, source) for part, own in parts]
-        return _Phrase("{}".join(between), values)
-    return _Value(name, text, rule, source)
+        return "{}".join(between), [_Value(name, part, own or rule, source) for part, own in parts]
+    return "{}", [_Value(name, text, rule, source)]
+
+
+def _uses(values: Iterable[_Value]) -> list[tuple[str, str]]:
+    """The units of some values, each with what it measures."""
+    return [(unit, value.rule) for value in values for unit in value.units]
 
 
 def in_base(
@@ -308,18 +296,15 @@ def in_base(
         system = system_named(named, source)
     if system is None and all(_BARE.issuperset(entries[n]) for n in entries if n not in WORDS):
         return entries, None
-    held = {}
-    for name, text in entries.items():
-        if (value := _taken_apart(name, text, source)) is not None:
-            held[name] = value
+    held = {name: _taken_apart(name, text, source) for name, text in entries.items()}
     strict = system is None
     if system is None:
-        found = system_using([use for value in held.values() for use in value.used], source)
+        found = system_using(_uses(v for _, values in held.values() for v in values), source)
         system = None if found is RULES else found
         strict = system is not None
-    for name, value in held.items():
-        if system or not _BARE.issuperset(entries[name]):
-            entries[name] = value.based(system or RULES, strict)
+    for name, (layout, values) in held.items():
+        if values and (system or not _BARE.issuperset(entries[name])):
+            entries[name] = layout.format(*(v.based(system or RULES, strict) for v in values))
     return entries, system
 
 
@@ -340,10 +325,9 @@ def shown_text(name: str, text: str, system: System) -> str:
 def units_in(name: str, text: str) -> list[tuple[str, str]]:
     """The units in a text, each with what it measures; none where it is not an amount."""
     try:
-        value = _taken_apart(name, text, "")
+        return _uses(_taken_apart(name, text, "")[1])
     except UserError:
         return []
-    return value.used if value else []
 
 
 def remarks(texts: Mapping[str, str], system: str) -> dict[str, str]:

@@ -4,50 +4,37 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from markupsafe import Markup, escape
 
-from ..names import DEFAULT_M, Quantity, quantity
+from ..names import DEFAULT_M, quantity
 from ..plaintable import number
 from ..scene import SAMPLES, SIGNS, sample
 from ..version import __version__
 
-
-class Group(NamedTuple):
-    """A part of the form: its heading and its quantities."""
-
-    heading: str
-    quantities: tuple[Quantity, ...]
-
-
-def _group(heading: str, names: str) -> Group:
-    return Group(heading, tuple(map(quantity, names.split())))
-
-
-GROUPS = (
-    _group("Vehicle A", "MA IA DA PA TA"),
-    _group("Vehicle B", "MB IB DB PB TB"),
-    _group("Before the impact, A", "UX UY WA"),
-    _group("Before the impact, B", "VX VY WB"),
-    _group("Contact and coefficients", "GA E MU EM M"),
-)
-
-
-KNOWN_GROUPS = (
-    *GROUPS[:4],
-    _group("After the impact, A", "VAX VAY WAF"),
-    _group("After the impact, B", "VBX VBY WBF"),
-    _group("Contact", "GA M"),
-    _group("Coefficients", "E MU MUP EM"),
-)
-MORE_GROUPS = (
-    _group("Speed and course, A", "SA HA SAF HAF"),
-    _group("Speed and course, B", "SB HB SBF HBF"),
-    _group("Velocity change, A", "DVA DVAF DVAR"),
-    _group("Velocity change, B", "DVB DVBF DVBR"),
-    _group("Energy", "KI KF EL LOSS"),
-)
+GROUPS = {
+    "Vehicle A": "MA IA DA PA TA",
+    "Vehicle B": "MB IB DB PB TB",
+    "Before the impact, A": "UX UY WA",
+    "Before the impact, B": "VX VY WB",
+    "Contact and coefficients": "GA E MU EM M",
+}
+"""The form's parts: heading and quantities."""
+KNOWN_GROUPS = {
+    **dict(list(GROUPS.items())[:4]),
+    "After the impact, A": "VAX VAY WAF",
+    "After the impact, B": "VBX VBY WBF",
+    "Contact": "GA M",
+    "Coefficients": "E MU MUP EM",
+}
+MORE_GROUPS = {
+    "Speed and course, A": "SA HA SAF HAF",
+    "Speed and course, B": "SB HB SBF HBF",
+    "Velocity change, A": "DVA DVAF DVAR",
+    "Velocity change, B": "DVB DVBF DVBR",
+    "Energy": "KI KF EL LOSS",
+}
 ALWAYS_KNOWN = frozenset("MA IA DA PA TA MB IB DB PB TB GA M".split())
 """What a reconstruction cannot do without."""
 
@@ -85,7 +72,13 @@ def drivers(bound: Mapping[str, Any]) -> str:
     return ", ".join(f"{name} {number(swing, 3)}" for name, swing in ranked if swing > least)
 
 
-FILTERS = {"symbol": symbol, "unit": unit, "digits": digits, "drivers": drivers}
+FILTERS = {
+    "quantity": quantity,
+    "symbol": symbol,
+    "unit": unit,
+    "digits": digits,
+    "drivers": drivers,
+}
 
 
 def contents() -> dict[str, Any]:

@@ -184,9 +184,18 @@ class Flow(InputOutput):
             self.txtptr += 1
             self.forpnt = self.variable(self.sp - 4)
 
-    def goto(self, sp: int = 0) -> None:
-        """GOTO. Raises SYNTAX and UNDEF'D STATEMENT."""
-        sp = sp or self.sp - 2
+    def goto_(self, sp: int = 0) -> None:
+        """GOTO, at once from a place where it has been done before. Raises SYNTAX and UNDEF'D
+        STATEMENT."""
+        target = self.targets.get(self.txtptr)
+        if target is None:
+            self.goto(sp or self.sp - 2)
+        else:
+            self.txtptr = target
+            self.charac = 0
+
+    def goto(self, sp: int) -> None:
+        """GOTO, the line looked up."""
         start = self.txtptr
         number = self.line_number(sp - 2)
         self.rem_()
@@ -198,26 +207,12 @@ class Flow(InputOutput):
         if self.txttab <= start < self.prgend:
             self.targets[start] = self.txtptr
 
-    def goto_(self) -> None:
-        """GOTO, from a place where it has been done before."""
-        target = self.targets.get(self.txtptr)
-        if target is None:
-            self.goto()
-        else:
-            self.txtptr = target
-            self.charac = 0
-
     def gosub_(self) -> None:
         """GOSUB. Raises OUT OF MEMORY, SYNTAX and UNDEF'D STATEMENT."""
         if self.sp - 4 & 0xFF < GOSUB_ROOM - 4:
             raise Fault("OUT OF MEMORY", self.sp - 4)
         frame = Frame(self.sp - GOSUB_SIZE & 0xFF, NO_VARIABLE, self.curlin, self.txtptr)
-        target = self.targets.get(self.txtptr)
-        if target is None:
-            self.goto(self.sp - GOSUB_SIZE - 2)
-        else:
-            self.txtptr = target
-            self.charac = 0
+        self.goto_(self.sp - GOSUB_SIZE - 2)
         self.frames.append(frame)
         self.sp = frame.sp
 
@@ -349,18 +344,19 @@ class Flow(InputOutput):
 
     def stop_(self) -> None:
         if self.at_end():
-            self._note_place()
-            self.message(b"\rBREAK")
-            raise Restart
+            self._stop()
+
+    def _stop(self) -> None:
+        self._note_place()
+        self.message(b"\rBREAK")
+        raise Restart
 
     def break_(self) -> None:
         """Control-C: an error under ONERR, else as STOP."""
         if self.errflg & 0x80:
             raise Fault("SYNTAX", self.sp - 4, BREAK_CODE)
         self.broken = True
-        self._note_place()
-        self.message(b"\rBREAK")
-        raise Restart
+        self._stop()
 
     def show_line_number(self) -> None:
         """LINPRT of CURLIN."""

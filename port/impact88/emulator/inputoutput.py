@@ -94,7 +94,10 @@ class InputOutput(Expressions):
                 self._skip_columns(byte, sp - 1)
             elif byte == COMMA:
                 self.txtptr += 1
-                self._next_zone()
+                if self.screen.column >= LAST_ZONE_FROM:
+                    self.put("\n")
+                else:
+                    self.screen.column = self.screen.column + ZONE & 0xF0
             elif byte == SEMICOLON:
                 self.txtptr += 1
             else:
@@ -118,14 +121,6 @@ class InputOutput(Expressions):
             columns = (columns - 1 & 0xFF) - self.screen.column
         if columns > 0:
             self.put(" " * columns)
-
-    def _next_zone(self) -> None:
-        """The comma: on to the next zone, or to a new line."""
-        column = self.screen.column
-        if column >= LAST_ZONE_FROM:
-            self.put("\n")
-        else:
-            self.screen.column = column + ZONE & 0xF0
 
     def byte(self, sp: int) -> int:
         """GETBYT: a number from 0 to 255. Raises SYNTAX, TYPE MISMATCH, ILLEGAL QUANTITY."""

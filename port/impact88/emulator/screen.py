@@ -33,16 +33,11 @@ _ESCAPES = {
 """Keys after ESC, and the routines of the monitor that they call."""
 
 
-class _Codes(dict[int, bytes]):
-    """For each inverse mask, the screen codes of all characters; the mask spares small codes."""
-
-    def __missing__(self, mask: int) -> bytes:
-        codes = (code | 0x80 for code in range(256))
-        self[mask] = bytes(code & mask if code >= _BLANK else code for code in codes)
-        return self[mask]
-
-
-_CODES = _Codes()
+@lru_cache
+def _codes(mask: int) -> bytes:
+    """The screen codes of all characters under an inverse mask, which spares small codes."""
+    codes = (code | 0x80 for code in range(256))
+    return bytes(code & mask if code >= _BLANK else code for code in codes)
 
 
 class Screen(Editor):
@@ -80,13 +75,13 @@ class Screen(Editor):
 
     def _draw(self, text: str) -> None:
         if text.isprintable() and self.column + len(text) < self.width:
-            codes = text.encode("latin-1").translate(_CODES[self.mask])
+            codes = text.encode("latin-1").translate(_codes(self.mask))
             self._fill(self._address + self.column, codes)
             self.column += len(text)
             return
         for character in text:
             if character >= " ":
-                code = character.encode("latin-1").translate(_CODES[self.mask])
+                code = character.encode("latin-1").translate(_codes(self.mask))
                 self._fill(self._address + self.column, code)
                 self._advance()
             elif character in "\n\r":

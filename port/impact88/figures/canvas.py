@@ -58,8 +58,7 @@ def _quiet() -> Any:
 def painted(drawing: Drawing) -> Figure:
     """The drawing as a matplotlib figure of exactly its size, tied to no screen."""
     from matplotlib.figure import Figure
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Outline
+    from matplotlib.patches import Polygon
     from matplotlib.patheffects import Stroke
 
     size, points = drawing.enlarged, drawing.enlarged / MM_PER_POINT
@@ -70,11 +69,11 @@ def painted(drawing: Drawing) -> Figure:
     halo = [Stroke(linewidth=0.5 * points, foreground="white")]
     for order, item in enumerate(drawing.items, 10):
         if isinstance(item, Path):
-            corners = (*item.points, item.points[0]) if item.fill else item.points
             dashes = tuple(part / item.width for part in item.dash)
             axes.add_patch(
-                PathPatch(
-                    Outline([(point.real, point.imag) for point in corners]),
+                Polygon(
+                    [(point.real, point.imag) for point in item.points],
+                    closed=bool(item.fill),
                     facecolor=item.fill or "none",
                     edgecolor=item.stroke or "none",
                     linewidth=points * item.width if item.stroke else 0,

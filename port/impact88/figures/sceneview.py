@@ -307,9 +307,6 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
     def velocity(kind: str) -> list[Path]:
         return d.arrow(0, sample, d.BLACK, *ARROWS[kind][1:])
 
-    def line(dash: tuple[float, ...], colour: str = d.BLACK) -> list[Path]:
-        return [Path((0, sample), colour, 0.3, dash)]
-
     def scale(word: str, size: float, per_unit: float, rule: str) -> tuple[list[Path], str]:
         """A bar of a round amount, about half of ``size``, and what it stands for."""
         per_unit /= units.shown(rule, 1.0)
@@ -322,7 +319,8 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
 
     left.append((velocity("before"), "velocity before"))
     left.append((velocity("after"), "velocity after"))
-    middle.append((line(PLANE), f"contact plane, Γ = {short(shapes.numbers['GA'])}°"))
+    plane = [Path((0, sample), d.BLACK, 0.3, PLANE)]
+    middle.append((plane, f"contact plane, Γ = {short(shapes.numbers['GA'])}°"))
     if field.speed:
         per_speed = field.at.scale * field.per_speed
         middle.append(scale("speed", field.speed, per_speed, _SPEED))
@@ -333,7 +331,7 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
         size = with_unit(abs(shapes.impulse), _IMPULSE, units)
         left.append((force, f"impulse P on A, {size}"))
     if any(v.kept != v.outline for v in shapes.bodies):
-        middle.append((line((0.7, 0.5), d.GREY), "crushed"))
+        middle.append(([Path((0, sample), d.GREY, 0.3, (0.7, 0.5))], "crushed"))
     for x, column in ((2.0, left), (44.0, middle)):
         for row, (paths, text) in enumerate(column):
             start = complex(x, y - ROW * row)

@@ -33,6 +33,8 @@ def render(
     ``title`` and ``case`` stand on top and on every printed page; ``files``: names and bytes of
     what was read, to be identified. Raises UserError where jinja2 is not installed.
     """
+    import numpy
+
     try:
         import jinja2
     except ImportError:
@@ -51,16 +53,11 @@ def render(
         running=_css_text(f"Case {case}" if case else title),
         paper=PAPERS[paper],
         files=[(name, f"{len(data):,}", sha256(data).hexdigest()) for name, data in files],
-        versions=_versions(),
+        versions=f"impact88 {__version__}, Python {platform.python_version()}, "
+        f"numpy {numpy.__version__}",
         **content,
     )
     return page + "\n"
-
-
-def _versions() -> str:
-    import numpy
-
-    return f"impact88 {__version__}, Python {platform.python_version()}, numpy {numpy.__version__}"
 
 
 def _css_text(text: str) -> str:
