@@ -15,6 +15,7 @@ from impact88.commands import bounds_command as command
 from impact88.scene import sample
 
 RANGES = ["--range", "MU=0.7 .. 1", "--range", "UX=+- 10%"]
+DVA = ["--outputs", "DVA"]
 
 
 @pytest.fixture
@@ -36,7 +37,9 @@ def answer(capsys, *arguments):
 
 
 def test_table(capsys):
-    status, out, err = answer(capsys, "--sample", "1", *RANGES, "--samples", "2000")
+    status, out, err = answer(
+        capsys, "--sample", "1", *RANGES, "--outputs", "DVA,LOSS", "--samples", "2000"
+    )
     assert (status, err) == (0, "")
     assert re.search(r"MU +0\.7 +1 +0\.911 +uniform", out)
     bounds_part = out[out.index("Bounds, and") : out.index("What drives")]
@@ -79,7 +82,7 @@ def test_json_has_no_nan(capsys):
 
 
 def test_file_with_ranges(capsys, scene_file):
-    status, out, _ = answer(capsys, scene_file, "--samples", "5000", "--sigmas", "2", "--json")
+    status, out, _ = answer(capsys, scene_file, *DVA, "--sigmas", "2", "--json")
     found = json.loads(out)
     assert status == 0
     assert found["inputs"]["UX"]["kind"] == "normal"
@@ -91,7 +94,7 @@ def test_file_from_standard_input(capsys, scene_file, monkeypatch):
     with open(scene_file, "rb") as file:
         data = file.read()
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
-    status, out, _ = answer(capsys, "-", "--samples", "100")
+    status, out, _ = answer(capsys, "-", *DVA, "--samples", "100")
     assert status == 0
     assert "normal" in out
 
@@ -109,7 +112,7 @@ def test_reconstruction_says_where_the_finals_come_from(capsys):
 
 def test_seed_decides(capsys):
     outs = [
-        answer(capsys, "--sample", "1", *RANGES, "--samples", "500", "--seed", seed, "--json")[1]
+        answer(capsys, "--sample", "1", *RANGES, *DVA, "--samples", "500", "--seed", seed)[1]
         for seed in ("4", "4", "5")
     ]
     assert outs[0] == outs[1] != outs[2]

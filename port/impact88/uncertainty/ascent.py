@@ -200,6 +200,8 @@ def _best_between_walls(
         for _ in range(ITERATIONS):
             mean = 0.1 * ((over * push + under * pull).mean(axis=1) / 2)[:, None]
             going = mean > CENTRED
+            if not going.any():
+                break
             now = all_rows(step)
             off_low, off_high = now - floor - over, ceiling - now - under
             weight = push / over + pull / under

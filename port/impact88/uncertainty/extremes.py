@@ -113,7 +113,10 @@ def extremes(
         *(ground, points, values, numbers, STARTS, LEAST_GAIN),
         lambda begin: np.empty((0, len(begin))),
     )
-    if np.isnan(values[:, : piece.size]).any() and coordinates:
+    lacking = np.isnan(values[:, : piece.size]).any(axis=1)
+    if piece.margin is not None:
+        lacking &= piece.margin(points) >= 0
+    if lacking.any() and coordinates:
         at, bound = ground.stepped(at, bound, rng)
     corner = _SENSE * below_all(_SENSE[:, :, None] * values[: len(groups[0])].T).max(axis=2)
     corner[np.isinf(corner)] = np.nan
