@@ -29,7 +29,6 @@ from .methods import (
     METHODS,
     Method,
     Prepared,
-    closed_form_columns,
     prepare,
     reference,
     relative_errors,
@@ -132,18 +131,13 @@ def _work(method: Method, columns: Columns, count: int) -> Callable[[], float]:
     lengthen; of several threads the clock's."""
     many = enlarged(columns, count)
     typed = method.roundoff == APPLESOFT or method.key == "float64"
-    prepared = prepare(many) if typed else Prepared(count, many, {})
-    closed = method.key.startswith("closed-form")
-    ready = None if closed else method.ready(prepared)
+    ready = method.ready(prepare(many) if typed else Prepared(count, many, {}))
     now = time.process_time if method.threads == 1 else time.perf_counter
 
     def work() -> float:
         with nullcontext() if method.compiled else native.switched_off():
             start = now()
-            if closed:
-                closed_form_columns(prepared, method.threads)
-            else:
-                method.solve(ready)
+            method.solve(ready)
             return now() - start
 
     return work
@@ -187,7 +181,7 @@ def _measure_population(
     for method in METHODS:
         if method.roundoff == APPLESOFT and not POPULATIONS[name].listing:
             continue
-        error = relative_errors(method.solve(method.ready(prepared)), hi, lo)
+        error = relative_errors(method.velocities(prepared), hi, lo)
         fine = np.isfinite(error)
         told = error[fine]
         timed = max(10, round(effort * method.timed))

@@ -36,19 +36,24 @@ def prepare(columns: Columns) -> Prepared:
 
 
 class Method(NamedTuple):
-    """``ready`` turns scenes into what ``solve`` takes, untimed; ``solve`` gives an (n, 6) array,
-    NaN where there is no answer. ``timed``: how many scenes to time; ``roundoff``: the unit
-    roundoff of its numbers; ``threads``: how many it uses; ``compiled``: whether by the compiled
-    machine where it was built."""
+    """``ready`` turns scenes into what ``solve`` takes, untimed; ``solve`` gives an (n, 6) array or
+    six columns by name, NaN where there is no answer. ``timed``: how many scenes to time;
+    ``roundoff``: the unit roundoff of its numbers; ``threads``: how many it uses; ``compiled``:
+    whether by the compiled machine where it was built."""
 
     key: str
     name: str
     roundoff: float
     timed: int
-    solve: Callable[[Any], Floats]
+    solve: Callable[[Any], Floats | dict[str, Floats]]
     ready: Callable[[Prepared], Any] = lambda prepared: prepared
     threads: int = 1
     compiled: bool = True
+
+    def velocities(self, prepared: Prepared) -> Floats:
+        """The final velocities of scenes, (n, 6)."""
+        found = self.solve(self.ready(prepared))
+        return found if isinstance(found, np.ndarray) else np.stack([*found.values()], axis=1)
 
 
 def _port(arithmetic: str, read: Callable[[Any], float]) -> Callable[[list[Scene]], Floats]:
@@ -71,6 +76,14 @@ def _scene_list(prepared: Prepared) -> list[Scene]:
     return [Scene.from_mapping(dict(zip(names, row, strict=True))) for row in rows]
 
 
+def _texts(prepared: Prepared) -> dict[str, list[str]]:
+    return prepared.texts
+
+
+def _filled(prepared: Prepared) -> tuple[Floats, Floats]:
+    return fill(prepared.columns)
+
+
 def _replay(columns: dict[str, list[str]]) -> Floats:
     replayed = replay(columns)
     return np.stack([replayed.floats(name) for name in ORDER], axis=1)
@@ -86,35 +99,13 @@ def _listing_elimination(matrices: tuple[Floats, Floats]) -> Floats:
     return out
 
 
-def _lapack_filled(prepared: Prepared) -> Floats:
-    return lapack(*fill(prepared.columns))
-
-
-def _lapack_changes(matrices: tuple[Floats, Floats, Floats]) -> Floats:
-    A, b, before = matrices
-    return before + lapack(A, b)
-
-
 def _changes_ready(prepared: Prepared) -> tuple[Floats, Floats, Floats]:
     A, _ = fill(prepared.columns)
     return (A, *changes(prepared.columns, A))
 
 
-def _lapack_ready(matrices: tuple[Floats, Floats]) -> Floats:
-    return lapack(*matrices)
-
-
-def _closed_form(threads: int) -> Callable[[Prepared], Floats]:
-    def solve_all(prepared: Prepared) -> Floats:
-        results = solve(prepared.columns, ORDER, threads=threads)
-        return np.stack([results[name] for name in ORDER], axis=1)
-
-    return solve_all
-
-
-def closed_form_columns(prepared: Prepared, threads: int = 1) -> None:
-    """What is timed of the closed form: the results as it gives them, six columns."""
-    solve(prepared.columns, ORDER, threads=threads)
+def _closed_form(threads: int) -> Callable[[Prepared], dict[str, Floats]]:
+    return lambda prepared: solve(prepared.columns, ORDER, threads=threads)
 
 
 METHODS: Sequence[Method] = (
@@ -126,7 +117,7 @@ METHODS: Sequence[Method] = (
         _port("applesoft", lambda x: float(Real.from_stored(x))),
         _scene_list,
     ),
-    Method("replay", "replay (Applesoft, arrays)", APPLESOFT, 20_000, _replay, lambda p: p.texts),
+    Method("replay", "replay (Applesoft, arrays)", APPLESOFT, 20_000, _replay, _texts),
     Method("float64", "port in float64", DOUBLE, 500, _port("float64", float), _scene_list),
     Method(
         "elimination",
@@ -134,25 +125,24 @@ METHODS: Sequence[Method] = (
         DOUBLE,
         2000,
         _listing_elimination,
-        lambda p: fill(p.columns),
+        _filled,
     ),
-    Method(
-        "lapack",
-        "LAPACK, matrices ready",
-        DOUBLE,
-        100_000,
-        _lapack_ready,
-        lambda p: fill(p.columns),
-    ),
+    Method("lapack", "LAPACK, matrices ready", DOUBLE, 100_000, lambda m: lapack(*m), _filled),
     Method(
         "lapack-changes",
         "LAPACK, velocity changes",
         DOUBLE,
         100_000,
-        _lapack_changes,
+        lambda made: made[2] + lapack(*made[:2]),
         _changes_ready,
     ),
-    Method("lapack-fill", "LAPACK, filled and solved", DOUBLE, 100_000, _lapack_filled),
+    Method(
+        "lapack-fill",
+        "LAPACK, filled and solved",
+        DOUBLE,
+        100_000,
+        lambda prepared: lapack(*_filled(prepared)),
+    ),
     Method("closed-form", "closed form, one core", DOUBLE, 1_000_000, _closed_form(1)),
     Method(
         "closed-form-2", "closed form, two cores", DOUBLE, 1_000_000, _closed_form(2), threads=2
@@ -162,7 +152,7 @@ METHODS: Sequence[Method] = (
         compiled=False,
     ),
     Method(
-        *("replay-numpy", "replay, numpy alone", APPLESOFT, 20_000, _replay, lambda p: p.texts),
+        *("replay-numpy", "replay, numpy alone", APPLESOFT, 20_000, _replay, _texts),
         compiled=False,
     ),
 )
