@@ -23,8 +23,10 @@ from collections.abc import Iterable, Mapping
 from math import hypot, isfinite, nan
 from typing import Any
 
+from ..chapter import deltav
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_VELOCITIES, SCENE, quantity
+from ..plaintable import number, quantities, table
 from ..units import System, system_of, written
 from . import options
 
@@ -54,17 +56,15 @@ Answer = tuple[dict[str, Any], list[str]]
 
 def main(args: argparse.Namespace) -> int:
     """Print the estimate, or its range."""
-    from ..chapter.deltav import AS_PRINTED, AS_USED, ERROR, described
-
     known, named = options.known_values(args, KNOWABLE)
     units = system_of(named)
-    factor = AS_PRINTED if args.as_printed else AS_USED
+    factor = deltav.AS_PRINTED if args.as_printed else deltav.AS_USED
     try:
         found, lines = _answer(known, args.like, factor, units)
     except UserError as error:
         raise UserError(str(error), args.scene) from None
-    equation = described(factor)
-    caution = f"An estimate: {ERROR};\nuntested elsewhere (Section VI)."
+    equation = deltav.described(factor)
+    caution = f"An estimate: {deltav.ERROR};\nuntested elsewhere (Section VI)."
     whole = {"equation": equation, **found}
     options.show(args, "delta-v", lambda: whole, lambda: [*lines, equation, caution])
     return 0
@@ -88,13 +88,10 @@ def _answer(known: dict[str, float], like: str | None, factor: float, units: Sys
 def _velocity_changes(
     known: dict[str, float], given: dict[str, float], like: str | None, factor: float, units: System
 ) -> Answer:
-    from ..chapter.deltav import delta_v
-    from ..plaintable import number, quantities, table
-
     losses, source = _losses({**known, **given}, like)
     estimates = []
     for loss in losses:
-        change = delta_v({**given, "LOSS": loss}, factor)
+        change = deltav.delta_v({**given, "LOSS": loss}, factor)
         estimate = {"LOSS": loss, **{name: float(value) for name, value in change.items()}}
         _check_finite(estimate.values())
         estimates.append(written(estimate, units))
@@ -116,16 +113,13 @@ def _speeds_before(
     known: dict[str, float], like: str | None, factor: float, units: System
 ) -> Answer:
     """Speeds before from final velocities and the loss, as in Section VII."""
-    from ..chapter.deltav import speeds_before
-    from ..plaintable import number, table
-
     losses, source = _losses(known, like)
     taken = "SA and SB as given" if {"SA", "SB"} <= set(known) else "those of Equations 13 and 14"
     found: list[dict[str, Any]] = []
     for loss in losses:
         for repeat, speeds in ((False, taken), (True, "those found, until they stay")):
             try:
-                row = speeds_before(known, loss, factor, repeat)
+                row = deltav.speeds_before(known, loss, factor, repeat)
             except UserError:
                 if not repeat:
                     raise
@@ -143,13 +137,10 @@ def _loss(
     known: dict[str, float], given: dict[str, float], like: str | None, factor: float, units: System
 ) -> Answer:
     """The loss that velocity changes give."""
-    from ..chapter.deltav import loss_of
-    from ..plaintable import number, table
-
     if like or {"LOSS", "DT", "EL"} & set(known):
         raise UserError("both a loss and a velocity change are given; expected one")
     changes: dict[str, float] = {n: known[n] for n in ("DVA", "DVB") if n in known}
-    found = {n: float(loss_of({**given, n: change}, factor)) for n, change in changes.items()}
+    found = {n: deltav.loss_of({**given, n: change}, factor) for n, change in changes.items()}
     _check_finite(found.values())
     displayed = written(changes, units)
     rows = [[name, number(displayed[name]), number(loss)] for name, loss in found.items()]
@@ -190,11 +181,9 @@ def _losses(known: Mapping[str, float], like: str | None) -> tuple[list[float], 
     if not given:
         raise UserError("LOSS is missing (percent of kinetic energy); expected it, DT or --like")
     if given == ["EL"]:
-        from ..chapter.deltav import loss_of_energy
-
         if not {"SA", "SB"} <= set(known):
             raise UserError("EL needs the speeds before; expected SA and SB, or LOSS or DT")
-        loss = float(loss_of_energy(known))
+        loss = deltav.loss_of_energy(known)
         if not 0 <= loss <= 100:
             raise UserError(f"EL is {loss:.4g} percent of the initial kinetic energy")
         return [loss], "the energy EL"

@@ -14,6 +14,8 @@ from __future__ import annotations
 import argparse
 from dataclasses import asdict
 
+from ..chapter.example import steps
+from ..plaintable import fixed, paragraph, table
 from . import options
 
 ARGUMENTS = (options.JSON, options.OUTPUT)
@@ -21,8 +23,6 @@ ARGUMENTS = (options.JSON, options.OUTPUT)
 
 def main(args: argparse.Namespace) -> int:
     """Print the steps."""
-    from ..chapter.example import steps
-
     numbers = [number for step in steps() for number in step.numbers]
     if args.json:
         described = [
@@ -36,9 +36,6 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _text() -> str:
-    from ..chapter.example import steps
-    from ..plaintable import fixed, paragraph, table
-
     verdicts = {None: "", True: "agrees", False: "DIFFERS"}
     lines = ["Section VII: a reconstruction, step by step", ""]
     for at, step in enumerate(steps()):

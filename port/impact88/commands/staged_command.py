@@ -31,15 +31,19 @@ import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from math import isfinite, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+
+from ..chapter import staged
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_STATE, VELOCITIES, missing
 from ..plaintable import fixed, paragraph, table
+from ..reconstruction.doublerange import within_doubles
+from ..reconstruction.geometry import NAMES, Geometry
+from ..reconstruction.unknowns import check_physical
+from ..units import base_of, system_of
 from . import options
-
-if TYPE_CHECKING:
-    from ..chapter.staged import Closure, Collision
 
 ARGUMENTS = (
     *options.KNOWN,
@@ -58,8 +62,6 @@ ARGUMENTS = (
 
 def main(args: argparse.Namespace) -> int:
     """Print the view asked for."""
-    from ..chapter.staged import comparison
-
     views: dict[str, Callable[[], list[str]]] = {
         **{"fit": _fits, "measured": _measured, "claims": _claims, "cells": _cells},
         "table": lambda: _table(args.table),
@@ -72,15 +74,11 @@ def main(args: argparse.Namespace) -> int:
     if args.spin_weight is not None:
         raise UserError("--spin-weight is for a collision in a file; expected FILE.toml")
     options.show(args, "staged", _everything, views[view] if view else _comparison)
-    return int(any(not c.agrees and c.explanation == "not explained" for c in comparison()))
+    return int(any(not c.agrees and c.explanation == "not explained" for c in staged.comparison()))
 
 
 def _own(args: argparse.Namespace) -> int:
     """Fit the collision of a file."""
-    from ..reconstruction.doublerange import within_doubles
-    from ..reconstruction.geometry import NAMES
-    from ..units import base_of, system_of
-
     if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
         raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number, 0 or more")
     names = (*NAMES, *VELOCITIES, *FINAL_STATE)
@@ -99,11 +97,6 @@ def _fitted(
     known: dict[str, float], weight: float | None, units: str
 ) -> tuple[dict[str, Any], list[str]]:
     """The fit of one collision, as JSON and as lines."""
-    import numpy as np
-
-    from ..chapter.staged import Collision, closure, fit, undetermined_range
-    from ..reconstruction.geometry import Geometry
-    from ..reconstruction.unknowns import check_physical
 
     check_physical({name: np.asarray(value) for name, value in known.items()})
     scene = {name: value for name, value in known.items() if name not in FINAL_STATE}
@@ -112,12 +105,12 @@ def _fitted(
         raise UserError("the contact points do not approach one another; no e can be fitted")
     if weight is None:
         weight = float(here.inverse_mass / here.inverse_spin_inertia)
-    own = Collision(0, "own", scene, {name: known[name] for name in FINAL_STATE}, {})
-    found = fit(own, spin_weight=weight)
+    own = staged.Collision(0, "own", scene, {name: known[name] for name in FINAL_STATE}, {})
+    found = staged.fit(own, spin_weight=weight)
     if not isfinite(found.sum_of_squares):
         raise UserError(BEYOND_DOUBLES)
-    low, high = undetermined_range(own, spin_weight=weight)
-    measured = closure(own)
+    low, high = staged.undetermined_range(own, spin_weight=weight)
+    measured = staged.closure(own)
     whole = {
         **{"fit": asdict(found), "closure": asdict(measured)},
         **{"spin_weight": weight, "em_range": (low, high), "base_units": units},
@@ -136,12 +129,10 @@ def _fitted(
 
 
 def _measured() -> list[str]:
-    from ..chapter.staged import closure, collisions, forward
-
-    calculated = {c.number: float(forward(c)["LOSS"]) for c in collisions()}
+    calculated = {c.number: float(staged.forward(c)["LOSS"]) for c in staged.collisions()}
     return [
         *("Energy and momentum of the measured velocities (Table 1), nothing fitted", ""),
-        *_closures([closure(c) for c in collisions()], calculated),
+        *_closures([staged.closure(c) for c in staged.collisions()], calculated),
         "",
         *paragraph(
             "Momentum: what A gains and what B loses, equal where the measured velocities "
@@ -152,20 +143,20 @@ def _measured() -> list[str]:
 
 
 def _claims() -> list[str]:
-    from ..chapter.staged import claims
-
     def extent(values: tuple[float, float]) -> str:
         return f"{values[0] + 0.0:.1f} ... {values[1]:.1f}"
 
     lines = ["What the chapter says of its method, on the eleven staged collisions", ""]
-    for claim in claims():
+    for claim in staged.claims():
         lines += paragraph(f"Section {claim.where}: {claim.claim}: {claim.verdict}")
         rows = [[claim.varied, extent(claim.sides), extent(claim.others), claim.unit]]
         lines += ["", *table(rows, ["  varied", "front to side", "others", ""], left=(0, 3)), ""]
     return lines[:-1]
 
 
-def _closures(closures: Sequence[Closure], calculated: dict[int, float] | None = None) -> list[str]:
+def _closures(
+    closures: Sequence[staged.Closure], calculated: dict[int, float] | None = None
+) -> list[str]:
     rows = []
     for c in closures:
         row = [str(c.number), fixed(c.loss, 1) or "lost"] if calculated else [fixed(c.loss, 1)]
@@ -178,10 +169,8 @@ def _closures(closures: Sequence[Closure], calculated: dict[int, float] | None =
 
 
 def _comparison() -> list[str]:
-    from ..chapter.staged import COLUMNS_2, comparison
-
-    columns = [c for c in COLUMNS_2 if c not in ("e", "em", "mu")]
-    compared = {(c.collision, c.column): c for c in comparison()}
+    columns = [c for c in staged.COLUMNS_2 if c not in ("e", "em", "mu")]
+    compared = {(c.collision, c.column): c for c in staged.comparison()}
     rows: dict[int, list[str]] = {}
     for (number, _), cell in compared.items():
         text = f"{cell.printed:.1f} {fixed(cell.value, 2) or 'lost':>5}"
@@ -204,20 +193,19 @@ def _comparison() -> list[str]:
 
 
 def _fits() -> list[str]:
-    from ..chapter.staged import collisions, fit, profile, undetermined_range, with_8a_reconstructed
-
     rows, sums, errors = [], [], []
-    labelled = [(str(c.number), c) for c in collisions()] + [("8*", with_8a_reconstructed())]
+    labelled = [(str(c.number), c) for c in staged.collisions()]
+    labelled.append(("8*", staged.with_8a_reconstructed()))
     for label, collision in labelled:
         printed = collision.table2
-        held, free = fit(collision, printed["em"]), fit(collision)
-        low, high = undetermined_range(collision)
+        held, free = staged.fit(collision, printed["em"]), staged.fit(collision)
+        low, high = staged.undetermined_range(collision)
         if collision.number != 8:
             errors.append((held.E - printed["e"], held.MUP - printed["mu"]))
         values = (printed["e"], printed["em"], printed["mu"], held.E, held.MUP)
         cells = [fixed(value, 3) for value in (*values, free.E, free.EM, free.MUP)]
         rows.append([label, *cells, " ".join(free.at_bound), f"{low:.2f} ... {high:.2f}"])
-        sums.append([label, *(fixed(f.sum_of_squares, 1) for f in profile(collision))])
+        sums.append([label, *(fixed(f.sum_of_squares, 1) for f in staged.profile(collision))])
     heading = ["no.", "e", "e_m", "mu", "e", "mu", "e", "e_m", "mu", "at bound", "e_m +0.1 ft/s"]
     rms_e, rms_mu = (sqrt(sum(x * x for x in xs) / len(xs)) for xs in zip(*errors, strict=True))
     return [
@@ -249,10 +237,8 @@ def _fits() -> list[str]:
 
 
 def _cells() -> list[str]:
-    from ..chapter.staged import emendations
-
     lines = ["What is emended, moved, lost or doubtful in Tables 1 and 2 as printed", ""]
-    for e in emendations():
+    for e in staged.emendations():
         where = f"Table {e.table}, {e.row}, {'the row' if e.column == '*' else e.column}"
         change = e.printed if e.printed == e.emended else f"{e.printed or 'blank'} -> {e.emended}"
         if e.kind == "lost" and not e.emended:
@@ -262,12 +248,10 @@ def _cells() -> list[str]:
 
 
 def _table(number: int) -> list[str]:
-    from ..chapter.staged import COLUMNS_1, COLUMNS_2, cells
-
-    columns = [c for c in (COLUMNS_1 if number == 1 else COLUMNS_2) if c != "category"]
+    columns = staged.COLUMNS_1[1:] if number == 1 else staged.COLUMNS_2  # the category is apart
     rows: dict[str, list[str]] = {}
     categories: dict[str, list[str]] = {}
-    for cell in cells():
+    for cell in staged.cells():
         if cell.table != number:
             continue
         if cell.column == "category":
@@ -289,9 +273,7 @@ def _table(number: int) -> list[str]:
 
 
 def _everything() -> dict[str, Any]:
-    from ..chapter import staged
-
-    def fits(collision: Collision) -> dict[str, Any]:
+    def fits(collision: staged.Collision) -> dict[str, Any]:
         return {
             "em_held": asdict(staged.fit(collision, collision.table2["em"])),
             "all_free": asdict(staged.fit(collision)),
