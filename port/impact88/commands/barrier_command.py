@@ -27,7 +27,12 @@ from __future__ import annotations
 
 import argparse
 
+from ..chapter.barrier import BARRIER, BARRIER_AFTER
+from ..reconstruction.frictionshare import share_resolved
+from ..reconstruction.solutiontable import show
 from ..stderr import note
+from ..uncertainty.uncertain import fixed
+from ..units import system_of
 from . import options
 
 KNOWABLE = (
@@ -40,15 +45,8 @@ ARGUMENTS = (*options.SOLUTION, options.sample_option("vehicle A of a published 
 
 def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
-    from ..chapter.barrier import BARRIER, BARRIER_AFTER
-    from ..reconstruction.frictionshare import share_resolved
-    from ..reconstruction.solutiontable import show
-    from ..uncertainty.uncertain import fixed
-
     if options.template_printed(args, KNOWABLE):
         return 0
-    from ..units import system_of
-
     given, named = options.known_within_limits(args, KNOWABLE, single=True)
     wall = {name: fixed(value) for name, value in BARRIER.items()}
     resting = {} if "UX" in given else {n: fixed(value) for n, value in BARRIER_AFTER.items()}

@@ -16,7 +16,12 @@ from __future__ import annotations
 import argparse
 import math
 
+from ..chapter.colinear import colinear, colinear_inverse
 from ..errors import UserError
+from ..names import quantity
+from ..plaintable import decimals_for, fixed, paragraph, quantities, table
+from ..reconstruction.impulse import forces
+from ..status import sentences
 from ..units import System, system_of, written
 from . import options
 
@@ -29,8 +34,6 @@ ARGUMENTS = options.SOLUTION
 
 def main(args: argparse.Namespace) -> int:
     """Print the velocities that were not given, and what follows from them."""
-    from ..chapter.colinear import colinear, colinear_inverse
-
     knowable = (*COMMON, *BEFORE, *AFTER)
     if options.template_printed(args, knowable):
         return 0
@@ -52,8 +55,6 @@ def main(args: argparse.Namespace) -> int:
     values = {name: float(value) for name, value in solve(known).items()}
     values = {"MA": known["MA"], "MB": known["MB"], "E": known["E"], **values}
     if args.contact_time is not None:
-        from ..reconstruction.impulse import forces
-
         values["P"] = math.hypot(values["PN"], values["PT"])
         values["TF"] = args.contact_time
         values |= {n: float(v) for n, v in forces(values["P"], args.contact_time).items()}
@@ -65,10 +66,6 @@ def show(
     values: dict[str, float], solved_for: tuple[str, ...], as_json: bool, system: System
 ) -> None:
     """Print the table or the JSON object."""
-    from ..names import quantity
-    from ..plaintable import decimals_for, fixed, paragraph, quantities, table
-    from ..status import sentences
-
     warnings = sentences(int(values.pop("STATUS")), values)
     values = written(values, system)
     if as_json:

@@ -31,15 +31,20 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ..chapter.barrier import BARRIER, VEHICLE, barrier
+from ..closedform.solve import solve
 from ..errors import UserError
-from ..names import RESULTS
+from ..figures import charts, configurations, freebody
+from ..figures.drawing import Drawing
+from ..figures.sceneview import scene_drawing
+from ..figures.strip import strip_drawing
+from ..names import FINAL_VELOCITIES, RESULTS, missing
 from ..scene import Scene, entries_in, numbers_of
+from ..tables.sweep import read_ranges
+from ..units import system_of
 from . import options
-
-if TYPE_CHECKING:
-    from ..figures.drawing import Drawing
 
 OF_A_SCENE = ("scene", "strip", "friction", "sweep")
 OF_RANGES = ("histogram", "tornado")
@@ -76,8 +81,6 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _drawn(args: argparse.Namespace) -> Drawing:
-    from ..figures import charts, configurations, freebody
-
     kind = args.kind
     given = bool(args.scene or args.sample)
     alone: dict[str, Callable[[], Drawing]] = {
@@ -111,21 +114,12 @@ def _drawn(args: argparse.Namespace) -> Drawing:
     if kind == "friction":
         return charts.friction_sweep(scene)
     if kind == "strip":
-        from ..figures.strip import strip_drawing
-
         return strip_drawing(scene, solved(scene), scene.title or "Before, impact and after")
-    from ..figures.sceneview import scene_drawing
-
     return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
 
 
 def _barrier(args: argparse.Namespace) -> Drawing:
     """A vehicle against a barrier, its approach and its rebound."""
-    from ..chapter.barrier import BARRIER, VEHICLE, barrier
-    from ..figures.sceneview import scene_drawing
-    from ..names import missing
-    from ..units import system_of
-
     known, units = options.known_values(args, (*VEHICLE, "M"))
     absent = [name for name in VEHICLE if name not in known]
     if absent:
@@ -146,9 +140,6 @@ def _barrier(args: argparse.Namespace) -> Drawing:
 
 def _swept(args: argparse.Namespace) -> Drawing:
     """One result a panel, along the one value swept."""
-    from ..figures import charts
-    from ..tables.sweep import read_ranges
-
     if args.ranges:
         raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")
     scene = options.one_scene(args)
@@ -166,8 +157,5 @@ def _swept(args: argparse.Namespace) -> Drawing:
 
 def solved(scene: Scene) -> dict[str, Any]:
     """The results of one scene as numbers, for a drawing."""
-    from ..closedform.solve import solve
-    from ..names import FINAL_VELOCITIES
-
     results = solve(numbers_of(scene), (*FINAL_VELOCITIES, "STATUS"))
     return {name: value.item() for name, value in results.items()}

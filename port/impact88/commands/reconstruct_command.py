@@ -52,20 +52,22 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import TYPE_CHECKING
 
 from ..errors import UserError
 from ..files import replacing
+from ..progress import progress
+from ..reconstruction.adjustment import Reconstruction, needs_adjustment, reconstruct
+from ..reconstruction.frictionshare import share_resolved
 from ..reconstruction.knowable import KNOWABLE
+from ..reconstruction.solutiontable import in_turn, show
+from ..reconstruction.state import QUANTITIES
 from ..scene import shown_texts
 from ..scene import template as scene_template
 from ..stderr import note
+from ..uncertainty.reconstructedtable import Measured
+from ..uncertainty.uncertain import Uncertain
+from ..units import System, system_of
 from . import options
-
-if TYPE_CHECKING:
-    from ..reconstruction.adjustment import Reconstruction
-    from ..uncertainty.uncertain import Uncertain
-    from ..units import System
 
 ARGUMENTS = (
     options.names_option("--outputs", "solve for these only; others may stay unknown"),
@@ -84,11 +86,6 @@ def main(args: argparse.Namespace) -> int:
     """Solve for what is unknown and print every solution."""
     if options.template_printed(args, KNOWABLE):
         return 0
-    from ..reconstruction.adjustment import needs_adjustment
-    from ..reconstruction.frictionshare import share_resolved
-    from ..reconstruction.state import QUANTITIES
-    from ..units import system_of
-
     wanted = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
     known, named = options.known_within_limits(args, KNOWABLE)
     known, found = share_resolved(known)
@@ -96,8 +93,6 @@ def main(args: argparse.Namespace) -> int:
         note(None, found)
     units = system_of(named)
     if not args.write_scene and not needs_adjustment(known, wanted):
-        from ..reconstruction.solutiontable import show
-
         numbers = {name: item.nominal for name, item in known.items()}
         show(numbers, wanted, options.source_of(args), args.contact_time, args.json, units)
         return 0
@@ -108,11 +103,6 @@ def main(args: argparse.Namespace) -> int:
 def _reconstruct(
     known: dict[str, Uncertain], wanted: list[str] | None, args: argparse.Namespace, units: System
 ) -> None:
-    from ..progress import progress
-    from ..reconstruction.adjustment import reconstruct
-    from ..reconstruction.solutiontable import in_turn
-    from ..uncertainty.reconstructedtable import Measured
-
     try:
         with progress(None, "reconstruct", "impacts") as meter:
             solutions = reconstruct(known, meter.update)
