@@ -19,7 +19,7 @@ LABEL = re.compile("(INITIAL KE|KE LOSS|VAX|VAY|VBX|VBY|[MIDWXY][AB]|[UV][XY]|MU
 LABELS = tuple(dict.fromkeys(LABEL.findall(SAMPLE)))
 HEADING = "PA PB TA TB GA"
 ACROSS = {"A": "B", "B": "A", "U": "V"}
-PAGES = printouts.SWEEP or 12
+PAGES = printouts.SWEEP or 6
 """Pages of every kind; the whole 2,000 in a sweep of 400."""
 
 
