@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..fields import ANGLES
-from .alignment import LETTER_LOST, REPLY_A, REPLY_B, Label, as_letter, template
+from .alignment import LETTER_LOST, REPLY_A, REPLY_B, as_letter, template
 from .glyphs import UNSEEN, Gap, Page
 
 PROMPTS = (REPLY_A, REPLY_B)
@@ -61,16 +61,6 @@ class LabelCheck(NamedTuple):
         return {**self._asdict(), "state": str(self.state)}
 
 
-class _Read(NamedTuple):
-    """What was read in a label's place; as `LabelCheck` without its state and line."""
-
-    name: str
-    printed: str
-    read: str
-    start: int
-    stop: int
-
-
 def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, tuple[int, int]]:
     """The word that an equals sign joins to each number: where its letters stand, as glyphs; for
     numbers that have such a sign before them."""
@@ -98,130 +88,113 @@ def label_checks(
 
     ``states``: the template's state of each glyph from ``start`` on; ``slots``: the glyphs of every
     number, by field; ``marks``: how many an optical reader left in the numbers."""
-    read = list(_read(page, start, states, slots))
-    alone = [_state(one) for one in read]
-    marks += sum(state is LabelState.DAMAGED for state in alone)
-    pairs = {(one.printed, one.read) for one in read}
-    checks = []
-    for one, state in zip(read, alone, strict=True):
-        exchanged = (one.read, one.printed) in pairs
-        if state is LabelState.CONTRADICTORY and marks >= READERS and not exchanged:
-            state = LabelState.DAMAGED
-        doubt = state is not LabelState.EXACT and _doubtful(one)
-        where = page.place(one.start)
-        checks.append(LabelCheck(one.name, one.printed, one.read, state, doubt, *where, *one[3:]))
-    return checks
+    checks = list(_checks(page, start, states, slots))
+    marks += sum(one.state is LabelState.DAMAGED for one in checks)
+    pairs = {(one.printed, one.read) for one in checks}
+    return [
+        one._replace(state=LabelState.DAMAGED)
+        if marks >= READERS
+        and one.state is LabelState.CONTRADICTORY
+        and (one.read, one.printed) not in pairs
+        else one
+        for one in checks
+    ]
 
 
-def _read(
+def _check(page: Page, name: str, printed: str, read: str, start: int, stop: int) -> LabelCheck:
+    """A label by itself, whoever read it; what was read stands between two offsets."""
+    state = _state(name, printed, read)
+    doubt = state is not LabelState.EXACT and _doubtful(name, printed, read)
+    return LabelCheck(name, printed, read, state, doubt, *page.place(start), start, stop)
+
+
+def _checks(
     page: Page, start: int, states: Sequence[int], slots: Mapping[str, tuple[int, int]]
-) -> Iterator[_Read]:
+) -> Iterator[LabelCheck]:
     """What stands in the place of each label whose number was read, or of which letters were."""
-    between = set(template().between.tolist())
     words = words_before(page, slots)
     places: dict[int, list[int]] = {}
-    for index, state in enumerate(states):
+    for index, state in enumerate(states, start):
         places.setdefault(state, []).append(index)
-    heading, row = _of_angles()[: len(ANGLES)], _of_angles()[len(ANGLES) :]
-    angled = {name for one in row for name in [one.name] if places.get(one.states[0])}
-    headed = [index for one in heading for state in one.states for index in places.get(state, ())]
+    found = {
+        one: sorted(index for state in one.states for index in places.get(state, ()))
+        for one in template().labels
+    }
+    of_angles = [one for one in found if one.name in ANGLES]
+    heading, row = of_angles[: len(ANGLES)], of_angles[len(ANGLES) :]
+    angled = any(places.get(one.states[0]) for one in row)
+    headed = [index for one in heading for index in found[one]]
     if headed:
-        yield from _heading(page, [start + index for index in headed])
-    for one in template().labels:
+        yield from _heading(page, min(headed), max(headed))
+    for one, at in found.items():
         if one in heading and (headed or angled or one.name not in slots):
             continue
-        at = sorted(index for state in one.states for index in places.get(state, ()))
         if one in row and (not angled or not at):
             continue
-        if not at and one.name not in words:
-            if one.name in slots and one.name not in PROMPTS:
-                begin = page.span(*slots[one.name])[0]
-                yield _Read(one.name, one.text, "", begin, begin)
-            continue
-        run: Sequence[int] = [start + index for index in at]
-        if at and states[at[0] - 1] in between:
-            first = run[0]
-            while first > start and not page.glyphs[first].gap and states[first - start] in between:
-                first -= 1
-            run = [*range(first, run[0]), *run]
-        word = words.get(one.name)
-        letters = _letters(page, run)
-        if (
-            word
-            and one.name not in PROMPTS
-            and letters[-(word[1] - word[0]) :] != _letters(page, range(*word))
-        ):
-            run = range(*word)
-            letters = _letters(page, run)
-        yield _Read(one.name, one.text, letters, *page.span(run[0], run[-1] + 1))
+        word = words.get(one.name) if one.name not in PROMPTS else None
+        if word and _letters(page, at)[word[0] - word[1] :] != _letters(page, range(*word)):
+            at = [*range(*word)]
+        if at:
+            span = page.span(at[0], at[-1] + 1)
+            yield _check(page, one.name, one.text, _letters(page, at), *span)
+        elif one.name in slots and one.name not in PROMPTS:
+            begin = page.span(*slots[one.name])[0]
+            yield _check(page, one.name, one.text, "", begin, begin)
 
 
 def _letters(page: Page, run: Sequence[int]) -> str:
     return "".join(page.glyphs[index].char for index in run)
 
 
-def _heading(page: Page, found: Sequence[int]) -> Iterator[_Read]:
+def _heading(page: Page, first: int, last: int) -> Iterator[LabelCheck]:
     """The five of the heading: the words around what was taken for it, or its letters in pairs."""
     glyphs = page.glyphs
-    first, last = min(found), max(found)
     while first and glyphs[first].gap is not Gap.LINE and glyphs[first - 1].char.isalpha():
         first -= 1
-    while last + 1 < len(glyphs) and glyphs[last + 1].gap is not Gap.LINE:
-        if not glyphs[last + 1].char.isalpha():
-            break
-        last += 1
-    starts = [at for at in range(first, last + 1) if at == first or glyphs[at].gap]
+    end = last + 1
+    while end < len(glyphs) and glyphs[end].gap is not Gap.LINE and glyphs[end].char.isalpha():
+        end += 1
+    starts = [at for at in range(first, end) if at == first or glyphs[at].gap]
     if len(starts) != len(ANGLES):
-        starts = [*range(first, last + 1, 2)]
-    if len(starts) != len(ANGLES):
-        whole = "".join(ANGLES) in _letters(page, range(first, last + 1))
-        for name in ANGLES:
-            yield _Read(name, name, name if whole else "", *page.span(first, last + 1))
-        return
-    for name, begin, stop in zip(ANGLES, starts, [*starts[1:], last + 1], strict=True):
-        yield _Read(name, name, _letters(page, range(begin, stop)), *page.span(begin, stop))
+        starts = [*range(first, end, 2)]
+    whole = len(starts) != len(ANGLES)
+    exact = "".join(ANGLES) in _letters(page, range(first, end))
+    parts = [(first, end)] * len(ANGLES) if whole else zip(starts, [*starts[1:], end], strict=True)
+    for name, part in zip(ANGLES, parts, strict=True):
+        read = (name if exact else "") if whole else _letters(page, range(*part))
+        yield _check(page, name, name, read, *page.span(*part))
 
 
-def _of_angles() -> list[Label]:
-    """The five of the heading, and the five as some people retype them."""
-    return [one for one in template().labels if one.name in ANGLES]
-
-
-def _state(one: _Read) -> LabelState:
+def _state(name: str, printed: str, read: str) -> LabelState:
     """How a label stands by itself, whoever read it."""
-    if one.read == one.printed:
+    if read == printed:
         return LabelState.EXACT
-    if not any(map(str.isalnum, one.read)):
+    if not any(map(str.isalnum, read)):
         return LabelState.MISSING
-    own = _distance(one.printed, one.read)
-    others = _others(one.name)
-    other = min(_distance(text, one.read) for text in others if text != one.printed)
-    if one.name in PROMPTS:
+    own = _distance(printed, read)
+    others = _others(name)
+    other = min(_distance(text, read) for text in others if text != printed)
+    if name in PROMPTS:
         return LabelState.CONTRADICTORY if other < own - UNSEEN else LabelState.DAMAGED
-    if len(one.read + one.printed) <= _LETTERS:
+    if len(read + printed) <= _LETTERS or (_only_lost(printed, read) and read not in others):
         return LabelState.DAMAGED
-    if _only_lost(one.printed, one.read) and one.read not in others:
-        return LabelState.DAMAGED
-    word = one.read.isascii() and one.read.isalpha()
-    if other < own - _CLEARER or (word and own >= _REACH * len(one.printed) / 2):
+    word = read.isascii() and read.isalpha()
+    if other < own - _CLEARER or (word and own >= _REACH * len(printed) / 2):
         return LabelState.CONTRADICTORY
     return LabelState.DAMAGED
 
 
-def _doubtful(one: _Read) -> bool:
+def _doubtful(name: str, printed: str, read: str) -> bool:
     """Whether the letters that were read as they are printed are those of another label, too."""
-    if one.name in PROMPTS:
+    if name in PROMPTS:
         return False
-    kept = [
-        letter if read == letter else None
-        for letter, read in zip(one.printed, one.read, strict=False)
-    ]
-    if len(one.read) != len(one.printed) or not any(kept):
+    kept = [own if own == char else None for own, char in zip(printed, read, strict=False)]
+    if len(read) != len(printed) or not any(kept):
         return True
     return any(
         len(text) == len(kept)
         and all(letter in (None, own) for letter, own in zip(kept, text, strict=True))
-        for text in _others(one.name) - {one.printed}
+        for text in _others(name) - {printed}
     )
 
 
