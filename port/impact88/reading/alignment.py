@@ -27,27 +27,29 @@ Floats = NDArray[np.float64]
 REPLY_A, REPLY_B = "REPLY_A", "REPLY_B"
 """Slots of the replies to the two prompts."""
 
-LINES: tuple[tuple[str, float], ...] = (
-    ("ENTERTHEINITIALVELOCITYCOMPONENTSOFMA:VAX,VAY,WA?{REPLY_A}", 0.3),
-    ("ENTERTHEINITIALVELOCITYCOMPONENTSOFMB:VBX,VBY,WB?{REPLY_B}", 0.3),
-    ("MA={MA}MB={MB}IA={IA}IB={IB}", 2.0),
-    ("DA={DA}DB={DB}", 2.0),
-    ("PAPBTATBGA", 1.2),
-    ("{PA}{PB}{TA}{TB}{GA}", 2.0),
-    ("PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}", 0.0),
-    ("UX={UX}UY={UY}WA={WA}XA={XA}YA={YA}", 2.0),
-    ("VX={VX}VY={VY}WB={WB}XB={XB}YB={YB}", 2.0),
-    ("E={E}MU={MUP}EM={EM}", 2.0),
-    ("INITIALKE={KI}KELOSS={LOSS}%", 2.0),
-    ("*****", 0.3),
-    ("VAX={VAX}VAY={VAY}(XA={XAF}YA={YAF})", 2.0),
-    ("VBX={VBX}VBY={VBY}(XB={XBF}YB={YBF})", 2.0),
-    ("WA={WAF}WB={WBF}", 0.8),
-    ("*****", 0.3),
+LINES = (
+    "ENTERTHEINITIALVELOCITYCOMPONENTSOFMA:VAX,VAY,WA?{REPLY_A}",
+    "ENTERTHEINITIALVELOCITYCOMPONENTSOFMB:VBX,VBY,WB?{REPLY_B}",
+    "MA={MA}MB={MB}IA={IA}IB={IB}",
+    "DA={DA}DB={DB}",
+    "PAPBTATBGA",
+    "{PA}{PB}{TA}{TB}{GA}",
+    "PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}",
+    "UX={UX}UY={UY}WA={WA}XA={XA}YA={YA}",
+    "VX={VX}VY={VY}WB={WB}XB={XB}YB={YB}",
+    "E={E}MU={MUP}EM={EM}",
+    "INITIALKE={KI}KELOSS={LOSS}%",
+    "*****",
+    "VAX={VAX}VAY={VAY}(XA={XAF}YA={YAF})",
+    "VBX={VBX}VBY={VBY}(XB={XBF}YB={YBF})",
+    "WA={WAF}WB={WBF}",
+    "*****",
 )
-"""What lines 200 to 770 print, fields in braces; angles also as some people retype them; with what
-it costs to miss a line whole."""
-PROMPTS, HEADING, ANGLE_ROW, LABELLED_ANGLES, RESULTS, SPINS = 2, 4, 5, 6, 12, 14
+"""What lines 200 to 770 print, fields in braces; angles also as some people retype them."""
+_ABSENT = tuple(0.3 if at in (0, 1, 4, 6, 11, 14, 15) else 2.0 for at in range(len(LINES)))
+"""What it costs to miss a line whole: prompts, heading, retyped angles, asterisks and spins may be
+missing. Doubled, none of 60 texts is read otherwise; all alike, 1 to 3 are."""
+PROMPTS, HEADING, ANGLE_ROW, LABELLED_ANGLES, SPINS = 2, 4, 5, 6, 14
 """Places in `LINES`; the prompts are those before the first."""
 STARS = (11, 15)
 _LOOSE_WORDS = {"INITIALKE=": 7, "KELOSS=": 2}
@@ -57,12 +59,12 @@ _RETYPED = 1.5
 """What it costs to begin it: the row of angles is what the program prints. Two columns of
 names and numbers are read with up to 2.0, no longer with 2.5."""
 
-_MISS = {"=": 0.45, "(": 0.25, ")": 0.25, "%": 0.3, "*": 0.25, ":": 0.2, ",": 0.2, "?": 0.3}
-"""What it costs to miss a glyph of a label; other letters `LETTER_LOST`."""
+_SIGN_LOST = 0.45
+"""What it costs to miss an equals sign."""
+_MARK_LOST = 0.25
+"""Brackets and other marks, and words that retyped pages leave out (INITIAL, KE, prompts)."""
 LETTER_LOST = 0.65
 """Of letters that nobody leaves out."""
-_LOOSE = 0.25
-"""The same for words that retyped pages leave out (INITIAL, KE before LOSS, the prompts)."""
 _FIGURE = 0.3
 """What a figure costs more where a letter of a label is wrong."""
 INSERTED = 1.0
@@ -109,9 +111,9 @@ class Template(NamedTuple):
     By state: ``enter`` and ``stay`` (code by state): cost of a glyph that opens it, and of one more
     glyph in it; ``gap_enter``, ``gap_stay`` (gap by state): of the gap before the glyph;
     ``unlabelled`` (gap by state): of a number without its label's last glyph; ``miss``: of passing
-    without a glyph. ``between``: the states before the lines; ``absent``: of missing each line;
-    ``closes``: whether text may end after a state. ``line``: where a state belongs; ``slots``:
-    state -> field name; ``letters``: state -> a label's letter; ``labels``: what names each number.
+    without a glyph. ``between``: the states before the lines; ``closes``: whether text may end
+    after a state; ``line``: where a state belongs; ``slots``: state -> field name; ``letters``:
+    state -> a label's letter; ``labels``: what names each number.
     """
 
     enter: Floats
@@ -121,7 +123,6 @@ class Template(NamedTuple):
     unlabelled: Floats
     miss: Floats
     between: NDArray[np.intp]
-    absent: Floats
     closes: NDArray[np.bool_]
     line: list[int]
     slots: dict[int, str]
@@ -137,7 +138,7 @@ def template() -> Template:
     """The template's states, the first of which is the text outside any printout."""
     kinds = [("outside", "", -1)]
     labels = []
-    for number, (line, _) in enumerate(LINES):
+    for number, line in enumerate(LINES):
         kinds.append(("between", "", number))
         for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", line):
             loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
@@ -189,7 +190,8 @@ def template() -> Template:
             if number < PROMPTS:
                 for part in "_{}":
                     stay[ord(part), state] = 0.05
-            miss[state] = _LOOSE if kind == "loose" else _MISS.get(name, LETTER_LOST)
+            letter_lost = _MARK_LOST if kind == "loose" or not name.isalpha() else LETTER_LOST
+            miss[state] = _SIGN_LOST if name == "=" and kind == "letter" else letter_lost
     retyped = kinds.index(("between", "", LABELLED_ANGLES)) + 1
     enter[:, retyped] += _RETYPED
     miss[retyped] += _RETYPED
@@ -204,7 +206,6 @@ def template() -> Template:
         unlabelled,
         miss,
         between=np.array([state for state, kind in enumerate(kinds) if kind[0] == "between"]),
-        absent=np.array([absent for _, absent in LINES]),
         closes=np.array(closes),
         line=[number for _, _, number in kinds],
         slots={at: name for at, (kind, name, _) in enumerate(kinds) if kind == "slot"},
@@ -238,7 +239,7 @@ def _between(char: str) -> float:
 def as_letter(letter: str, char: str) -> float:
     """The cost of reading a letter of a label as a glyph."""
     if letter == "=" and char in "-~_":
-        return _MISS["="] + 0.2  # rather the number's sign, the label's own glyph missing
+        return _SIGN_LOST + 0.2  # rather the number's sign, the label's own glyph missing
     cost = label_cost(letter, char)
     if letter == "*" and not char.isdigit():
         return min(cost, 0.5)
@@ -279,6 +280,8 @@ class Budget:
 FRAGMENT = 6
 """A piece with fewer numbers than this is a fragment: labels without end are no page."""
 _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
+_ASIDE = 1000
+"""Glyphs that may stand between two parts of a page: half a page of text."""
 _FEW_LABELS = 4
 """Fewer labels and equals signs in a window than these, and no printout is in it."""
 
@@ -357,12 +360,9 @@ def _merged(parts: list[tuple[int, int, list[int]]]) -> list[tuple[int, int, lis
     merged: list[tuple[int, int, list[int]]] = []
     for start, stop, states in parts:
         if merged:
-            before = merged[-1]
-            ends, begins = line[before[2][-1]], line[states[0]]
-            goes_on = ends < begins and not (ends < RESULTS <= begins and start - before[1] > 600)
-            if goes_on and start - before[1] < 1500:
-                between = [0] * (start - before[1])
-                merged[-1] = (before[0], stop, [*before[2], *between, *states])
+            first, end, before = merged[-1]
+            if line[before[-1]] < line[states[0]] and start - end < _ASIDE:
+                merged[-1] = first, stop, [*before, *[0] * (start - end), *states]
                 continue
         merged.append((start, stop, states))
     return merged
@@ -401,7 +401,7 @@ def _states(glyphs: Sequence[Glyph], noted: Sequence[bool]) -> list[int]:
     }
     stay = {key: page.stay[key[0]] + page.gap_stay[key[1]] for key in enter}
     missed = np.cumsum(page.miss)
-    missed_line = np.concatenate([[0], np.cumsum(page.absent[:-1])])
+    missed_line = np.concatenate([[0], np.cumsum(_ABSENT[:-1])])
     between = page.between
     index = np.arange(size, dtype=np.int16)
     lines = np.arange(between.size, dtype=np.int16)
