@@ -34,12 +34,14 @@ _STRAIN = 0.02
 """What a pitch of keystone or bow costs of the clarity (0 to 1) it gains: without it a page of
 broken type, in which gaps stand within characters, is bent to fit them; twice as much leaves two of
 the given photographs flat."""
-_PEAKS, _CLEAR = 3, 0.85
+_PEAKS, _CLEAR = 2, 0.85
 """Pitches that are tried, and how clear the columns are where one is right: of the given pages
 that were read the least clear has 0.9."""
 _GUTTER, _COLUMN = 6, 0.25
 """The least gap between printouts side by side, in 300ths of the page, some three characters of
 160, and the least part of the ink that is a column: angles at the end of their line are none."""
+_COARSE = 80
+"""Stretches of a dozen cells from which the starts are found, those with the clearest gaps."""
 _STARTS = 5
 """Places from which the fit of the columns starts."""
 
@@ -179,16 +181,18 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
         for reach, width in ((0.1, step), (0.04, step), (0.15, 2 * step), (0.06, 4 * step))
     )
     curves = [(keystone, bow) for keystone in keystones for bow in bows - bows.mean()]
-    wide = np.exp(turn * np.outer(slants, terms[2]))
-    narrow = np.exp(turn * np.outer(stretches, terms[1])).T
-    most = float(np.abs(total).sum())
+    few = np.argsort(-np.abs(total))[:_COARSE]
+    strong, sited = total[few], terms[:, few]
+    wide = np.exp(turn * np.outer(slants, sited[2]))
+    narrow = np.exp(turn * np.outer(stretches, sited[1])).T
+    most = float(np.abs(strong).sum())
 
     def strain(keystone: float, bow: float) -> float:
         return _STRAIN * (abs(keystone) + abs(bow)) / pitch
 
     clear = np.stack(
         [
-            np.abs((wide * (total * np.exp(turn * (np.array(c) @ terms[3:5])))) @ narrow) / most
+            np.abs((wide * (strong * np.exp(turn * (np.array(c) @ sited[3:5])))) @ narrow) / most
             - strain(*c)
             for c in curves
         ]
@@ -264,6 +268,8 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
             bent, clear = _bend(xs, ys, one, span)
             if clear > clarity:
                 pitch, bend, clarity = one, bent, clear
+    if not clarity:
+        return None
     across = x + bend @ _terms(x, y, span)
     everything = across[np.concatenate(members)]
     first, last = np.floor(everything.min() / pitch) - 1, np.ceil(everything.max() / pitch) + 1

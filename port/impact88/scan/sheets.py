@@ -53,7 +53,7 @@ def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
     found; they are tried beside those of the picture."""
     ink = ink_of(grey)
     most, found = 0.0, list[tuple[Grid, list[Sheet]]]()
-    for turns, fold in product(_turns(ink), (1, 2)):
+    for fold, turns in product((1, 2), _turns(ink)):
         grids = grids_of(ink, turns, fold)
         laid = [(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids]
         sheets = [sheet for _, some in laid for sheet in some]
@@ -69,8 +69,8 @@ def _turns(ink: Image) -> list[int]:
     """Quarter turns in the order in which they are tried: as the page lies, upside down, and on
     its sides; lines of text make rows of ink and gaps, seen from the right side."""
     small = ink[::4, ::4]
-    across, down = (float(np.var(np.diff(small.mean(axis=axis)))) for axis in (0, 1))
-    return [0, 2, 1, 3] if down * small.shape[1] >= across * small.shape[0] else [1, 3, 0, 2]
+    across, down = (float(np.abs(np.diff(small.mean(axis=axis))).sum()) for axis in (0, 1))
+    return [0, 2, 1, 3] if down >= across else [1, 3, 0, 2]
 
 
 def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:
