@@ -69,7 +69,8 @@ def _turns(ink: Image) -> list[int]:
     """Quarter turns in the order in which they are tried: as the page lies, upside down, and on
     its sides; lines of text make rows of ink and gaps, seen from the right side."""
     small = ink[::4, ::4]
-    across, down = (float(np.abs(np.diff(small.mean(axis=axis))).sum()) for axis in (0, 1))
+    steps = (np.abs(np.diff(small.mean(axis=axis))) for axis in (0, 1))
+    across, down = (float(np.percentile(one, 95)) for one in steps)  # beyond edges of the paper
     return [0, 2, 1, 3] if down >= across else [1, 3, 0, 2]
 
 
