@@ -122,7 +122,6 @@ def explain(
             [
                 *page.rereads(rereads()),
                 *hypotheses.unexplained(page.evidence, tables.nearest),
-                *hypotheses.results_otherwise(page.evidence),
                 *machines.causes(page.evidence),
             ]
         )

@@ -89,7 +89,7 @@ def table() -> tuple[Row, ...]:
 
 
 class Tables:
-    """The rows that change inputs, for one page. ``nearest``: those to be replayed."""
+    """The rows as one page has them. ``nearest``: those to be replayed."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._evidence = evidence
@@ -101,7 +101,10 @@ class Tables:
         past = abs(self._values["MU"]) >= -PIVOT != -self._values["MU"]
         order = np.lexsort(np.array([[one.row.bits for one in every], far]))
         order = order[: len(every) if past else _REPLAYED]
+        scenes = self._scene, *with_opposite_mu(self._scene)
+        results = [row for row in table() if not row.inputs]
         self.nearest = [every[index] for index in order]
+        self.nearest += [Hypothesis(row, one, (), {}, {}) for row in results for one in scenes]
         self._close = [every[index] for index in order if far[index] <= _NEAR]
 
     def exchanges(self) -> Iterator[Hypothesis]:
@@ -213,18 +216,27 @@ class Tables:
 
 def unexplained(evidence: Evidence, every: Sequence[Hypothesis]) -> Iterator[Cause]:
     """Each replayed, with what it leaves unexplained."""
-    for one, outcome in zip(every, replays.run_all([one.scene for one in every]), strict=True):
+    keys = [tuple(one.scene.values()) for one in every]
+    scenes = dict(zip(keys, (one.scene for one in every), strict=True))
+    outcomes = dict(zip(scenes, replays.run_all(list(scenes.values())), strict=True))
+    values = cache(lambda key: replays.run_whole(scenes[key])[1])
+    for one, key in zip(every, keys, strict=True):
+        outcome = outcomes[key]
+        row, changes, fields = one.row, list(one.changes), outcome.fields
         predicted = as_printed(outcome)
-        if one.row.results:
-            predicted |= shown_otherwise(evidence, one.row, *replays.run_whole(one.scene))
-        inputs = {}
-        if not any(change.field == "MUP" for change in one.changes) and "MUP" in outcome.fields:
-            inputs["MUP"] = outcome.fields["MUP"]
+        if row.results:
+            predicted |= _shown_otherwise(evidence, row, outcome, values(key))
+        for name, made in row.results.items():
+            other = fields.get(made.id) if isinstance(made, ast.Name) else None
+            if other and name in fields and other != fields[name]:
+                changes.append(Change(row.kind, name, other, fields[name]))
+        turned = any(change.field == "MUP" for change in changes)
+        inputs = {} if turned or "MUP" not in fields else {"MUP": fields["MUP"]}
         wrong = evidence.differing(predicted, outcome.ending, inputs)
-        yield Cause(one.row.kind, one.row.note, one.row.bits, one.scene, wrong, one.changes)
+        yield Cause(row.kind, row.note, row.bits, one.scene, wrong, tuple(changes))
 
 
-def shown_otherwise(
+def _shown_otherwise(
     evidence: Evidence, row: Row, outcome: replays.Outcome, values: Mapping[str, float]
 ) -> dict[str, Range]:
     """The results that a row shows otherwise: another number's, or to the page's decimals."""
@@ -277,26 +289,3 @@ def _near(number: float, within: float, most: int) -> list[str]:
         if last >= first:
             texts = [_short(round(k * step, places)) for k in range(int(first), int(last) + 1)]
     return texts
-
-
-def results_otherwise(evidence: Evidence) -> Iterator[Cause]:
-    """The rows that change results alone."""
-    recovered = evidence.recovered
-    for scene in (recovered.scene, *with_opposite_mu(recovered.scene)):
-        outcome, values = replays.run_whole(scene)
-        own = as_printed(outcome)
-        for row in table():
-            if row.inputs:
-                continue
-            other = shown_otherwise(evidence, row, outcome, values)
-            changes = tuple(
-                Change(row.kind, name, outcome.fields[made.id], outcome.fields[name])
-                for name, made in row.results.items()
-                if isinstance(made, ast.Name)
-                and {name, made.id} <= set(outcome.fields)
-                and outcome.fields[made.id] != outcome.fields[name]
-            )
-            if other and (changes or other != own):
-                inputs = {"MUP": outcome.fields["MUP"]} if "MUP" in outcome.fields else {}
-                wrong = evidence.differing({**own, **other}, outcome.ending, inputs)
-                yield Cause(row.kind, row.note, row.bits, scene, wrong, changes)

@@ -40,8 +40,8 @@ _SOME_LINES = 14.2
 than for a last place misread (18), which a rounded one looks like."""
 _CUT = 13.0
 """Bits for results rounded or truncated by the program itself; one more by another machine."""
-_DECIMALS, _OWN_DECIMALS = 14.0, 15.0
-"""Bits for results to other decimals: as many for all of a kind, or for each its own."""
+_DECIMALS = 14.5
+"""Bits for results to other decimals: as for another unit."""
 _SINGLE, _NO_EVIDENCE = 14.5, 4.0
 """Bits for single precision, and more where the kinetic energy has no more digits in double
 precision either."""
@@ -171,35 +171,29 @@ class _Page:
 
 
 def _other_decimals(page: _Page) -> Iterator[Cause]:
-    """To as many decimals as the page has, where those are not the listing's: as many for all
-    results of a kind, or each number to its own."""
+    """To the decimals that the page has, where those are not the listing's: floored or rounded, or
+    of seven digits."""
     evidence = page.evidence
-    names = [name for name in page.values if name in evidence.texts]
-    most: dict[int, int] = {}
-    for name in names:
-        most[places_of(name)] = max(most.get(places_of(name), 0), evidence.decimals(name))
-    kind = "printed with other decimals"
-    if any(listed != places for listed, places in most.items()):
-        said = " or ".join(map(str, sorted(set(most.values()))))
-        for how in ("rounded", "floored"):
-            made = {n: cut(page.values[n], most[places_of(n)], how) for n in names}
-            ranges = {name: one for name, one in made.items() if one}
-            yield page.cause(kind, f"{how} to {said}", _DECIMALS, ranges)
-    own, longer = {}, 0
-    for name in [*names, *(["KI"] if page.energy else [])]:
+    own: dict[str, Range] = {}
+    decimals, others = set(), 0
+    for name in [*page.values, "KI"]:
+        value = page.energy if name == "KI" else page.values[name]
+        if name not in evidence.texts or page.prints(name):
+            continue
         number = Decimal(evidence.texts[name])
         unit = Decimal(1).scaleb(int(number.as_tuple().exponent))
-        if page.prints(name) or unit >= (abs(number) or 1):
-            continue
         single = len(number.as_tuple().digits) == _SINGLE_DIGITS
-        error = abs(number) * Decimal("3E-6" if single else "2E-9")
-        slack = max(unit * Decimal("1.001"), error)
-        if near := around(page.energy if name == "KI" else page.values[name], slack):
+        slack = max(unit * Decimal("1.001"), abs(number) * Decimal("3E-6" if single else "2E-9"))
+        near = around(value, slack)
+        cuts = [cut(value, evidence.decimals(name), how) for how in ("rounded", "floored")]
+        if near and (unit < (abs(number) or 1) or (number, number) in cuts):
             own[name] = near
-            more = evidence.decimals(name) > places_of(name) or "E" in evidence.texts[name]
-            longer += more and name != "KI"
-    if longer >= 2:
-        yield page.cause(kind, "each number to decimals of its own", _OWN_DECIMALS, own)
+            if name != "KI":
+                decimals.add(evidence.decimals(name))
+                others += evidence.decimals(name) != places_of(name) or "E" in evidence.texts[name]
+    if others >= 2:
+        said = " to ".join(map(str, sorted({min(decimals), max(decimals)}))) + " decimals"
+        yield page.cause("printed with other decimals", said, _DECIMALS, own)
 
 
 # --- single precision ---

@@ -152,7 +152,7 @@ def _fields(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
     row = _angle_row(shown, recovered)
     for name in FIELDS:
         text = recovered.outcome.fields.get(name)
-        reading = shown.reading(row[name][0]) if name in row else shown.fields.get(name)
+        reading = shown.reading(row[name]) if name in row else shown.fields.get(name)
         if reading is None and text is None:
             expected = recovered.missing and not shown.ending
             if not expected or (name in FINAL_SPINS and recovered.scene["M"] != "6"):
@@ -161,12 +161,11 @@ def _fields(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
         if reading is None:
             check.status = Status.NOT_READ
         elif text is not None:
-            if name in row:
-                _, check.status, spots = row[name]
-            else:
-                match = compare(reading.region, text, reading.cut, reading.sign_free)
-                check.status, spots = _status(match, reading.region, text), match.spots
-            check.doubts = _doubts(shown, reading, spots)
+            match = compare(reading.region, text, reading.cut, reading.sign_free)
+            if name in row and name != ANGLES[0] and not reading.region[0].gap:
+                match = match._replace(spots=(Spot(0, "", "", Doubt.BLANK), *match.spots))
+            check.status = _status(match, reading.region, text)
+            check.doubts = _doubts(shown, reading, match.spots)
             if check.status is Status.READ:
                 check.printed = text
         elif not recovered.missing:
@@ -208,27 +207,12 @@ def _hardly_read(match: Match, region: Region, text: str) -> bool:
     return 2 * match.exact + alike < len(text)
 
 
-def _angle_row(
-    shown: Printout, recovered: Recovered
-) -> dict[str, tuple[Region, Status, tuple[Spot, ...]]]:
-    """Where the angles stand in a row that blanks alone do not cut, and what became of each; none
-    where the row is plain."""
-    texts = [recovered.outcome.fields.get(name, "") for name in ANGLES]
-    if not shown.angle_row or not all(texts):
-        return {}
-    row = {}
-    cuts = cut_as(shown.angle_row, tuple(texts))
-    for name, text, (start, stop) in zip(ANGLES, texts, cuts, strict=bool(cuts)):
-        region = shown.angle_row[start:stop]
-        match = compare(region, text)
-        status, spots = _status(match, region, text), match.spots
-        if not region:
-            status = Status.NOT_READ
-        elif start and not region[0].gap:
-            spots = (Spot(0, "", "", Doubt.BLANK), *spots)
-            status = Status.DOUBTFUL if status is Status.READ else status
-        row[name] = region, status, spots
-    return row
+def _angle_row(shown: Printout, recovered: Recovered) -> dict[str, Region]:
+    """Where the angles stand in a row that blanks alone do not cut; none where it is plain."""
+    texts = tuple(recovered.outcome.fields.get(name, "") for name in ANGLES)
+    cuts = cut_as(shown.angle_row, texts) if shown.angle_row and all(texts) else ()
+    pairs = zip(ANGLES, cuts, strict=bool(cuts))
+    return {name: shown.angle_row[start:stop] for name, (start, stop) in pairs}
 
 
 def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:

@@ -78,6 +78,11 @@ class Verification:
         return [check for check in self.fields if check.same is False]
 
     @property
+    def doubtful(self) -> list[FieldCheck]:
+        """The numbers, replies included, in which the program's text was not read exactly."""
+        return [one for one in [*self.fields, *self.replies] if one.status == Status.DOUBTFUL]
+
+    @property
     def mislabelled(self) -> list[LabelCheck]:
         """The labels that name another number than the one that stands there."""
         return [one for one in self.labels if one.state is LabelState.CONTRADICTORY]
@@ -207,8 +212,7 @@ EXPLAINED = "possible explanations, best first"
 def sections(result: Verification) -> list[Section]:
     """Everything below the verdict and beside the table, in order; no empty ones."""
     doubtful = wording.labels(result.labels)
-    for check in [*result.fields, *result.replies]:
-        doubtful += wording.doubts(check) if check.status == Status.DOUBTFUL else []
+    doubtful += [line for check in result.doubtful for line in wording.doubts(check)]
     notes = [
         f"{check.name}: the reply {check.printed} is not the {check.recomputed} used"
         for check in result.replies

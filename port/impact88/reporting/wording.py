@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import printable
 from ..fields import ANGLES, INPUTS, scene_name
-from ..judging.judgement import Doubtful, FieldCheck, Judged, Status, Verdict
+from ..judging.judgement import FieldCheck, Judged, Status, Verdict
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
 from ..reading.printout import Piece, Printout
@@ -63,29 +63,26 @@ def place(line: int | None, column: int | None) -> str:
     return f"line {line}, column {column}"
 
 
+_DOUBTS: dict[str, str] = {
+    Doubt.LOOK_ALIKE: "read {read!r} where the program prints {printed!r} ({program})",
+    Doubt.ILLEGIBLE: "illegible (read {read!r}) where the program prints {printed!r} ({program})",
+    Doubt.BLANK: "a blank or a joint in it; the program prints {program}",
+    Doubt.RETYPED: "read {whole}; the program prints {program}, never this form",
+    Doubt.CUT: "cut off; the program prints {program}",
+    Doubt.LEFT_OVER: "{read!r} left over beside {program}",
+    "picture": "nearly as much like {read!r} as {printed!r} ({program})",
+}
+
+
 def doubts(check: FieldCheck) -> list[str]:
     """What stands doubtfully in a number, place by place."""
+    said = {"program": check.recomputed or "", "whole": check.printed}
     return [
-        f"{place(one.line, one.column)}: {check.name} {_doubt(check, one)}"
+        f"{place(one.line, one.column)}: {check.name} "
+        + _DOUBTS[one.how].format(**one._asdict(), **said)
         for one in check.doubts
-        if one.how != Doubt.CONTRADICTS
+        if one.how in _DOUBTS
     ] + [f"{where} ({check.name}: the program prints {check.recomputed})" for where in look(check)]
-
-
-def _doubt(check: FieldCheck, one: Doubtful) -> str:
-    program = check.recomputed or ""
-    if one.how == Doubt.LOOK_ALIKE:
-        return f"read {one.read!r} where the program prints {one.printed!r} ({program})"
-    if one.how == Doubt.ILLEGIBLE:
-        what = f"read {one.read!r}" if one.read else "nothing read"
-        return f"illegible, {what} where the program prints {one.printed!r} ({program})"
-    if one.how == Doubt.BLANK:
-        return f"a blank or a joint in it; the program prints {program}"
-    if one.how == Doubt.RETYPED:
-        return f"read {check.printed}; the program prints {program}, never this form"
-    if one.how == Doubt.CUT:
-        return f"cut off; the program prints {program}"
-    return f"{one.read!r} left over beside {program}"
 
 
 def look(check: FieldCheck) -> list[str]:
