@@ -51,7 +51,7 @@ _OPEN_UNITS, _OPEN = 12, 3e-4
 """A result is left open by single precision within so many units of its last printed place, or
 within this part of it; where it is more, the page is no evidence."""
 _LONG = 7
-"""Angles of so many digits came back from radians a little off."""
+"""Angles of so many digits came back from radians a little off: 59.99999 was 60."""
 _APPLESOFT_DIGITS, _SINGLE_DIGITS = 9, 7
 
 
@@ -269,25 +269,11 @@ def single(seed: int) -> Arithmetic:
 
 
 def _as_typed(evidence: Evidence) -> tuple[dict[str, str], frozenset[str]]:
-    """The printed numbers, with what the way into radians and back did to angles undone, and the
-    names of those angles."""
+    """The printed numbers, and the names of angles that came back from radians a little off."""
     scene = dict(evidence.recovered.scene)
-    spared = set()
-    for name, text in {**evidence.recovered.assumed, **evidence.texts}.items():
-        if name not in INPUTS or name == "MUP":
-            continue
-        scene[name] = _undone(text) if name in ANGLES else text
-        if scene[name] != text:
-            spared.add(name)
-    return scene, frozenset(spared)
-
-
-def _undone(text: str) -> str:
-    """An angle without what is left of its way into radians and back: 59.99999 was 60."""
-    value, digits = numerals.value_of(text), digits_of(text)
-    if value is None or digits < _LONG:
-        return text
-    near = Decimal(f"{value:.{digits - 3}E}").normalize()
-    if digits_of(f"{near:f}") > digits - 3:
-        return text
-    return numerals.as_printed(f"{near:f}") or text
+    scene |= {
+        name: text
+        for name, text in {**evidence.recovered.assumed, **evidence.texts}.items()
+        if name in INPUTS and name != "MUP"
+    }
+    return scene, frozenset(name for name in ANGLES if digits_of(scene[name]) >= _LONG)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import difflib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Mapping
 from importlib import metadata
 from typing import Any, NamedTuple
 
@@ -80,6 +80,8 @@ def hear_scene(
     session: Session, name: str, scene: Scene, capture: dict[str, Any] | None = None
 ) -> Heard:
     """A scene run on the ROM, by port, emulator and replay, and held against its capture."""
+    from ..replay import replay
+
     rom = session.run_scene(scene)
     others: dict[str, Finished] = {}
     if capture:
@@ -87,16 +89,21 @@ def hear_scene(
     for who, its_run in ((PORT, run), (EMULATOR, emulated.run)):
         ported = its_run(scene, dos=False)
         others[who] = Finished(ported.printout, ported.reals, ported.A)
-    differences = [one for who, other in others.items() for one in _apart(rom, who, other)]
-    differences += _replayed_apart(rom, scene)
-    capture = {
+    mine = _left_behind(rom)
+    differences = [
+        one for who, other in others.items() for one in _apart(who, mine, _left_behind(other))
+    ]
+    alone = replay({each: [scene[each]] for each in SCENE})
+    replayed = {each: text for each in FIELDS if (text := alone.printed(each).tolist()[0])}
+    differences += _apart(REPLAY, outcome_fields(rom.printout), replayed)
+    done = {
         "id": name,
         "scene": dict(scene),
         "typed_lines": scene.typed_lines(),
         "keyboard": scene.keyboard(),
         **rom._asdict(),
     }
-    return Heard(SCENES, name, (*others, REPLAY), differences, capture)
+    return Heard(SCENES, name, (*others, REPLAY), differences, done)
 
 
 def hear_sample(session: Session, number: int) -> Heard:
@@ -105,42 +112,33 @@ def hear_sample(session: Session, number: int) -> Heard:
     heard = hear_scene(session, f"sample {number}", sample(number))
     pieces: list[str] = []
     Console(lambda: None, pieces.append, dos=True).put(heard.capture["printout"])
-    name = f"printouts/{GOLDEN_RUNS[number]}.txt"
-    published, shown = packaged_bytes("impact88.golden", name).decode(), "".join(pieces)
-    differences = list(heard.differences)
-    if shown != published:
-        differences.append(Difference(PUBLISHED, "printout", shown, published))
+    published = packaged_bytes("impact88.golden", f"printouts/{GOLDEN_RUNS[number]}.txt").decode()
+    both = {"printout": "".join(pieces)}, {"printout": published}
+    differences = [*heard.differences, *_apart(PUBLISHED, *both)]
     return heard._replace(compared=(*heard.compared, PUBLISHED), differences=differences)
 
 
-def _apart(rom: Finished, who: str, other: Finished) -> Iterator[Difference]:
-    if rom.printout != other.printout:
-        yield Difference(who, "printout", rom.printout, other.printout)
-    mine, my_array = captured.left_behind(rom.reals, rom.A)
-    theirs, their_array = captured.left_behind(other.reals, other.A)
-    for name in sorted({*mine, *theirs}):
-        if mine.get(name) != theirs.get(name):
-            yield Difference(who, name, mine.get(name, "absent"), theirs.get(name, "absent"))
-    if not my_array or not their_array or my_array[0] != their_array[0]:
-        sizes = [str(one and one[0]) for one in (my_array, their_array)]
-        if my_array != their_array:
-            yield Difference(who, "DIM A", *sizes)
-        return
-    rows = my_array[0][0]
-    for place, (one, another) in enumerate(zip(my_array[1], their_array[1], strict=True)):
-        if one != another:
-            yield Difference(who, f"A({place % rows},{place // rows})", one, another)
+def _left_behind(run: Finished) -> dict[str, str]:
+    """What a run printed and left in its variables and its array, by name."""
+    reals, array = captured.left_behind(run.reals, run.A)
+    whole = {"printout": run.printout, **dict(sorted(reals.items()))}
+    if array:
+        (rows, columns), cells = array
+        whole["DIM A"] = f"{[rows, columns]}"
+        whole |= {f"A({at % rows},{at // rows})": text for at, text in enumerate(cells)}
+    return whole
 
 
-def _replayed_apart(rom: Finished, scene: Scene) -> Iterator[Difference]:
-    from ..replay import replay
-
-    alone = replay({name: [scene[name]] for name in SCENE})
-    printed = outcome_fields(rom.printout)
-    for name in FIELDS:
-        replayed = alone.printed(name).tolist()[0]
-        if replayed != printed.get(name, ""):
-            yield Difference(REPLAY, name, printed.get(name, "nothing"), replayed or "nothing")
+def _apart(who: str, rom: Mapping[str, str], other: Mapping[str, str]) -> list[Difference]:
+    """Where the ROM and another differ; an array of another size is one difference."""
+    names = dict.fromkeys([*rom, *other])
+    if rom.get("DIM A") != other.get("DIM A"):
+        names = {name: None for name in names if not name.startswith("A(")}
+    return [
+        Difference(who, name, rom.get(name, "absent"), other.get(name, "absent"))
+        for name in names
+        if rom.get(name) != other.get(name)
+    ]
 
 
 # --- programs and calculations -------------------------------------------------------------------
@@ -172,12 +170,8 @@ def _hear_program(session: Session, case: Case) -> Heard:
     except TooManyStatements:
         allowed = f"no end after {captured.PLENTY:,} statements"
         differences.append(Difference(EMULATOR, "the emulator", "came to an end", allowed))
-    differences += [
-        Difference(who, what, rom[what], text)
-        for who, other in others.items()
-        for what, text in other.items()
-        if text != rom[what]
-    ]
+    for who, other in others.items():
+        differences += _apart(who, {what: rom[what] for what in other}, other)
     done = {**data, "output" if fuzz else "out": rom["displayed"]}
     if not fuzz:
         done["instructions"] = session.apple.instructions - before
@@ -187,16 +181,12 @@ def _hear_program(session: Session, case: Case) -> Heard:
 
 
 def _hear_call(session: Session, case: Case) -> Heard:
-    operation, first, second, extension, expected = case.data
-    rom = session.calculate(operation, first, second, extension)
-    mine = captured.result(rom)
-    others = {
-        CAPTURE: captured.result(expected),
-        HERE: captured.call(operation, first, second, extension),
-    }
-    asked = " ".join(filter(None, case.data[:4]))
-    differences = [Difference(who, asked, mine, one) for who, one in others.items() if one != mine]
-    return Heard(ARITHMETIC, case.name, tuple(others), differences, [*case.data[:4], rom])
+    *asked, expected = case.data
+    rom = session.calculate(*asked)
+    others = {CAPTURE: captured.result(expected), HERE: captured.call(*asked)}
+    what, mine = " ".join(filter(None, asked)), captured.result(rom)
+    differences = [d for who, one in others.items() for d in _apart(who, {what: mine}, {what: one})]
+    return Heard(ARITHMETIC, case.name, tuple(others), differences, [*asked, rom])
 
 
 # --- the record -----------------------------------------------------------------------------------
