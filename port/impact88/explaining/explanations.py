@@ -327,14 +327,14 @@ class _Page:
         line, column = (one.line, one.column) if one else (None, None)
         look = ""
         if one and (label or kind in slips.BITS):
-            at, glyphs = (line, column), (printed, would_be)
+            at, asked = (line, column), f"{printed} or {would_be}"
             if kind == slips.DIGIT and reading is not None:
-                pairs = enumerate(zip(printed, would_be, strict=False))
-                index = next((i for i, (read, true) in pairs if read != true), 0)
+                pairs = enumerate(zip(printed, would_be, strict=True))
+                index, (read, true) = next(pair for pair in pairs if pair[1][0] != pair[1][1])
+                asked = f"{read} {'an' if true == '8' else 'a'} {true}"
                 if index < len(reading.region):
                     at = self.shown.place(reading.region[index].offset)
-                glyphs = printed[index], would_be[index]
-            look = f"line {at[0]}, column {at[1]}: is this {glyphs[0]} or {glyphs[1]}?"
+            look = f"line {at[0]}, column {at[1]}: is this {asked}?"
         return {
             "kind": kind, "field": name, "printed": printed, "would_be": would_be,
             "line": line, "column": column, "look": look,
