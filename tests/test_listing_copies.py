@@ -158,5 +158,5 @@ def test_a_line_retyped_wrong_is_named(tmp_path: Path) -> None:
     page = printouts.body(wrong.run(sample(1)).page)
     (result,) = examine_bytes("-", page.encode()).results
     first = result.explanations[0]
-    assert first.kind == "a line of the listing written otherwise"
+    assert first.kind == "a changed line of the listing"
     assert first.note.startswith("line 490: A66 = 1 + 2*em, should be 1 - 2*em")

@@ -170,7 +170,7 @@ def test_a_slip_in_what_was_given_apart_is_found(name: str, typed: str, noise: b
     said = [
         {change["field"]: double(change["would_be"]) for change in one.changes}
         for one in result.explanations
-        if one.rank == 1 and one.note == "in the inputs given apart"
+        if one.rank == 1 and one.note == "in the inputs given separately"
     ]
     field = "MUP" if name == "MU" else name
     assert any(
@@ -184,10 +184,10 @@ def test_scenes_given_apart_otherwise_than_the_page_has_them() -> None:
     (shown,) = read_printouts(SAMPLE)
     true = dict(sample(1).items())
     same = {**true, "DA": "7.590", "PA": " - 19.8", "MU": "+.911", "E": "5E-3", "UY": "-0"}
-    assert not any("given apart" in line for line in verify(shown, given=same).findings)
+    assert not any("given separately" in line for line in verify(shown, given=same).findings)
     result = verify(shown, given={**same, "MA": "143.51", "PA": "+19.8", "MU": "-.911"})
     assert result.verdict is Verdict.IDENTICAL
-    (line,) = [line for line in result.findings if "given apart" in line]
+    (line,) = [line for line in result.findings if "given separately" in line]
     assert line.endswith(
         "MA 143.51 (by the page 143.5); PA +19.8 (by the page -19.8); MU -.911 (by the page .911)"
     )

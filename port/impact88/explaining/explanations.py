@@ -196,7 +196,7 @@ class _Page:
             kind = LABELS_EXCHANGED if exchanged else LABEL_WRONG
             changes = tuple(Change(kind, one.name, one.read, one.printed) for one in wrong)
             left = self.base - {f"label {one.name}" for one in wrong}
-            note = "the numbers are what the program prints where they stand"
+            note = "the numbers are what the program prints there"
             yield Cause(kind, note, _LABEL, None, left, changes)
 
     def last_places_alone(self) -> Iterator[Cause]:
@@ -296,7 +296,7 @@ class _Page:
         if changes[0].field.startswith("reply "):
             note = "in the typed reply"
         elif any(one.field in self.recovered.apart for one in changes):
-            note = "in the inputs given apart"
+            note = "in the inputs given separately"
         kind = " and ".join(dict.fromkeys(change.kind for change in changes))
         return Cause(kind, note, bits, None, wrong - {one.field for one in changes}, changes)
 

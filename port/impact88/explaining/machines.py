@@ -226,7 +226,7 @@ def _single_precision(
     how = max(fits, key=fits.__getitem__)
     kind = "single-precision arithmetic" + ("" if how == "floored" else f", {how}, not floored")
     evident = digits_of(exact.fields.get("KI")) > _SINGLE_DIGITS
-    note = "as GW-BASIC and its like compute and print"
+    note = "as in GW-BASIC and similar BASICs"
     yield page.cause(kind, note, _SINGLE + (0.0 if evident else _NO_EVIDENCE), ranges)
 
 

@@ -22,7 +22,7 @@ from ..equations.spelling import LISTING, SHOWN, spellings
 from ..fields import FIELDS
 from .predictions import NOT_APPLESOFT, Cause, Evidence
 
-_BITS = {"a line of the listing written otherwise": 24.0, "another program": 20.0}
+_BITS = {"a changed line of the listing": 24.0, "another program": 20.0}
 """Bits of an edit: one of some 5,000 lines (12) or 500 readings (9), and an office's copy in which
 one is wrong at all (12, 11)."""
 _CHANCE = 50.0
@@ -72,6 +72,6 @@ def causes(evidence: Evidence, differing: frozenset[str]) -> Iterator[Cause]:
             named += [some[k] for k in np.flatnonzero(wrong(names, len(some)) == 0)]
     # what computes the same is named once, as the likeliest of its ways
     for edit in sorted(named, key=lambda edit: (edit.rank, len(edit.text)))[:1]:
-        kind = "a line of the listing written otherwise" if edit.title else "another program"
+        kind = "a changed line of the listing" if edit.title else "another program"
         note = f"{edit.text}; {NOT_APPLESOFT}"
         yield Cause(kind, note, _BITS[kind], scene, frozenset())

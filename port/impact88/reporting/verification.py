@@ -239,7 +239,7 @@ def _explained(result: Verification) -> list[str]:
         if one.rank != before:
             said.append(f"{one.rank}. {cause}; explains {one.explains} of {result.disagreements}")
         else:
-            said.append(f"   or, which this page cannot distinguish: {cause}")
+            said.append(f"   or, equally well on this page: {cause}")
         before = one.rank
         said += [f"   look at {where}" for where in one.look[:4]]
     return said or [NO_SINGLE_SLIP]

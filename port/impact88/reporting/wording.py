@@ -209,7 +209,7 @@ def of_copy(copy: ListingCopy, held: Judged, restored: Mapping[str, str]) -> lis
 def given_apart(
     given: Mapping[str, str], scene: Mapping[str, str | None], fields: Sequence[FieldCheck]
 ) -> list[str]:
-    """Of inputs given apart: that some are not the page's own, and how its results compare with
+    """Of inputs given separately: that some are not the page's own, and how its results compare with
     them; and that the page has others, which are used."""
     absent, otherwise = [], []
     shown = {scene_name(check.name): check for check in fields if check.name in INPUTS}
@@ -232,11 +232,11 @@ def given_apart(
         elif wrong := compared.count(False):
             agree = f"{wrong} of {len(compared)} numbers read are not what it prints for them"
         sentences.append(
-            f"not on the page, and taken from the scene given apart: {', '.join(absent)}; {agree}"
+            f"not on the page, and taken from the scene given separately: {', '.join(absent)}; {agree}"
         )
     if otherwise:
         sentences.append(
-            f"given apart and different from the page, which is used: {'; '.join(otherwise)}"
+            f"given separately and different from the page, which is used: {'; '.join(otherwise)}"
         )
     return sentences
 
