@@ -232,7 +232,7 @@ def given_apart(
         elif wrong := compared.count(False):
             agree = f"{wrong} of {len(compared)} numbers read are not what it prints for them"
         sentences.append(
-            f"not on the page, and taken from the scene given separately: {', '.join(absent)}; {agree}"
+            f"not on the page; taken from the scene given separately: {', '.join(absent)}; {agree}"
         )
     if otherwise:
         sentences.append(
