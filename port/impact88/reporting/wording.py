@@ -209,8 +209,8 @@ def of_copy(copy: ListingCopy, held: Judged, restored: Mapping[str, str]) -> lis
 def given_apart(
     given: Mapping[str, str], scene: Mapping[str, str | None], fields: Sequence[FieldCheck]
 ) -> list[str]:
-    """Of inputs given separately: that some are not the page's own, and how its results compare with
-    them; and that the page has others, which are used."""
+    """Of inputs given separately: those that the page lacks, and how its results compare with them;
+    and those that it has otherwise."""
     absent, otherwise = [], []
     shown = {scene_name(check.name): check for check in fields if check.name in INPUTS}
     for name, check in shown.items():
