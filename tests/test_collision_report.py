@@ -43,8 +43,16 @@ def plain(page: str) -> str:
     return re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", page.partition("</style>")[2]))
 
 
-def test_a_scene_is_answered_forward_in_its_units(tmp_path: Path, capsys: Any) -> None:
-    page = written(tmp_path, SCENE)
+@pytest.fixture(scope="module")
+def forward(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the report of SCENE: case.toml, case.html, t.csv."""
+    folder = tmp_path_factory.mktemp("forward")
+    written(folder, SCENE, "--paper", "a4", "--csv", str(folder / "t.csv"))
+    return folder
+
+
+def test_a_scene_is_answered_forward_in_its_units(forward: Path) -> None:
+    page = (forward / "case.html").read_text("utf-8")
     text = plain(page)
     assert "Main and 4th" in text
     assert "Case 24-117 &lt;b&gt;" in text
@@ -67,12 +75,11 @@ def test_a_file_with_unknowns_is_reconstructed(tmp_path: Path, capsys: Any) -> N
     assert "adjusted by least squares" in text
 
 
-def test_the_answer_is_what_the_commands_say(tmp_path: Path, capsys: Any) -> None:
-    written(tmp_path, SCENE, "--csv", str(tmp_path / "t.csv"))
-    rows = list(csv.reader((tmp_path / "t.csv").open(encoding="utf-8")))
+def test_the_answer_is_what_the_commands_say(forward: Path, capsys: Any) -> None:
+    rows = list(csv.reader((forward / "t.csv").open(encoding="utf-8")))
     (found,) = [row for row in rows if row[:1] == ["DVA"] and len(row) == 9]
     capsys.readouterr()
-    words = ["bounds", str(tmp_path / "case.toml"), "--samples", "300", "--json"]
+    words = ["bounds", str(forward / "case.toml"), "--samples", "300", "--json"]
     assert main([*words, "--outputs", "DVA"]) == 0
     expected = json.loads(capsys.readouterr().out)["outputs"]["DVA"]
     numbers = [expected["nominal"], expected["deviation"], expected["quantiles"]["0.05"]]
@@ -87,7 +94,7 @@ def test_the_answer_is_what_the_commands_say(tmp_path: Path, capsys: Any) -> Non
 
 
 def test_friction_as_a_share_is_that_of_the_other_commands(tmp_path: Path, capsys: Any) -> None:
-    written(tmp_path, {**SCENE, "MU": "50 %"}, "--csv", str(tmp_path / "t.csv"))
+    written(tmp_path, {**SCENE, "MU": "50 %", "GA": "-30"}, "--csv", str(tmp_path / "t.csv"))
     rows = list(csv.reader((tmp_path / "t.csv").open(encoding="utf-8")))
     found = next(row[2] for row in rows if row[:1] == ["DVA"])
     capsys.readouterr()
@@ -95,12 +102,10 @@ def test_friction_as_a_share_is_that_of_the_other_commands(tmp_path: Path, capsy
     assert float(found) == pytest.approx(float(capsys.readouterr().out.split()[-1]), abs=0.06)
 
 
-def test_the_same_input_gives_the_same_bytes_and_no_file_is_missed(
-    tmp_path: Path, capsys: Any
-) -> None:
-    page = written(tmp_path, SCENE, "--paper", "a4")
-    assert page == written(tmp_path, SCENE, "--paper", "a4")
-    assert page != written(tmp_path, SCENE, "--paper", "a4", "--seed", "1")
+def test_the_same_input_gives_the_same_bytes_and_no_file_is_missed(forward: Path) -> None:
+    page = (forward / "case.html").read_text("utf-8")
+    assert page != written(forward, SCENE, "--paper", "a4", "--seed", "1")
+    assert page == written(forward, SCENE, "--paper", "a4")
     assert "210mm 297mm" in page
     addresses = set(re.findall(r"https?://[^\"' <]+", page))
     assert addresses <= {"http://www.w3.org/2000/svg"}

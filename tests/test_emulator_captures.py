@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 import captures
@@ -30,7 +32,8 @@ FUZZ = [
     if (captures.folder() / f"{name}.jsonl.gz").exists()
     for case in captures.jsonl(name)
 ]
-SCENES = captures.scenes()
+SCENES = captures.scenes()[:: 1 if "IMPACT88_CAPTURES" in os.environ else 3]
+"""The port replays the others, and is compared with the emulator line by line."""
 
 pytestmark = pytest.mark.captures
 

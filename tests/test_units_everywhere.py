@@ -99,7 +99,16 @@ def solve_json_lines(system: str, path: Path, capsys: Any) -> Amounts:
 
 
 def bounds(system: str, path: Path, capsys: Any) -> Amounts:
-    ranges = ["--range", "UX=+- 5%", "--range", "MA=+- 2%", "--samples", "200"]
+    ranges = [
+        "--range",
+        "UX=+- 5%",
+        "--range",
+        "MA=+- 2%",
+        "--samples",
+        "200",
+        "--outputs",
+        "DVA,LOSS",
+    ]
     shown = json.loads(_printed(capsys, "bounds", str(path), *ranges, "--json"))
     found = {}
     for name, one in shown["outputs"].items():
