@@ -231,8 +231,9 @@ def test_the_screen_is_the_emulators_memory() -> None:
     assert collision.screen_runs(codes) == runs
 
 
-@pytest.mark.parametrize("units", ["", "us", "chapter", "metric", "si"])
-@pytest.mark.parametrize("number", [1, 2, 3])
+@pytest.mark.parametrize(
+    ("number", "units"), [(1, ""), (1, "us"), (2, "chapter"), (2, "metric"), (3, "si"), (3, "us")]
+)
 def test_the_answer_is_what_reconstruct_says_of_the_same_impact(
     number: int, units: str, tmp_path: Path, own: Own
 ) -> None:
