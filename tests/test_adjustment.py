@@ -197,7 +197,7 @@ class TestLeastOfAll:
         system = System(known, adjusted=True)
 
         def solved(ux):
-            start = system.start(np.random.default_rng(0), 0.0)
+            start = system.start(np.random.default_rng(0), 1)
             for name, value in (("UX", ux), ("UY", 0.0), ("SA", abs(ux))):
                 row = system.variables.index(name)
                 start[row] = value / system.scales[row]

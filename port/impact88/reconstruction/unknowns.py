@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from itertools import combinations
 from typing import Any
 
@@ -241,7 +242,8 @@ class _Problem:
         sliding = whole(p.sliding for p in parts)
         agrees = np.all([np.isfinite(values[n]) for n in self.wanted], axis=0)
         if "MUP" in values:
-            values["MU"] = _typed(values, sliding)
+            speeds = [values[n] for n in (*INITIAL, *FINAL) if n in values]
+            values["MU"] = typed(values["MUP"], sliding, speeds)
             if must_agree:
                 agrees = agrees & ((values["MU"] == self.known["MU"]) | np.isnan(sliding))
         return Solution(
@@ -319,11 +321,10 @@ class _Problem:
         return "; and ".join(bad) or None
 
 
-def _typed(values: Mapping[str, Array], sliding: Array) -> Array:
+def typed(mup: Any, sliding: Any, velocities: Iterable[Any]) -> Array:
     """The MU that line 400 turns into MUP: changed where the sliding is positive. Where the sliding
     is not known the sign stays as it is."""
-    speed = np.max([np.abs(v) for n, v in values.items() if n in (*INITIAL, *FINAL)], axis=0)
-    mu = values["MUP"]
+    mu, speed = np.asarray(mup), reduce(np.maximum, map(np.abs, velocities))
     with np.errstate(invalid="ignore"):
         changed = (sliding > TIE * speed) & (mu != PIVOT) & (mu != 0)
     return np.where(changed, -mu, mu)
