@@ -135,17 +135,20 @@ def _by_search(
     whole = whole.of(_telling(sample))
     right = clear & ~whole.wrong
     for several in _explanations(sample, measure.off[rows]):
-        for program, others in several:
-            fits = run(program, whole).rows
-            explained = fits & (causes == UNKNOWN)
+        for program, others, names in several:
+            part = whole.narrowed(names)
+            fits = run(program, part).rows
+            explained = fits & part.wrong & (causes == UNKNOWN)
             if _evidence(explained & clear, bits, choices & clear) < _need(program):
                 continue
             stands = (fits & right).sum() >= BORNE_OUT * right.sum()
             says = program.says + ("" if stands else IN_THESE_ROWS)
+            if unexplained := [name for name in whole.theirs if name not in names]:
+                says += f"; {', '.join(unexplained)} {UNKNOWN}"
             causes[explained] = says
             same = [other.program.says for other in others[:_EQUIVALENTS]]
-            a, b, c, d = (int(x.sum()) for x in (explained, whole.wrong, fits & right, right))
-            parts = _parts(program, whole, explained)
+            a, b, c, d = (int(x.sum()) for x in (explained, part.wrong, fits & right, right))
+            parts = _parts(program, part, explained)
             result.evidence.append(Cause(says, a, b, c, d, same, parts))
             result.programs.append(program)
         if result.evidence:
@@ -201,26 +204,46 @@ def _sample(judge: Judge, clear: Bools) -> NDArray[np.intp]:
 
 # --- which programs ------------------------------------------------------------------------------
 
-_Chosen = tuple[Program, Sequence[Found]]
-"""A program that explains rows, and others that explain the same."""
+_Chosen = tuple[Program, Sequence[Found], Sequence[str]]
+"""A program that explains rows, others that explain the same, and the results that it gives."""
 
 
 def _explanations(judge: Judge, off: Floats) -> Iterator[list[_Chosen]]:
     """Lists of programs that together explain a table, the simplest first."""
-    with progress(7, "look for the cause") as meter:
+    with progress(6, "look for the cause") as meter:
         meter.update(0)
-        reduced = judge.of(_telling(judge))
-        alone = singles(reduced, reduced.wrong)
-        meter.update(1)
-        if alone and alone[0].whole(judge.wrong):
-            yield [_best(_deepened(alone, reduced), judge)]
-        elif np.median(off[judge.wrong]) > _LARGE:
-            for programs in pairs(reduced, alone):
-                found = ranked([run(program, reduced) for program in programs], judge.wrong)
-                if found and found[0].whole(judge.wrong):
-                    yield [_best(_deepened(found, reduced), judge)]
-                meter.update(1)
-        yield _several(alone, judge)
+        groups = judge.of(_telling(judge)).groups()
+        first = judge.narrowed(groups[0])
+        alone = singles(first, first.wrong)
+        found = [one for one in alone if one.whole(first.wrong)]
+        stages = pairs(first, alone) if np.median(off[judge.wrong]) > _LARGE else iter(())
+        while not found and (programs := next(stages, None)) is not None:
+            meter.update(1)
+            found = ranked([run(program, first) for program in programs], first.wrong)
+            found = [one for one in found if one.whole(first.wrong)]
+        if found:
+            yield [_completed(_deepened(found, first), groups, judge)]
+        yield _several(alone, first)
+
+
+def _completed(found: Sequence[Found], groups: Sequence[list[str]], judge: Judge) -> _Chosen:
+    """Of programs that explain the first group of results alike, the one that all bear out, or the
+    likeliest; with what explains the other groups besides."""
+    alike = [one for one in found if np.array_equal(one.rows, found[0].rows)]
+    alike.sort(key=lambda one: (-int(run(one.program, judge).rows.sum()), one.rank))
+    program = alike[0].program
+    wrong = [name for group in groups for name in group]
+    names = [name for name in judge.theirs if name in groups[0] or name not in wrong]
+    for more in (wrong, *groups[1:3]) if len(groups) > 1 else ():
+        part = judge.narrowed([*names, *more])
+        one = run(program, part)
+        if not one.whole(part.wrong):
+            one = next(iter(singles(part, part.wrong & ~one.rows, program)), one)
+        if one.whole(part.wrong):
+            program, names = one.program, [*names, *more]
+        if set(wrong) <= set(names):
+            break
+    return program, alike[1:] if program is alike[0].program else (), names
 
 
 def _deepened(found: Sequence[Found], judge: Judge) -> Sequence[Found]:
@@ -259,13 +282,6 @@ def _telling(judge: Judge) -> list[str]:
     ]
 
 
-def _best(found: Sequence[Found], judge: Judge) -> _Chosen:
-    """Of programs that explain alike, the one that all results bear out, or the likeliest."""
-    alike = [one for one in found if np.array_equal(one.rows, found[0].rows)]
-    alike.sort(key=lambda one: (-int(run(one.program, judge).rows.sum()), one.rank))
-    return alike[0].program, alike[1:]
-
-
 def _several(alone: Sequence[Found], judge: Judge) -> list[_Chosen]:
     """Few programs that explain nearly all rows, each some: a table of several programs' rows."""
     left = judge.wrong.copy()
@@ -274,7 +290,7 @@ def _several(alone: Sequence[Found], judge: Judge) -> list[_Chosen]:
         best = max(alone, key=lambda one: ((one.rows & left).sum(), -one.rank))
         if not (best.rows & left).any():
             break
-        chosen.append((best.program, ()))
+        chosen.append((best.program, (), [*judge.theirs]))
         left &= ~best.rows
     explained = judge.wrong.sum() - left.sum()
     return chosen if explained >= BORNE_OUT * judge.wrong.sum() else []

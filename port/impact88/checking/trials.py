@@ -20,6 +20,7 @@ from ..equations.evaluation import Columns, Run, chunks, value
 from ..equations.otherprogram import Program
 from ..equations.spelling import (
     A_IMPULSE,
+    CONTACT_FRAME,
     IMPULSES,
     LISTING,
     SHOWN,
@@ -68,6 +69,21 @@ class Judge:
         """By some of the results only."""
         theirs = {name: column for name, column in self.theirs.items() if name in names}
         return Judge(self.scene, theirs, self.limit, self.wrong)
+
+    def narrowed(self, names: Sequence[str]) -> Judge:
+        """By some of the results, of which some are wrong, in fewer rows perhaps."""
+        part = self.of(names)
+        return Judge(part.scene, part.theirs, part.limit, ~run(Program(), part).rows & self.wrong)
+
+    def groups(self) -> list[list[str]]:
+        """The final velocities, and each other result, where they are wrong."""
+        rest = [[name] for name in self.theirs if name not in FINAL_VELOCITIES]
+        if self.has_velocities:
+            rest.insert(0, list(FINAL_VELOCITIES))
+        else:
+            rest = [list(self.theirs)]
+        ours = Program().results(self.scene)
+        return [group for group in rest if self.of(group).near(ours).mean() < BORNE_OUT]
 
     def near(self, results: Columns, prefix: str = "") -> Bools:
         """The rows whose every result is near enough: (n,) or (K, n)."""
@@ -183,7 +199,6 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
 @np.errstate(all="ignore")
 def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
     """Programs with two mistakes, by stages. ``alone``: what explains rows alone."""
-    yield list(_by_outputs(judge))
     if judge.has_velocities:
         yield list(_by_equations(judge.with_finals(_FEW), judge))
     enough = [one for one in alone if one.explains(judge.wrong) >= _SHARE * judge.wrong.sum()]
@@ -197,22 +212,6 @@ def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
 
 def _second(judge: Judge, unexplained: Bools, first: Program) -> list[Program]:
     return [one.program for one in singles(judge, unexplained, first)[:2]]
-
-
-def _by_outputs(judge: Judge) -> Iterator[Program]:
-    """One mistake explains some results, another on top of it the others."""
-    rest = [[name] for name in judge.theirs if name not in FINAL_VELOCITIES]
-    groups = [list(FINAL_VELOCITIES), *rest] if judge.has_velocities else rest
-    right = [judge.of(group).near(Program().results(judge.scene)) for group in groups]
-    amiss = [group for group, rows in zip(groups, right, strict=True) if rows.mean() < BORNE_OUT]
-    if len(amiss) < 2:
-        return
-    part = judge.of(amiss[0])
-    wrong = ~run(Program(), part).rows
-    part = Judge(part.scene, part.theirs, part.limit, wrong)
-    first = [one for one in singles(part, wrong) if one.whole(wrong)]
-    for one in first[:_FIRSTS]:
-        yield from _second(judge, judge.wrong, one.program)
 
 
 def _two_readings(judge: Judge) -> Iterator[Program]:
@@ -273,25 +272,25 @@ _IMPULSES = {
 }
 """The impulses by what they change of A or of B."""
 _ALONG = {"Pn": "c*Px + s*Py", "Pt": "c*Py - s*Px", "T": "Pm"}
-_WITHOUT_IMPULSES = (LISTING, A_IMPULSE)
+_IN_FRAME = {
+    **{"VAN": "c*VAX + s*VAY", "VAT": "c*VAY - s*VAX"},
+    **{"VBN": "c*VBX + s*VBY", "VBT": "c*VBY - s*VBX"},
+}
+_WITHOUT_IMPULSES = (LISTING, A_IMPULSE, CONTACT_FRAME)
+_SUMS = 200
+""""""
 
 
 def _by_equations(judge: Judge, whole: Judge) -> Iterator[Program]:
-    """Programs with two mistakes in different equations, or a reading and a mistake. ``judge``: a
-    few rows, of which all have all final velocities; ``whole``: those that a second one is to
-    explain."""
-    for title in spellings():
-        for how in "AB" if title not in _WITHOUT_IMPULSES else "A":
-            faults = _Faults(spellings()[title], judge, how)
-            by_mended: dict[frozenset[str], list[Edit]] = {}
-            for edit, mended in sorted(faults.found(edits_of(title)), key=lambda one: one[0].rank):
-                by_mended.setdefault(mended, []).append(edit)
-            for one, other in combinations(by_mended, 2):
-                if one | other == faults.violated:
-                    for edits in product(by_mended[one][:_EACH], by_mended[other][:_EACH]):
-                        yield Program(edits)
-    faults = _Faults(spellings()[LISTING], judge, "A")
+    """Programs with two mistakes that together mend what their velocities violate. ``judge``: a few
+    rows, of which all have all final velocities; ``whole``: those that a second one is to
+    explain after a reading."""
     reading = [one for one in readings() if not one.shows]
+    for title in spellings():
+        own = [*reading, *(one for one in variants() if one.title == title), *edits_of(title)]
+        for how in "AB" if title not in _WITHOUT_IMPULSES else "A":
+            yield from _Faults(spellings()[title], judge, how).pairs(own)
+    faults = _Faults(spellings()[LISTING], judge, "A")
     left = faults.left([one.sides for one in reading])
     for place in np.argsort(left, kind="stable")[:_FIRSTS]:
         if left[place] < len(faults.violated):
@@ -308,7 +307,7 @@ class _Faults:
 
         def clamped(theirs: Columns) -> Run:
             seen = {**names, **theirs}
-            made = {**_IMPULSES[how], **_ALONG}
+            made = {**_IMPULSES[how], **_ALONG, **_IN_FRAME}
             for name, text in made.items():
                 seen[name] = value(expression(text), seen)
             return Run(spelling, judge.scene, {n: seen[n] for n in (*FINAL_VELOCITIES, *made)})
@@ -341,17 +340,51 @@ class _Faults:
         whole = np.concatenate(parts, -1)
         return np.where(np.isfinite(whole), whole, 0.0)
 
-    def found(self, edits: Sequence[Edit]) -> Iterator[tuple[Edit, frozenset[str]]]:
-        """The edits that mend equations and break none, and what they mend. An equation that one
-        touches and that still fails may be the other's."""
-        if not self.violated:
-            return
+    def pairs(self, edits: Sequence[Edit]) -> list[Program]:
+        """Programs with two edits whose changes of the residuals add up to what mends them: found
+        by sums of projections of the changes, sorted."""
         distinct = self.start.distinct([edit.sides for edit in edits])
-        for part in chunks(len(distinct), self.size):
-            places, several = zip(*distinct[part], strict=True)
-            residuals = self.start.edited(several).residuals
-            holds = {key: self._holds(key, found) for key, found in residuals.items()}
-            for k, place in enumerate(places):
-                good = {key for key, flags in holds.items() if flags[min(k, len(flags) - 1)]}
-                if good & self.violated and holds.keys() - good <= self.violated:
-                    yield edits[place], frozenset(good & self.violated)
+        keys = list(self.start.residuals)
+        own = self._scaled(self.start.residuals, keys, 1)
+        parts = [
+            self._scaled(
+                self.start.edited([sides for _, sides in distinct[part]]).residuals,
+                keys,
+                len(distinct[part]),
+            )
+            - own
+            for part in chunks(len(distinct), self.size)
+        ]
+        changes = np.concatenate(parts)
+        usable = np.flatnonzero(
+            np.isfinite(changes).all((1, 2)) & (np.abs(changes) > 8).any((1, 2))
+        )
+        changes = changes[usable]
+        found: dict[tuple[int, int], int] = {}
+        rng = np.random.default_rng(88)
+        for half in (slice(0, None, 2), slice(1, None, 2)):
+            weights = rng.choice((-1.0, 1.0), own[0, :, half].shape) * rng.uniform(
+                0.5, 1.5, own[0, :, half].shape
+            )
+            sums = np.einsum("kij,ij", changes[:, :, half], weights)
+            target = -(own[0, :, half] * weights).sum()
+            order = np.argsort(sums)
+            room = 2 * np.abs(weights).sum() + 1e-12 * np.abs(sums)
+            first = np.searchsorted(sums[order], target - sums - room)
+            last = np.searchsorted(sums[order], target - sums + room)
+            for i in np.flatnonzero(last > first)[:_SUMS]:
+                others = order[first[i] : min(last[i], first[i] + _SUMS)]
+                left = np.abs(own + changes[i] + changes[others]) <= 2
+                for j in others[left.all(1).mean(1) >= BORNE_OUT]:
+                    if i < j:
+                        one, other = edits[distinct[usable[i]][0]], edits[distinct[usable[j]][0]]
+                        found[int(i), int(j)] = one.rank + other.rank
+        best = sorted(found, key=lambda pair: found[pair])[:_FIRSTS]
+        return [Program(tuple(edits[distinct[usable[k]][0]] for k in pair)) for pair in best]
+
+    def _scaled(self, residuals: Columns, keys: Sequence[str], count: int) -> Floats:
+        """Residuals of some edits by what is allowed, (count, keys, rows)."""
+        whole = np.empty((count, len(keys), self.size))
+        for place, key in enumerate(keys):
+            whole[:, place] = residuals.get(key, self.start.residuals[key]) / self.limits[key]
+        return whole

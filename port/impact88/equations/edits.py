@@ -167,17 +167,19 @@ def _filled(made: ast.expr, bound: Mapping[str, ast.expr]) -> ast.expr:
 
 
 def equation_edits(spelling: Spelling) -> Iterator[Edit]:
-    """The same edit throughout one equation (all statements of one subject), or one statement."""
+    """The same edit throughout one statement, or all that share a subject up to a comma."""
     groups: dict[str, list[int]] = {}
     for index in range(spelling.own, spelling.results):
         one = spelling.statements[index]
-        if one.subject.startswith("Equation"):
-            groups.setdefault(one.subject, []).append(index)
+        subjects = one.subject.split(", ")
+        for count in range(1, len(subjects) + 1):
+            groups.setdefault(", ".join(subjects[:count]), []).append(index)
         groups[f"{one.text}; {one.subject}"] = [index]
+    groups = {
+        subject: places for subject, places in groups.items() if len(places) > 1 or ";" in subject
+    }
     for subject, places in groups.items():
         several = [spelling.statements[index] for index in places]
-        if len(places) == 1 and subject == several[0].subject:
-            continue
         names = Counter(
             node.id
             for one in several
@@ -200,10 +202,14 @@ def equation_edits(spelling: Spelling) -> Iterator[Edit]:
 def _throughout(
     name: str, kin: Sequence[str], names: Counter[str]
 ) -> Iterator[tuple[str, dict[str, ast.expr]]]:
-    """What may be done to a name wherever it stands."""
+    """What may be done to a name, or to two of one kind, wherever they stand."""
     for other in kin:
         if other > name and other in names:
             yield f"{name} and {other} exchanged", {name: ast.Name(other), other: ast.Name(name)}
+            both = (name, other)
+            yield f"{name} and {other} left out", dict.fromkeys(both, ast.Constant(0))
+            negative = {one: expression(f"-{one}") for one in both}
+            yield f"{name} and {other} with the wrong sign", negative
     if names[name] > 1:
         yield f"{name} with the wrong sign", {name: expression(f"-{name}")}
         yield f"{name} left out", {name: ast.Constant(0)}
@@ -255,8 +261,23 @@ def measured(name: str, how: str, number: float) -> Edit:
 
 @cache
 def readings() -> tuple[Edit, ...]:
-    """Columns read or shown otherwise, of ``readings.txt``."""
-    return tuple(map(_reading, written_out(table("readings.txt"))))
+    """Columns read or shown otherwise, of ``readings.txt``, for both vehicles or for one."""
+    both = [_reading(line) for line in written_out(table("readings.txt"))]
+    return (*both, *(part for one in both for part in _of_one_vehicle(one)))
+
+
+def _of_one_vehicle(reading: Edit) -> Iterator[Edit]:
+    """What a reading changes of A alone, and of B alone, where it changes both."""
+    a = {key for key in reading.sides if key.removeprefix(SHOWN) in _OF_A}
+    b = reading.sides.keys() - a
+    if len(a) == len(b):
+        for vehicle, keys in (("A's", a), ("B's", b)):
+            sides = {key: made for key, made in reading.sides.items() if key in keys}
+            says = f"{reading.says}, {vehicle} only"
+            yield reading._replace(sides=sides, says=says, rank=RARE_CONVENTION)
+
+
+_OF_A = frozenset("DA PA TA MA IA UX UY WA VAX VAY WAF XA YA XAF YAF DVA".split())
 
 
 def written_out(lines: Iterable[str]) -> Iterator[str]:

@@ -16,6 +16,7 @@ Sides = tuple[ast.expr, ...]
 
 FIRST, LAST = "reading", "results"
 LISTING, IMPULSES, A_IMPULSE = "listing", "contact impulses", "equations with A's impulse"
+CONTACT_FRAME = "contact frame"
 TYPED, SHOWN = "typed_", "shown_"
 """Before a column's name: as the table has it; before a result's: as the program shows it."""
 
