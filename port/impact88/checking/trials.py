@@ -9,7 +9,6 @@ their velocities put into all, it mends some); the second is looked for on top o
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,7 +45,8 @@ _FIRSTS = 4
 """Mistakes on top of which another is looked for."""
 _EACH = 3
 """Edits of those that mend the same equations that are tried together with others."""
-_ROUNDING = 1e-11
+_PRECISION = 1e-11
+"""Of residuals."""
 
 
 class Judge:
@@ -247,12 +247,12 @@ def _measured(judge: Judge) -> Iterator[Program]:
             for several in (k, moved)
             for (name, how), number in zip(forms, several, strict=True)
         ]
-        here, there = np.split(faults.residuals(both), 2)
+        here, there = np.split(np.nan_to_num(faults.left(both)).reshape(len(both), -1), 2)
         slope = (there - here) / (moved - k)[:, None]
         k = k - np.nan_to_num((slope * here).sum(1) / (slope * slope).sum(1))
     fitted = [(name, how, float(x)) for (name, how), x in zip(forms, k, strict=True)]
-    left = np.abs(faults.residuals([measured(*one).sides for one in fitted]))
-    for place in np.argsort(np.median(left, axis=1), kind="stable")[:_FIRSTS]:
+    left = np.abs(faults.left([measured(*one).sides for one in fitted]))
+    for place in np.argsort(np.nanmedian(left, axis=(1, 2)), kind="stable")[:_FIRSTS]:
         for digits in _DIGITS:
             name, how, number = fitted[place]
             yield Program((measured(name, how, float(f"{number:.{digits}g}")),))
@@ -271,30 +271,63 @@ _IMPULSES = {
     "B": {"Px": "-MB*(VBX - VX)", "Py": "-MB*(VBY - VY)", "Pm": "D1*Px - D2*Py - ib*(WBF - WB)"},
 }
 """The impulses by what they change of A or of B."""
-_ALONG = {"Pn": "c*Px + s*Py", "Pt": "c*Py - s*Px", "T": "Pm"}
-_IN_FRAME = {
+_ALONG = {
+    **{"Pn": "c*Px + s*Py", "Pt": "c*Py - s*Px", "T": "Pm"},
     **{"VAN": "c*VAX + s*VAY", "VAT": "c*VAY - s*VAX"},
     **{"VBN": "c*VBX + s*VBY", "VBT": "c*VBY - s*VBX"},
 }
 _WITHOUT_IMPULSES = (LISTING, A_IMPULSE, CONTACT_FRAME)
 _SUMS = 200
-""""""
+"""Partners of an edit that are looked at; more have coarse tables only."""
 
 
 def _by_equations(judge: Judge, whole: Judge) -> Iterator[Program]:
-    """Programs with two mistakes that together mend what their velocities violate. ``judge``: a few
-    rows, of which all have all final velocities; ``whole``: those that a second one is to
-    explain after a reading."""
+    """Programs with two mistakes that together mend what their velocities violate; then a reading,
+    and a mistake on top of it. ``judge``: a few rows, of which all have all final velocities;
+    ``whole``: those that the second is to explain."""
     reading = [one for one in readings() if not one.shows]
-    for title in spellings():
+    for title, spelling in spellings().items():
         own = [*reading, *(one for one in variants() if one.title == title), *edits_of(title)]
-        for how in "AB" if title not in _WITHOUT_IMPULSES else "A":
-            yield from _Faults(spellings()[title], judge, how).pairs(own)
+        for how in "A" if title in _WITHOUT_IMPULSES else "AB":
+            yield from _sums(_Faults(spelling, judge, how), own)
     faults = _Faults(spellings()[LISTING], judge, "A")
-    left = faults.left([one.sides for one in reading])
-    for place in np.argsort(left, kind="stable")[:_FIRSTS]:
-        if left[place] < len(faults.violated):
+    several: list[Mapping[str, Any]] = [{}, *(one.sides for one in reading)]
+    violated = (~_hold(faults.left(several), -1)).sum(1)
+    for place in np.argsort(violated[1:], kind="stable")[:_FIRSTS]:
+        if violated[place + 1] < violated[0]:
             yield from _second(whole, whole.wrong, Program((reading[place],)))
+
+
+def _hold(left: Floats, axis: int) -> Bools:
+    """Where what is left of equations is what rounding leaves, in nearly all rows."""
+    return np.asarray((np.abs(left) <= 2).mean(axis) >= BORNE_OUT)
+
+
+def _sums(faults: _Faults, edits: Sequence[Edit]) -> list[Program]:
+    """Programs with two edits, of which what each changes of the residuals adds up to what mends
+    them: looked up among projections of the changes, sorted, by half of the rows at a time."""
+    distinct = faults.start.distinct([edit.sides for edit in edits])
+    parts = [distinct[part] for part in chunks(len(distinct), faults.size)]
+    own = faults.left([{}])
+    left = np.concatenate([own, *(faults.left([sides for _, sides in part]) for part in parts)])
+    changes = left - own
+    seen = np.isfinite(changes).all((1, 2)) & (np.abs(changes) > 8).any((1, 2))
+    changes, made = changes[seen], [edits[distinct[k - 1][0]] for k in np.flatnonzero(seen)]
+    found = set()
+    rng = np.random.default_rng(88)
+    for half in (slice(0, None, 2), slice(1, None, 2)):
+        weights = rng.uniform(-1.0, 1.0, own[0, :, half].shape)
+        sums = np.einsum("kij,ij", changes[:, :, half], weights)
+        missing = -(own[0, :, half] * weights).sum() - sums
+        room = 2 * np.abs(weights).sum() + _PRECISION * np.abs(sums)
+        order = np.argsort(sums)
+        first, last = (np.searchsorted(sums[order], missing + x) for x in (-room, room))
+        for i in np.flatnonzero(last > first):
+            others = order[first[i] : min(last[i], first[i] + _SUMS)]
+            mended = (np.abs(own + changes[i] + changes[others]) <= 2).all(1)
+            found |= {(int(i), int(j)) for j in others[mended.mean(1) >= BORNE_OUT] if i < j}
+    programs = [Program((made[i], made[j])) for i, j in sorted(found)]
+    return sorted(programs, key=lambda one: one.edits[0].rank + one.edits[1].rank)[:_FIRSTS]
 
 
 class _Faults:
@@ -302,89 +335,27 @@ class _Faults:
     changes of A or of B."""
 
     def __init__(self, spelling: Spelling, judge: Judge, how: str) -> None:
-        self.spelling, self.size, self.scene = spelling, judge.wrong.size, judge.scene
+        self.size, self.scene = judge.wrong.size, judge.scene
         names = Run(spelling, judge.scene).names
 
         def clamped(theirs: Columns) -> Run:
             seen = {**names, **theirs}
-            made = {**_IMPULSES[how], **_ALONG, **_IN_FRAME}
+            made = {**_IMPULSES[how], **_ALONG}
             for name, text in made.items():
                 seen[name] = value(expression(text), seen)
             return Run(spelling, judge.scene, {n: seen[n] for n in (*FINAL_VELOCITIES, *made)})
 
         self.start = clamped(judge.theirs)
-        self.limits: dict[str, Any] = dict.fromkeys(self.start.residuals, _ROUNDING)
+        self.limits: dict[str, Any] = dict.fromkeys(self.start.residuals, _PRECISION)
         for name in FINAL_VELOCITIES:
             moved = {**judge.theirs, name: judge.theirs[name] + judge.limit[name]}
             for key, found in clamped(moved).residuals.items():
                 self.limits[key] = self.limits[key] + np.abs(found - self.start.residuals[key])
-        holding = {key: self._holds(key, found) for key, found in self.start.residuals.items()}
-        self.violated = frozenset(key for key, holds in holding.items() if not holds.all())
 
-    def _holds(self, key: str, residual: Any) -> Bools:
-        """Whether an equation holds in nearly all rows, for each edit."""
-        good = np.abs(residual) <= 2 * self.limits[key]
-        return np.asarray(np.broadcast_to(good, (len(good), self.size)).mean(-1) >= BORNE_OUT)
-
-    def left(self, several: Sequence[Mapping[str, Any]]) -> NDArray[np.intp]:
-        """How many equations are still violated with each of some edits."""
-        residuals = {**self.start.residuals, **self.start.edited(several).residuals}
-        found = [np.broadcast_to(self._holds(*one), len(several)) for one in residuals.items()]
-        return np.asarray(len(found) - np.sum(found, axis=0))
-
-    def residuals(self, several: Sequence[Mapping[str, Any]]) -> Floats:
-        """What each of some edits leaves of the equations, all rows of all, by what is allowed."""
+    def left(self, several: Sequence[Mapping[str, Any]]) -> Floats:
+        """What each of some edits leaves of the equations, by what is allowed, (K, equations,
+        rows)."""
         found = {**self.start.residuals, **self.start.edited(several).residuals}
         shape = (len(several), self.size)
-        parts = [np.broadcast_to(left / self.limits[key], shape) for key, left in found.items()]
-        whole = np.concatenate(parts, -1)
-        return np.where(np.isfinite(whole), whole, 0.0)
-
-    def pairs(self, edits: Sequence[Edit]) -> list[Program]:
-        """Programs with two edits whose changes of the residuals add up to what mends them: found
-        by sums of projections of the changes, sorted."""
-        distinct = self.start.distinct([edit.sides for edit in edits])
-        keys = list(self.start.residuals)
-        own = self._scaled(self.start.residuals, keys, 1)
-        parts = [
-            self._scaled(
-                self.start.edited([sides for _, sides in distinct[part]]).residuals,
-                keys,
-                len(distinct[part]),
-            )
-            - own
-            for part in chunks(len(distinct), self.size)
-        ]
-        changes = np.concatenate(parts)
-        usable = np.flatnonzero(
-            np.isfinite(changes).all((1, 2)) & (np.abs(changes) > 8).any((1, 2))
-        )
-        changes = changes[usable]
-        found: dict[tuple[int, int], int] = {}
-        rng = np.random.default_rng(88)
-        for half in (slice(0, None, 2), slice(1, None, 2)):
-            weights = rng.choice((-1.0, 1.0), own[0, :, half].shape) * rng.uniform(
-                0.5, 1.5, own[0, :, half].shape
-            )
-            sums = np.einsum("kij,ij", changes[:, :, half], weights)
-            target = -(own[0, :, half] * weights).sum()
-            order = np.argsort(sums)
-            room = 2 * np.abs(weights).sum() + 1e-12 * np.abs(sums)
-            first = np.searchsorted(sums[order], target - sums - room)
-            last = np.searchsorted(sums[order], target - sums + room)
-            for i in np.flatnonzero(last > first)[:_SUMS]:
-                others = order[first[i] : min(last[i], first[i] + _SUMS)]
-                left = np.abs(own + changes[i] + changes[others]) <= 2
-                for j in others[left.all(1).mean(1) >= BORNE_OUT]:
-                    if i < j:
-                        one, other = edits[distinct[usable[i]][0]], edits[distinct[usable[j]][0]]
-                        found[int(i), int(j)] = one.rank + other.rank
-        best = sorted(found, key=lambda pair: found[pair])[:_FIRSTS]
-        return [Program(tuple(edits[distinct[usable[k]][0]] for k in pair)) for pair in best]
-
-    def _scaled(self, residuals: Columns, keys: Sequence[str], count: int) -> Floats:
-        """Residuals of some edits by what is allowed, (count, keys, rows)."""
-        whole = np.empty((count, len(keys), self.size))
-        for place, key in enumerate(keys):
-            whole[:, place] = residuals.get(key, self.start.residuals[key]) / self.limits[key]
-        return whole
+        parts = [np.broadcast_to(found[key] / room, shape) for key, room in self.limits.items()]
+        return np.stack(parts, 1)

@@ -21,6 +21,8 @@ from ..schemas import stamped
 from .oracle import BATCH, look_up
 
 Texts = dict[str, str]
+_Range = tuple[float, float, int]
+"""From, to, and the most places typed."""
 
 CLASSES = CASEWORK, EDGE, FAILURE = "casework", "edge", "failure"
 ANSWER, REFUSE, EITHER = "answer", "refuse", "either"
@@ -73,7 +75,7 @@ def _endless(seed: int) -> Iterator[tuple[str, str, Texts]]:
     seen = set()
     for index in count_from(0):
         kind = CLASSES[index % 3]
-        cases = {CASEWORK: {"random": _fixed()}, EDGE: EDGES, FAILURE: FAILURES}[kind]
+        cases = {CASEWORK: {"random": _with()}, EDGE: EDGES, FAILURE: FAILURES}[kind]
         label = list(cases)[index // 3 % len(cases)]
         while True:
             scene = casework(rng)
@@ -91,32 +93,24 @@ def _between(rng: Random, low: float, high: float, places: int) -> str:
     return f"{rng.uniform(low, high):.{places}f}"
 
 
+_CASEWORK: dict[str, _Range] = {
+    **{"E": (0, 0.5, 3), "MU": (0, 0.9, 3), "EM": (-1, 0, 3), "DA": (0.5, 9, 2), "DB": (0.5, 9, 2)},
+    **dict.fromkeys(("GA", "PA", "PB", "TA", "TB"), (-180, 180, 1)),
+    **{"MA": (60, 400, 2), "MB": (60, 400, 2), "IA": (900, 9000, 1), "IB": (900, 9000, 1)},
+    **dict.fromkeys(("UX", "UY", "VX", "VY"), (-90, 90, 3)),
+    **{"WA": (-5, 5, 3), "WB": (-5, 5, 3)},
+}
+"""Slugs and feet, or the like."""
+
+
 def casework(rng: Random) -> Texts:
-    """A scene as casework has them: slugs and feet, or the like; the vehicles approach."""
+    """A scene as casework has them; the vehicles approach."""
     while True:
-        scene = {
-            "E": _between(rng, 0, 0.5, 3),
-            "MU": _between(rng, 0, 0.9, 3),
-            "EM": _between(rng, -1, 0, 3),
-            "DA": _between(rng, 0.5, 9, 2),
-            "DB": _between(rng, 0.5, 9, 2),
-            "GA": _between(rng, -180, 180, 1),
-            "PA": _between(rng, -180, 180, 1),
-            "PB": _between(rng, -180, 180, 1),
-            "TA": _between(rng, -180, 180, 1),
-            "TB": _between(rng, -180, 180, 1),
-            "MA": _between(rng, 60, 400, 2),
-            "MB": _between(rng, 60, 400, 2),
-            "IA": _between(rng, 900, 9000, 1),
-            "IB": _between(rng, 900, 9000, 1),
-            "UX": _between(rng, -90, 90, 3),
-            "UY": _between(rng, -90, 90, 3),
-            "WA": rng.choice(("0", _between(rng, -5, 5, 3))),
-            "VX": _between(rng, -90, 90, 3),
-            "VY": _between(rng, -90, 90, 3),
-            "WB": rng.choice(("0", _between(rng, -5, 5, 3))),
-            "M": "6",
-        }
+        scene = {"M": "6"}
+        for name in filter(_CASEWORK.get, SCENE):
+            scene[name] = _between(rng, *_CASEWORK[name])
+            if name in ("WA", "WB"):
+                scene[name] = rng.choice(("0", scene[name]))
         if _closing(scene)[0] < 0:
             return scene
 
@@ -137,16 +131,16 @@ Case = Callable[[Random, Texts], Texts]
 """What a case changes in a casework scene."""
 
 
-def _fixed(**values: str) -> Case:
-    return lambda rng, scene: values
+def _with(**values: str | _Range) -> Case:
+    """Columns with a text, another column's, or one drawn from a range."""
+    return lambda rng, scene: {
+        name: scene.get(value, value) if isinstance(value, str) else _between(rng, *value)
+        for name, value in values.items()
+    }
 
 
 def _negative(name: str) -> Case:
     return lambda rng, scene: {name: f"-{scene[name]}"}
-
-
-def _same_velocity(rng: Random, scene: Texts) -> Texts:
-    return {"VX": scene["UX"], "VY": scene["UY"], "WA": "0", "WB": "0"}
 
 
 _STALE = {  # a matrix in which line 1080's RX stays at a row that has been used
@@ -175,72 +169,57 @@ def _sliding(values: Texts, *spins: str) -> Case:
 
 
 EDGES: dict[str, Case] = {
-    "pivot": _fixed(MU="-10"),
-    "point mass": _fixed(M="4", DA="0", DB="0", WA="0", WB="0"),
-    "point mass, pivot": _fixed(M="4", DA="0", DB="0", WA="0", WB="0", MU="-10"),
-    "no spin": _fixed(WA="0", WB="0"),
-    "frictionless": _fixed(MU="0"),
-    "plastic": _fixed(E="0"),
-    "elastic": _fixed(E="1"),
-    "no moment": _fixed(EM="1"),
-    "equal final spins": _fixed(EM="0"),
-    "contact at both centers": _fixed(DA="0", DB="0"),
+    "pivot": _with(MU="-10"),
+    "point mass": _with(M="4", DA="0", DB="0", WA="0", WB="0"),
+    "point mass, pivot": _with(M="4", DA="0", DB="0", WA="0", WB="0", MU="-10"),
+    "no spin": _with(WA="0", WB="0"),
+    "frictionless": _with(MU="0"),
+    "plastic": _with(E="0"),
+    "elastic": _with(E="1"),
+    "no moment": _with(EM="1"),
+    "equal final spins": _with(EM="0"),
+    "contact at both centers": _with(DA="0", DB="0"),
     "right angles": lambda rng, scene: {
         name: str(90 * rng.randint(-4, 4)) for name in ("GA", "PA", "PB", "TA", "TB")
     },
     "angles past a full turn": lambda rng, scene: {
         name: str(round(float(scene[name]) + 360 * rng.choice((-2, 2)), 1)) for name in ("GA", "TB")
     },
-    "no relative sliding": lambda rng, scene: {
-        "GA": "0",
-        "DA": "0",
-        "DB": "0",
-        "VY": scene["UY"],
-        "WA": "0",
-        "WB": "0",
-    },
+    "no relative sliding": _with(GA="0", DA="0", DB="0", VY="UY", WA="0", WB="0"),
     "heavy against light": lambda rng, scene: {
         "MB": f"1E{rng.randint(4, 9)}",
         "IB": f"1E{rng.randint(5, 11)}",
     },
-    "SI units": lambda rng, scene: {
-        "MA": _between(rng, 800, 3000, 1),
-        "MB": _between(rng, 800, 3000, 1),
-    },
-    "separating": lambda rng, scene: {
-        name: scene[other]
-        for name, other in (("UX", "VX"), ("UY", "VY"), ("VX", "UX"), ("VY", "UY"))
-    },
-    "friction beyond critical": lambda rng, scene: {"MU": _between(rng, 1.5, 3, 2)},
+    "SI units": _with(MA=(800, 3000, 1), MB=(800, 3000, 1)),
+    "separating": _with(UX="VX", UY="VY", VX="UX", VY="UY"),
+    "friction beyond critical": _with(MU=(1.5, 3, 2)),
     "ten digits typed": lambda rng, scene: {
         name: f"{rng.uniform(1000, 99999):.5f}" for name in ("IA", "IB")
     },
     "masses below 1": lambda rng, scene: {
         name: f"{rng.uniform(0.05, 0.95):.4f}" for name in ("MA", "MB", "IA", "IB")
     },
-    "point mass without inertias": _fixed(M="4", DA="0", DB="0", WA="0", WB="0", IA="0", IB="0"),
+    "point mass without inertias": _with(M="4", DA="0", DB="0", WA="0", WB="0", IA="0", IB="0"),
 }
 """Label -> what makes a casework scene that edge."""
 
 FAILURES: dict[str, Case] = {
-    "all at rest": _fixed(UX="0", UY="0", WA="0", VX="0", VY="0", WB="0"),
-    "IA is zero": _fixed(IA="0"),
-    "IB is zero": _fixed(IB="0"),
-    "MA is zero": _fixed(MA="0"),
+    "all at rest": _with(UX="0", UY="0", WA="0", VX="0", VY="0", WB="0"),
+    "IA is zero": _with(IA="0"),
+    "IB is zero": _with(IB="0"),
+    "MA is zero": _with(MA="0"),
     "overflow": lambda rng, scene: {"UX": f"1E{rng.randint(20, 38)}"},
     "tiny units": lambda rng, scene: {
-        "MA": _between(rng, 1, 9, 1) + "E-12",
-        "MB": _between(rng, 1, 9, 1) + "E-12",
-        "IA": _between(rng, 1, 9, 1) + "E-11",
-        "IB": _between(rng, 1, 9, 1) + "E-11",
+        name: _between(rng, 1, 9, 1) + power
+        for name, power in (("MA", "E-12"), ("MB", "E-12"), ("IA", "E-11"), ("IB", "E-11"))
     },
-    "MU flipped to the pivot's": _fixed(MU="10"),
+    "MU flipped to the pivot's": _with(MU="10"),
     "MU below the pivot's": lambda rng, scene: {"MU": str(-rng.randint(11, 20))},
-    "point mass with arms left": _fixed(M="4"),
+    "point mass with arms left": _with(M="4"),
     "stale pivot row": _sliding(_STALE),
     "singular friction": _sliding(_SINGULAR, "WA", "WB"),
-    "same velocity": _same_velocity,
-    "MB is zero": _fixed(MB="0"),
+    "same velocity": _with(VX="UX", VY="UY", WA="0", WB="0"),
+    "MB is zero": _with(MB="0"),
     **{f"{name} negative": _negative(name) for name in ("MA", "MB", "IA", "IB")},
 }
 """Label -> what makes a casework scene that failure, or invites it."""
