@@ -58,15 +58,14 @@ _HALF = 0.5 + 1e-9
 """Of the last digit written."""
 
 
-class Verdict(NamedTuple):
-    """Results by rows: where both sides have a number; where they agree to the double, to the
-    digits claimed, as elimination does (each includes those before it); the difference as a share
-    of its size."""
+ABSENT, DOUBLE, DIGITS, ELIMINATION, DIFFER = range(5)
+"""How a result agrees; absent where one side has none."""
 
-    given: Bools
-    double: Bools
-    digits: Bools
-    loose: Bools
+
+class Verdict(NamedTuple):
+    """Results by rows: how each agrees, and the difference as a share of its size."""
+
+    grade: NDArray[np.intp]
     relative: Floats
 
 
@@ -121,8 +120,8 @@ class Case:
             measure = np.where(self.sizes > 0, self.sizes, np.abs(self.values))
             relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
             given = np.isfinite(self.values) & np.isfinite(self.ours)
-            within = (off <= tight, off <= written + tight, off <= written + loose)
-            return Verdict(given, *within, relative)
+            within = (~given, off <= tight, off <= written + tight, off <= written + loose)
+            return Verdict(np.select(within, range(DIFFER), DIFFER), relative)
 
 
 def joined(cases: Sequence[Case]) -> Case:
@@ -151,8 +150,7 @@ def case_of(
 
 
 def _agree(case: Case) -> Bools:
-    verdict = case.judged()
-    return np.asarray((verdict.loose | ~verdict.given).all(0))
+    return np.asarray((case.judged().grade < DIFFER).all(0))
 
 
 def _case(

@@ -28,7 +28,17 @@ from ..progress import progress
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
-from .agreement import Case, Verdict, case_of, joined, read_theirs
+from .agreement import (
+    ABSENT,
+    DIFFER,
+    DIGITS,
+    DOUBLE,
+    ELIMINATION,
+    Case,
+    case_of,
+    joined,
+    read_theirs,
+)
 from .diagnosis import UNKNOWN, Cause, diagnose
 from .vectors import FAILURE
 
@@ -77,6 +87,16 @@ class Tally:
     missing: int = 0
     largest: float = 0.0
 
+    def add(self, grades: NDArray[np.intp], relative: NDArray[np.float64]) -> None:
+        """Count a block's rows."""
+        counts = np.bincount(grades, minlength=DIFFER + 1).tolist()
+        self.compared += sum(counts[DOUBLE:])
+        self.double += counts[DOUBLE]
+        self.digits += counts[DIGITS]
+        self.elimination += counts[ELIMINATION]
+        self.differ += counts[DIFFER]
+        self.largest = float(relative.max(initial=self.largest, where=grades > ABSENT))
+
 
 @dataclass
 class Elimination:
@@ -104,8 +124,7 @@ class Comparison:
     tallies: dict[str, Tally] = field(default_factory=dict)
     causes: Counter[str] = field(default_factory=Counter)
     differences: list[Row] = field(default_factory=list)
-    not_compared: Counter[str] = field(default_factory=Counter)
-    places_not_compared: dict[str, list[int]] = field(default_factory=dict)
+    not_compared: dict[str, list[int]] = field(default_factory=dict)
     elimination: Elimination = field(default_factory=Elimination)
     evidence: list[Cause] = field(default_factory=list)
     programs: list[Program] = field(default_factory=list)
@@ -123,8 +142,8 @@ class Comparison:
         """What would pass without a word: columns, rows and cells that were not compared."""
         said = [f"column {name} not recognised" for name in self.unknown]
         said += [
-            f"{count} rows not compared: {reason}"
-            for reason, count in self.not_compared.items()
+            f"{len(rows)} rows not compared: {reason}"
+            for reason, rows in self.not_compared.items()
             if reason not in HARMLESS
         ]
         said += [
@@ -139,7 +158,7 @@ class Comparison:
         """One line."""
         rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
         line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
-        skipped = sum(self.not_compared.values())
+        skipped = sum(map(len, self.not_compared.values()))
         if skipped:
             line += f", {skipped} not compared"
         if self.causes:
@@ -168,8 +187,8 @@ class Comparison:
                 ],
                 "elimination": vars(self.elimination),
                 "not_compared": {
-                    reason: {"rows": count, "first": self.places_not_compared[reason]}
-                    for reason, count in self.not_compared.items()
+                    reason: {"rows": len(rows), "first": rows[:WORST]}
+                    for reason, rows in self.not_compared.items()
                 },
                 "unknown_columns": self.unknown,
                 "bad_rows": [str(bad) for bad in self.bad],
@@ -239,7 +258,7 @@ def compare_file(
             table: TableUnits | None = None
             for rows in reader:
                 table = table or TableUnits(reader.names, units, rows, wanted, where)
-                kept.append(_compare_block(rows, values, wanted, comparison, rtol, table))
+                kept.append(_compare_block(rows, values, comparison, rtol, table))
                 meter.update(reader.position() - before)
                 before = reader.position()
     if not any(tally.compared for tally in comparison.tallies.values()):
@@ -263,7 +282,6 @@ def _meant(name: str) -> str:
 def _compare_block(
     rows: Rows,
     values: Mapping[str, str],
-    wanted: Sequence[str],
     comparison: Comparison,
     rtol: float | None,
     units: TableUnits,
@@ -273,85 +291,56 @@ def _compare_block(
     scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
     scene |= numbers(rows, units)
     scene = {name: scene[name] for name in SCENE}
-    theirs = {name: read_theirs(rows, name, units.factor(name)) for name in wanted}
+    theirs = {name: read_theirs(rows, name, units.factor(name)) for name in comparison.tallies}
     case = case_of(scene, theirs, rtol)
-    verdict = case.judged()
     bad = {one.row for one in rows.bad}
     readable = np.array([rows.first + index not in bad for index in range(rows.count)], bool)
-    there = verdict.given & readable
-    compared = there.any(0)
-    wrong = (there & ~verdict.loose).any(0)
-    judged = readable & np.isfinite(case.ours) & compared
-    for place, name in enumerate(wanted):
-        _tally(comparison.tallies[name], verdict, there[place], judged[place], place)
+    grades, relative = case.judged()
+    grades = np.where(readable, grades, ABSENT)
+    compared, wrong = (grades > ABSENT).any(0), (grades == DIFFER).any(0)
+    for place, tally in enumerate(comparison.tallies.values()):
+        tally.add(grades[place], relative[place])
+        solved = compared & np.isfinite(case.ours[place])
+        tally.missing += int((solved & (grades[place] == ABSENT)).sum())
     comparison.rows += rows.count
     comparison.bad += rows.bad
     comparison.agreeing += int((compared & ~wrong).sum())
     comparison.differing += int(wrong.sum())
-    _count_skipped(comparison, rows, readable, compared, case)
-    _count_elimination(comparison, rows.first, verdict, there & compared & ~wrong, case.condition)
+    for reason, which in _skipped(rows, readable, case):
+        if found := (rows.first + np.flatnonzero(which & ~compared)).tolist():
+            comparison.not_compared.setdefault(reason, []).extend(found)
+    by_row = np.where(~wrong & (grades == ELIMINATION), relative, 0.0).max(0)
+    loose = comparison.elimination
+    loose.rows += int((~wrong & (grades == ELIMINATION)).any(0).sum())
+    worst = int(np.argmax(by_row))
+    if by_row[worst] > loose.worst_relative:
+        loose.worst_row, loose.worst_relative = rows.first + worst, float(by_row[worst])
+        loose.worst_condition = float(case.condition[worst])
     places = np.flatnonzero(wrong)
-    comparison.differences += _differing(rows, places, verdict, there & ~verdict.loose, case)
+    off = np.where(grades == DIFFER, relative, -1.0)
+    comparison.differences += _differing(rows, places, np.argmax(off, 0), relative, case)
     room = LOOKED_INTO - len(comparison.differences) + places.size
     kept = list(_texts(rows, values, units, scene, places[: max(room, 0)]))
     looked_into = np.concatenate([places, np.flatnonzero(compared & ~wrong)[:LOOKED_INTO]])
     return _Kept(case.part(looked_into), wrong[looked_into], kept)
 
 
-def _tally(tally: Tally, verdict: Verdict, there: Bools, judged: Bools, place: int) -> None:
-    double, digits, loose = (
-        np.asarray(part[place]) for part in (verdict.double, verdict.digits, verdict.loose)
-    )
-    tally.compared += int(there.sum())
-    tally.double += int((there & double).sum())
-    tally.digits += int((there & digits & ~double).sum())
-    tally.elimination += int((there & loose & ~digits).sum())
-    tally.differ += int((there & ~loose).sum())
-    tally.missing += int((judged & ~there).sum())
-    tally.largest = float(verdict.relative[place].max(initial=tally.largest, where=there))
-
-
-def _count_skipped(
-    comparison: Comparison, rows: Rows, readable: Bools, compared: Bools, case: Case
-) -> None:
-    """Count the rows that were not compared, by reason."""
+def _skipped(rows: Rows, readable: Bools, case: Case) -> Iterator[tuple[str, Bools]]:
+    """Why rows may not be compared, and which."""
     solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
     kinds = rows.others.get("class")
     may = np.array([str(kind) == FAILURE for kind in kinds], bool) if kinds is not None else False
-    reasons = {
-        UNREADABLE: ~readable,
-        NO_RESULT: readable & ~solvable & ~answered,
-        NOTHING_HERE: readable & ~solvable & answered,
-        REFUSED: readable & solvable & ~answered & may,
-        NOTHING_THERE: readable & solvable & ~compared & ~(~answered & may),
-    }
-    for reason, which in reasons.items():
-        which &= ~compared
-        if which.any():
-            comparison.not_compared[reason] += int(which.sum())
-            first = comparison.places_not_compared.setdefault(reason, [])
-            first += (rows.first + np.flatnonzero(which)).tolist()
-            del first[WORST:]
+    yield UNREADABLE, ~readable
+    yield NO_RESULT, readable & ~solvable & ~answered
+    yield NOTHING_HERE, readable & ~solvable & answered
+    yield REFUSED, readable & solvable & ~answered & may
+    yield NOTHING_THERE, readable & solvable & ~(~answered & may)
 
 
-def _count_elimination(
-    comparison: Comparison, first: int, verdict: Verdict, agreeing: Bools, condition: Any
-) -> None:
-    only = agreeing & verdict.loose & ~verdict.digits
-    tally = comparison.elimination
-    tally.rows += int(only.any(0).sum())
-    if only.any():
-        relative = np.where(only, verdict.relative, 0.0).max(0)
-        worst = int(np.argmax(relative))
-        if relative[worst] > tally.worst_relative:
-            tally.worst_row = first + worst
-            tally.worst_relative = float(relative[worst])
-            tally.worst_condition = float(condition[worst])
-
-
-def _differing(rows: Rows, places: Any, verdict: Verdict, off: Bools, case: Case) -> Iterator[Row]:
+def _differing(
+    rows: Rows, places: NDArray[np.intp], worst: Any, relative: Any, case: Case
+) -> Iterator[Row]:
     """The rows that disagree, each by its worst result."""
-    worst = np.argmax(np.where(off, verdict.relative, -1.0), axis=0)
     ids = rows.one_per_row("id") if "id" in rows.others else None
     written = [rows.one_per_row(name) for name in case.names]
     for index in places.tolist():
@@ -363,7 +352,7 @@ def _differing(rows: Rows, places: Any, verdict: Verdict, off: Bools, case: Case
             case.names[place],
             str(written[place][index]),
             float(case.ours[place, index]),
-            float(verdict.relative[place, index]),
+            float(relative[place, index]),
             UNKNOWN,
         )
 

@@ -304,7 +304,8 @@ class _Measure:
 
     def __init__(self, case: Case, wrong: Bools) -> None:
         self.wrong = wrong
-        given, sizes, written = case.judged().given, case.sizes, case.units * (0.5 + 1e-9)
+        given, sizes = np.isfinite(case.values - case.ours), case.sizes
+        written = case.units * (0.5 + 1e-9)
         beyond = np.maximum(np.abs(case.values - case.ours) - written, 0.0)
         share = np.where(sizes > 0, beyond / sizes, np.where(beyond == 0, 0.0, 1.0))
         share = np.where(given, share, 0.0)

@@ -40,11 +40,10 @@ _FIRST_WRONG, _FIRST_RIGHT = 10, 5
 _FEW = 8
 """Rows that disagree on which pairs are looked for, and half as many for pairs of readings."""
 _SHARE = 0.1
-"""The least share of the rows that the first of two mistakes explains alone."""
+"""The least share of the rows that disagree that the first of two mistakes explains alone, or that
+a result is wrong in that is explained apart."""
 _FIRSTS = 4
 """Mistakes on top of which another is looked for."""
-_EACH = 3
-"""Edits of those that mend the same equations that are tried together with others."""
 _PRECISION = 1e-11
 """Of residuals."""
 
@@ -76,14 +75,16 @@ class Judge:
         return Judge(part.scene, part.theirs, part.limit, ~run(Program(), part).rows & self.wrong)
 
     def groups(self) -> list[list[str]]:
-        """The final velocities, and each other result, where they are wrong."""
+        """The final velocities, and each other result, of those that are wrong in many rows; all
+        where none is."""
         rest = [[name] for name in self.theirs if name not in FINAL_VELOCITIES]
         if self.has_velocities:
             rest.insert(0, list(FINAL_VELOCITIES))
         else:
             rest = [list(self.theirs)]
-        ours = Program().results(self.scene)
-        return [group for group in rest if self.of(group).near(ours).mean() < BORNE_OUT]
+        ours, few = Program().results(self.scene), _SHARE * self.wrong.sum()
+        amiss = [one for one in rest if (self.wrong & ~self.of(one).near(ours)).sum() >= few]
+        return amiss or [list(self.theirs)]
 
     def near(self, results: Columns, prefix: str = "") -> Bools:
         """The rows whose every result is near enough: (n,) or (K, n)."""

@@ -96,10 +96,10 @@ def _talk(comparison: Comparison) -> Iterator[str]:
         yield f"column {name} is not recognised{f'; did you mean {meant}?' if meant else ''}"
     if len(comparison.unknown) > SHOWN:
         yield f"and {len(comparison.unknown) - SHOWN} more columns are not recognised"
-    for reason, count in comparison.not_compared.items():
+    for reason, rows in comparison.not_compared.items():
         if reason not in HARMLESS:
-            first = ", ".join(map(str, comparison.places_not_compared[reason][:5]))
-            yield f"{count} rows not compared ({first}{', ...' if count > 5 else ''}): {reason}"
+            first = ", ".join(map(str, rows[:5])) + (", ..." if len(rows) > 5 else "")
+            yield f"{len(rows)} rows not compared ({first}): {reason}"
     for name, tally in comparison.tallies.items():
         if tally.missing:
             yield f"{tally.missing} cells of {name} are empty where there is a result"
@@ -144,9 +144,9 @@ def _lines(comparison: Comparison) -> Iterator[str]:
                 f"  {place}{name}: {cell.result} {shown(cell.theirs, 40)}, here {cell.ours:.12g}, "
                 f"off by {cell.relative:.2g}; {cell.cause}"
             )
-    for reason, count in comparison.not_compared.items():
+    for reason, rows in comparison.not_compared.items():
         yield ""
-        yield f"{count} rows not compared: {reason}"
+        yield f"{len(rows)} rows not compared: {reason}"
 
 
 def _evidence(comparison: Comparison) -> Iterator[str]:
