@@ -210,7 +210,7 @@ _Chosen = tuple[Program, Sequence[Found], Sequence[str]]
 
 def _explanations(judge: Judge, off: Floats) -> Iterator[list[_Chosen]]:
     """Lists of programs that together explain a table, the simplest first."""
-    with progress(6, "look for the cause") as meter:
+    with progress(20, "look for the cause") as meter:
         meter.update(0)
         groups = judge.of(_telling(judge)).groups()
         first = judge.narrowed(groups[0])

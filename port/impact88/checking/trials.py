@@ -1,9 +1,9 @@
 """Which program gives the numbers of a table: every small mistake made, alone and two together.
 
 All edits of all spellings are run over a few rows that disagree and a few that agree; those that
-explain any are run over more. Of two mistakes the first is looked for in three ways: *by outputs*
-(it explains some results everywhere), *by rows* (it explains some rows) and *by equations* (with
-their velocities put into all, it mends some); the second is looked for on top of it.
+explain any are run over more. Two mistakes are looked for in three ways: *by outputs*, one explains
+the velocities and another on top of it the rest; *by equations*, with their velocities put in, what
+two change of the residuals adds up to what mends them; *by rows*, one explains some rows alone.
 """
 
 from __future__ import annotations
@@ -201,7 +201,7 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
 def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
     """Programs with two mistakes, by stages. ``alone``: what explains rows alone."""
     if judge.has_velocities:
-        yield list(_by_equations(judge.with_finals(_FEW), judge))
+        yield from _by_equations(judge.with_finals(_FEW), judge)
     enough = [one for one in alone if one.explains(judge.wrong) >= _SHARE * judge.wrong.sum()]
     for one in [one for one in enough if one.stands(judge.wrong)][:_FIRSTS]:
         unexplained = judge.wrong & ~one.rows
@@ -282,7 +282,7 @@ _SUMS = 200
 """Partners of an edit that are looked at; more have coarse tables only."""
 
 
-def _by_equations(judge: Judge, whole: Judge) -> Iterator[Program]:
+def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
     """Programs with two mistakes that together mend what their velocities violate; then a reading,
     and a mistake on top of it. ``judge``: a few rows, of which all have all final velocities;
     ``whole``: those that the second is to explain."""
@@ -290,13 +290,13 @@ def _by_equations(judge: Judge, whole: Judge) -> Iterator[Program]:
     for title, spelling in spellings().items():
         own = [*reading, *(one for one in variants() if one.title == title), *edits_of(title)]
         for how in "A" if title in _WITHOUT_IMPULSES else "AB":
-            yield from _sums(_Faults(spelling, judge, how), own)
+            yield _sums(_Faults(spelling, judge, how), own)
     faults = _Faults(spellings()[LISTING], judge, "A")
     several: list[Mapping[str, Any]] = [{}, *(one.sides for one in reading)]
     violated = (~_hold(faults.left(several), -1)).sum(1)
     for place in np.argsort(violated[1:], kind="stable")[:_FIRSTS]:
         if violated[place + 1] < violated[0]:
-            yield from _second(whole, whole.wrong, Program((reading[place],)))
+            yield _second(whole, whole.wrong, Program((reading[place],)))
 
 
 def _hold(left: Floats, axis: int) -> Bools:
