@@ -18,7 +18,7 @@ import captures
 from impact88.accuracy.errorbound import oracle_bounds, scales
 from impact88.bench import populations
 from impact88.bench.populations import POPULATIONS, texts
-from impact88.checking.oracle import answers, decimal_of, look_up
+from impact88.checking.oracle import Request, answer, exact_decimal, look_up
 from impact88.checking.vectors import (
     CLASSES,
     EDGES,
@@ -44,7 +44,7 @@ SCENE1 = dict(sample(1))
 
 def answered(*lines: object) -> list[dict]:
     texts = [line if isinstance(line, str) else json.dumps(line) for line in lines]
-    return list(answers(texts))
+    return list(answer([Request(number, text) for number, text in enumerate(texts, 1) if text]))
 
 
 def test_an_answer_has_everything() -> None:
@@ -206,7 +206,7 @@ def test_thirty_digits_whatever_the_masses() -> None:
 def test_numbers_keep_their_digits() -> None:
     text = json.dumps({"scene": SCENE1}).replace('"3728"', "90315.88170")
     other = text.replace("90315.88170", "90315.8817")
-    one, two = (next(answers([line])) for line in (text, other))
+    one, two = answered(text, other)
     assert (one["scene"]["IA"], two["scene"]["IA"]) == ("90315.88170", "90315.8817")
     assert one["results"]["KI"]["printed"] == two["results"]["KI"]["printed"]
 
@@ -264,9 +264,10 @@ def test_bounds_where_the_listing_solves_other_equations() -> None:
 
 
 def test_exact_decimals() -> None:
-    assert decimal_of(Fraction(-3, 8)) == "-0.375"
-    assert decimal_of(Fraction(2**130)) == str(2**130)
-    assert Fraction(decimal_of(Fraction(1, 2**150))) == Fraction(1, 2**150)
+    assert exact_decimal("7fc0000000") == "-0.375"
+    assert exact_decimal("ff00000000") == str(2**126)
+    assert Fraction(exact_decimal("0100000000")) == Fraction(1, 2**128)
+    assert exact_decimal("0000000000") == "0"
 
 
 def test_streaming_answers_line_by_line() -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
+from decimal import Decimal
 from typing import Any
 
 from .. import doubles, status
@@ -72,25 +72,9 @@ class Request:
         self.scene = scene
 
 
-def answers(lines: Iterable[str], reference: bool = True) -> Iterator[dict[str, Any]]:
-    """An answer for every line that is not blank, in order.
-
-    ``reference``: give 30 digits too. A line that cannot be used gives
-    ``{"id", "error": {"line", "message"}}``.
-    """
-    batch: list[Request] = []
-    for number, text in enumerate(lines, 1):
-        if not text.strip():
-            continue
-        batch.append(Request(number, text))
-        if len(batch) == BATCH:
-            yield from answer(batch, reference)
-            batch = []
-    yield from answer(batch, reference)
-
-
 def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[str, Any]]:
-    """The answers to some requests."""
+    """The answers to some requests; one that cannot be used gives
+    ``{"id", "error": {"line", "message"}}``. ``reference``: give 30 digits too."""
     scenes = [request.scene for request in batch if request.scene is not None]
     answers = iter(look_up(scenes, reference))
     for request in batch:
@@ -184,21 +168,10 @@ def look_up(
 
 
 def exact_decimal(stored: str) -> str:
-    """The value of five stored bytes as an exact decimal, all its digits."""
+    """The value of five stored bytes, which a double holds, as an exact decimal, all its digits."""
     from ..applesoft.operators import Real
 
-    return decimal_of(Real.from_stored(stored).fraction())
-
-
-def decimal_of(value: Fraction) -> str:
-    """A fraction whose denominator is a power of two, as an exact decimal."""
-    places = value.denominator.bit_length() - 1
-    digits = abs(value.numerator) * 5**places
-    sign = "-" if value < 0 else ""
-    if not places:
-        return f"{sign}{digits}"
-    text = str(digits).rjust(places + 1, "0")
-    return f"{sign}{text[:-places]}.{text[-places:]}".rstrip("0").rstrip(".")
+    return f"{Decimal(float(Real.from_stored(stored).fraction())):f}"
 
 
 def _json_number(value: float) -> float | None:
