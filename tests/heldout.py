@@ -6,15 +6,11 @@ package has no part in any of it. `SINGLES` are programs with one bug, `PAIRS` w
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from functools import lru_cache
-from typing import Any
-
-import numpy as np
+import bugs
+from bugs import Bug
 
 HEAD = """
-def answer(g):
+def run(g):
     E, MU, EM, M = g["E"], g["MU"], g["EM"], g["M"]
     da, db = g["DA"], g["DB"]
     ma, mb, ia, ib = g["MA"], g["MB"], g["IA"], g["IB"]
@@ -232,9 +228,7 @@ ONA = """
 """
 
 PROGRAMS = {"matrix": MATRIX, "impulse": IMPULSE, "two": TWO, "nine": NINE, "on A": ONA}
-
-Bug = tuple[str, str]
-"""What stands in the correct program, and what stands there in this one."""
+bugs.PROGRAMS.update({name: HEAD + text + TAIL for name, text in PROGRAMS.items()})
 
 SINGLES: tuple[tuple[str, Bug], ...] = (
     ("matrix", ("d3*c - d4*s, d1*c - d2*s", "d3*c + d4*s, d1*c - d2*s")),
@@ -365,42 +359,3 @@ PAIRS: tuple[tuple[str, Bug, Bug], ...] = (
               'vbx, vby, wb = g["VX"], g["VY"], -g["WB"]'),
      ("ma*vay + mb*vby]", "ma*vay - mb*vby]")),
 )  # fmt: skip
-
-RESULTS = tuple(
-    "VAX VAY VBX VBY WAF WBF XA YA XB YB XAF YAF XBF YBF KI KF LOSS DVA DVB PN PT".split()
-)
-
-
-def source(program: str, *bugs: Bug) -> str:
-    """The text of a program with bugs; each must be in it exactly once."""
-    text = HEAD + PROGRAMS[program] + TAIL
-    for old, new in bugs:
-        assert text.count(old) == 1, (program, old, text.count(old))
-        text = text.replace(old, new)
-    return text
-
-
-@lru_cache(None)
-def compiled(program: str, *bugs: Bug) -> Any:
-    names: dict[str, Any] = {"np": np, **vars(math)}
-    exec(source(program, *bugs), names)
-    return names["answer"]
-
-
-def answers(
-    scenes: list[Mapping[str, str]], program: str, *bugs: Bug
-) -> list[dict[str, float | None]]:
-    """What a program answers; None for each result where it refuses."""
-    found = []
-    for scene in scenes:
-        g = {name: float(text) for name, text in scene.items()}
-        try:
-            with np.errstate(all="ignore"):
-                row = compiled(program, *bugs)(g)
-        except (ArithmeticError, np.linalg.LinAlgError):
-            row = {}
-        values = {name: row.get(name) for name in RESULTS}
-        found.append(
-            {n: None if x is None or not math.isfinite(x) else float(x) for n, x in values.items()}
-        )
-    return found

@@ -1,18 +1,13 @@
 """Bugs in programs that are written in no spelling the search knows: by a Jacobian and masses in
 matrices; by textbook lever arms and an impulse ratio; in complex numbers, with the impulses' work.
 
-Each program is text; a bug is a text in it and what stands there instead. The package has no part
-in any of it. `SINGLES` are programs with one bug, `PAIRS` with two.
+`SINGLES` are programs with one bug, `PAIRS` with two.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from functools import lru_cache
-from typing import Any
-
-import numpy as np
+import bugs
+from bugs import Bug
 
 # Delassus matrix: three impulses from J inv(M) J'
 JACOBIAN = """
@@ -174,9 +169,7 @@ def run(case):
 """
 
 PROGRAMS = {"jacobian": JACOBIAN, "ratio": RATIO, "complex": COMPLEX}
-
-Bug = tuple[str, str]
-"""What stands in the correct program, and what stands there in this one."""
+bugs.PROGRAMS.update(PROGRAMS)
 
 SINGLES: list[tuple[str, Bug]] = [
     ("jacobian", ("r1[0]*n[1] - r1[1]*n[0], -n[0]", "r1[1]*n[0] - r1[0]*n[1], -n[0]")),
@@ -311,56 +304,3 @@ PAIRS: list[tuple[str, Bug, Bug]] = [
     ("complex", ("oa = wa + (torque(za, p) + pm)/ja", "oa = wa + (torque(za, p) + pm)/jb"),
      ("(0 if point else (ja*wa**2 + jb*wb**2)/2)", "0")),
 ]  # fmt: skip
-
-
-def results(program: str) -> tuple[str, ...]:
-    """The results that a program gives."""
-    return tuple(compiled(program)(_SOME))
-
-
-_SOME = {
-    name: 0.1 * place
-    for place, name in enumerate(
-        "E MU EM DA DB GA PA PB TA TB MA MB IA IB UX UY WA VX VY WB M".split(), 1
-    )
-}
-
-
-def source(program: str, *bugs: Bug) -> str:
-    """The text of a program with bugs; each must be in it exactly once."""
-    text = PROGRAMS[program]
-    for old, new in bugs:
-        assert text.count(old) == 1, (program, old, text.count(old))
-        text = text.replace(old, new)
-    return text
-
-
-@lru_cache(None)
-def compiled(program: str, *bugs: Bug) -> Any:
-    import cmath
-
-    names: dict[str, Any] = {"np": np, "cmath": cmath, **vars(math)}
-    exec(source(program, *bugs), names)
-    return names["run"]
-
-
-def answers(
-    scenes: list[Mapping[str, str]], program: str, *bugs: Bug
-) -> list[dict[str, float | None]]:
-    """What a program answers; None for each result where it refuses."""
-    found = []
-    for scene in scenes:
-        g = {name: float(text) for name, text in scene.items()}
-        row: Mapping[str, Any] = {}
-        bodies = ("MA", "MB") if g["M"] == 4 else ("MA", "MB", "IA", "IB")
-        if min(g[name] for name in bodies) > 0:
-            try:
-                with np.errstate(all="ignore"):
-                    row = compiled(program, *bugs)(g)
-            except (ArithmeticError, np.linalg.LinAlgError):
-                row = {}
-        values = {name: row.get(name) for name in results(program)}
-        found.append(
-            {n: None if x is None or not math.isfinite(x) else float(x) for n, x in values.items()}
-        )
-    return found

@@ -20,6 +20,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+import bugs
 import heldout
 import strangers
 from impact88.accuracy import errorbound
@@ -219,21 +220,18 @@ def test_a_mistake_in_one_equation_is_named(tmp_path, program: Program, says: st
     assert evidence.fits == evidence.agreeing == done.agreeing
 
 
-BUGS = [
-    *((heldout, bugs) for bugs in (*heldout.SINGLES, *heldout.PAIRS)),
-    *((strangers, bugs) for bugs in (*strangers.SINGLES, *strangers.PAIRS)),
-]
+BUGS = [*heldout.SINGLES, *heldout.PAIRS, *strangers.SINGLES, *strangers.PAIRS]
 FEW = [BUGS[0], BUGS[66], BUGS[-93], BUGS[-44], BUGS[-12]]
 """Of the held-out two singles, of the strangers' two and a pair."""
 
 
-@pytest.mark.parametrize(("which", "bugs"), BUGS if SWEEP else FEW, ids=str)
-def test_a_bug_written_before_the_search_is_named(tmp_path, which, bugs: tuple) -> None:
+@pytest.mark.parametrize("which", BUGS if SWEEP else FEW, ids=str)
+def test_a_bug_written_before_the_search_is_named(tmp_path, which: tuple) -> None:
     """The program named gives the bug's final velocities in scenes that the table does not have.
     With IMPACT88_SWEEP, all are looked for: at most one in fifty may be named wrongly (`-s` shows
     what is said)."""
     rows = [scene for _, _, scene in scenes(240 if SWEEP else 90, seed=4)]
-    answers = which.answers(rows, *bugs)
+    answers = bugs.answers(rows, *which)
     names = [name for name in answers[0] if name != "PM"]
     found = {
         name: ["" if row[name] is None else repr(row[name]) for row in answers] for name in names
@@ -243,7 +241,7 @@ def test_a_bug_written_before_the_search_is_named(tmp_path, which, bugs: tuple) 
     fresh = [scene for kind, _, scene in scenes(300, seed=99) if kind != FAILURE]
     numbers = {name: np.array([float(scene[name]) for scene in fresh]) for name in SCENE}
     mine = done.programs[0].results(numbers)
-    theirs = which.answers(fresh, *bugs)
+    theirs = bugs.answers(fresh, *which)
     for name in FINAL_VELOCITIES:
         column = np.array([math.nan if row[name] is None else row[name] for row in theirs])
         off = np.abs(mine[name] - column) > 1e-6 * (1 + np.abs(column))
@@ -313,14 +311,13 @@ def test_correct_programs_of_any_style_agree_in_hard_scenes(tmp_path, what: str)
     """Their way's own condition is allowed for: elimination, closed forms, either sliding."""
     rng = Random(5)
     rows = [casework(rng) | HARD[what](rng) for _ in range(40)]
-    for which, names in ((heldout, heldout.PROGRAMS), (strangers, strangers.PROGRAMS)):
-        for name in names:
-            answers = which.answers(rows, name)
-            columns = {
-                n: ["" if row[n] is None else repr(row[n]) for row in answers] for n in answers[0]
-            }
-            done = compared(tmp_path, columns, rows, causes=False)
-            assert done.differing == 0, (name, done.worst[:3])
+    for name in bugs.PROGRAMS:
+        answers = bugs.answers(rows, name)
+        columns = {
+            n: ["" if row[n] is None else repr(row[n]) for row in answers] for n in answers[0]
+        }
+        done = compared(tmp_path, columns, rows, causes=False)
+        assert done.differing == 0, (name, done.worst[:3])
 
 
 def test_an_unknown_mistake_gets_the_equations_it_violates(tmp_path) -> None:

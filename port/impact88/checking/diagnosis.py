@@ -223,7 +223,7 @@ def _explanations(judge: Judge, off: Floats) -> Iterator[list[_Chosen]]:
             found = [one for one in found if one.whole(first.wrong)]
         if found:
             yield [_completed(_deepened(found, first), groups, judge)]
-        yield _several(alone, first)
+        yield _several(alone, first, judge)
 
 
 def _completed(found: Sequence[Found], groups: Sequence[list[str]], judge: Judge) -> _Chosen:
@@ -282,18 +282,21 @@ def _telling(judge: Judge) -> list[str]:
     ]
 
 
-def _several(alone: Sequence[Found], judge: Judge) -> list[_Chosen]:
-    """Few programs that explain nearly all rows, each some: a table of several programs' rows."""
-    left = judge.wrong.copy()
+def _several(alone: Sequence[Found], part: Judge, judge: Judge) -> list[_Chosen]:
+    """Few programs that explain nearly all rows, each some, by some results or by all: a table of
+    several programs' rows."""
+    left = part.wrong.copy()
     chosen: list[_Chosen] = []
     while alone and left.any() and len(chosen) < _SEVERAL:
         best = max(alone, key=lambda one: ((one.rows & left).sum(), -one.rank))
-        if not (best.rows & left).any():
+        new = best.rows & left
+        if not new.any():
             break
-        chosen.append((best.program, (), [*judge.theirs]))
+        gives_all = (run(best.program, judge).rows & new).sum() >= BORNE_OUT * new.sum()
+        chosen.append((best.program, (), [*(judge if gives_all else part).theirs]))
         left &= ~best.rows
-    explained = judge.wrong.sum() - left.sum()
-    return chosen if explained >= BORNE_OUT * judge.wrong.sum() else []
+    explained = part.wrong.sum() - left.sum()
+    return chosen if explained >= BORNE_OUT * part.wrong.sum() else []
 
 
 # --- how near ------------------------------------------------------------------------------------
