@@ -22,7 +22,7 @@ from .spelling import (
     Sides,
     Spelling,
     expression,
-    names_in,
+    nodes,
     parts,
     renamed,
     spellings,
@@ -179,23 +179,25 @@ def equation_edits(spelling: Spelling) -> Iterator[Edit]:
         subject: places for subject, places in groups.items() if len(places) > 1 or ";" in subject
     }
     for subject, places in groups.items():
-        several = [spelling.statements[index] for index in places]
         names = Counter(
             node.id
-            for one in several
-            for side in one.sides
-            for node in ast.walk(side)
+            for index in places
+            for side in spelling.statements[index].sides
+            for node in nodes(side)
             if isinstance(node, ast.Name)
         )
+        kin = spelling.kin_at(places[0])
         for name in [one for one in names if one not in (*_NO_NAMES, *spelling.unknown)]:
-            kin = spelling.kin_at(places[0]).get(name, ())
-            for says, changes in _throughout(name, kin, names):
+            for says, changes in _throughout(name, kin.get(name, ()), names):
+                touched = [
+                    spelling.statements[index]
+                    for index in places
+                    if not changes.keys().isdisjoint(spelling.reads[index])
+                ]
                 sides = {
-                    one.key: tuple(renamed(side, changes) for side in one.sides)
-                    for one in several
-                    if any(name in changes for side in one.sides for name in names_in(side))
+                    one.key: tuple(renamed(side, changes) for side in one.sides) for one in touched
                 }
-                where = dict.fromkeys(one.place for one in several if one.key in sides)
+                where = dict.fromkeys(one.place for one in touched)
                 yield Edit(spelling.title, sides, LESS, f"{', '.join(where)}: {says} in {subject}")
 
 

@@ -133,7 +133,7 @@ def with_part(node: ast.expr, field: str, place: int | None, other: ast.expr) ->
     if place is not None:
         made = [*getattr(node, field)]
         made[place] = other
-    return type(node)(*(made if name == field else getattr(node, name) for name in node._fields))
+    return type(node)(**{**vars(node), field: made})
 
 
 def rebuilt(node: ast.expr, change: Callable[[ast.expr], ast.expr | None]) -> ast.expr:
