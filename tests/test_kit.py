@@ -25,7 +25,7 @@ from installed import impact88
 @pytest.fixture(scope="module")
 def kit(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("kit") / "new"
-    done = impact88("oracle", "--kit", str(folder), "--vectors", "108", "--seed", "3")
+    done = impact88("oracle", "--kit", str(folder), "--vectors", "60", "--seed", "3")
     assert done.returncode == 0, done.stderr
     assert set(done.stdout.split()) == {path.name for path in folder.iterdir()}
     return folder
@@ -33,7 +33,7 @@ def kit(tmp_path_factory) -> Path:
 
 def test_the_kit_says_what_it_is(kit: Path) -> None:
     about = json.loads((kit / "KIT.json").read_text(encoding="utf-8"))
-    assert (about["kit"], about["seed"], about["vectors"]) == ("vectors/2", 3, 108)
+    assert (about["kit"], about["seed"], about["vectors"]) == ("vectors/2", 3, 60)
     for name, digest in about["sha256"].items():
         assert hashlib.sha256((kit / name).read_bytes()).hexdigest() == digest
 
@@ -42,7 +42,7 @@ def test_both_forms_of_the_vectors_ask_the_same(kit: Path) -> None:
     whole = list(map(json.loads, (kit / "vectors.jsonl").read_text(encoding="utf-8").splitlines()))
     with (kit / "vectors.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert len(whole) == len(rows) == 108
+    assert len(whole) == len(rows) == 60
     for one, row in zip(whole, rows, strict=True):
         assert one["scene"] == {name: row[name] for name in SCENE}
         assert (one["id"], one["expect"]) == (row["id"], row["expect"])

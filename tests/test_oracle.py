@@ -312,7 +312,7 @@ def test_every_label_occurs_and_failures_fail() -> None:
     labels = Counter(label for _, label, _ in scenes(3 * len(EDGES) * len(FAILURES), 1))
     assert set(EDGES) | set(FAILURES) <= set(labels)
     endings: dict[str, set] = {}
-    for one in vectors(6 * len(FAILURES), seed=2, reference=False):
+    for one in vectors(3 * len(FAILURES), seed=2, reference=False):
         endings.setdefault(one["label"], set()).add(one["ending"])
     assert endings["all at rest"] == {"?DIVISION BY ZERO ERROR IN 690"}
     assert endings["IA is zero"] == {"?DIVISION BY ZERO ERROR IN 480"}
@@ -370,7 +370,7 @@ def test_published_vectors_are_those_of_their_seed_and_hash() -> None:
     assert [one["scene"] for one in whole] == [s for *_, s in scenes(PUBLISHED, PUBLISHED_SEED)]
     readme = (captures.ROOT / "golden" / "README.md").read_text(encoding="utf-8")
     assert hashlib.sha256(text.encode()).hexdigest() in readme
-    few = whole[::25]
+    few = whole[::50]
     for one, today in zip(few, look_up([one["scene"] for one in few]), strict=True):
         assert (one["printout"], one["ending"]) == (today["printout"], today["ending"])
         for name, row in one["results"].items():

@@ -200,6 +200,7 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
 @np.errstate(all="ignore")
 def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
     """Programs with two mistakes, by stages. ``alone``: what explains rows alone."""
+    yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
     if judge.has_velocities:
         yield from _by_equations(judge.with_finals(_FEW), judge)
     enough = [one for one in alone if one.explains(judge.wrong) >= _SHARE * judge.wrong.sum()]
@@ -208,7 +209,6 @@ def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
         if unexplained.any():
             yield _second(judge, unexplained, one.program)
     yield list(_measured(judge))
-    yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
 
 
 def _second(judge: Judge, unexplained: Bools, first: Program) -> list[Program]:
