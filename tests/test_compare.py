@@ -221,7 +221,7 @@ def test_a_mistake_in_one_equation_is_named(tmp_path, program: Program, says: st
 
 
 BUGS = [*heldout.SINGLES, *heldout.PAIRS, *strangers.SINGLES, *strangers.PAIRS]
-FEW = [BUGS[66], strangers.SINGLES[0], strangers.PAIRS[-1]]
+FEW = [BUGS[66], strangers.SINGLES[0], strangers.PAIRS[0]]
 
 
 @pytest.mark.parametrize("which", BUGS if SWEEP else FEW, ids=str)
@@ -339,7 +339,7 @@ def test_noise_is_given_no_cause(tmp_path) -> None:
         assert all(cause.startswith(UNKNOWN) for cause in done.causes), done.causes
     slight = {name: OURS[name] + 1e-6 * rng.normal(size=len(ROWS)) for name in FINAL_VELOCITIES}
     done = compared(tmp_path, exactly(slight))
-    assert all("agrees to about" in cause for cause in done.causes), done.causes
+    assert all(cause.startswith(UNKNOWN) for cause in done.causes), done.causes
 
 
 def test_one_wrong_cell_is_no_convention(tmp_path) -> None:
@@ -389,11 +389,12 @@ def test_what_is_not_compared_is_named(tmp_path) -> None:
         found[name][1] = ""
         found[name][5] = "1"
     found["KI"][2] = ""
-    done = compared(tmp_path, {**found, "vax": found["VAX"], "mood": ["x"] * len(rows)}, rows)
+    more = {"vax": found["VAX"], "VAY_mph": found["VAY"], "mood": ["x"] * len(rows)}
+    done = compared(tmp_path, {**found, **more}, rows)
     assert done.not_compared == {NO_RESULT: [5], NOTHING_HERE: [6], NOTHING_THERE: [2]}
-    assert done.unknown == {"vax": "VAX", "mood": ""}
+    assert done.unknown == {"vax": "VAX", "VAY_mph": "VAY", "mood": ""}
     assert done.tallies["KI"].missing == 1
-    assert len(done.silent) == 5
+    assert len(done.silent) == 6
     assert done.agreeing == 3
 
 

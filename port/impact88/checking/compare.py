@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import difflib
 import os
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -269,12 +270,13 @@ def compare_file(
 
 
 def _meant(name: str) -> str:
-    """The result or scene column that a name stands for, in other letters or nearly."""
+    """The result or scene column that a name stands for: in other letters, with something behind
+    it, or nearly."""
     known = (*RESULTS, *SCENE)
-    plain = name.strip().upper()
-    if plain in known:
-        return plain
-    close = difflib.get_close_matches(plain, known, 1, 0.75)
+    for plain in (name.strip().upper(), re.split(r"[^A-Z]", name.strip().upper())[0]):
+        if plain in known:
+            return plain
+    close = difflib.get_close_matches(name.strip().upper(), known, 1, 0.75)
     return close[0] if close else ""
 
 

@@ -93,7 +93,10 @@ def _talk(comparison: Comparison) -> Iterator[str]:
     if len(comparison.bad) > SHOWN:
         yield f"and {len(comparison.bad) - SHOWN} more"
     for name, meant in list(comparison.unknown.items())[:SHOWN]:
-        yield f"column {name} is not recognised{f'; did you mean {meant}?' if meant else ''}"
+        hint = (
+            f"; did you mean {meant}? (a unit stands in brackets: {meant} [mph])" if meant else ""
+        )
+        yield f"column {name} is not recognised{hint}"
     if len(comparison.unknown) > SHOWN:
         yield f"and {len(comparison.unknown) - SHOWN} more columns are not recognised"
     for reason, rows in comparison.not_compared.items():
