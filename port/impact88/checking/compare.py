@@ -273,9 +273,9 @@ def _meant(name: str) -> str:
     """The result or scene column that a name stands for: in other letters, with something behind
     it, or nearly."""
     known = (*RESULTS, *SCENE)
-    for plain in (name.strip().upper(), re.split(r"[^A-Z]", name.strip().upper())[0]):
-        if plain in known:
-            return plain
+    for text in (name.strip().upper(), re.split(r"[^A-Z]", name.strip().upper())[0]):
+        if text in known:
+            return text
     close = difflib.get_close_matches(name.strip().upper(), known, 1, 0.75)
     return close[0] if close else ""
 
