@@ -20,13 +20,13 @@ from typing import NamedTuple
 from ..errors import UserError
 
 _PICTURE = "is a picture; expected text: tesseract FILE out --psm 6 makes it"
-_WORD = "is a Word or other packed file; expected text: save it as plain text, or pandoc -t plain"
 _NO_TEXT = {
     b"%PDF": "is a PDF; expected text: pdftotext -layout FILE.pdf makes it, or, of a scan, "
     "ocrmypdf --sidecar FILE.txt",
     **dict.fromkeys((b"\x89PNG", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"GIF8"), _PICTURE),
-    b"PK\x03\x04": _WORD,
-    b"\xd0\xcf\x11\xe0": _WORD,
+    b"PK\x03\x04": "is a Word or other packed file; expected text: save it as plain text, or "
+    "pandoc -t plain FILE",
+    b"\xd0\xcf\x11\xe0": "is a Word file; expected text: save it as plain text, or antiword FILE",
     b"\x1f\x8b": "is packed; expected text: gunzip FILE",
 }
 """First bytes of files that are not text, and what makes text of them."""
