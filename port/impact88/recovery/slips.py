@@ -36,8 +36,8 @@ _UNLIKE = 0.4
 _BITS_A_UNIT, _ALWAYS = 5.0, 0.7
 """Bits of a unit of cost in the search, and the cost of no bits: one slip (2.7) is cheaper than a
 result that differs (3.0), two slips dearer."""
-_TWO_SLIPS, _ONE_SLIP = 5.85, 3.5
-"""What two slips may cost, neither of them a digit lost or added; and one."""
+_TWO_SLIPS, _ONE_SLIP = 5.93, 3.5
+"""What two slips may cost: two neighbors swapped (2.9) and a digit misread (3.02); and one."""
 _FULL_TURN, _TURNED = 360.0, 2.0
 """Beyond it nobody types an angle, and what it costs to believe that somebody did."""
 _ROOM, _FEW, _REPLAYED = 100_000, 1_000, 320
