@@ -38,8 +38,8 @@ _BITS_A_UNIT, _ALWAYS = 5.0, 0.7
 result that differs (3.0), two slips dearer."""
 _TWO_SLIPS, _ONE_SLIP = 5.93, 3.5
 """What two slips may cost: two neighbors swapped (2.9) and a digit misread (3.02); and one."""
-_FULL_TURN, _TURNED = 360.0, 2.0
-"""Beyond it nobody types an angle, and what it costs to believe that somebody did."""
+_FULL_TURN, _TURNED = 360.0, 10.0
+"""Beyond it nobody types an angle, and the bits it takes to believe that somebody did."""
 _ROOM, _FEW, _REPLAYED = 100_000, 1_000, 320
 _FIGURES = 9
 """Of a number the Apple keeps so many."""
@@ -62,8 +62,12 @@ class Change(NamedTuple):
     @property
     def bits(self) -> float:
         """What it takes to believe it."""
-        unlike = _UNLIKE * _unlikeness(self.printed, self.would_be) if self.kind == DIGIT else 0.0
-        return BITS.get(self.kind, 0.0) + unlike
+        bits = BITS.get(self.kind, 0.0)
+        if self.kind == DIGIT:
+            bits += _UNLIKE * _unlikeness(self.printed, self.would_be)
+        if self.kind in BITS and self.field in ANGLES and abs(double(self.would_be)) > _FULL_TURN:
+            bits += _TURNED
+        return bits
 
 
 class Reread(NamedTuple):
@@ -130,8 +134,7 @@ class Rereading:
 
 def _cost(change: Change) -> float:
     """What a slip costs in the search."""
-    turned = change.field in ANGLES and abs(double(change.would_be)) > _FULL_TURN
-    return _ALWAYS + change.bits / _BITS_A_UNIT + (_TURNED if turned else 0.0)
+    return _ALWAYS + change.bits / _BITS_A_UNIT
 
 
 def misreadings(text: str) -> dict[str, str]:
