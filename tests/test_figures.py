@@ -20,7 +20,6 @@ from impact88.commands import figure_command as command
 from impact88.commands.figure_command import solved
 from impact88.errors import UserError
 from impact88.figures import axes, canvas, charts, freebody
-from impact88.figures.configurations import configurations
 from impact88.figures.drawing import (
     Box,
     Drawing,
@@ -37,6 +36,7 @@ from impact88.figures.drawing import (
 from impact88.figures.labels import place
 from impact88.figures.scenegeometry import plan
 from impact88.figures.sceneview import scene_drawing, scene_svg
+from impact88.figures.sheets import configurations
 from impact88.figures.svg import svg
 from impact88.scene import Scene, sample
 from impact88.uncertainty.bounds import bounds
@@ -773,7 +773,7 @@ class TestToScale:
         assert {"−12°", "48°"} <= set(texts)
 
     def test_a_strip_moves_and_turns_the_vehicles(self):
-        from impact88.figures.strip import strip_drawing
+        from impact88.figures.sheets import strip_drawing
 
         scene = sample(1)
         drawing = strip_drawing(scene, solved(scene))

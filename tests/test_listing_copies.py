@@ -13,7 +13,7 @@ import printouts
 from captures import ROOT
 from impact88.cli import main
 from impact88.errors import UserError
-from impact88.program.listingcopy import ListingCopy
+from impact88.program.emulated import ListingCopy
 from impact88.reporting.examination import Verdict, examine_bytes
 from impact88.scene import sample
 

@@ -36,10 +36,10 @@ from typing import Any
 from ..chapter.barrier import BARRIER, VEHICLE, barrier
 from ..closedform.solve import solve
 from ..errors import UserError
-from ..figures import charts, configurations, freebody
+from ..figures import charts, freebody
 from ..figures.drawing import Drawing
 from ..figures.sceneview import scene_drawing
-from ..figures.strip import strip_drawing
+from ..figures.sheets import configurations, strip_drawing
 from ..names import FINAL_VELOCITIES, RESULTS, missing
 from ..scene import Scene, entries_in, numbers_of
 from ..tables.sweep import read_ranges
@@ -87,7 +87,7 @@ def _drawn(args: argparse.Namespace) -> Drawing:
         "staged": charts.figure_5,
         "force": charts.force_and_impulse,
         "colinear": freebody.colinear,
-        "configurations": configurations.configurations,
+        "configurations": configurations,
     }
     if kind in alone:
         if given or args.set or args.ranges:

@@ -139,7 +139,7 @@ def main(args: argparse.Namespace) -> int:
 
 def _run_copy(args: argparse.Namespace, scene: Scene | None) -> int:
     """Run a copy of the listing on a scene."""
-    from ..program.listingcopy import ListingCopy
+    from ..program.emulated import ListingCopy
 
     if scene is None:
         raise UserError("--listing runs on a scene; expected a scene file or --sample")

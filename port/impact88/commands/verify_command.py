@@ -73,7 +73,7 @@ def main(args: argparse.Namespace) -> int:
         given = dict(options.one_scene(args))
     copy = None
     if args.listing:
-        from ..program.listingcopy import ListingCopy
+        from ..program.emulated import ListingCopy
 
         copy = ListingCopy(args.listing)
     seed = ""

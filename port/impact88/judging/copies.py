@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from ..errors import UserError
 from ..fields import ANGLES, FIELDS, ZERO_DETERMINANT, outcome_fields, scene_name
-from ..program.listingcopy import ListingCopy
+from ..program.emulated import ListingCopy
 from ..program.run import run
 from ..reading.fieldlabels import LabelState
 from ..reading.numerals import value_of

@@ -1,16 +1,29 @@
-"""Run the restored listing itself in the Applesoft emulator, as an independent check of the port.
+"""Run the restored listing, or an office's own copy of it, in the Applesoft emulator.
 
-The scene's lines are retyped into the listing and the velocities typed at its prompts. The result
-has the form of `run.run`.
+The restored listing is an independent check of the port: a scene's lines are retyped into it, and
+the velocities typed at its prompts. The result has the form of `run.run`.
+
+Copies were retyped, and changed: other data, another pi, results rounded. The values of a scene go
+where the copy itself gets them: numbers assigned to the scene's variables, items of DATA that READ
+gives them, and replies that INPUT asks for. Everything else stays as the copy has it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+import re
+from collections.abc import Callable, Iterator, Mapping
+from hashlib import sha256
+from itertools import chain
+from typing import Any, NamedTuple
 
+from .. import files
+from ..applesoft.console import EndOfInput
+from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
+from ..emulator.machine import TooManyStatements
+from ..errors import UserError
 from ..files import packaged_text
+from ..names import SCENE
 from ..scene import Scene
 from .run import Run
 
@@ -90,3 +103,124 @@ def run(
 ) -> Run:
     """Run the listing on a scene in the emulator, and keep everything."""
     return Emulated(scene, dos=dos, slot=slot).run(after_line)
+
+
+LARGEST_COPY = 100_000
+"""Bytes; the listing has 4,700."""
+STATEMENTS = 100_000
+"""Statements a run takes at most; the listing's takes 3,900, Todd's elimination included."""
+
+_STATEMENT = re.compile(r'(?:"[^"]*"?|[^":])*')
+_NUMBER = r"[-+]?\s*(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?"
+_ASSIGNED = re.compile(rf"(?P<before>\s*(?:LET\s*)?(?P<name>[A-Z]+)\s*=\s*){_NUMBER}\s*", re.I)
+_LIST = re.compile(r"\s*(?P<verb>READ|INPUT|DATA)\b\s*(?:\"[^\"]*\"\s*;)?\s*(?P<items>.*)", re.I)
+
+
+class ChangedLine(NamedTuple):
+    """A line that is not the restored listing's; either text may be empty."""
+
+    line: int
+    copy: str
+    restored: str
+
+
+class ListingCopy:
+    """A copy of the listing from a file. ``file``: its name; ``sha256``: of its bytes.
+
+    Raises UserError for a file that is not an Applesoft program."""
+
+    def __init__(self, path: str) -> None:
+        data = files.read_bytes(path, LARGEST_COPY)
+        self.file = files.called(path)
+        self.sha256 = sha256(data).hexdigest()
+        try:
+            text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+            self._source = _listed(text)
+        except (ValueError, ApplesoftError) as error:
+            raise UserError(f"is not an Applesoft program: {error}", path) from None
+        if not self._source:
+            raise UserError("holds no program; expected numbered lines of Applesoft", path)
+
+    def changed_lines(self) -> list[ChangedLine]:
+        """The lines in which the copy is another program than the restored listing; remarks and
+        blanks apart."""
+        restored = _listed(packaged_text("impact88.legacy", LISTING))
+        return [
+            ChangedLine(number, self._source.get(number, ""), restored.get(number, ""))
+            for number in sorted({*self._source, *restored})
+            if _plain(self._source.get(number, "")) != _plain(restored.get(number, ""))
+        ]
+
+    def run(self, scene: Mapping[str, str], *, dos: bool = True) -> Run:
+        """RUN of the copy with a scene's values. Raises UserError where it asks for other input
+        than the scene's, or does not end."""
+        machine = Applesoft(dos=dos, blanks=False)
+        machine.load("\n".join(self._with(scene)))
+        for names in self._lists("INPUT"):
+            machine.feed(",".join(scene.get(name.upper(), "0") for name in names))
+        machine.machine.statements_left = STATEMENTS
+        try:
+            machine.run()
+        except EndOfInput:
+            raise UserError("asks for more than a scene holds", self.file) from None
+        except TooManyStatements:
+            raise UserError(f"does not end within {STATEMENTS:,} statements", self.file) from None
+        return finished(machine)
+
+    def _lists(self, verb: str) -> Iterator[list[str]]:
+        """The items of every READ or INPUT, in the order of the lines."""
+        for _, text in sorted(self._source.items()):
+            for statement in _split(text):
+                if items := _items(statement, verb):
+                    yield items
+
+    def _with(self, scene: Mapping[str, str]) -> Iterator[str]:
+        """The program's lines with the scene's values in place of its own."""
+        names = chain.from_iterable(self._lists("READ"))
+        for number, text in sorted(self._source.items()):
+            statements = []
+            for statement in _split(text):
+                if items := _items(statement, "DATA"):
+                    given = [(item, next(names, "").upper()) for item in items]
+                    items = [scene[name] if name in SCENE else item for item, name in given]
+                    statement = " DATA " + ",".join(items)
+                match = _ASSIGNED.fullmatch(statement)
+                if match and match["name"].upper() in SCENE:
+                    statement = match["before"] + scene[match["name"].upper()]
+                statements.append(statement)
+            yield f"{number} {':'.join(statements)}"
+
+
+def _items(statement: str, verb: str) -> list[str]:
+    """The items of a READ, INPUT or DATA; none of another statement."""
+    match = _LIST.fullmatch(statement)
+    found = match and match["verb"].upper() == verb
+    return [item.strip() for item in match["items"].split(",")] if match and found else []
+
+
+def _listed(text: str) -> dict[int, str]:
+    """The lines of a program by number, as LIST shows them."""
+    machine = Applesoft()
+    machine.load(text)
+    pairs = (line.strip().partition(" ") for line in machine.source().splitlines())
+    return {int(number): rest for number, _, rest in pairs}
+
+
+def _split(text: str) -> list[str]:
+    """The statements of a line; a remark is one, whatever stands in it."""
+    statements, place = [], 0
+    while place <= len(text):
+        if text[place:].lstrip().upper().startswith("REM"):
+            statements.append(text[place:])
+            break
+        match = _STATEMENT.match(text, place)
+        assert match is not None
+        statements.append(match[0])
+        place = match.end() + 1
+    return statements
+
+
+def _plain(text: str) -> str:
+    """A line without blanks and remarks."""
+    kept = [one for one in _split(text) if not one.lstrip().upper().startswith("REM")]
+    return ":".join("".join(statement.split()) for statement in kept)

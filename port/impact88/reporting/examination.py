@@ -31,7 +31,7 @@ from .verification import Examined, Verification
 
 if TYPE_CHECKING:
     from ..judging.copies import CopyPages
-    from ..program.listingcopy import ListingCopy
+    from ..program.emulated import ListingCopy
 
 PICTURE_STARTS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"%PDF-")
 """How PNG, JPEG, TIFF (of either byte order) and PDF files begin."""

@@ -16,7 +16,7 @@ from ..recovery.typedtext import stored_and_printed
 
 if TYPE_CHECKING:
     from ..explaining.explanations import Explanation
-    from ..program.listingcopy import ListingCopy
+    from ..program.emulated import ListingCopy
 
 TITLES = {
     Verdict.IDENTICAL: "IDENTICAL",
