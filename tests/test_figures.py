@@ -36,8 +36,8 @@ from impact88.figures.drawing import (
 from impact88.figures.labels import place
 from impact88.figures.scenegeometry import plan
 from impact88.figures.sceneview import scene_drawing, scene_svg
-from impact88.figures.sheets import configurations
 from impact88.figures.svg import svg
+from impact88.figures.views import configurations
 from impact88.scene import Scene, sample
 from impact88.uncertainty.bounds import bounds
 from impact88.uncertainty.ranges import read_inputs
@@ -773,7 +773,7 @@ class TestToScale:
         assert {"−12°", "48°"} <= set(texts)
 
     def test_a_strip_moves_and_turns_the_vehicles(self):
-        from impact88.figures.sheets import strip_drawing
+        from impact88.figures.views import strip_drawing
 
         scene = sample(1)
         drawing = strip_drawing(scene, solved(scene))

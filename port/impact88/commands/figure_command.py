@@ -39,7 +39,7 @@ from ..errors import UserError
 from ..figures import charts, freebody
 from ..figures.drawing import Drawing
 from ..figures.sceneview import scene_drawing
-from ..figures.sheets import configurations, strip_drawing
+from ..figures.views import configurations, strip_drawing
 from ..names import FINAL_VELOCITIES, RESULTS, missing
 from ..scene import Scene, entries_in, numbers_of
 from ..tables.sweep import read_ranges

@@ -93,7 +93,7 @@ def _tip(vehicle: Vehicle, kind: str, time: float) -> complex:
     return vehicle.center + (time if kind != "impact" else 0.0) * motion.velocity
 
 
-_GAP = 4.0
+_PANEL_GAP = 4.0
 _TITLE = 5.0
 _PAD = 3.5
 
@@ -111,7 +111,7 @@ def configurations() -> Drawing:
         d.extent(p for v in shapes.vehicles for p in (*v.outline, _tail(v, shapes, arrow)))
         for shapes in plans
     ]
-    wide = (d.COLUMN - _GAP) / 2
+    wide = (d.COLUMN - _PANEL_GAP) / 2
     # one scale for all four: real cars of comparable size
     scale = min((wide - 2 * _PAD) / box.width for box in boxes)
     description = "Staged collisions: " + "; ".join(category.lower() for category in chosen) + "."
@@ -119,7 +119,7 @@ def configurations() -> Drawing:
     top = 0.0
     for count, (category, collision) in enumerate(chosen.items()):
         row, column = divmod(count, 2)
-        box, left = boxes[count], column * (wide + _GAP)
+        box, left = boxes[count], column * (wide + _PANEL_GAP)
         tall = scale * max(other.height for other in boxes[2 * row : 2 * row + 2]) + 2 * _PAD
         title = f"{'abcd'[count]}. {category.lower()} (no. {collision.number})"
         drawing.add(Text(complex(left + 1, top - 3.6), title, 7, role="panel title"))
