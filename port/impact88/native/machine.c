@@ -10,6 +10,9 @@
 #include <stdint.h>
 #include <string.h>
 
+#ifdef _MSC_VER
+#define restrict __restrict
+#endif
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
 #else
