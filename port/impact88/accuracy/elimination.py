@@ -28,47 +28,31 @@ ORDER = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 def fill(columns: Mapping[str, Any], pi: float = np.pi) -> tuple[Array, Array]:
     """The matrices (n, 6, 6) and right-hand sides (n, 6) of n scenes with M = 6.
 
-    ``columns``: scene name -> array of shape (n,) or number. Lines 300 to 560, with ``pi`` for the
+    ``columns``: scene name -> array of shape (n,) or number. `listing_rows`, with ``pi`` for the
     listing's. Where line 510 takes for a pivot what is none (MU below -10), this does not.
     """
     g = {name: np.asarray(value, dtype=np.float64) for name, value in columns.items()}
-    size = np.broadcast_shapes(*(v.shape for v in g.values()))[0]
-    ag = pi / 180
-    GA, PA, PB, TA, TB = (g[name] * ag for name in ("GA", "PA", "PB", "TA", "TB"))
-    MA, MB, IA, IB, DA, DB = (g[name] for name in ("MA", "MB", "IA", "IB", "DA", "DB"))
-    UX, UY, WA, VX, VY, WB = (g[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB"))
-    E, EM, MU = g["E"], g["EM"], g["MU"]
-    s, c = np.sin(GA), np.cos(GA)
-    D1, D2 = DB * np.sin(TB + PB), DB * np.cos(TB + PB)
-    D3, D4 = DA * np.sin(TA + PA), DA * np.cos(TA + PA)
-    XA, YA, XB, YB = UX + D3 * WA, UY - D4 * WA, VX - D1 * WB, VY + D2 * WB
-    pivot = MU == PIVOT
-    flip = ~pivot & (XA * s - YA * c < XB * s - YB * c)
-    MU = np.where(flip, -MU, MU)
-    A, b = np.zeros((size, 6, 6)), np.zeros((size, 6))
-    A[:, 0, 0], A[:, 0, 2] = MA, MB
-    A[:, 1, 1], A[:, 1, 3] = MA, MB
-    along_a, along_b = MA * (c - MU * s), MB * (s + MU * c)
-    A[:, 2, 0] = np.where(pivot, s, 0.0)
-    A[:, 2, 1] = np.where(pivot, -c, along_a)
-    A[:, 2, 2] = np.where(pivot, -s, along_b)
-    A[:, 2, 3] = np.where(pivot, c, 0.0)
-    A[:, 2, 4] = np.where(pivot, DA * np.cos(PA + TA - GA), 0.0)
-    A[:, 2, 5] = np.where(pivot, DB * np.cos(PB + TB - GA), 0.0)
-    A[:, 3, 0], A[:, 3, 1], A[:, 3, 2], A[:, 3, 3] = c, s, -c, -s
-    A[:, 3, 4], A[:, 3, 5] = D3 * c - D4 * s, D1 * c - D2 * s
-    A[:, 4, 1], A[:, 4, 2], A[:, 4, 4], A[:, 4, 5] = MA * (D2 + D4), MB * (D1 + D3), IA, IB
-    A[:, 5, 0], A[:, 5, 1] = -EM * MA * D3 / IA, EM * MA * D4 / IA
-    A[:, 5, 2], A[:, 5, 3] = -EM * MB * D1 / IB, EM * MB * D2 / IB
-    A[:, 5, 4], A[:, 5, 5] = 2 * EM - 1, 1 - 2 * EM
-    b[:, 0], b[:, 1] = MA * UX + MB * VX, MA * UY + MB * VY
-    b[:, 2] = np.where(pivot, 0.0, along_a * UY + along_b * VX)
-    b[:, 3] = -E * ((UY - D4 * WA - VY - D2 * WB) * s + (UX + D3 * WA - VX + D1 * WB) * c)
-    b[:, 4] = MA * (D2 + D4) * UY + MB * (D1 + D3) * VX + IA * WA + IB * WB
-    b[:, 5] = EM * (
-        -MA * D3 * UX / IA + MA * D4 * UY / IA - MB * D1 * VX / IB + MB * D2 * VY / IB + WA - WB
-    )
-    return A, b
+
+    def turn(*degrees: Array) -> tuple[Array, Array]:
+        angle = sum(x * (pi / 180) for x in degrees)
+        return np.sin(angle), np.cos(angle)
+
+    def products(a: Array, x: Sequence[Array], b: Array, y: Sequence[Array]) -> Any:
+        return a * sum(x) + b * sum(y)
+
+    def against(mu: Array, slip: Array) -> Array:
+        return np.where(slip > 0, -mu, mu)
+
+    t = Terms(g, False, False, np.float64(0.0), turn, products, against)
+    rows = listing_rows(t)
+    t.pivot = True
+    pivot = g["MU"] == PIVOT
+    rows[2] = [np.where(pivot, x, y) for x, y in zip(listing_rows(t)[2], rows[2], strict=True)]
+    whole = np.empty((*np.broadcast_shapes(*(v.shape for v in g.values())), 6, 7))
+    for i, row in enumerate(rows):
+        for j, x in enumerate(row):
+            whole[:, i, j] = x
+    return whole[:, :, :6].copy(), whole[:, :, 6].copy()
 
 
 def changes(columns: Mapping[str, Any], A: Array) -> tuple[Array, Array]:
@@ -93,7 +77,8 @@ def changes(columns: Mapping[str, Any], A: Array) -> tuple[Array, Array]:
 
 class Terms:
     """A scene's numbers ``g``, in whatever arithmetic, and lines 300 to 340 on them. ``turn``: sine
-    and cosine of a sum of angles; ``products``: (a, terms, b, terms) -> a·terms + b·terms."""
+    and cosine of a sum of angles; ``products``: (a, terms, b, terms) -> a·terms + b·terms;
+    ``against``: (MU, slip) -> MU by the sign rule of line 400."""
 
     def __init__(
         self,
@@ -103,6 +88,7 @@ class Terms:
         zero: Any,
         turn: Callable[..., tuple[Any, Any]],
         products: Callable[[Any, Sequence[Any], Any, Sequence[Any]], Any],
+        against: Callable[[Any, Any], Any],
     ) -> None:
         self.g, self.point, self.pivot, self.zero = g, point, pivot, zero
         self.s, self.c = turn(g["GA"])
@@ -117,7 +103,7 @@ class Terms:
         along = g["UY"], -(self.D4 * self.WA), -g["VY"], -(self.D2 * self.WB)
         self.gn = products(self.s, along, self.c, across)
         self.gt = products(self.c, along, -self.s, across)
-        self.mu = -g["MU"] if self.gt > zero and not pivot else g["MU"]
+        self.mu = g["MU"] if pivot else against(g["MU"], self.gt)
 
     def before(self) -> list[Any]:
         """The velocities before the impact, in the order of `ORDER`."""

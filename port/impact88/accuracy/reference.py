@@ -69,8 +69,12 @@ def terms(scene: Mapping[str, Any], pi: Number | None = None) -> Terms:
     def products(a: Number, x: Sequence[Number], b: Number, y: Sequence[Number]) -> Number:
         return total(*(a * term for term in x), *(b * term for term in y))
 
+    def against(mu: Number, slip: Number) -> Number:
+        return -mu if slip > 0 else mu
+
     point = number(scene.get("M", DEFAULT_M)) == 4
-    return Terms(g, point, g["MU"] == PIVOT, mpmath.mpf(0), turn, products)
+    zero = mpmath.mpf(0)
+    return Terms(g, point, g["MU"] == PIVOT, zero, turn, products, against)
 
 
 def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:

@@ -107,7 +107,10 @@ def _terms(scene: Mapping[str, str]) -> Terms:
     def products(a: Bounded, x: Sequence[Bounded], b: Bounded, y: Sequence[Bounded]) -> Bounded:
         return reduce(add, x) * a + reduce(add, y) * b
 
-    t = Terms(g, point, g["MU"].v == PIVOT, Bounded(0.0), _turn, products)
+    def against(mu: Bounded, slip: Bounded) -> Bounded:
+        return -mu if slip.v > 0 else mu
+
+    t = Terms(g, point, g["MU"].v == PIVOT, Bounded(0.0), _turn, products, against)
     if not t.pivot and g["MU"].v and not t.gt.e < abs(t.gt.v):
         raise Uncertain  # line 400 may turn MU, or not
     if not t.pivot and min(g["MU"].v, t.mu.v) - t.mu.e <= PIVOT:

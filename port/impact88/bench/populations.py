@@ -52,7 +52,7 @@ def scenes(name: str, count: int, seed: int) -> Columns:
     return population.make(rng, count)
 
 
-def _casework(rng: Generator, count: int) -> Columns:
+def casework(rng: Generator, count: int) -> Columns:
     """Cars as in the chapter's Table 1, feet and slugs."""
 
     def spread(low: float, high: float) -> Floats:
@@ -87,23 +87,19 @@ def _casework(rng: Generator, count: int) -> Columns:
     }
 
 
-def casework(rng: Generator, count: int) -> Columns:
-    return _casework(rng, count)
-
-
 def _powers(rng: Generator, low: float, high: float, count: int) -> Floats:
     return 10 ** rng.uniform(low, high, count)
 
 
 def heavy(rng: Generator, count: int) -> Columns:
-    g = _casework(rng, count)
+    g = casework(rng, count)
     ratio = _powers(rng, 1, 12, count)
     return {**g, "MB": _rounded_to_six(g["MA"] * ratio), "IB": _rounded_to_six(g["IA"] * ratio)}
 
 
 def near_singular(rng: Generator, count: int) -> Columns:
     """MU within 1e-1 to 1e-9 of -Knn/Knt, where friction has no solution."""
-    g = _casework(rng, 4 * count)
+    g = casework(rng, 4 * count)
     s, c = sin_cos(g["GA"])
     arms = []
     for d, phi, theta in (("DA", "PA", "TA"), ("DB", "PB", "TB")):
@@ -127,7 +123,7 @@ def near_singular(rng: Generator, count: int) -> Columns:
 
 def units(rng: Generator, count: int) -> Columns:
     """Casework in other units: lengths of 1e-6 to 1e6, masses of 1e-9 to 1e9, times of 1e±3."""
-    g = _casework(rng, count)
+    g = casework(rng, count)
     length, mass = _powers(rng, -6, 6, count), _powers(rng, -9, 9, count)
     time = _powers(rng, -3, 3, count)
     by = {
@@ -142,7 +138,7 @@ def units(rng: Generator, count: int) -> Columns:
 
 def tangential(rng: Generator, count: int) -> Columns:
     """Sideswipes: the approach is 1e-2 to 1e-9 of the sliding, along a surface at GA."""
-    g = _casework(rng, count)
+    g = casework(rng, count)
     s, c = sin_cos(g["GA"])
     sliding = rng.uniform(20, 120, count) * rng.choice([-1, 1], count)
     approach = -np.abs(sliding) * _powers(rng, -9, -2, count)
@@ -158,7 +154,7 @@ def tangential(rng: Generator, count: int) -> Columns:
 
 def cancelling(rng: Generator, count: int) -> Columns:
     """gn = 0 but for rounding and 1e-1 to 1e-15 of its largest part: spins undo the approach."""
-    g = _casework(rng, count)
+    g = casework(rng, count)
     s, c = sin_cos(g["GA"])
     sine, _ = sin_cos(g["TA"] + g["PA"] - g["GA"])
     arm = g["DA"] * np.where(np.abs(sine) < 0.1, 0.1, sine)
@@ -169,14 +165,14 @@ def cancelling(rng: Generator, count: int) -> Columns:
 
 def em_half(rng: Generator, count: int) -> Columns:
     """EM within 1e-1 to 1e-16 of 1/2, and 1/2 itself."""
-    g = _casework(rng, count)
+    g = casework(rng, count)
     away = _powers(rng, -16, -1, count) * rng.choice([-1, 0, 1], count)
     return {**g, "EM": 0.5 + away}
 
 
 def extreme(rng: Generator, count: int) -> Columns:
     """Masses and inertias each anywhere from 1e-9 to 1e15, unrelated."""
-    g = _casework(rng, count)
+    g = casework(rng, count)
     for name in ("MA", "MB", "IA", "IB"):
         g[name] = _rounded_to_six(_powers(rng, -9, 15, count))
     return g
@@ -184,7 +180,7 @@ def extreme(rng: Generator, count: int) -> Columns:
 
 def barriers(rng: Generator, count: int) -> Columns:
     """One body infinite: in mass and inertia, or in one of them, and at rest in it."""
-    g = _casework(rng, count)
+    g = casework(rng, count)
     which = rng.integers(0, 3, count)
     is_b = rng.random(count) < 0.5
     bodies = {"A": ("MA", "IA", "UX", "UY", "WA"), "B": ("MB", "IB", "VX", "VY", "WB")}
@@ -201,7 +197,7 @@ def barriers(rng: Generator, count: int) -> Columns:
 
 def quarter_turns(rng: Generator, count: int) -> Columns:
     """All angles multiples of 90 degrees."""
-    g = _casework(rng, count)
+    g = casework(rng, count)
     for name in ("GA", "PA", "PB", "TA", "TB"):
         g[name] = np.multiply(90.0, rng.integers(-8, 9, count), dtype=np.float64)
     return g

@@ -25,7 +25,7 @@ def turn() -> list[float]:
     octant = _QUARTER // 2
     with localcontext(Context(prec=40)):
         step = 2 * _PI / STEPS
-        sine, cosine = _small_sine(step), _small_cosine(step)
+        sine, cosine = _series(step, step, 3), _series(Decimal(1), step, 2)
         x, y = Decimal(1), Decimal(0)
         points = []
         for _ in range(octant + 1):
@@ -38,17 +38,10 @@ def turn() -> list[float]:
     return whole + whole[:_QUARTER]
 
 
-def _small_sine(x: Decimal) -> Decimal:
-    term = total = x
-    for n in range(3, 25, 2):
-        term = -term * x * x / (n * (n - 1))
-        total += term
-    return total
-
-
-def _small_cosine(x: Decimal) -> Decimal:
-    term = total = Decimal(1)
-    for n in range(2, 24, 2):
+def _series(term: Decimal, x: Decimal, first: int) -> Decimal:
+    """Of the sine from x and 3, of the cosine from 1 and 2."""
+    total = term
+    for n in range(first, 25, 2):
         term = -term * x * x / (n * (n - 1))
         total += term
     return total
