@@ -8,6 +8,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -38,21 +40,25 @@ def fill(columns: Mapping[str, Any], pi: float = np.pi) -> tuple[Array, Array]:
         return np.sin(angle), np.cos(angle)
 
     def products(a: Array, x: Sequence[Array], b: Array, y: Sequence[Array]) -> Any:
-        return a * sum(x) + b * sum(y)
+        return a * reduce(add, x) + b * reduce(add, y)
 
     def against(mu: Array, slip: Array) -> Array:
         return np.where(slip > 0, -mu, mu)
 
     t = Terms(g, False, False, np.float64(0.0), turn, products, against)
     rows = listing_rows(t)
-    t.pivot = True
     pivot = g["MU"] == PIVOT
-    rows[2] = [np.where(pivot, x, y) for x, y in zip(listing_rows(t)[2], rows[2], strict=True)]
-    whole = np.empty((*np.broadcast_shapes(*(v.shape for v in g.values())), 6, 7))
-    for i, row in enumerate(rows):
+    if pivot.any():
+        t.pivot = True
+        rows[2] = [np.where(pivot, x, y) for x, y in zip(listing_rows(t)[2], rows[2], strict=True)]
+    shape = np.broadcast_shapes(*(v.shape for v in g.values()))
+    A, b = np.zeros((*shape, 6, 6)), np.zeros((*shape, 6))
+    for i, (*row, right) in enumerate(rows):
+        b[:, i] = right
         for j, x in enumerate(row):
-            whole[:, i, j] = x
-    return whole[:, :, :6].copy(), whole[:, :, 6].copy()
+            if x is not t.zero:
+                A[:, i, j] = x
+    return A, b
 
 
 def changes(columns: Mapping[str, Any], A: Array) -> tuple[Array, Array]:
