@@ -60,20 +60,18 @@ _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
 _STARTS = 120
 """With half of them one of several impacts was missed in 2 of 48 problems seen from elsewhere (axes
 turned, mirrored, vehicles exchanged), with twice as many none more is found."""
-_APART = 1.0
-"""How far apart starts lie, in scaled variables."""
 _TIGHTENED_FIRST, _TIGHTENED = 4, 12
 """Of the starts so many with tolerances tightened little by little, the second number where nothing
 is found by then, or something not determined."""
 _STEPS = 50
+"""Of an iteration at most (a descent: twice as many); with twice as many nothing else is found."""
 _LONGEST, _LAST = 2.0, 1e-14
 """The longest and the last step in scaled variables, the last as a share of them."""
 _TIGHTER, _TIGHTEST = 0.1, 1e-12
 """Tolerances are tightened by so much at a time, to so much of an ordinary size at most."""
-_ROUGHLY, _CLOSELY = (12, 0.1), (100, 1e-9)
-"""Steps of a descent, and the share of the squares below which one gains too little."""
-_CORRECTIONS = 30
-"""Of a step's end at most."""
+_ROUGHLY, _CLOSELY = 0.1, 1e-9
+"""The share of the squares below which a step of a descent gains too little: while tolerances are
+tightened, and at last."""
 _HELD = 100.0
 """Conditions count so many times as much as the tightest tolerance."""
 _NEARLY, _HOLDS = 1e-3, 1e-10
@@ -280,7 +278,7 @@ class System:
 
     def start(self, rng: np.random.Generator, count: int) -> Floats:
         """Scaled variables to begin with, ``count`` columns."""
-        x = _APART * rng.standard_normal((count, len(self.variables))).T
+        x = rng.standard_normal((count, len(self.variables))).T
         for i, name in enumerate(self.variables):
             if name in self.nominal:
                 x[i] = self.nominal[name] / self.scales[i]
@@ -328,19 +326,19 @@ class System:
         while loosest > tightest:
             weights = np.where(spared, 1.0, np.minimum(1.0, shares / loosest))
             rows = np.concatenate([held / loosest, weights])
-            x = self._descended(x, rows[:, None], *_ROUGHLY)
+            x = self._descended(x, rows[:, None], _ROUGHLY)
             loosest *= _TIGHTER
         rows = np.concatenate([held / tightest, np.ones(len(shares))])
-        x = self._descended(x, rows[:, None], *_CLOSELY)
+        x = self._descended(x, rows[:, None], _CLOSELY)
         return x, np.abs(self.left(self.state(x))[: len(held)]).max(axis=0, initial=0.0)
 
-    def _descended(self, x: Floats, rows: Floats, steps: int, enough: float) -> Floats:
+    def _descended(self, x: Floats, rows: Floats, enough: float) -> Floats:
         """Least squares of what conditions and observations leave over, ``rows`` times as much, in
         damped steps (Levenberg, Marquardt) until three gain less than the share ``enough``."""
         x, residual = x.copy(), rows * self.left(self.state(x))
         squares, damping = _squares(residual), np.full(x.shape[1], 1e-3)
         idle, going = np.zeros(x.shape[1], int), np.isfinite(squares)
-        for _ in range(steps):
+        for _ in range(2 * _STEPS):
             who = np.flatnonzero(going)
             jacobian = rows[:, None] * self.linearized(x[:, who], self.left)[1]
             finite = np.isfinite(jacobian).all(axis=(0, 1))
@@ -382,7 +380,7 @@ class System:
         long as that lessens it: so steps follow narrow curved valleys."""
         after = rows * self.left(self.state(x))
         squares, straight, who = _squares(after), _squares(promised), np.arange(x.shape[1])
-        for _ in range(_CORRECTIONS):
+        for _ in range(_STEPS):
             who = who[squares[who] > 1.1 * straight[who]]
             if not len(who):
                 break
@@ -727,12 +725,19 @@ def reconstruct(
 
 
 def _preferred(found: list[Reconstruction]) -> list[Reconstruction]:
-    """Of solutions the likely ones, the best first. A course is a direction: what drives backwards
-    along one is kept only where nothing else is."""
+    """Of solutions the likely ones, the best first, of equally good ones those that collide and
+    have coefficients of impacts. A course is a direction: what drives backwards along one is kept
+    only where nothing else is."""
+
+    def order(solution: Reconstruction) -> tuple[float, bool, bool, bool]:
+        e, em = (solution.values.get(name, 0.0) for name in ("E", "EM"))
+        known = round(solution.squares, 9), not solution.collides
+        return (*known, not 0 <= e <= 1, not (-1 <= em <= 0 or em == 1))
+
     ahead = [s for s in found if not s.backwards] or found
     least = min(s.squares for s in ahead)
     kept = [s for s in ahead if s.squares <= max(_LIKELY * least, 1e-9)]
-    return sorted(kept, key=lambda s: (round(s.squares, 9), not s.collides))
+    return sorted(kept, key=order)
 
 
 def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:

@@ -552,36 +552,27 @@ class _Solving:
         self, data: Mapping[str, Floats], count: int, guess: Floats | None = None
     ) -> tuple[Floats, State, Flags]:
         """The ``count`` impacts, as variables and states, and which of them meet all conditions."""
-        start = np.repeat(self.x, count, axis=1) if guess is None else guess
+        x = start = np.repeat(self.x, count, axis=1) if guess is None else guess
         geometry = None
         if set(data) & set(GEOMETRY):
             geometry = Geometry.of({**self.system.constants, **data})
         with np.errstate(all="ignore"):
-            x, settled = self._chords(data, geometry, start)
-        return x, self.system.state(x, data, geometry), settled
-
-    def _chords(
-        self, data: Mapping[str, Floats], geometry: Geometry | None, start: Floats
-    ) -> tuple[Floats, Flags]:
-        x, count = start, start.shape[1]
-        residual = self.left(x, data, geometry)
-        left = np.abs(residual).max(axis=0, initial=0.0)
-        for more in reversed(range(CHORDS)):
-            before = left
-            x = x - self.inverse @ residual
             residual = self.left(x, data, geometry)
             left = np.abs(residual).max(axis=0, initial=0.0)
-            # what is left over shrinks each time by the same factor
-            if not ((left > SETTLED) & (left * (left / before) ** more <= SETTLED)).any():
-                break
-        settled = left <= SETTLED
-        if not settled.all():
-            wild = np.broadcast_to(~settled, (count,))
-            part = {n: column[wild] for n, column in data.items()}
-            x[:, wild], met = self.newton(part, start[:, wild])
-            settled = np.broadcast_to(settled, (count,)).copy()
-            settled[wild] = met
-        return x, np.broadcast_to(settled, (count,))
+            for more in reversed(range(CHORDS)):
+                before = left
+                x = x - self.inverse @ residual
+                residual = self.left(x, data, geometry)
+                left = np.abs(residual).max(axis=0, initial=0.0)
+                # what is left over shrinks each time by the same factor
+                if not ((left > SETTLED) & (left * (left / before) ** more <= SETTLED)).any():
+                    break
+            settled = np.broadcast_to(left <= SETTLED, (count,)).copy()
+            if not settled.all():
+                wild = ~settled
+                part = {n: column[wild] for n, column in data.items()}
+                x[:, wild], settled[wild] = self.newton(part, start[:, wild])
+        return x, self.system.state(x, data, geometry), settled
 
     def left(
         self, x: Floats, data: Mapping[str, Floats], geometry: Geometry | None = None
