@@ -378,7 +378,8 @@ def test_published_vectors_are_those_of_their_seed_and_hash() -> None:
         for name, row in one["results"].items():
             for part in ("printed", "stored", "decimal", "reference"):
                 assert row[part] == today["results"][name][part], (one["id"], name, part)
-            assert row["double"] == pytest.approx(today["results"][name]["double"], 1e-6, 1e-9)
+            double = today["results"][name]["double"]
+            assert row["double"] == double or row["double"] == pytest.approx(double, 1e-6, 1e-9)
 
 
 def test_casework_closes_in() -> None:
