@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -137,6 +138,23 @@ def test_threads_and_blocks_change_nothing():
     for name in RESULTS:
         assert np.all(same(one[name] * 1.0, two[name] * 1.0)), name
         assert np.all(same(one[name][:999] * 1.0, one[name][999:1998] * 1.0)), name
+
+
+def test_results_stay_what_they_are_while_anybody_holds_one():
+    """The memory of results is used again, but never under somebody's hands."""
+    g = {name: np.resize(v, 20_000) for name, v in mixed_scenes(500).items()}
+    others = {**g, "UX": g["UX"] + 1}
+    found = solve(g, FINAL_VELOCITIES)
+    held, before = found["VBX"][::7], found["VBX"][::7].copy()
+    del found
+    for _ in range(3):
+        solve(others, FINAL_VELOCITIES)
+    assert np.all(same(held, before))
+    expected = [solve(columns, "VAX")["VAX"] for columns in (g, others)]
+    with ThreadPoolExecutor(4) as pool:
+        for first, second in pool.map(lambda _: (solve(g), solve(others)), range(6)):
+            assert np.all(same(first["VAX"], expected[0]))
+            assert np.all(same(second["VAX"], expected[1]))
 
 
 @given(st.data())

@@ -152,7 +152,7 @@ def _solved(
     results: dict[str, Array] = {name: whole[name].reshape(count) for name in wanted}
     if not wanted:
         return {}
-    workers = _workers(count, threads, 2 * SHARED_TILE)
+    workers = _workers(count, threads, SHARED_TILE)
     tile = TILE if workers == 1 else SHARED_TILE
     _shared_out(lambda *span: _Worker(given, results, tile, sign).solve(*span), count, workers)
     return {name: whole[name] for name in wanted}
