@@ -41,7 +41,8 @@ def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Arra
 
     ``known``: masses MA MB, sizes of the initial velocities SA SB, and LOSS, the kinetic energy
     lost in percent of the initial (the chapter's 100 ΔT); numbers or arrays, which broadcast. A
-    negative loss gives NaN. Raises UserError for a name that is missing.
+    negative loss gives NaN. Floats where every value given is a float above 0, else arrays. Raises
+    UserError for a name that is missing.
 
     >>> found = impact88.delta_v({"MA": 96, "MB": 145, "SA": 36.667, "SB": 58.667, "LOSS": 37.4})
     >>> {name: round(float(value), 2) for name, value in found.items()}
