@@ -27,9 +27,9 @@ DRAWS = 20_000
 _DIGITS = 6
 _COLUMNS = {"±": 3, "5 %": 6, "95 %": 6, "lower": 6, "upper": 6, "error amplified": 3}
 """Columns of a table, and the digits shown."""
-_ROUNDING = 1e-10
+_ROUNDING = 1e-9
 """Share of the largest value of its kind below which a value is shown as 0: values go on with
-twelve digits, and errors are seldom amplified a hundred times."""
+twelve digits, and the published runs amplify errors up to 300 times."""
 _DIGITS_TO_GO_ON = 12
 """Digits of a value that goes on into another computation."""
 _ASKED = ("DVA", "DVB", "LOSS")
