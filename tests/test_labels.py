@@ -206,3 +206,10 @@ def test_a_point_in_a_reply_parts_no_thousands() -> None:
     result = one(f"{first}-86.903,0,1.204\n\n{second}12.345,7.881,0\n\n?OVERFLOW ERROR IN 320\n")
     assert result.scene["UX"] == "-86.903"
     assert result.scene["VY"] == "7.881"
+
+
+def test_labels_that_read_as_each_other_are_exchanged_whoever_read_the_page() -> None:
+    """No reader takes each of two for the other."""
+    worn = SAMPLE.replace("*****", "KKKKK").replace("INITIAL", "1NITIAL")
+    text = worn.replace("VAX=", "V@X=").replace("VBX=", "VAX=").replace("V@X=", "VBX=")
+    assert one(text).verdict is Verdict.DIFFERS

@@ -477,6 +477,23 @@ def test_a_badly_read_page_is_neither_settled_nor_accused() -> None:
     assert one(worn.replace("XA=", "KA=").replace("XB=", "KB=")).verdict is Verdict.INCOMPLETE
 
 
+def test_more_than_two_alterations_on_a_machine_read_page_are_its_readers() -> None:
+    """They are told, and the page is not settled; what a person typed differs."""
+    wrong = {
+        "MA= 143.5": "MA= 148.5",
+        "IB= 1961": "IB= 7961",
+        "-38.7": "-33.7",
+        "EM= -.7": "EM= -.1",
+    }
+    typed, read = SAMPLE, NOISE
+    for old, new in wrong.items():
+        typed, read = typed.replace(old, new), read.replace(old, new)
+    assert one(typed).verdict is Verdict.DIFFERS
+    result = one(read)
+    assert result.verdict is Verdict.INCOMPLETE
+    assert any("numbers are read otherwise" in remark for remark in result.remarks)
+
+
 def hocr(text: str) -> str:
     """A page as an optical reader saves words with their places, out of order."""
     words = []

@@ -23,7 +23,7 @@ from ..reading.numerals import value_of
 from ..reading.printout import Printout, read_printouts
 from ..recovery.recovered import Recovered
 from ..recovery.replays import Outcome
-from ..recovery.typedtext import opposite, texts_that_print, typed_for, with_opposite_mu
+from ..recovery.typedtext import opposite, texts_that_print, with_opposite_mu
 from ..scene import sample
 from .judgement import FieldCheck, Judged, Status, judge
 
@@ -211,6 +211,6 @@ def _ways(name: str, printed: str) -> list[str]:
     if name == "MUP":
         return [printed, opposite(printed)]
     if name not in ANGLES:
-        return [typed_for(printed, False) or printed]
+        return [next(iter(texts_that_print(printed)), printed)]
     short = f"{float(printed):.6g}"
     return list(dict.fromkeys([printed, short, *texts_that_print(printed, True)]))[:_TEXTS]

@@ -65,16 +65,10 @@ _Key = tuple[tuple[str, Gap], ...]
 _PRINTABLE = re.compile(r"-?(?:0|[1-9][0-9]*|(?=[.]))(?:[.][0-9]*[1-9])?(?:E[+-][0-9]{2})?")
 _NUMBER = re.compile(r"[+-]?(?=[.]?[0-9])[0-9]*(?:[.][0-9]*)?(?:E[+-]?[0-9]{1,2})?")
 
-_CONTRADICTION = 3.0
-_FOREIGN = 1.0
-"""What a glyph costs that no figure was read as, and a blank where a point is printed."""
-_ILLEGIBLE_MARK, _SPECK_INSIDE = 0.7, 0.7
-_DASH_FOR_POINT = 0.6
-_SPECK = 0.4
-_BLANK_INSIDE, _CUT_OFF = 0.3, 0.3
-_RETYPED = 0.2
-_IN_PIECES = 0.45
-"""What a lone 0 costs that was taken to pieces."""
+_CONTRADICTION, _FOREIGN, _MARK, _SPECK, _SLIGHT = 3.0, 1.0, 0.7, 0.4, 0.25
+"""What a glyph costs that is another figure; that no figure was read as; that marks the illegible,
+or stands within a number; a speck beside one; a blank, a zero, a sign nobody prints but people
+write. Only their order matters: each is more than one of the next and less than the one before."""
 _WIDEST = 400
 """Powers of ten, either way, of the numbers that are taken for some."""
 _DIGITS = 28
@@ -143,9 +137,9 @@ def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = F
     if other == printed:
         return Match(0.0, (), len(printed))
     if printed == "0" and _in_pieces(text):
-        return Match(_IN_PIECES, (Spot(0, text, printed, Doubt.LOOK_ALIKE),), 0)
+        return Match(_SPECK, (Spot(0, text, printed, Doubt.LOOK_ALIKE),), 0)
     if other is not None and value_of(other) == value_of(printed):
-        return Match(_RETYPED, (Spot(0, text, printed, Doubt.RETYPED),), len(printed))
+        return Match(_SLIGHT, (Spot(0, text, printed, Doubt.RETYPED),), len(printed))
     return _compared(_key(region), printed, cut, sign_free)
 
 
@@ -183,7 +177,7 @@ def _steps(
         if j < len(printed):
             cost, doubt = _substitution(region, i, printed[j])
             if j > 0 and region[i][1]:
-                cost, doubt = cost + _BLANK_INSIDE, doubt or Doubt.BLANK
+                cost, doubt = cost + _SLIGHT, doubt or Doubt.BLANK
             yield 1, 1, cost, doubt
         yield 1, 0, *_extra(region, i, printed, j, sign_free)
     if j < len(printed):
@@ -196,20 +190,20 @@ def _substitution(region: _Key, i: int, printed: str) -> tuple[float, Doubt | No
     if char == printed:
         return 0.0, None
     if char == ILLEGIBLE:
-        return _ILLEGIBLE_MARK, Doubt.ILLEGIBLE
+        return _MARK, Doubt.ILLEGIBLE
     if char == "E":
         return _FOREIGN, Doubt.ILLEGIBLE
     if (char == "+" and printed == "-") or (
         char == "-" and printed == "." and _between_digits(region, i)
     ):
-        return _DASH_FOR_POINT, Doubt.LOOK_ALIKE
+        return _MARK, Doubt.LOOK_ALIKE
     if char in NUMERIC:
         return _CONTRADICTION, Doubt.CONTRADICTS
     likely = printed_for(char)
     if printed in likely:
         return likely[printed], Doubt.LOOK_ALIKE
     if printed in "-." and char in _SPECKS:
-        return _DASH_FOR_POINT, Doubt.LOOK_ALIKE
+        return _MARK, Doubt.LOOK_ALIKE
     if char in "OQØ©®@IL|!ZSB$&":  # the look-alike of another digit
         return _CONTRADICTION, Doubt.CONTRADICTS
     return _FOREIGN, Doubt.ILLEGIBLE
@@ -221,21 +215,21 @@ def _extra(region: _Key, i: int, printed: str, j: int, sign_free: bool) -> tuple
     after, gap_after = region[i + 1] if i + 1 < len(region) else ("", Gap.NONE)
     parted = (i and gap) or gap_after
     if char == "0" and j < 2 and printed[j : j + 1] == "." == after and not gap_after:
-        return _RETYPED, Doubt.RETYPED
+        return _SLIGHT, Doubt.RETYPED
     if char == "+" and after and j == 0:
-        return _RETYPED, Doubt.RETYPED
+        return _SLIGHT, Doubt.RETYPED
     if char.isdigit():
         if j == len(printed) and _in_a_note(region, i):
-            return _SPECK + 0.2, Doubt.LEFT_OVER
-        return _CONTRADICTION - (0.3 if parted else 0.0), Doubt.CONTRADICTS
+            return _SPECK, Doubt.LEFT_OVER
+        return _CONTRADICTION, Doubt.CONTRADICTS
     if char == "-":
         if j == 0 and sign_free and i == 0:
-            return _RETYPED, Doubt.LEFT_OVER
+            return _SLIGHT, Doubt.LEFT_OVER
         twice = (after and after in "-~") or (i and region[i - 1][0] in "-~")
         if twice or j == len(printed):
             return _SPECK, Doubt.LEFT_OVER
         if parted:
-            return _SPECK_INSIDE + 0.3, Doubt.LEFT_OVER
+            return _FOREIGN, Doubt.LEFT_OVER
         return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
     inside = 0 < j < len(printed)
     if (char == "." and _between_digits(region, i)) or (
@@ -244,14 +238,13 @@ def _extra(region: _Key, i: int, printed: str, j: int, sign_free: bool) -> tuple
         return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
     if char == ".":
         return _SPECK, Doubt.LEFT_OVER
-    cost = _SPECK if char in _SPECKS else _SPECK + 0.2
-    return (cost + 0.3 if inside else cost), Doubt.LEFT_OVER
+    return (_MARK if inside or char not in _SPECKS else _SPECK), Doubt.LEFT_OVER
 
 
 def _lost(region: _Key, i: int, printed: str, j: int, cut: bool) -> tuple[float, Doubt]:
     """A printed character for which there is no glyph."""
     if cut and i == len(region) and j:
-        return _CUT_OFF, Doubt.CUT
+        return _SLIGHT, Doubt.CUT
     if printed[j] == "." and 0 < i < len(region) and region[i][1] is Gap.BLANK:
         return _FOREIGN, Doubt.ILLEGIBLE
     if any(part[0] not in NUMERIC or part[0] == "E" for part in region[max(i - 1, 0) : i + 1]):
@@ -314,16 +307,16 @@ def _candidates(region: _Key, most: int, sign_free: bool) -> tuple[tuple[str, fl
         rest = sum(part[0].isdigit() for part in region[index:])
         apart = 0.25 if gap is Gap.LINE else 0.5 if gap is Gap.WIDE else 1.0
         stop = _SPECK * (len(region) - index) * 0.5 + apart * rest
-        skip = _SPECK_INSIDE if index + 1 < len(region) else _SPECK
+        skip = _MARK if index + 1 < len(region) else _SPECK
         for text, cost in ways.items():
             parted = gap and text
-            blank = _BLANK_INSIDE if parted else 0.0
+            blank = _SLIGHT if parted else 0.0
             some = [(text + one, cost + blank + price) for one, price in may_be]
             if parted and gap is Gap.BLANK and char.isdigit() and "." not in text:
                 some.append((f"{text}.{char}", cost + _FOREIGN))
             if char in "-.+" or (char == "0" and text in ("", "-")):
                 free = char == "-" and sign_free and index == 0
-                some.append((text, cost + (_RETYPED if free else _SPECK_INSIDE)))
+                some.append((text, cost + (_SLIGHT if free else _MARK)))
             elif char not in NUMERIC and char != ILLEGIBLE:
                 some.append((text, cost + (skip if text else _SPECK)))
             for one, price in some:
@@ -333,7 +326,7 @@ def _candidates(region: _Key, most: int, sign_free: bool) -> tuple[tuple[str, fl
                 stopped[text] = cost + stop
         width = _WILD_BEAM if wild else _BEAM
         ways = dict(sorted(following.items(), key=lambda way: way[1])[:width])
-    costs: dict[str, float] = {"0": _IN_PIECES} if _in_pieces(chars) else {}
+    costs: dict[str, float] = {"0": _SPECK} if _in_pieces(chars) else {}
     for text, cost in [*ways.items(), *stopped.items()]:
         if not is_number(text):
             continue
@@ -341,7 +334,7 @@ def _candidates(region: _Key, most: int, sign_free: bool) -> tuple[tuple[str, fl
             retyped = as_printed(text)
             if retyped is None:
                 continue
-            text, cost = retyped, cost + _RETYPED
+            text, cost = retyped, cost + _SLIGHT
         if cost < costs.get(text, 1e9):
             costs[text] = cost
     return tuple(sorted(costs.items(), key=lambda way: way[1])[:most])
@@ -353,10 +346,10 @@ def _may_be(region: _Key, index: int, wild: bool) -> list[tuple[str, float]]:
     if char in NUMERIC:
         some = [(char, 0.0)]
         if char == "+" or (char == "-" and _between_digits(region, index)):
-            some.append(("-" if char == "+" else ".", _DASH_FOR_POINT))
+            some.append(("-" if char == "+" else ".", _MARK))
         return some
     if wild:
-        price = _ILLEGIBLE_MARK if char == ILLEGIBLE else _FOREIGN
+        price = _MARK if char == ILLEGIBLE else _FOREIGN
         return [(one, price) for one in ("-0123456789" if not index else ".0123456789")]
     return list(printed_for(char).items()) if char != ILLEGIBLE else []
 

@@ -23,7 +23,7 @@ from ..names import PIVOT, VELOCITIES
 from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
 from . import replays
-from .typedtext import mu_turned, opposite, stored_and_printed, texts_that_print, typed_for
+from .typedtext import mu_turned, opposite, stored_and_printed, texts_that_print
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
@@ -250,7 +250,7 @@ class Search:
 
     def _typed_text(self, name: str, text: str) -> str:
         known = self._typed.get(name, {}).get(text)
-        return known or typed_for(text, name in ANGLES) or text
+        return known or next(iter(texts_that_print(text, name in ANGLES)), text)
 
     def _other_bits(self, best: Scored) -> Scored:
         """The same printed inputs, typed in other ways that enter the equations with other bits."""

@@ -9,9 +9,10 @@ change its last bit (72.80 is 7280 divided twice by ten, 72.8 is 728 divided onc
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import ROUND_HALF_EVEN, Decimal
 from functools import lru_cache
+from itertools import islice
 
 from ..applesoft import decimaltext
 from ..applesoft.errorcodes import ApplesoftError
@@ -59,36 +60,23 @@ def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
     figures = printed.partition("E")[0].replace(".", "").lstrip("-0")
     if len(figures) > _PRINTED_DIGITS:
         return ()  # no Apple prints as many
-    printing: dict[bytes, str] = {}
-    for text in _shorter(printed):
-        _keep(printing, text, printed, angle)
-        if printing:
-            break
-    _keep(printing, printed, printed, angle)
-    if not printing:
-        for text in _neighbours(printed):
-            _keep(printing, text, printed, angle)
-            if printing:
-                break
-    texts = list(printing.values())
-    others = [other for text in texts for other in _with_zeros(text)]
-    if texts and min(map(_digits, texts)) >= _PRINTED_DIGITS:
+
+    def printing(some: Iterable[str]) -> Iterator[str]:
+        for text in some:
+            if (seen := stored_and_printed(text, angle)) and seen[1] == printed:
+                yield text
+
+    found = [*islice(printing(_shorter(printed)), 1), *printing([printed])]
+    found = found or [*islice(printing(_neighbours(printed)), 1)]
+    others = [other for text in found for other in _with_zeros(text)]
+    if found and min(map(_digits, found)) >= _PRINTED_DIGITS:
         # all the digits there are: more may have been typed than are printed
         others += _neighbours(printed)
-    for other in others:
-        _keep(printing, other, printed, angle)
-    return tuple(printing.values())
-
-
-@lru_cache(maxsize=16384)
-def typed_for(printed: str, angle: bool) -> str | None:
-    """What was typed where this is printed; None when nothing prints so."""
-    if len(printed.lstrip("-").replace(".", "")) < 7 and not angle:
-        seen = stored_and_printed(printed)
-        if seen is not None and seen[1] == printed:
-            return printed
-    texts = texts_that_print(printed, angle)
-    return texts[0] if texts else None
+    texts: dict[bytes, str] = {}
+    for text in [*found, *printing(others)]:
+        if seen := stored_and_printed(text, angle):
+            texts.setdefault(seen[0], text)
+    return tuple(texts.values())
 
 
 def opposite(text: str) -> str:
@@ -106,12 +94,6 @@ def with_opposite_mu(scene: Mapping[str, str]) -> Iterator[dict[str, str]]:
     """The scene with MU typed with the other sign; none where MU has no sign."""
     if double(scene["MU"] or "0"):
         yield {**scene, "MU": opposite(scene["MU"])}
-
-
-def _keep(texts: dict[bytes, str], text: str, printed: str, angle: bool) -> None:
-    seen = stored_and_printed(text, angle)
-    if seen is not None and seen[1] == printed:
-        texts.setdefault(seen[0], text)
 
 
 def _digits(text: str) -> int:
