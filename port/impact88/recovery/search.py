@@ -86,9 +86,9 @@ class Expected:
     texts: dict[str, float]
     default: float
 
-    def cost(self, text: str) -> float:
-        """What it costs that the program prints ``text`` here."""
-        return self.texts.get(text, self.default)
+    def cost(self, text: str | None) -> float:
+        """What it costs that the program prints ``text`` here, or nothing."""
+        return MISMATCH if text is None else self.texts.get(text, self.default)
 
     def mismatch(self, values: Floats) -> Floats:
         """What each unfloored value costs."""
@@ -166,7 +166,7 @@ class Search:
             picks[:, kinetic] = one
             picks[:, others] = second[:count]
             parts.append(picks)
-        return self.screened(columns, np.concatenate(parts), most, wrong)
+        return self._screened(columns, np.concatenate(parts), most, wrong)
 
     def _by_energy(
         self, columns: Sequence[Column], kinetic: Sequence[int], most: int, limit: float
@@ -183,24 +183,17 @@ class Search:
         costs[0] = -1.0
         return some[np.argsort(costs, kind="stable")[:_ENERGIES]]
 
-    def screened(
-        self,
-        columns: Sequence[Column],
-        picks: Picks,
-        most: int,
-        wrong: frozenset[str] = frozenset(),
+    def _screened(
+        self, columns: Sequence[Column], picks: Picks, most: int, wrong: frozenset[str]
     ) -> Picks:
         """The combinations that explain most, by double precision."""
-        if len(picks) <= most:
-            return picks
-        if len(picks) > 4 * _CLOSELY:
-            legible = {one.name for one in self.expected if one.default == MISMATCH}
-            telling = sorted(_TELLING, key=lambda name: name not in wrong)[:4]
-            few = [one for one in self.expected if one.name in legible & set(telling)]
-            costs = self._rough(columns, picks, few)
-            picks = picks[np.argsort(costs, kind="stable")[:_CLOSELY]]
-        costs = self._rough(columns, picks, self.expected)
-        return picks[np.argsort(costs, kind="stable")[:most]]
+        telling = sorted(_TELLING, key=lambda name: name not in wrong)[:4]
+        few = [one for one in self.expected if one.default == MISMATCH and one.name in telling]
+        for count, enough, expected in ((_CLOSELY, 4 * _CLOSELY, few), (most, most, self.expected)):
+            if len(picks) > enough:
+                costs = self._rough(columns, picks, expected)
+                picks = picks[np.argsort(costs, kind="stable")[:count]]
+        return picks
 
     def _rough(
         self, columns: Sequence[Column], picks: Picks, expected: Sequence[Expected]
@@ -263,7 +256,7 @@ class Search:
         picks = combinations(columns, _VARIANTS)
         if len(picks) < 2:
             return best
-        extra = best.cost - sum(self._costs(best.outcome))
+        extra = best.cost - self.replayed_scene(best.scene, best.assumed).cost
         scenes = []
         for pick, cost in zip(picks.tolist(), _believing(columns, picks), strict=True):
             taken = zip(columns, pick, strict=True)
@@ -278,31 +271,22 @@ class Search:
     def _scored(
         self, scenes: Sequence[tuple[dict[str, str], dict[str, str], float]]
     ) -> Iterator[Scored]:
+        """Scenes, each with the texts assumed printed and what it costs to believe, replayed."""
         outcomes = replays.run_all([scene for scene, _, _ in scenes])
-        for one, outcome in zip(scenes, outcomes, strict=True):
-            yield self._weighed(*one, outcome)
-
-    def _weighed(
-        self, scene: dict[str, str], assumed: dict[str, str], cost: float, outcome: replays.Outcome
-    ) -> Scored:
-        names = [one.name for one in self.expected]
-        costs = dict(zip(names, self._costs(outcome), strict=True))
-        for name, text in assumed.items():
-            if outcome.fields.get(name, text) != text:
-                costs[name] = MISMATCH
-        if self.shown.ending is not None and self.shown.ending != outcome.ending:
-            costs["ENDING"] = MISMATCH
-        if self.shown.has_final_spins and scene["M"] != "6":
-            costs["M"] = MISMATCH
-        absent = set(outcome.fields) - set(self.shown.fields) - self._lost_inputs
-        wrong = frozenset(name for name, one in costs.items() if one >= AGREES)
-        total = cost + sum(costs.values()) + _ABSENT * len(absent)
-        return Scored(total, scene, assumed, outcome, wrong)
-
-    def _costs(self, outcome: replays.Outcome) -> Iterator[float]:
-        for one in self.expected:
-            text = outcome.fields.get(one.name)
-            yield MISMATCH if text is None else one.cost(text)
+        for (scene, assumed, cost), outcome in zip(scenes, outcomes, strict=True):
+            costs = {one.name: one.cost(outcome.fields.get(one.name)) for one in self.expected}
+            wrong = {
+                name for name, text in assumed.items() if outcome.fields.get(name, text) != text
+            }
+            if self.shown.ending is not None and self.shown.ending != outcome.ending:
+                wrong.add("ENDING")
+            if self.shown.has_final_spins and scene["M"] != "6":
+                wrong.add("M")
+            costs.update(dict.fromkeys(wrong, MISMATCH))
+            absent = set(outcome.fields) - set(self.shown.fields) - self._lost_inputs
+            total = cost + sum(costs.values()) + _ABSENT * len(absent)
+            differing = frozenset(name for name, one in costs.items() if one >= AGREES)
+            yield Scored(total, scene, assumed, outcome, differing)
 
 
 def _cost(scored: Scored) -> float:
