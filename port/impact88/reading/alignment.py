@@ -65,11 +65,12 @@ _MARK_LOST = 0.25
 """Brackets and other marks, and words that retyped pages leave out (INITIAL, KE, prompts)."""
 LETTER_LOST = 0.65
 """Of letters that nobody leaves out."""
-_FIGURE = 0.3
-"""What a figure costs more where a letter of a label is wrong."""
-INSERTED = 1.0
-_SLOT_ALIKE, _SLOT_LETTER, _SLOT_OTHER, _SLOT_EQUALS = 0.3, 0.55, 0.9, 1.6
-_BETWEEN, _BETWEEN_DIGIT, _BETWEEN_SIGN, _OUTSIDE = 0.5, 0.9, 0.4, 0.45
+_FIGURE = 0.4
+"""What a figure costs more where a letter of a label is wrong, and between lines."""
+_INSERTED = 1.0
+_SLOT_ALIKE, _SLOT_OTHER, _SLOT_EQUALS = 0.4, 0.9, 1.6
+_BETWEEN, _OUTSIDE = 0.5, 0.45
+"""What a glyph costs between lines, and outside of pages: as much as half a wrong letter."""
 _BIG = 1e6
 _NO_NUMBER = 0.9
 _LOOSE_SIGN = 0.15
@@ -163,7 +164,9 @@ def template() -> Template:
         if kind == "outside":
             stay[:, state] = enter[:, state] = _OUTSIDE
         elif kind == "between":
-            enter[:, state] = stay[:, state] = [_between(glyph) for glyph in glyphs]
+            enter[:, state] = stay[:, state] = [
+                _BETWEEN + _FIGURE * glyph.isdigit() for glyph in glyphs
+            ]
             gap_enter[WITHIN, state] = _TORN / 2
         elif kind == "slot":
             enter[:, state] = stay[:, state] = [_in_slot(glyph) for glyph in glyphs]
@@ -185,8 +188,8 @@ def template() -> Template:
             gap_enter[WITHIN, state] = _TORN
             if name == "=":
                 unlabelled[:, state] = _LOOSE_SIGN
-            stay[:, state] = INSERTED
-            stay[ord("0") : ord("9") + 1, state] = INSERTED + 0.5
+            stay[:, state] = _INSERTED
+            stay[ord("0") : ord("9") + 1, state] = _INSERTED + 0.5
             if number < PROMPTS:
                 for part in "_{}":
                     stay[ord(part), state] = 0.05
@@ -225,15 +228,8 @@ def _in_slot(char: str) -> float:
     if char == "=":
         return _SLOT_EQUALS
     if printed_for(char):
-        return _SLOT_LETTER if char.isalpha() and char not in "OQLISBZ" else _SLOT_ALIKE
+        return _SLOT_ALIKE
     return _SLOT_OTHER
-
-
-def _between(char: str) -> float:
-    """The cost of a glyph between lines or outside."""
-    if char.isdigit():
-        return _BETWEEN_DIGIT
-    return _BETWEEN_SIGN if char in "|.,-_~:;'`" else _BETWEEN
 
 
 def as_letter(letter: str, char: str) -> float:
