@@ -273,8 +273,8 @@ class Budget:
         self.left = Budget.left if found else self.left - count
 
 
-FRAGMENT = 6
-"""A piece with fewer numbers than this is a fragment: labels without end are no page."""
+_WHOLE = 20
+"""Numbers of a page for which the budget is filled again; labels without end are aligned as 14."""
 _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
 _ASIDE = 1000
 """Glyphs that may stand between two parts of a page: half a page of text."""
@@ -313,7 +313,7 @@ def align(
         )
         taken = parts if last else parts[:-1] or parts[:1]
         found = [_described(*part, start) for part in taken]
-        budget.spend(len(window), any(len(one.slots) >= FRAGMENT for one in found))
+        budget.spend(len(window), any(len(one.slots) >= _WHOLE for one in found))
         yield from found
         if last:
             return

@@ -23,7 +23,6 @@ from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT, lab
 from . import numerals
 from . import plaintext as pasted
 from .alignment import (
-    FRAGMENT,
     LABELLED_ANGLES,
     PROMPTS,
     REPLY_A,
@@ -41,6 +40,8 @@ from .numerals import Region, cut_in_five
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
+FRAGMENT = 6
+"""A piece with fewer numbers than this is a fragment."""
 BADLY_READ = 17
 """So many letters and numbers misread, asterisks included: of the given scans that differ 58 of 88
 readings of genuine pages have as many, and 2 of 84 of pages with an altered digit."""
