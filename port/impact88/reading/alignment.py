@@ -68,7 +68,9 @@ LETTER_LOST = 0.65
 _FIGURE = 0.4
 """What a figure costs more where a letter of a label is wrong, and between lines."""
 _INSERTED = 1.0
-_SLOT_ALIKE, _SLOT_OTHER, _SLOT_EQUALS = 0.4, 0.9, 1.6
+_SLOT_ALIKE, _SLOT_LETTER, _SLOT_OTHER, _SLOT_EQUALS = 0.3, 0.55, 0.9, 1.6
+"""What a glyph costs in a number that is no figure: one of its shape, a letter (more than between
+lines, or prose is read into replies), any other, an equals sign."""
 _BETWEEN, _OUTSIDE = 0.5, 0.45
 """What a glyph costs between lines, and outside of pages: as much as half a wrong letter."""
 _BIG = 1e6
@@ -228,7 +230,7 @@ def _in_slot(char: str) -> float:
     if char == "=":
         return _SLOT_EQUALS
     if printed_for(char):
-        return _SLOT_ALIKE
+        return _SLOT_LETTER if char.isalpha() and char not in "OQLISBZ" else _SLOT_ALIKE
     return _SLOT_OTHER
 
 
