@@ -1,16 +1,12 @@
 """Any reconstruction with its tolerances: adjustment of observations with conditions.
 
-What is known of an impact, velocities and spins, speeds and courses, coefficients, energy lost,
-velocity changes, masses and angles, each exactly or within a tolerance, is adjusted so that the
-laws hold exactly: Equations 13, 14 and 17 by the way an impact is written (`State`), Equations 15,
-16 and 18 and the exact values as conditions. Among all impacts that meet them the one is sought
-whose sum of squared adjustments, each in units of its standard deviation, is least: by Gauss and
-Newton's steps, or Levenberg and Marquardt's while tolerances are tightened little by little, and at
-last by Newton's method, curvature and all, which shows that nothing beside it is less. With as many
-known values as unknowns nothing is adjusted and the solution is that of `unknowns`; with fewer,
-what is determined is found and the rest is told.
-
-First-order deviations and correlations come from the same linear equations.
+What is known of an impact, each value exactly or within a tolerance, is adjusted so that the laws
+hold exactly: Equations 13, 14 and 17 by the way an impact is written (`State`), Equations 15, 16
+and 18 and the exact values as conditions. The sum of squared adjustments, each in units of its
+standard deviation, is made least: by Gauss and Newton's steps, or Levenberg and Marquardt's while
+tolerances are tightened little by little, and at last by Newton's method, which shows that nothing
+beside it is less. With as many known values as unknowns nothing is adjusted; with fewer, what is
+determined is found. First-order deviations and correlations come from the same equations.
 """
 
 from __future__ import annotations

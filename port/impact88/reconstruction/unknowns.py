@@ -1,18 +1,11 @@
 """Equations 13-18 solved for any unknowns: reconstruction and its relatives (chapter, IV-C).
 
-Twelve velocities (six before, six after the impact) and three coefficients stand in six
-equations. Whatever is not given is unknown; `solve_for` finds what the equations determine:
-
-- six final velocities (what the 1988 program solves);
-- six initial velocities (reconstruction);
-- three initial velocities of one vehicle and three final ones of the other;
-- three velocities and e, e_m, μ;
-- any other solvable set, of six unknowns or fewer. Fewer than six leave equations over: they are
-  then fitted by least squares (each equation written as a velocity, spins times the radius
-  `gyration`, all with equal weight) and the mismatch is told.
-
-Rank and condition of the equations (`Equations`) decide; a set that is not determined is refused
-with the reason.
+Twelve velocities (six before, six after the impact) and three coefficients stand in six equations.
+Whatever is not given is unknown: six final velocities (what the 1988 program solves), six initial
+ones, three of each, three velocities and e, e_m, μ, or any other set of six or fewer. Fewer than
+six leave equations over: they are then fitted by least squares (each written as a velocity, spins
+times the radius `gyration`, with equal weight) and the mismatch is given. Rank and condition of the
+equations (`Equations`) decide; a set that is not determined is refused with the reason.
 
 Friction: ``MUP`` is the signed P_t/P_n as printed; ``MU`` is what line 280 would hold, whose sign
 line 400 chooses so that friction opposes the sliding. The rule needs the initial velocities; where

@@ -1,21 +1,18 @@
 """Upper and lower bounds from ranges of the data (chapter, Section V: "reasonable ranges of these
 variables should be used ... to provide upper and lower bounds on vehicle speed").
 
-Three questions about one scene whose values are known within limits (`uncertainty.uncertain`):
+Of one scene whose values are known within limits (`uncertainty.uncertain`):
 
-- How far can a result go? `Bound`: corners of the box the ranges span, its faces and its interior
-  are searched (`uncertainty.extremes`), for each sign that line 400 can give MU apart, and along
-  the surface gt = 0 between them. Every bound is a value the equations do give for the inputs kept
-  beside it, so the true bound lies no closer; that none lies farther is what the search makes
-  likely, not what it proves. Where the equations become singular inside, a bound is infinite.
-  Correlations play no part here: a corner stays possible.
-- How likely is what? `Spread`: Monte Carlo, seeded; mean, deviation and quantiles.
-- Which input matters? `Drive`: Spearman's rank correlation over the draws, and how far each result
-  goes when one input runs through its range with the others at their nominal values.
+- `Bound`: how far a result can go. The box the ranges span is searched (`uncertainty.extremes`) for
+  each sign that line 400 can give MU. Every bound is attained at the inputs kept beside it; that
+  none lies farther is likely, not proven. Where the equations become singular inside, a bound is
+  infinite. Correlations play no part: a corner stays possible.
+- `Spread`: seeded Monte Carlo. `Drive`: rank correlation, and how far a result goes when one input
+  runs through its range with the others at their nominal values.
 
 The forward problem goes from initial to final velocities (Equations 13-18); the reconstruction from
-the six final velocities back, with MUP, the signed ratio P_t/P_n, for MU, because line
-400's sign rule needs initial velocities.
+the six final velocities back, with MUP, the signed P_t/P_n, for MU: line 400's sign rule needs
+initial velocities.
 """
 
 from __future__ import annotations

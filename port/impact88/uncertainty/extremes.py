@@ -1,17 +1,14 @@
 """The lowest and highest values several functions take over a box.
 
-The functions come as one array function on the unit cube, all evaluated together, smooth where they
-count: a `Piece`. What jumps (line 400's sign of MU makes results jump) is given as several pieces,
-each with the margin that says where it counts, and searched piece by piece, the margin a wall. The
-search begins at the corners, all of them while there are few, at points on faces, in the interior
-and on the surface where the margin is zero, where edges pass through it first of all; from the best
-of them it climbs (`ascent`), slopes taken by differences.
+The functions come as one array function on the unit cube, smooth where they count: a `Piece`. What
+jumps (line 400's sign of MU makes results jump) is given as several pieces, each with the margin
+that says where it counts, and searched piece by piece, the margin a wall. The search begins at
+corners, at points on faces and in the interior; from the best it climbs (`ascent`), slopes taken by
+differences. Where a denominator changes its sign inside, the functions it divides may go to
+infinity: looked for on both sides of its zero.
 
-Where a denominator changes its sign inside, the functions it divides go to infinity; that is found
-by looking at both sides of its zero, and the extreme is then infinite.
-
-What it returns is attained (or, at a surface that belongs to the other piece, approached): the true
-extremes lie no closer. It is no proof that none lies farther.
+What it returns is attained (or, at a surface that belongs to the other piece, approached). It is no
+proof that no value lies farther.
 """
 
 from __future__ import annotations
@@ -39,8 +36,6 @@ DIFFERENCE = 1e-5
 """Half the distance a slope is taken over."""
 LEAST_GAIN = 1e-10
 """Of a function's range over the points tried: a gain not worth a step."""
-SURFACE_PAIRS = 1024
-"""Pairs of points on both sides of a surface between which it is looked for."""
 HALVES = 34
 """Times a distance is halved to find a zero: well below the distances beside it."""
 BESIDE_POLE = (1e-4, 1e-6)
@@ -101,9 +96,7 @@ def extremes(
     groups.append(middle if known is None else np.concatenate([middle, known]))
     ground = _Ground(piece)
     if piece.margin is not None:
-        margins = piece.margin(np.concatenate(groups))
-        ground.deepest = float(np.abs(margins).max())
-        groups.append(_surface(piece.margin, groups, margins, rng))
+        ground.deepest = float(np.abs(piece.margin(np.concatenate(groups))).max())
     points = np.concatenate(groups)
     values = ground.values(points)
     count = values.shape[1]
@@ -250,38 +243,6 @@ def _seek_poles(piece: Piece, j: int, bound: Array, at: Array, start: Array, end
             for function in np.flatnonzero(endless.any(axis=0)).tolist():
                 bound[which, function] = sign * np.inf
                 at[which, function] = places[1][endless[:, function].argmax()]
-
-
-def _surface(
-    margin: Callable[[Array], Array],
-    groups: Sequence[Array],
-    margins: Array,
-    rng: np.random.Generator,
-) -> Array:
-    """Points on the surface where the margin is zero, hardly inside: on the cube's edges, as far as
-    all corners are known, and between points on faces and in the interior."""
-    corners, coordinates = groups[0], groups[0].shape[1]
-    inside, outside = [], []
-    if coordinates <= CORNERS_IN_FULL:
-        for axis in range(coordinates):
-            # corners stand in the order of binary numbers
-            other = np.arange(len(corners)) ^ (1 << (coordinates - 1 - axis))
-            crossing = np.flatnonzero((margins[: len(corners)] >= 0) & (margins[other] < 0))
-            inside.append(corners[crossing])
-            outside.append(corners[other[crossing]])
-    points = np.concatenate(groups)
-    positive, negative = np.flatnonzero(margins >= 0), np.flatnonzero(margins < 0)
-    if len(positive) and len(negative):
-        for chosen, of in ((inside, positive), (outside, negative)):
-            chosen.append(points[rng.choice(of, SURFACE_PAIRS)])
-    if not inside:
-        return np.empty((0, coordinates))
-    near, far = np.concatenate(inside), np.concatenate(outside)
-    for _ in range(HALVES):
-        half = 0.5 * (near + far)
-        within = (margin(half) >= 0)[:, None]
-        near, far = np.where(within, half, near), np.where(within, far, half)
-    return near
 
 
 def _corners(coordinates: int, rng: np.random.Generator) -> Array:

@@ -1,16 +1,14 @@
 """How uncertain a reconstruction is: draws of what is known, and bounds, beside the first order.
 
 Of the values with limits as many as determine the impact are coordinates, the tightest first: each
-point of the box their limits span is an impact, solved for itself by iterations with the inverse
-Jacobian of the nominal solution (one where only measured velocities vary, a few where coefficients
-or geometry do) and by Newton's method where those do not settle. What is known beyond that is a
-wall: impacts outside its limits are none.
+point of the box their limits span is an impact, solved by iterations with the inverse Jacobian of
+the nominal solution and by Newton's method where those do not settle. What is known beyond that is
+a wall: impacts outside its limits are none.
 
 Without redundancy draws are independent. With it they come from Markov chains whose density is that
-of all known values at the impact, over velocities before, coefficients and vehicles. A chain runs
-between walls that are quadratic functions, set back a little; its end is accepted by the densities
-proper (Metropolis, Hastings). Bounds climb from the draws and from points spread over the box
-(`ascent`): no draw lies outside.
+of all known values, over velocities before, coefficients and vehicles. A chain runs between walls
+that are quadratic functions, set back a little; its end is accepted by the densities proper
+(Metropolis, Hastings). Bounds climb from the draws and from points spread over the box (`ascent`).
 """
 
 from __future__ import annotations
