@@ -20,7 +20,7 @@ from impact88.applesoft import real
 from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.applesoft.real import Number
 from impact88.replay import polynomials, textcolumns
-from impact88.replay.reals import Reals, compare, floor, from_floats
+from impact88.replay.reals import Reals, compare, from_floats
 from impact88.replay.unit import Unit
 
 BYTES = (0x00, 0x01, 0x7F, 0x80, 0xFE, 0xFF)
@@ -106,7 +106,7 @@ BINARY = {
 }
 UNARY = {
     "rounded": (real.rounded, Reals.rounded),
-    "floor": (real.floor, floor),
+    "floor": (real.floor, Reals.floor),
     "logarithm": (scalar_functions.logarithm, polynomials.log),
     "exponential": (scalar_functions.exponential, polynomials.exp),
     "sine": (scalar_functions.sine, polynomials.sin),

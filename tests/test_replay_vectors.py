@@ -14,7 +14,7 @@ import captures
 from impact88 import native
 from impact88.applesoft.decimaltext import scan
 from impact88.replay import compiled, polynomials, textcolumns
-from impact88.replay.reals import ZERO, Reals, compare, constant, floor, from_floats, select
+from impact88.replay.reals import ZERO, Reals, compare, constant, from_floats, select
 from impact88.replay.unit import Unit
 
 pytestmark = pytest.mark.captures
@@ -29,7 +29,7 @@ BINARY: dict[str, Callable[[Reals, Reals], Reals]] = {
 UNARY: dict[str, Callable[[Reals], Reals]] = {
     "neg": operator.neg,
     "abs": abs,
-    "int": floor,
+    "int": lambda x: x.floor(),
     "exp": polynomials.exp,
     "log": polynomials.log,
     "sin": polynomials.sin,

@@ -23,7 +23,7 @@ from impact88.program.run import run
 from impact88.replay import polynomials, textcolumns
 from impact88.replay.blocks import replay_scenes
 from impact88.replay.realcolumns import read_columns
-from impact88.replay.reals import Reals, compare, floor, from_floats
+from impact88.replay.reals import Reals, compare, from_floats
 from impact88.replay.unit import Unit
 
 PORT_SCENES = 40
@@ -78,7 +78,7 @@ def primitives(size: int) -> dict[str, Callable[[], object]]:
         "add": lambda: left + flying,
         "multiply": lambda: left * flying,
         "divide": lambda: left / right,
-        "INT": lambda: floor(flying),
+        "INT": lambda: flying.floor(),
         "compare": lambda: compare(left, flying),
         "SIN": lambda: polynomials.sin(left),
         "LOG": lambda: polynomials.log(positive),

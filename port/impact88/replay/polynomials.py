@@ -14,7 +14,6 @@ from .reals import (
     ZERO,
     Reals,
     constant,
-    floor,
     from_number,
     select,
 )
@@ -86,7 +85,7 @@ def square(x: Reals) -> Reals:
 def sin(x: Reals) -> Reals:
     """Sine of x radians."""
     f = (x.rounded() / _TWO_PI).rounded()
-    f = f - floor(f)
+    f = f - f.floor()
     f = _QUARTER - f
     beyond = f.v < 0  # the first quarter turn
     half = _HALF + f

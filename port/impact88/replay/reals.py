@@ -168,7 +168,8 @@ class Reals:
         return bool((np.abs(self.v) > limit).any())
 
     def floor(self) -> Reals:
-        """INT, see `floor`."""
+        """INT: the largest whole number not above it, its extension counted. From `WHOLE` on a
+        number stays as it is, extension and all."""
         large = np.abs(self.v) >= WHOLE
         if not large.any():
             return Reals(np.floor(self.v), self.unit, True, self.zero)
@@ -450,14 +451,6 @@ def _divide(left: Reals, right: Reals) -> Reals:
     signless = np.broadcast_to(difference == -128, v.shape)  # exponent 0 loses the sign
     v[signless] = np.abs(v[signless])
     return result._settled()
-
-
-def floor(x: Reals) -> Reals:
-    """INT: the largest whole number not above x, its extension counted; extension 0.
-
-    From `WHOLE` on a number stays as it is, extension and all.
-    """
-    return x.floor()
 
 
 def compare(stored: Reals, right: Reals) -> npt.NDArray[np.int8]:

@@ -26,7 +26,7 @@ from ..applesoft import decimaltext as scalar
 from ..fields import ANGLES, FIELDS
 from .polynomials import cos, sin, square
 from .realcolumns import PLACES
-from .reals import ZERO, Reals, constant, floor, from_number, select
+from .reals import ZERO, Reals, constant, from_number, select
 from .unit import Unit, stamp
 
 C_1E3 = from_number(scalar.read("1E3")[0])
@@ -272,9 +272,9 @@ def radians(degrees: Reals) -> Reals:
 def shown(name: str, x: Reals, KF: Reals | None = None) -> Reals:
     """What PRINT gets for a field of value ``x`` (LOSS: of KI and ``KF``); its extension counts."""
     if KF is not None:
-        return floor(C_1E4 * (x - KF) / x) / 100
+        return (C_1E4 * (x - KF) / x).floor() / 100
     if name in FLOORED:
-        return floor(FLOORED[name] * x) / FLOORED[name]
+        return (FLOORED[name] * x).floor() / FLOORED[name]
     return (radians(x) / AG).rounded() if name in ANGLES else x
 
 

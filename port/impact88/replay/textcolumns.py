@@ -16,7 +16,7 @@ from .. import native
 from ..applesoft import decimaltext as scalar
 from ..errors import UserError
 from ..native.program import read_numbers, write_numbers
-from .reals import OVERFLOW, ZERO, Reals, compare, constant, floor, from_number, select
+from .reals import OVERFLOW, ZERO, Reals, compare, constant, from_number, select
 from .unit import Bools, Ints, Unit
 
 Characters = npt.NDArray[np.uint8]
@@ -97,7 +97,7 @@ def _read_together(
         rows = np.flatnonzero(more)
         _treat(x, rows, partial(_next_digit, digit=digit[rows]))
     exponent = np.where(numerals.exponent_negative, -numerals.exponent, numerals.exponent)
-    steps = _signed_bytes(exponent - numerals.decimals)
+    steps = (exponent - numerals.decimals + 128 & 0xFF) - 128  # `scalar.signed_byte`
     for step, count in ((times_ten, steps), (over_ten, -steps)):
         rows = np.flatnonzero(count > 0)
         finished = 0
@@ -107,11 +107,6 @@ def _read_together(
             rows = rows[count[rows] > finished]
     np.negative(x.v, out=x.v, where=numerals.negative)
     return x
-
-
-def _signed_bytes(n: Ints) -> Ints:
-    """`scalar.signed_byte` of each."""
-    return (n + 128 & 0xFF) - 128
 
 
 def _no_number(texts: Sequence[str], row: int, where: Callable[[int], str]) -> UserError:
@@ -311,7 +306,7 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints, Bools]:
             d[rows] -= 1
     if done.size:
         v[done] = (_HALF + part(done)).v
-    return floor(Reals(v, None)).v.astype(np.int64), d, failed
+    return np.floor(v).astype(np.int64), d, failed
 
 
 _WIDTH = 15
