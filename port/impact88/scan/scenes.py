@@ -87,35 +87,36 @@ def scene_of(read: Read, seeds: Sequence[dict[str, str]] = ()) -> Candidate | No
     """The scene whose page fits the cells best, None where none can be run. ``seeds``: scenes that
     another reader found."""
     known: dict[tuple[tuple[str, str], ...], Candidate] = {}
-    for scene in [*_first(read), *seeds]:
-        _weigh(read, [scene], known)
-    if not known:
-        return None
-    for _ in range(_ROUNDS):
-        best = sorted(known.values(), key=_cost)[:_KEPT]
-        if best[0].cost < _SETTLED:
+    # what the text's recovery finds in it is asked for only where the numbers as read leave doubts
+    for recovered in (False, True):
+        first = scenes_in(read.page()[0]) if recovered else [*_direct(read), *seeds]
+        for scene in first:
+            _weigh(read, [scene], known)
+        for _ in range(_ROUNDS):
+            best = sorted(known.values(), key=_cost)[:_KEPT]
+            if not best or best[0].cost < _SETTLED:
+                break
+            for one in best:
+                _weigh(read, list(_neighbours(read, one)), known)
+            if min(known.values(), key=_cost).cost > best[0].cost - 0.5:
+                break
+        if known and min(known.values(), key=_cost).cost < _SETTLED:
             break
-        before = best[0].cost
-        for one in best:
-            _weigh(read, list(_neighbours(read, one)), known)
-        if min(known.values(), key=_cost).cost > before - 0.5:
-            break
-    return min(known.values(), key=_cost)
+    return min(known.values(), key=_cost, default=None)
 
 
 def _cost(candidate: Candidate) -> float:
     return candidate.cost
 
 
-def _first(read: Read) -> Iterator[dict[str, str]]:
-    """The scene of the numbers as read, and that of the text's recovery."""
+def _direct(read: Read) -> Iterator[dict[str, str]]:
+    """The scene of the numbers as read, of either sign of MU."""
     texts = {name: read.text(name) for name in read.costs}
     if all(is_number(texts.get(name, "")) for name in INPUTS):
         direct = {("MU" if name == "MUP" else name): texts[name] for name in INPUTS}
         # what was typed may have more figures than are printed, or fewer: 5.749 prints 5.74900001
         for typed, spins, sign in product((_typed(read), {}), ("6", "4"), (1, -1)):
             yield {**direct, **typed, "M": spins, "MU": _signed(texts["MUP"], sign)}
-    yield from scenes_in(read.page()[0])
 
 
 def scenes_in(text: str) -> list[dict[str, str]]:
