@@ -112,9 +112,11 @@ def state(cell: Cell) -> str:
 
 
 def _retyped(cell: Cell, others: Sequence[Cell]) -> bool:
-    """Whether a cell belongs to a reply that is another in several cells: one number can be typed
-    in many ways, and what was typed never outranks what was printed."""
-    return cell.name.startswith("REPLY") and sum(one.name == cell.name for one in others) > 1
+    """Whether a cell belongs to a reply that is another in several cells, or in a mark: one number
+    can be typed in many ways, and what was typed never outranks what was printed."""
+    several = sum(one.name == cell.name for one in others) > 1
+    digits = cell.predicted.isdigit() and cell.other.isdigit()
+    return cell.name.startswith("REPLY") and (several or not digits)
 
 
 def _slight(cell: Cell) -> bool:

@@ -263,9 +263,16 @@ def relaid(sheet: Sheet, odds: Sequence[Floats], unlike: Mapping[str, Sequence[F
     """A printout's lines divided once more: ``unlike`` says for each label's character what the
     grid's cells lose when they are taken for it. A blank within a number looks like a new one."""
     new = Sheet(gain=sheet.gain)
+    odds = _within_edges(odds)
+    wide = 2 * max(map(len, odds))  # a line may end beyond an edge that was cut off
+
+    def cells(row: Row, values: Sequence[Floats]) -> Floats:
+        given = row.cells(values)
+        return np.pad(given, (0, wide - len(given)))
+
     for line, row in sheet.rows.items():
-        inked, blank = _weights(row.cells(odds))
-        letters = {char: (inked - row.cells(lost))[None] for char, lost in unlike.items()}
+        inked, blank = _weights(cells(row, odds))
+        letters = {char: (inked - cells(row, lost))[None] for char, lost in unlike.items()}
         _place(new, line, row, _ends(row.text, inked, blank, letters))
     return new
 

@@ -164,6 +164,8 @@ def spelled(grid: Grid, sheets: Sequence[Sheet]) -> dict[str, list[Floats]]:
 
 def read_numbers(grid: Grid, sheets: list[Sheet]) -> list[Read]:
     """What each number's cells may be. All printouts of a page share its type."""
+    if not sheets:
+        return []
     places: list[Place] = []
     names: list[str] = []
     numbers: list[tuple[int, str, slice]] = []

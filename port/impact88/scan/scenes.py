@@ -39,6 +39,8 @@ class Read:
 
     def text(self, name: str) -> str:
         """The likeliest text of a number; a blank within it is a digit that is missing."""
+        if name not in self.costs:
+            return ""
         text = "".join(READABLE[k] for k in self.costs[name].argmin(axis=1)).strip()
         return text if name.startswith("REPLY") else text.replace(" ", "0")
 

@@ -78,7 +78,7 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
     if not sheets:
         return []
     leaves = _judged(grid, sheets, seeds)
-    if _open(leaves):
+    if _open(leaves) and any(leaf.read.costs for leaf in leaves):
         unlike = spelled(grid, sheets)
         again = [relaid(sheet, grid.odds(), unlike) for sheet in sheets]
         if again != sheets:
@@ -98,8 +98,10 @@ def _open(leaves: Sequence[Leaf]) -> int:
 
 
 def _judged(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:
-    reads = read_numbers(grid, sheets)
-    found = [scene_of(read, seeds) if read.sheet.gain > _LEGIBLE else None for read in reads]
+    legible = read_numbers(grid, [sheet for sheet in sheets if sheet.gain > _LEGIBLE])
+    by_sheet = {id(read.sheet): read for read in legible}
+    reads = [by_sheet.get(id(sheet), Read(sheet, {})) for sheet in sheets]
+    found = [scene_of(read, seeds) if read.costs else None for read in reads]
     known = [
         (sheet, read, one) for sheet, read, one in zip(sheets, reads, found, strict=True) if one
     ]
