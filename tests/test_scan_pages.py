@@ -157,7 +157,9 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     """Printouts on a page share their mean characters, and one misplaced spoils them for all."""
     given = iter([Judged(Verdict.DIFFERS), Judged(beside)])
     monkeypatch.setattr(
-        sheets, "read_numbers", lambda grid, found: [Read(one, {}) for one in found]
+        sheets,
+        "read_numbers",
+        lambda grid, found: [Read(one, {"MA": np.zeros((1, 1))}) for one in found],
     )
     monkeypatch.setattr(sheets, "scene_of", lambda *given: object())
     monkeypatch.setattr(sheets, "held", lambda *given: [])

@@ -89,7 +89,8 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
                 shown = fields.get(name, "") if name else text
             if line in SPACED:  # its gaps are what they are
                 column = row.column(piece.places[0]) if piece.places else column
-                if len(shown) == len(piece.places) + 1 and shown.startswith("-"):
+                longer = bool(name) and len(shown) == len(piece.places) + 1
+                if longer and read.cost(name, shown[1:]) < read.cost(name, shown[:-1]):
                     column -= 1  # its sign was taken for a blank
                 elif name:  # a speck may stand for one of its cells
                     spare = range(max(0, len(piece.places) - len(shown)) + 1)

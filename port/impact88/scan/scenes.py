@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
-from ..fields import INPUTS, REPLIES
+from ..fields import ANGLES, INPUTS, REPLIES
 from ..reading.printout import read_printouts
 from ..recovery.recovered import recover
 from ..recovery.replays import Outcome, run_all
@@ -56,7 +56,8 @@ class Read:
     def _cost(self, costs: Floats, text: str) -> float:
         total = _WORST * max(0, len(text) - len(costs))
         if len(text) == len(costs) + 1 and text.startswith("-"):
-            text = text[1:]  # a faint sign before an angle is taken for a blank
+            # a faint sign before an angle is taken for a blank
+            return _WORST + min(self._cost(costs, text[1:]), self._cost(costs, text[:-1]))
         for row, character in zip(costs, text.ljust(len(costs)), strict=False):
             column = (READABLE).find(character)
             total += _WORST if column < 0 else min(float(row[column]), _WORST)
@@ -170,6 +171,9 @@ def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
                     if character.isdigit() and other != character:
                         changed = shown[:at] + other + shown[at + 1 :]
                         yield {**one.scene, typed: _signed(changed, sign)}
+        if name in ANGLES:  # whose last figure, erased, leaves a wider gap
+            for last in "0123456789":
+                yield {**one.scene, typed: seen + last}
         yield {**one.scene, typed: _signed(read.text(name) or "0", sign)}
         yield {**one.scene, typed: _signed(text, -1)}
     yield {**one.scene, "M": "4" if one.scene["M"] == "6" else "6"}
