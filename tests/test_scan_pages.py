@@ -16,13 +16,15 @@ import pytest
 import scanpages
 from captures import ROOT
 from impact88.judging.judgement import Verdict
+from impact88.recovery.replays import run_all
 from impact88.reporting.examination import Examined, Verification, examine, examine_bytes
 from impact88.scan import sheets
 from impact88.scan.evidence import THRESHOLDS, Judged, state
 from impact88.scan.holding import Cell
 from impact88.scan.layout import Place, Sheet
-from impact88.scan.scenes import Read
+from impact88.scan.scenes import Candidate, Read, borne_out
 from impact88.scan.typeface import READABLE
+from worked_cases import RUN_1
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
 Pillow = pytest.importorskip("PIL.Image", reason="the extra scan is not installed")
@@ -137,6 +139,15 @@ def test_an_angle_whose_faint_sign_was_taken_for_a_blank() -> None:
     assert read.cost("PB", "-173") < read.cost("PB", "187")
 
 
+def test_an_input_that_no_result_bears_out_is_what_the_paper_shows() -> None:
+    """With DA 0 the angles of A are printed and used nowhere: a misread one accuses no page."""
+    scene = {**{name: str(value) for name, value in RUN_1.items()}, "DA": "0"}
+    scene["M"] = "6"
+    one = Candidate(scene, run_all([scene])[0], 0.0)
+    assert borne_out(one, {"TA": "8"}).outcome.fields["TA"] == "8"
+    assert borne_out(one, {"TB": "8"}) is one
+
+
 @pytest.mark.parametrize(
     ("data", "message"),
     [
@@ -166,7 +177,8 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     monkeypatch.setattr(sheets, "_mistaken", lambda cells, found: False)
     monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
     monkeypatch.setattr(sheets, "spelled", lambda grid, found: {})
-    grid = SimpleNamespace(odds=list)
+    monkeypatch.setattr(sheets, "borne_out", lambda one, shown: one)
+    grid = SimpleNamespace(odds=lambda: [np.zeros(8)])
     leaves = sheets._leaves(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
     expected = Verdict.DIFFERS if beside is Verdict.IDENTICAL else Verdict.INCOMPLETE
     assert leaves[0].judged.verdict is expected

@@ -131,6 +131,20 @@ def scenes_in(text: str) -> list[dict[str, str]]:
     return [one.scene for one in recovered if not one.missing]
 
 
+def borne_out(one: Candidate, shown: Mapping[str, str]) -> Candidate:
+    """The scene with some inputs as the paper shows them, where the program's page is otherwise the
+    same: results bear out neither an angle nor an arm that they do not depend on."""
+    if not shown:
+        return one
+    typed = {("MU" if name == "MUP" else name): text for name, text in shown.items()}
+    try:
+        (outcome,) = run_all([{**one.scene, **typed}])
+    except (UserError, ValueError, OverflowError):
+        return one
+    same = outcome.fields == {**one.outcome.fields, **shown}
+    return Candidate({**one.scene, **typed}, outcome, one.cost) if same else one
+
+
 def _weigh(
     read: Read,
     scenes: list[dict[str, str]],

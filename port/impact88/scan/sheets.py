@@ -9,6 +9,7 @@ from itertools import product
 
 import numpy as np
 
+from ..fields import INPUTS
 from ..judging.judgement import Verdict
 from .evidence import Judged, judged, state
 from .grid import Grid, grids_of
@@ -16,7 +17,7 @@ from .holding import Cell, held
 from .ink import Image, ink_of
 from .layout import OPTIONAL, Sheet, relaid, sheets_of
 from .naming import read_numbers, spelled
-from .scenes import Candidate, Read, scene_of
+from .scenes import Candidate, Read, borne_out, scene_of
 from .typeface import BLANK
 
 _UPRIGHT = 600.0
@@ -108,8 +109,13 @@ def _judged(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
     cells = held(grid, *zip(*known, strict=True)) if known else []
     if _mistaken(cells, [sheet for sheet, *_ in known]):
         cells = held(grid, *zip(*known, strict=True))
+    as_shown = [borne_out(one, _shown(cells, which)) for which, (*_, one) in enumerate(known)]
+    if any(one is not before for one, (*_, before) in zip(as_shown, known, strict=True)):
+        known = [(sheet, read, one) for (sheet, read, _), one in zip(known, as_shown, strict=True)]
+        cells = held(grid, *zip(*known, strict=True))
     leaves, which = [], 0
-    for sheet, read, one in zip(sheets, reads, found, strict=True):
+    for sheet, read, first in zip(sheets, reads, found, strict=True):
+        one = first and known[which][2]
         if one is None:
             unread = Judged(Verdict.INCOMPLETE, reason="no scene was found")
             leaves.append(Leaf(grid, sheet, read, None, [], unread))
@@ -118,6 +124,16 @@ def _judged(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
         which += 1
         leaves.append(Leaf(grid, sheet, read, one, own, judged(sheet, one, own)))
     return leaves
+
+
+def _shown(cells: Sequence[Cell], sheet: int) -> dict[str, str]:
+    """The inputs of a printout in which a cell differs, as the paper shows them."""
+    differing = {cell.name for cell in cells if cell.sheet == sheet and state(cell) == "differs"}
+    texts = dict.fromkeys(differing & set(INPUTS), "")
+    for cell in cells:
+        if cell.sheet == sheet and cell.name in texts:
+            texts[cell.name] += cell.other if state(cell) == "differs" else cell.predicted
+    return {name: text.strip() for name, text in texts.items()}
 
 
 def _mistaken(cells: Sequence[Cell], sheets: Sequence[Sheet]) -> bool:
