@@ -358,9 +358,11 @@ def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
             return
         stop = match.start() if match else len(text)
         part = page.glyphs[start:stop]
-        aligned = list(align(part, budget))
+        found = _SLOT_COMMAND.finditer(text, start, stop)
+        commands = {at - start for command in found for at in range(*command.span())}
+        aligned = list(align(part, budget, commands))
         if notes := _notes(part, aligned):
-            aligned = list(align(part, budget, notes))
+            aligned = list(align(part, budget, notes | commands))
         if budget.stopped is not None:
             budget.stopped += start
         shown = [printout for one in aligned if (printout := _Reader(page, start, one).read())]
