@@ -87,11 +87,8 @@ class Explanation:
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
-        return {
-            "kind": self.kind, "field": self.field, "printed": self.printed,
-            "would_be": self.would_be, "explains": self.explains, "remaining": self.remaining,
-            "note": self.note, "changes": self.changes, "look": self.look, "rank": self.rank,
-        }  # fmt: skip
+        names = ("kind", "field", "printed", "would_be", "explains", "remaining", "note", "changes")
+        return {name: getattr(self, name) for name in (*names, "look", "rank")}
 
     @property
     def puts_right(self) -> frozenset[tuple[str, str]]:

@@ -82,10 +82,10 @@ class Session:
             self._enter(line)
         return self._run(keys).replace("\0", "")
 
-    def calculate(self, operation: str, first: str, second: str, extension: str) -> str:
+    def calculate(self, *call: str) -> str:
         """One call of the ROM's arithmetic, see `routines.call`."""
         self.apple.restore(self._fresh)
-        return routines.call(self.apple, operation, first, second, extension)
+        return routines.call(self.apple, *call)
 
     def _enter(self, line: str) -> None:
         if len(line) > LONGEST_TYPED:
