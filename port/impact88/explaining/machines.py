@@ -33,6 +33,7 @@ from .predictions import (
     cut,
     digits_of,
     places_of,
+    within,
 )
 
 _SOME_LINES = 14.2
@@ -166,8 +167,7 @@ class _Page:
 
     def prints(self, name: str, ranges: Mapping[str, Range] | None = None) -> bool:
         """Whether the page has just the number that is predicted."""
-        predicted = (ranges or self._own).get(name)
-        return predicted is not None and Decimal(self.evidence.texts[name]) == predicted[0]
+        return within(Decimal(self.evidence.texts[name]), (ranges or self._own).get(name))
 
 
 def _other_decimals(page: _Page) -> Iterator[Cause]:
@@ -186,7 +186,7 @@ def _other_decimals(page: _Page) -> Iterator[Cause]:
         slack = max(unit * Decimal("1.001"), abs(number) * Decimal("3E-6" if single else "2E-9"))
         near = around(value, slack)
         cuts = [cut(value, evidence.decimals(name), how) for how in ("rounded", "floored")]
-        if near and (unit < (abs(number) or 1) or (number, number) in cuts):
+        if near and (unit < (abs(number) or 1) or any(within(number, made) for made in cuts)):
             own[name] = near
             if name != "KI":
                 decimals.add(evidence.decimals(name))
@@ -217,7 +217,7 @@ def _single_precision(
     }
     fits = {
         how: sum(
-            cut(values[name], places_of(name), how) == (Decimal(text), Decimal(text))
+            within(Decimal(text), cut(values[name], places_of(name), how))
             for name, text in evidence.texts.items()
             if name in values and name != "KI"
         )

@@ -137,12 +137,19 @@ def as_printed(outcome: Outcome) -> dict[str, Range]:
 
 
 def cut(value: float, places: int, how: str) -> Range | None:
-    """A value brought to so many decimals; None where no program prints it."""
+    """A value brought to so many decimals, either way where the Apple's 32 bits may make a tie of
+    it; None where no program prints it."""
     units = value * 10.0**places
     if not math.isfinite(units) or abs(units) > _LARGEST:
         return None
-    number = Decimal(CUTS[how](units)).scaleb(-places)
-    return number, number
+    slack = abs(units) * 2.0**-31
+    low, high = (Decimal(CUTS[how](units + way)).scaleb(-places) for way in (-slack, slack))
+    return low, high
+
+
+def within(number: Decimal, range: Range | None) -> bool:
+    """Whether a number is one of those predicted."""
+    return range is not None and range[0] <= number <= range[1]
 
 
 def around(value: float, slack: Decimal | float) -> Range | None:
