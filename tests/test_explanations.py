@@ -17,6 +17,7 @@ from impact88.reporting.examination import Verdict, Verification, verify
 
 COUNT = printouts.SWEEP or 1
 LEFT_TO_SWEEPS = (
+    "two wrong digits in one input",
     "x and y in each other's place",
     "results in another unit",
     "rounded",
