@@ -195,7 +195,8 @@ def test_slips_are_told_apart(other: str, kind: str | None) -> None:
 )
 def test_halves_are_rounded_upward(value: float, places: int, number: str) -> None:
     found = cut(value, places, "rounded")
-    assert found and found[1] == Decimal(number)
+    assert found
+    assert found[1] == Decimal(number)
 
 
 @pytest.mark.parametrize(
