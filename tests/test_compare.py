@@ -210,7 +210,7 @@ class HalfARightSide(Program):
         (RestitutionAcross(), "c and s exchanged in Equation 15"),
         (SignOfOneTerm(), "ib with the wrong sign in .*Equation 17"),
         (HalfARightSide(), r"ib\*WBF = .*ia\*WA, should be .*ib\*WB; Equation 17"),
-    ],
+    ][: None if SWEEP else 1],
 )
 def test_a_mistake_in_one_equation_is_named(tmp_path, program: Program, says: str) -> None:
     done = compared(tmp_path, answered(program, names=FINAL_VELOCITIES))
@@ -221,7 +221,7 @@ def test_a_mistake_in_one_equation_is_named(tmp_path, program: Program, says: st
 
 
 BUGS = [*heldout.SINGLES, *heldout.PAIRS, *strangers.SINGLES, *strangers.PAIRS]
-FEW = [BUGS[66], strangers.SINGLES[0], strangers.PAIRS[0]]
+FEW = [BUGS[66], strangers.PAIRS[0]]
 
 
 @pytest.mark.parametrize("which", BUGS if SWEEP else FEW, ids=str)
