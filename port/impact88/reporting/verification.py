@@ -194,7 +194,9 @@ def summary(result: Verification) -> list[str]:
     not_read = [name for name in result.not_read if name not in missing]
     if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
         said.append(f"not read: {', '.join(not_read)}")
-    if verdict is Verdict.INCOMPLETE and not (missing or not_read or result.page):
+    if verdict is Verdict.INCOMPLETE and not (
+        missing or not_read or result.page or result.differing
+    ):
         said.append("the results are missing, or the page ends before them")
     ending = result.ending
     if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
