@@ -47,6 +47,8 @@ ARGUMENTS = (
     options.seed("of the test vectors"),
     options.choice("--class", CLASSES, "vectors of this class only", dest="only"),
     options.choice("--to", ("jsonl", "csv"), "csv: the scenes of --vectors as a flat table"),
+    # what is typed for --to csv; in the help --csv names a file, that of `report`
+    options.value("--csv", None, argparse.SUPPRESS, dest="to", action="store_const", const="csv"),
     options.writes_folder(
         "--kit",
         "DIR",
