@@ -12,7 +12,7 @@ from typing import NamedTuple
 from ..judging.judgement import Verdict
 from .holding import Cell
 from .layout import Sheet
-from .scenes import Candidate
+from .scenes import WORST, Candidate
 from .typeface import BLANK
 
 
@@ -46,6 +46,9 @@ RATES = (
 MOST_DOUBTFUL, MOST_DIFFERING = 4, 4
 """Cells that may be doubtful on a page that is settled, or differ on one that is accused: with more
 it was the reading that went wrong."""
+MOST_MISREAD = 2 * WORST
+"""What the first reading may contradict the scene beyond the cells that differ: 240 of 245 pages
+that were altered stay within, three genuine ones that had been accused had 20 to 36."""
 _MARKS = frozenset(".,-")
 """Characters of so little ink that a speck, or a faint pin, makes or unmakes them."""
 
@@ -83,7 +86,9 @@ def judged(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
             return Judged(Verdict.IDENTICAL)
         slight = len(doubtful) <= MOST_DOUBTFUL and all(map(_slight, doubtful))
         return Judged(Verdict.IDENTICAL_AS_READ if slight else Verdict.INCOMPLETE, [], doubtful)
+    misread = candidate.cost - WORST * len(differing)
     sure = len(differing) <= MOST_DIFFERING and all(map(_slight, doubtful))
+    sure = sure and misread <= MOST_MISREAD
     return Judged(Verdict.DIFFERS if sure else Verdict.INCOMPLETE, differing, doubtful)
 
 

@@ -21,7 +21,7 @@ from .ink import Floats
 from .layout import LINES, Sheet, parts
 from .typeface import READABLE
 
-_WORST = 6.0
+WORST = 6.0
 """What a cell costs at most: a cell that contradicts says no more than that it does."""
 _SETTLED = 1.0
 """A page whose cells cost less than this in all needs no search."""
@@ -47,20 +47,20 @@ class Read:
     def cost(self, name: str, text: str | None) -> float:
         """What it costs to take a number's cells for a text."""
         if text is None:
-            return 2 * _WORST
+            return 2 * WORST
         key = (name, text)
         if key not in self._known:
             self._known[key] = self._cost(self.costs[name], text)
         return self._known[key]
 
     def _cost(self, costs: Floats, text: str) -> float:
-        total = _WORST * max(0, len(text) - len(costs))
+        total = WORST * max(0, len(text) - len(costs))
         if len(text) == len(costs) + 1 and text.startswith("-"):
             # a faint sign before an angle is taken for a blank
-            return _WORST + min(self._cost(costs, text[1:]), self._cost(costs, text[:-1]))
+            return WORST + min(self._cost(costs, text[1:]), self._cost(costs, text[:-1]))
         for row, character in zip(costs, text.ljust(len(costs)), strict=False):
             column = (READABLE).find(character)
-            total += _WORST if column < 0 else min(float(row[column]), _WORST)
+            total += WORST if column < 0 else min(float(row[column]), WORST)
         return total
 
     def page(self, known: Mapping[str, str] = MappingProxyType({})) -> tuple[str, dict[str, int]]:
@@ -163,7 +163,7 @@ def _weigh(
 def cost_of(read: Read, outcome: Outcome) -> float:
     """What the program's page costs against the cells."""
     fields = outcome.fields
-    total = 2 * _WORST * len(set(fields) - set(read.costs))
+    total = 2 * WORST * len(set(fields) - set(read.costs))
     for name in read.costs:
         if not name.startswith("REPLY"):
             total += read.cost(name, fields.get(name))
