@@ -186,7 +186,7 @@ def test_a_digit_that_is_another_is_never_looked_past_alone() -> None:
     """On a page with every mark of a scanner too; but what the page shows twice is its reader's."""
     alone = one(NOISE.replace("-8.78", "-3.78"))
     assert alone.verdict is Verdict.DIFFERS
-    assert alone.explanations[0].look == ["line 18, column 30: is this 3 or 8?"]
+    assert alone.explanations[0].look == ["line 18, column 30: is this 3 an 8?"]
     twice = one(NOISE.replace("-8.78", "-3.78").replace("-8.09", "-3.09"))
     assert twice.verdict is Verdict.IDENTICAL_AS_READ
     assert [check.name for check in doubtful(twice)] == ["XAF", "XBF"]

@@ -314,9 +314,9 @@ def _compare_block(
     by_row = np.where(~wrong & (grades == ELIMINATION), relative, 0.0).max(0)
     loose = comparison.elimination
     loose.rows += int((~wrong & (grades == ELIMINATION)).any(0).sum())
-    worst = int(np.argmax(by_row))
-    if by_row[worst] > loose.worst_relative:
-        loose.worst_row, loose.worst_relative = rows.first + worst, float(by_row[worst])
+    if (largest := float(by_row.max(initial=0.0))) > loose.worst_relative:
+        worst = int(by_row.argmax())
+        loose.worst_row, loose.worst_relative = rows.first + worst, largest
         loose.worst_condition = float(case.condition[worst])
     places = np.flatnonzero(wrong)
     off = np.where(grades == DIFFER, relative, -1.0)
