@@ -178,11 +178,31 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
     monkeypatch.setattr(sheets, "spelled", lambda grid, found: {})
     monkeypatch.setattr(sheets, "borne_out", lambda one, shown: one)
-    grid = SimpleNamespace(odds=lambda: [np.zeros(8)])
+    grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=0.9)
     leaves = sheets._leaves(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
     expected = Verdict.DIFFERS if beside is Verdict.IDENTICAL else Verdict.INCOMPLETE
     assert leaves[0].judged.verdict is expected
     assert bool(leaves[0].judged.reason) is (beside is Verdict.INCOMPLETE)
+
+
+@pytest.mark.parametrize(("clarity", "searched"), [(0.69, 0), (0.71, 2)])
+def test_no_scene_is_searched_for_where_columns_are_not_clear(monkeypatch, clarity, searched):
+    """Noise of many lines is one printout that was not read, at once."""
+    asked: list[object] = []
+    monkeypatch.setattr(
+        sheets,
+        "read_numbers",
+        lambda grid, found: [Read(one, {"MA": np.zeros((1, 1))}) for one in found],
+    )
+    monkeypatch.setattr(sheets, "scene_of", lambda read, seeds: asked.append(read))
+    monkeypatch.setattr(sheets, "spelled", lambda grid, found: {})
+    monkeypatch.setattr(sheets, "relaid", lambda sheet, odds, unlike: sheet)
+    grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=clarity)
+    leaves = sheets._leaves(grid, [Sheet(gain=900.0), Sheet(gain=1000.0)], [])
+    assert len(asked) == searched
+    assert len(leaves) == max(searched, 1)
+    assert {leaf.judged.verdict for leaf in leaves} == {Verdict.INCOMPLETE}
+    assert leaves[-1].sheet.gain == 1000.0
 
 
 def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> None:
