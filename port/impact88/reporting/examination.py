@@ -110,10 +110,10 @@ def _printed(
         pages = CopyPages(copy)
     text, lines, besides = pages.prepared(text) if pages else (text, [], {})
     every = read_printouts(text, where)
-    begun, read = process_time(), 1
+    begun, read = process_time(), 0
     for number, shown in enumerate(every, 1):
         read += not shown.fragment
-        if process_time() - begun > BUDGET * read:
+        if process_time() - begun > BUDGET * max(read, 1):
             said = f"this and what follows was not judged: over {BUDGET:g} s a page"
             scene: dict[str, str | None] = dict.fromkeys(SCENE)
             yield Verification(
