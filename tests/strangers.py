@@ -1,5 +1,6 @@
 """Bugs in programs that are written in no spelling the search knows: by a Jacobian and masses in
-matrices; by textbook lever arms and an impulse ratio; in complex numbers, with the impulses' work.
+matrices; by textbook lever arms and an impulse ratio; in complex numbers, with the impulses' work;
+as nine equations at once; by vectors.
 
 `SINGLES` are programs with one bug, `PAIRS` with two.
 """
@@ -458,10 +459,104 @@ def run(inp):
                 DVA=hypot(end[0] - start[0], end[1] - start[1])/FOOT, LOSS=100.0*(e0 - e1)/e0)
 """
 
+# nine equations at once: momenta, restitution, friction, moment
+KKT = """
+def run(s):
+    deg = pi/180.0
+    point = s["M"] == 4
+    a, b = s["TA"] + s["PA"], s["TB"] + s["PB"]
+    rad_a, rad_b = (0.0, 0.0) if point else (s["DA"], s["DB"])
+    # contact point seen from the mass centers
+    cax, cay = -rad_a*cos(a*deg), -rad_a*sin(a*deg)
+    cbx, cby = rad_b*cos(b*deg), rad_b*sin(b*deg)
+    g = s["GA"]*deg
+    ex, ey = cos(g), sin(g)
+    ia, ib = (1.0, 1.0) if point else (s["IA"], s["IB"])
+    em = 1.0 if point else s["EM"]
+    # relative velocity at the contact point
+    dx = s["UX"] - s["WA"]*cay - s["VX"] + s["WB"]*cby
+    dy = s["UY"] + s["WA"]*cax - s["VY"] - s["WB"]*cbx
+    approach = dx*ex + dy*ey
+    sliding = dy*ex - dx*ey
+    A = np.zeros((9, 9)); y = np.zeros(9)
+    # momentum of each body: m V - P = m U
+    A[0, 0] = s["MA"]; A[0, 6] = -1; y[0] = s["MA"]*s["UX"]
+    A[1, 1] = s["MA"]; A[1, 7] = -1; y[1] = s["MA"]*s["UY"]
+    A[2, 3] = s["MB"]; A[2, 6] = 1; y[2] = s["MB"]*s["VX"]
+    A[3, 4] = s["MB"]; A[3, 7] = 1; y[3] = s["MB"]*s["VY"]
+    # spin: I W - (c x P) - T = I w
+    A[4, 2] = ia; A[4, 6] = cay; A[4, 7] = -cax; A[4, 8] = -1; y[4] = ia*s["WA"]
+    A[5, 5] = ib; A[5, 6] = -cby; A[5, 7] = cbx; A[5, 8] = 1; y[5] = ib*s["WB"]
+    # restitution
+    A[6, 0] = ex; A[6, 1] = ey; A[6, 2] = -cay*ex + cax*ey
+    A[6, 3] = -ex; A[6, 4] = -ey; A[6, 5] = cby*ex - cbx*ey
+    y[6] = -s["E"]*approach
+    # friction, or no sliding afterwards
+    if s["MU"] == -10:
+        A[7, 0] = -ey; A[7, 1] = ex; A[7, 2] = cay*ey + cax*ex
+        A[7, 3] = ey; A[7, 4] = -ex; A[7, 5] = -cby*ey - cbx*ex
+    else:
+        mu = -s["MU"] if sliding > 0 else s["MU"]
+        A[7, 6] = -ey - mu*ex; A[7, 7] = ex - mu*ey
+    # moment
+    red = 1.0/(1.0/ia + 1.0/ib)
+    A[8, 8] = em
+    A[8, 2] = -(1.0 - em)*red; A[8, 5] = (1.0 - em)*red
+    x = np.linalg.solve(A, y)
+    before = 0.5*s["MA"]*(s["UX"]**2 + s["UY"]**2) + 0.5*s["MB"]*(s["VX"]**2 + s["VY"]**2)
+    after = 0.5*s["MA"]*(x[0]**2 + x[1]**2) + 0.5*s["MB"]*(x[3]**2 + x[4]**2)
+    if not point:
+        before += 0.5*ia*s["WA"]**2 + 0.5*ib*s["WB"]**2
+        after += 0.5*ia*x[2]**2 + 0.5*ib*x[5]**2
+    return dict(VAX=x[0], VAY=x[1], VBX=x[3], VBY=x[4], WAF=x[2], WBF=x[5],
+                DVA=hypot(x[0] - s["UX"], x[1] - s["UY"]),
+                DVB=hypot(x[3] - s["VX"], x[4] - s["VY"]),
+                LOSS=100.0*(before - after)/before)
+"""
+
+# vectors, and the matrix of what an impulse at the contact point changes there
+VEC = """
+def rot(v):
+    return np.array([-v[1], v[0]])
+
+def run(s):
+    unit = lambda d: np.array([np.cos(np.radians(d)), np.sin(np.radians(d))])
+    point = s["M"] == 4
+    n = unit(s["GA"]); t = rot(n)
+    ca = -(0 if point else s["DA"])*unit(s["TA"] + s["PA"])
+    cb = (0 if point else s["DB"])*unit(s["TB"] + s["PB"])
+    wA, wB = (0.0, 0.0) if point else (1/s["IA"], 1/s["IB"])
+    u = np.array([s["UX"], s["UY"]]); v = np.array([s["VX"], s["VY"]])
+    g = (u + s["WA"]*rot(ca)) - (v + s["WB"]*rot(cb))
+    # what an impulse at the contact point changes of the velocity there
+    K = (1/s["MA"] + 1/s["MB"])*np.eye(2)
+    K = K + wA*np.outer(rot(ca), rot(ca)) + wB*np.outer(rot(cb), rot(cb))
+    h = wA*rot(ca) + wB*rot(cb)
+    share = 0.0
+    if not point:
+        share = (1 - s["EM"])/(1 - 2*s["EM"])/(wA + wB)
+        K = K - share*np.outer(h, h)
+    spin = s["WA"] - s["WB"]
+    goal = g - share*spin*h
+    want = -s["E"]*(g @ n) - goal @ n
+    if s["MU"] != -10:
+        along = n - np.sign(g @ t)*s["MU"]*t if g @ t != 0 else n + s["MU"]*t
+        P = want/(n @ K @ along)*along
+    else:
+        rows = np.array([n @ K, t @ K])
+        P = np.linalg.solve(rows, np.array([want, -(goal @ t)]))
+    T = -share*(spin + h @ P)
+    U = u + P/s["MA"]; V = v - P/s["MB"]
+    WA = s["WA"] + wA*(rot(ca) @ P + T)
+    WB = s["WB"] - wB*(rot(cb) @ P + T)
+    return dict(VAX=U[0], VAY=U[1], VBX=V[0], VBY=V[1], WAF=WA, WBF=WB)
+"""
+
 PROGRAMS = {
     **{"jacobian": JACOBIAN, "ratio": RATIO, "complex": COMPLEX},
     **{"four": FOUR, "cish": CISH},
     **{"perc": PERC, "sheet": SHEET, "si": SI},
+    **{"kkt": KKT, "vec": VEC},
 }
 bugs.PROGRAMS.update(PROGRAMS)
 
@@ -756,3 +851,124 @@ PAIRS: list[tuple[str, Bug, Bug]] = [
       "i1 = inp[\"IA\"]*SLUG; i2 = inp[\"IB\"]*SLUG"),
      ("s[1] += py/m1", "s[1] += py/m2")),
 ]  # fmt: skip
+
+SINGLES += [
+    (
+        "kkt",
+        (
+            "cbx, cby = rad_b*cos(b*deg), rad_b*sin(b*deg)",
+            "cbx, cby = -rad_b*cos(b*deg), -rad_b*sin(b*deg)",
+        ),
+    ),
+    (
+        "kkt",
+        (
+            "cax, cay = -rad_a*cos(a*deg), -rad_a*sin(a*deg)",
+            "cax, cay = -rad_a*sin(a*deg), -rad_a*cos(a*deg)",
+        ),
+    ),
+    ("kkt", ('s["TB"] + s["PB"]\n', 's["TB"] - s["PB"]\n')),
+    ("kkt", ('A[2, 3] = s["MB"]; A[2, 6] = 1;', 'A[2, 3] = s["MB"]; A[2, 6] = -1;')),
+    ("kkt", ('y[3] = s["MB"]*s["VY"]', 'y[3] = s["MA"]*s["VY"]')),
+    ("kkt", ("A[4, 6] = cay; A[4, 7] = -cax;", "A[4, 6] = cay; A[4, 7] = cax;")),
+    ("kkt", ("A[5, 8] = 1; y[5]", "A[5, 8] = -1; y[5]")),
+    ("kkt", ("A[5, 6] = -cby; A[5, 7] = cbx;", "A[5, 6] = cby; A[5, 7] = -cbx;")),
+    ("kkt", ('y[6] = -s["E"]*approach', 'y[6] = s["E"]*approach')),
+    (
+        "kkt",
+        (
+            'mu = -s["MU"] if sliding > 0 else s["MU"]',
+            'mu = -abs(s["MU"]) if sliding > 0 else abs(s["MU"])',
+        ),
+    ),
+    (
+        "kkt",
+        ('mu = -s["MU"] if sliding > 0 else s["MU"]', 'mu = s["MU"] if sliding > 0 else -s["MU"]'),
+    ),
+    ("kkt", ("red = 1.0/(1.0/ia + 1.0/ib)", "red = ia + ib")),
+    ("kkt", ("A[8, 8] = em", "A[8, 8] = 1.0")),
+    ("kkt", ("A[6, 2] = -cay*ex + cax*ey", "A[6, 2] = -cay*ey + cax*ex")),
+    ("kkt", ("A[7, 3] = ey; A[7, 4] = -ex;", "A[7, 3] = -ey; A[7, 4] = ex;")),
+    ("kkt", ('dy = s["UY"] + s["WA"]*cax', 'dy = s["UY"] - s["WA"]*cax')),
+    ("kkt", ('g = s["GA"]*deg', 'g = -s["GA"]*deg')),
+    ("kkt", ("LOSS=100.0*(before - after)/before", "LOSS=100.0*(before - after)/after")),
+    (
+        "kkt",
+        (
+            "A[7, 6] = -ey - mu*ex; A[7, 7] = ex - mu*ey",
+            "A[7, 6] = -ey - mu*ex; A[7, 7] = ex + mu*ey",
+        ),
+    ),
+    ("vec", ('g = (u + s["WA"]*rot(ca)) - (v + s["WB"]*rot(cb))', "g = u - v")),
+    ("vec", ("wA*np.outer(rot(ca), rot(ca)) + wB", "wA*np.outer(ca, ca) + wB")),
+    ("vec", ("h = wA*rot(ca) + wB*rot(cb)", "h = wA*rot(ca) - wB*rot(cb)")),
+    ("vec", ('/(1 - 2*s["EM"])/(wA + wB)', '/(1 + 2*s["EM"])/(wA + wB)')),
+    ("vec", ('/(1 - 2*s["EM"])/(wA + wB)', "/(wA + wB)")),
+    ("vec", ('spin = s["WA"] - s["WB"]', 'spin = s["WB"] - s["WA"]')),
+    ("vec", ('np.sign(g @ t)*s["MU"]*t', 's["MU"]*t')),
+    ("vec", ("T = -share*(spin + h @ P)", "T = -share*(h @ P)")),
+    ("vec", ('U = u + P/s["MA"]', 'U = u + P/s["MB"]')),
+    ("vec", ('WB = s["WB"] - wB*(rot(cb) @ P + T)', 'WB = s["WB"] - wB*(rot(cb) @ P - T)')),
+    ("vec", ('WA = s["WA"] + wA*(rot(ca) @ P + T)', 'WA = s["WA"] + wA*(rot(ca) @ P)')),
+    ("vec", ('K = (1/s["MA"] + 1/s["MB"])*np.eye(2)', 'K = (1/(s["MA"] + s["MB"]))*np.eye(2)')),
+    ("vec", ("np.array([want, -(goal @ t)])", "np.array([want, -(g @ t)])")),
+]
+PAIRS += [
+    (
+        "kkt",
+        (
+            "cbx, cby = rad_b*cos(b*deg), rad_b*sin(b*deg)",
+            "cbx, cby = -rad_b*cos(b*deg), -rad_b*sin(b*deg)",
+        ),
+        ('y[6] = -s["E"]*approach', 'y[6] = s["E"]*approach'),
+    ),
+    ("kkt", ('s["TB"] + s["PB"]\n', 's["TB"] - s["PB"]\n'), ("A[8, 8] = em", "A[8, 8] = 1.0")),
+    (
+        "kkt",
+        ('y[3] = s["MB"]*s["VY"]', 'y[3] = s["MA"]*s["VY"]'),
+        ("after += 0.5*ia*x[2]**2 + 0.5*ib*x[5]**2", "after += 0.5*ib*x[2]**2 + 0.5*ia*x[5]**2"),
+    ),
+    (
+        "kkt",
+        ("A[5, 6] = -cby; A[5, 7] = cbx;", "A[5, 6] = cby; A[5, 7] = -cbx;"),
+        ('mu = -s["MU"] if sliding > 0 else s["MU"]', 'mu = s["MU"] if sliding > 0 else -s["MU"]'),
+    ),
+    (
+        "kkt",
+        ("A[6, 2] = -cay*ex + cax*ey", "A[6, 2] = -cay*ey + cax*ex"),
+        ('g = s["GA"]*deg', 'g = -s["GA"]*deg'),
+    ),
+    (
+        "kkt",
+        ("A[4, 6] = cay; A[4, 7] = -cax;", "A[4, 6] = cay; A[4, 7] = cax;"),
+        (
+            'mu = -s["MU"] if sliding > 0 else s["MU"]',
+            'mu = -abs(s["MU"]) if sliding > 0 else abs(s["MU"])',
+        ),
+    ),
+    (
+        "vec",
+        ('n = unit(s["GA"]); t = rot(n)', 'n = unit(s["GA"]); t = -rot(n)'),
+        ('/(1 - 2*s["EM"])/(wA + wB)', "/(wA + wB)"),
+    ),
+    (
+        "vec",
+        ("h = wA*rot(ca) + wB*rot(cb)", "h = wA*rot(ca) - wB*rot(cb)"),
+        ('U = u + P/s["MA"]', 'U = u + P/s["MB"]'),
+    ),
+    (
+        "vec",
+        ('/(1 - 2*s["EM"])/(wA + wB)', '/(1 + 2*s["EM"])/(wA + wB)'),
+        ('K = (1/s["MA"] + 1/s["MB"])*np.eye(2)', 'K = (1/(s["MA"] + s["MB"]))*np.eye(2)'),
+    ),
+    (
+        "vec",
+        ('g = (u + s["WA"]*rot(ca)) - (v + s["WB"]*rot(cb))', "g = u - v"),
+        ('spin = s["WA"] - s["WB"]', 'spin = s["WB"] - s["WA"]'),
+    ),
+    (
+        "vec",
+        ('np.sign(g @ t)*s["MU"]*t', 's["MU"]*t'),
+        ('WA = s["WA"] + wA*(rot(ca) @ P + T)', 'WA = s["WA"] + wA*(rot(ca) @ P)'),
+    ),
+]
