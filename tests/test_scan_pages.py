@@ -205,6 +205,19 @@ def test_no_scene_is_searched_for_where_columns_are_not_clear(monkeypatch, clari
     assert leaves[-1].sheet.gain == 1000.0
 
 
+def test_the_hair_of_a_thin_dash_is_ink_and_a_speck_is_none() -> None:
+    """A dash of one pixel's height in a thin typeface is as light as a speck, but long."""
+    from impact88.scan.grid import Grid
+
+    cells = np.zeros((4, 28, 20), np.float32)
+    cells[0, 14, 5:15] = 0.7  # a dash
+    cells[1, 14, 9:11] = 1.0  # a speck
+    cells[2, 14, 0:3] = 1.0  # the end of the neighbour's
+    inked = Grid._odds(cells)
+    assert inked[0] > 2
+    assert max(inked[1:]) < 0
+
+
 def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> None:
     from impact88.reporting.casefile import report
 

@@ -93,10 +93,14 @@ class Grid:
 
     @staticmethod
     def _odds(cells: Image) -> Floats:
-        strokes = ndimage.uniform_filter(cells, (1, 3, 3))
+        # a dot, or as much ink along a line: the hair of a thin dash
+        dots = ndimage.uniform_filter(cells, (1, 3, 3))
+        hairs = ndimage.uniform_filter(cells, (1, 1, 9))
         edge = SLACK + 1
-        darkest = strokes[:, edge:-edge, edge + 1 : -edge - 1].max(axis=(1, 2)).astype(float)
-        odds: Floats = np.clip(20 * (darkest - _INKED), -6, 6)
+        inner = np.s_[:, edge:-edge, edge + 1 : -edge - 1]
+        hair = np.s_[:, edge:-edge, edge + 4 : -edge - 4]
+        darkest = np.maximum(dots[inner].max(axis=(1, 2)), hairs[hair].max(axis=(1, 2)))
+        odds: Floats = np.clip(20 * (darkest.astype(float) - _INKED), -6, 6)
         return odds
 
 
