@@ -19,7 +19,7 @@ from impact88.judging.judgement import Verdict
 from impact88.recovery.replays import run_all
 from impact88.reporting.examination import Examined, Verification, examine, examine_bytes
 from impact88.scan import sheets
-from impact88.scan.evidence import THRESHOLDS, Judged, state
+from impact88.scan.evidence import THRESHOLDS, Judged, judged, state
 from impact88.scan.holding import Cell
 from impact88.scan.layout import Place, Sheet
 from impact88.scan.scenes import Candidate, Read, borne_out
@@ -277,6 +277,17 @@ def test_a_digit_of_another_hand_differs_and_a_blot_does_not(
     other_distance: float, hand: str, expected: str
 ) -> None:
     assert state(cell("TB", distance=100, other_distance=other_distance, hand=hand)) == expected
+
+
+@pytest.mark.parametrize("away", [-1, 1])
+def test_a_digit_like_nothing_on_the_page_settles_nothing(monkeypatch, away: float) -> None:
+    """A digit drawn by another hand over another one may still be least unlike what is printed."""
+    odd = cell("YBF", distance=THRESHOLDS.foreign + away, other_distance=80.0)
+    odd.margin = -0.41
+    monkeypatch.setattr(Sheet, "whole", True)
+    candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
+    expected = Verdict.INCOMPLETE if away > 0 else Verdict.IDENTICAL
+    assert judged(Sheet(rows={}), candidate, [odd]).verdict is expected
 
 
 def test_another_letter_is_near_to_that_letters_mean() -> None:

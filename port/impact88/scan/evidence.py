@@ -127,10 +127,14 @@ def _retyped(cell: Cell, others: Sequence[Cell]) -> bool:
 
 
 def _slight(cell: Cell) -> bool:
-    """Whether a doubt leaves every digit beyond doubt: it is about a mark, a speck or a label."""
+    """Whether a doubt leaves every digit beyond doubt: it is about a mark, a speck or a label. A
+    digit that is like nothing on the page is in doubt, whatever it is least unlike."""
     if cell.lost and (not cell.name or cell.predicted in _MARKS):
         return True
     if not cell.name or cell.predicted == BLANK:
         return cell.margin < 0.5
     marks = cell.predicted in _MARKS and cell.other in _MARKS
-    return (marks and cell.margin < 0.5) or (not cell.hand and cell.margin < THRESHOLDS.holds)
+    if marks and cell.margin < 0.5:
+        return True
+    near = cell.predicted in _MARKS or cell.distance < THRESHOLDS.foreign
+    return near and not cell.hand and cell.margin < THRESHOLDS.holds
