@@ -19,10 +19,10 @@ from impact88.judging.judgement import Verdict
 from impact88.recovery.replays import run_all
 from impact88.reporting.examination import Examined, Verification, examine, examine_bytes
 from impact88.scan import sheets
-from impact88.scan.evidence import THRESHOLDS, Judged, judged, state
+from impact88.scan.evidence import MOST_MISREAD, THRESHOLDS, Judged, judged, state
 from impact88.scan.holding import Cell
 from impact88.scan.layout import Place, Sheet
-from impact88.scan.scenes import Candidate, Read, borne_out
+from impact88.scan.scenes import WORST, Candidate, Read, borne_out
 from impact88.scan.typeface import READABLE
 from worked_cases import RUN_1
 
@@ -289,6 +289,19 @@ def test_a_digit_like_nothing_on_the_page_settles_nothing(monkeypatch, away: flo
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
     expected = Verdict.INCOMPLETE if away > 0 else Verdict.IDENTICAL
     assert judged(Sheet(rows={}), candidate, [odd]).verdict is expected
+
+
+@pytest.mark.parametrize("beyond", [-1.0, 1.0])
+def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
+    monkeypatch, beyond: float
+) -> None:
+    """What the first reading contradicts of the scene, less what the cells that differ explain."""
+    monkeypatch.setattr(Sheet, "whole", True)
+    cost = WORST + MOST_MISREAD + beyond
+    candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), cost)  # type: ignore[arg-type]
+    differs = cell("TB", distance=100.0, other_distance=THRESHOLDS.foreign - 1)
+    expected = Verdict.INCOMPLETE if beyond > 0 else Verdict.DIFFERS
+    assert judged(Sheet(rows={}), candidate, [differs]).verdict is expected
 
 
 def test_another_letter_is_near_to_that_letters_mean() -> None:
