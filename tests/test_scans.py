@@ -494,6 +494,21 @@ def test_more_than_two_alterations_on_a_machine_read_page_are_its_readers() -> N
     assert any("numbers are read otherwise" in remark for remark in result.remarks)
 
 
+@pytest.mark.parametrize(("altered", "expected"), [(2, "differs"), (3, "incomplete")])
+def test_two_alterations_on_a_machine_read_page_accuse_and_three_do_not(
+    altered: int, expected: str
+) -> None:
+    """Each alone is a digit for a digit, which an alteration or a reader may have made."""
+    wrong = [("57.47", "51.47"), ("-13.263", "-18.263"), ("19.982", "14.982")]
+    text = NOISE
+    for old, new in wrong[:altered]:
+        assert old in text
+        text = text.replace(old, new)
+    result = one(text)
+    assert str(result.verdict) == expected
+    assert len(result.differing) == altered
+
+
 def hocr(text: str) -> str:
     """A page as an optical reader saves words with their places, out of order."""
     words = []
