@@ -87,8 +87,8 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
         return [Leaf(grid, likeliest, Read(likeliest, {}), None, [], unread)]
     leaves = _judged(grid, sheets, seeds)
     if _open(leaves) and any(leaf.read.costs for leaf in leaves):
-        unlike = spelled(grid, sheets)
-        again = [relaid(sheet, grid.odds(), unlike) for sheet in sheets]
+        unlike, odds = spelled(grid, sheets), grid.odds()
+        again = [relaid(sheet, odds, unlike) for sheet in sheets]
         if again != sheets:
             leaves = min(leaves, _judged(grid, again, seeds), key=_open)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
