@@ -12,8 +12,6 @@ without a unit between them, or with a sign, are refused, and so is a comma that
 one. A bare number without any system of units stays the text it is, digit for digit.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction

@@ -5,8 +5,6 @@ lone point and a bare E count as zeros, letters in either case. Its value is the
 the decimal.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from .applesoft import decimaltext

@@ -18,8 +18,6 @@ Beside a known inertia LA BA are the outline that is drawn.
 The mass needs no estimate: "3091 lb" is a weight, and becomes the mass it has (`impact88.units`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import inf
 

@@ -4,8 +4,6 @@ Reading a printout, replaying one over arrays, comparing and qualifying all take
 places and kind from here.
 """
 
-from __future__ import annotations
-
 from collections import namedtuple
 
 

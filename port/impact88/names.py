@@ -11,8 +11,6 @@ So a unit here is a rule ("mass·length²"), not a unit.
 'equivalent friction coefficient; -10 makes a pivot'
 """
 
-from __future__ import annotations
-
 from collections import namedtuple
 from collections.abc import Collection, Iterable, Sequence
 

@@ -1,7 +1,5 @@
 """What a notebook is shown: texts as the command line prints them."""
 
-from __future__ import annotations
-
 
 def preformatted(text: str) -> str:
     """A text as a piece of HTML that shows it as it stands."""

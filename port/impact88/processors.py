@@ -1,7 +1,5 @@
 """How many processors there are to use: what the number of threads goes by."""
 
-from __future__ import annotations
-
 import os
 
 

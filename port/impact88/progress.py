@@ -1,8 +1,6 @@
 """Progress of long work, on a terminal only: tqdm's bar if installed (extra ``progress``), else one
 line that is written over."""
 
-from __future__ import annotations
-
 import math
 import sys
 import time

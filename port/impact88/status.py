@@ -12,8 +12,6 @@ have numbers of their own it stands for E alone. `RETIRED` bits are not set any 
 ['NOT_FINITE']
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from enum import IntFlag
 from math import copysign, cos, hypot, inf, isfinite, isinf, nan, radians, sin

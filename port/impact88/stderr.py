@@ -1,7 +1,5 @@
 """What is said on standard error beside the result: one line at a time, who says it in front."""
 
-from __future__ import annotations
-
 import sys
 from contextlib import suppress
 

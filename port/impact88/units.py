@@ -10,8 +10,6 @@ in "lb ft2" only the mass gives an inertia, in "lb-ft-s2" only the force. A unit
 bring a dependency, an import of a quarter of a second, and one meaning of "lb".
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction

@@ -6,8 +6,6 @@ is a difference of numbers that have lost it already, and what is zero is writte
 masses (M = 4) the arms count as 0 and the spins stay out of the energies.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

@@ -5,8 +5,6 @@
 (lines 1000 to 1170) for one scene in whatever arithmetic its numbers have.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from operator import add

@@ -6,8 +6,6 @@ in the listing's elimination as long as no pivot falls to its absolute 1E-9. Spi
 against the larger of the spins and of that velocity over the longer lever arm.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ The three equations in the impulse share nothing with the closed form of `closed
 tests hold them to the six equations of lines 370 to 560.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 

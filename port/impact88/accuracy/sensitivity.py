@@ -6,8 +6,6 @@ the six equations alone does not bound it: in a sideswipe the approach is a smal
 large velocities, and no arithmetic can know it better than they are known.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

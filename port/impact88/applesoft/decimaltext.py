@@ -5,8 +5,6 @@ their value: 90315.8817 and 90315.88170 differ in their last bit. Writing looks 
 a value in flight, so PRINT can show more than the variable would hold.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 from .errorcodes import overflow

@@ -1,7 +1,5 @@
 """Applesoft's seventeen error messages, with the codes ONERR finds in location 222."""
 
-from __future__ import annotations
-
 CODES: dict[str, int] = {
     "NEXT WITHOUT FOR": 0,
     "SYNTAX": 16,

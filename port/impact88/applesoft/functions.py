@@ -5,8 +5,6 @@ argument is not rounded on the way in, except where the rule says so); so do res
 are stored reals in hexadecimal, as the ROM has them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache
 

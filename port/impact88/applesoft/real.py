@@ -21,8 +21,6 @@ unit when exponents are equal), `_multiply_with_defect` (double zero byte), and 
 missing carry (`compare`).
 """
 
-from __future__ import annotations
-
 from .errorcodes import division_by_zero, overflow
 
 Number = tuple[int, int, int]

@@ -1,7 +1,5 @@
 """The benchmark's figures: error against time, against condition, and its distribution."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

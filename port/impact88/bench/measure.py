@@ -1,7 +1,5 @@
 """One run of the benchmark: every method on every population, errors and times together."""
 
-from __future__ import annotations
-
 import os
 import platform
 import statistics

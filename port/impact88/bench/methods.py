@@ -1,7 +1,5 @@
 """The methods compared: each takes a population's scenes and gives their final velocities."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple

@@ -6,8 +6,6 @@ All on one thread, in processor time: these are comparisons of work, and other p
 the machine are no part of it. Every function gives rows: dicts of numbers and names.
 """
 
-from __future__ import annotations
-
 import csv
 import os
 import tempfile

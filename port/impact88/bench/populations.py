@@ -5,8 +5,6 @@ must be exact to be hard have more), so that the same scene can be typed into th
 `texts` gives the decimal texts.
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable
 from functools import cache

@@ -1,7 +1,5 @@
 """The benchmark's numbers as tables for people (and for the README)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any

@@ -8,8 +8,6 @@ change of velocity, infinity times 0, and 18 the quotient MB/IB. In inverse mass
 `impact88.solve` with two zeros.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

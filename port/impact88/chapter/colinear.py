@@ -6,8 +6,6 @@ along n and t, restitution e, friction μ = P_t/P_n) solved for the final veloci
 unchanged. There is no inverse at e = 0. μ is the *signed* P_t/P_n: no sign rule is applied here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -5,8 +5,6 @@ A 90° front-to-side collision whose truth is Table 3. The analyst knows the veh
 Every number comes from the modules of this package; what the chapter prints stands beside it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from math import hypot, sqrt

@@ -5,8 +5,6 @@ are explained by `diagnosis`: which mistake or convention, made here too, gives 
 could not be compared is counted, and why.
 """
 
-from __future__ import annotations
-
 import difflib
 import os
 import re

@@ -1,7 +1,5 @@
 """A comparison as a JUnit report, the form that systems for continuous integration read."""
 
-from __future__ import annotations
-
 from xml.etree import ElementTree
 
 from ..files import replacing

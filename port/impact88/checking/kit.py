@@ -5,8 +5,6 @@ and programs in several languages that read and answer them.
 any machine for the same seed; ``KIT.json`` has seed, version and hashes.
 """
 
-from __future__ import annotations
-
 import ast
 import csv
 import hashlib

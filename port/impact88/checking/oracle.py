@@ -7,8 +7,6 @@ in doubles and on the Apple (a bound; relative to `errorbound.scales`: the large
 spins to the largest spin or that velocity over the longer arm); what is unphysical about it.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal

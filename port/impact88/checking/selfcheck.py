@@ -5,8 +5,6 @@ out as captured, bit for bit. Together with the hashes and versions this is the 
 files when it qualifies an installation.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple

@@ -6,8 +6,6 @@ says which case, ``expect`` what is asked of a program. Seed and number give the
 machine, and no scene comes twice.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from itertools import count as count_from
 from itertools import islice

@@ -6,8 +6,6 @@ Blocks are looked at once: which columns are the same for all their scenes, whic
 numbers cannot be used. The answers choose the plan.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 

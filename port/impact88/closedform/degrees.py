@@ -12,8 +12,6 @@ where the table's entry is larger than the result; 1 elsewhere); quarter turns g
 and -1.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -3,8 +3,6 @@
 Plain sums and products, so that they serve arrays, numbers and the `Expression`s of a plan alike.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,8 +1,6 @@
 """What is run for a kind of block and the results wanted: numpy's plan (`plan.Plan`), one operation
 at a time, or the same operations as a program of `impact88.native`, one pass over the scenes."""
 
-from __future__ import annotations
-
 import ctypes
 from functools import lru_cache
 

@@ -29,8 +29,6 @@ quantity below is an `Expression`; its formula is made when first asked for, so 
 result needs is never computed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property

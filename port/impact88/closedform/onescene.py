@@ -8,8 +8,6 @@ ordinary (values that are no plain numbers or cannot be used, infinite bodies, a
 result that is not finite) is left to the arrays: `solve_one` then says None.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping, Sequence

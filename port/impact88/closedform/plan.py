@@ -6,8 +6,6 @@ was allotted beforehand and is used again as soon as its value is no longer need
 the same for all scenes are computed once per block, as arrays of length 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 

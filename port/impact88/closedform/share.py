@@ -6,8 +6,6 @@ texts it is worked out by Python alone, which a scene does not leave; `closedfor
 does the same over arrays.
 """
 
-from __future__ import annotations
-
 import math
 import operator
 import re

@@ -3,8 +3,6 @@
 Python's own numbers alone: a scene is read without numpy.
 """
 
-from __future__ import annotations
-
 from decimal import Context, Decimal, localcontext
 from functools import cache
 

@@ -4,8 +4,6 @@ Same physics as the 1988 listing (Equations 13 to 18, its sign rule of line 400,
 point masses) with exact pi, by the closed form of `closedform.impact`.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 import threading

@@ -4,8 +4,6 @@ The rules are comparisons joined by & | ~, so that one text serves numpy's array
 `Expression`s of a plan. A comparison with NaN is false: what cannot be decided stays clear.
 """
 
-from __future__ import annotations
-
 from math import inf
 from typing import Any
 

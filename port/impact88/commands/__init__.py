@@ -1,8 +1,6 @@
 """The commands, a module each: ``ARGUMENTS`` declares what it takes, ``main`` does it, and the
 module's docstring is the end of its help."""
 
-from __future__ import annotations
-
 COMMANDS = {
     "verify": "check an old printout digit for digit, explain what differs",
     "scene": "print a scene file to fill in, or a published run's",

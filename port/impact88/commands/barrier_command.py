@@ -23,8 +23,6 @@ examples:
 exit status: 0 solved; 2 bad input, or unknowns that are not determined
 """
 
-from __future__ import annotations
-
 import argparse
 
 from ..chapter.barrier import BARRIER, BARRIER_AFTER

@@ -13,8 +13,6 @@ examples:
 exit status: 0 the program ended; 1 an Applesoft error, or more than --max-statements; 2 bad input
 """
 
-from __future__ import annotations
-
 import argparse
 import signal
 import sys

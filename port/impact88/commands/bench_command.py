@@ -17,8 +17,6 @@ examples:
 exit status: 0 done; 2 bad input
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

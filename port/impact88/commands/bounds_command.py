@@ -29,8 +29,6 @@ examples:
   impact88 bounds ranges.toml --correlation UX,VX=0.8 --json
 """
 
-from __future__ import annotations
-
 import argparse
 
 from . import options

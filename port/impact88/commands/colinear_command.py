@@ -11,8 +11,6 @@ examples:
 exit status: 0 solved; 2 bad input, or E = 0 in the inverse problem
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 

@@ -19,8 +19,6 @@ exit status: 0 everything agrees; 1 something does not, or a row could not be re
 or was not compared); 2 bad input
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections.abc import Iterator

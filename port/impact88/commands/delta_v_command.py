@@ -16,8 +16,6 @@ examples:
 exit status: 0 done; 2 bad input
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterable, Mapping
 from math import hypot, isfinite, nan

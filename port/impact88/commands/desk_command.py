@@ -11,8 +11,6 @@ examples:
   impact88 desk --port 8088         at a port of your choice
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 

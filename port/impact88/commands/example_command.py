@@ -9,8 +9,6 @@ examples:
 exit status: 0 all printed numbers reproduced; 1 not all
 """
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import asdict
 

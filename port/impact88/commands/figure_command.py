@@ -27,8 +27,6 @@ examples:
   impact88 figure staged -o figure5.pdf
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable
 from typing import Any

@@ -1,8 +1,6 @@
 """Help that fits the terminal: paragraphs are filled, lines that begin with a blank stand as they
 are unless they are too long."""
 
-from __future__ import annotations
-
 import argparse
 import re
 import textwrap

@@ -22,8 +22,6 @@ examples:
 exit status: 0 every line was answered; 1 some lines could not be used; 2 no usable input at all
 """
 
-from __future__ import annotations
-
 import argparse
 import codecs
 import json

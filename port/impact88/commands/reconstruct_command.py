@@ -48,8 +48,6 @@ examples:
 exit status: 0 solved; 2 bad input, or unknowns that are not determined
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 

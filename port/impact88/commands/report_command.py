@@ -21,8 +21,6 @@ examples:
 exit status: 0 written; 2 bad input
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 

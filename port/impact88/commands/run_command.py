@@ -13,8 +13,6 @@ examples:
 exit status: 0 the program ended, ZERO DETERMINANT included; 1 an Applesoft error; 2 bad input
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Callable, Iterator

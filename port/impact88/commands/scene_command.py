@@ -16,8 +16,6 @@ examples:
   impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
 
-from __future__ import annotations
-
 import argparse
 
 from ..scene import SIGNS, Scene, sample, template

@@ -12,8 +12,6 @@ examples:
 exit status: 0 done; 2 no such schema
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 

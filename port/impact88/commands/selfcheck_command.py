@@ -8,8 +8,6 @@ examples:
 exit status: 0 everything came out as captured; 1 something did not
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 

@@ -31,8 +31,6 @@ examples:
 exit status: 0 all rows solved; 1 some could not be, or ended with an Applesoft error; 2 bad input
 """
 
-from __future__ import annotations
-
 import argparse
 
 from ..names import RESULTS

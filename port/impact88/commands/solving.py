@@ -1,7 +1,5 @@
 """The work of impact88 solve. `solve_command` has its help and options, which need no numpy."""
 
-from __future__ import annotations
-
 import argparse
 import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -25,8 +25,6 @@ examples:
 exit status: 0 done; 1 a cell of Table 2 differs and nothing explains it
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import asdict

@@ -24,8 +24,6 @@ examples:
 exit status: 0 identical; 1 any other verdict; 2 unreadable; of several files the highest
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 

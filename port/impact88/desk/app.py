@@ -5,8 +5,6 @@ Unusable input is status 400 with ``{"problem": ...}``, the sentence a command w
 question replaced by a newer one is 409.
 """
 
-from __future__ import annotations
-
 import json
 import threading
 from base64 import b64decode

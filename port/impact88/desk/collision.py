@@ -7,8 +7,6 @@ into the program.
 What computes is imported on first use: the page is shown before numpy is there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import groupby
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """A form's texts: in base units, and filled in from a file."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple

@@ -7,8 +7,6 @@ browser's own word on where a request comes from (a foreign page fails even with
 header that would let one read an answer. Whoever is refused gets no word of the desk's.
 """
 
-from __future__ import annotations
-
 import hmac
 from typing import Protocol
 

@@ -5,8 +5,6 @@ newcomer closes the connection that has waited longest instead. A browser whose 
 closed opens another.
 """
 
-from __future__ import annotations
-
 import time
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What the page's template is given: the project's one table of names, grouped for a form."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import Any

@@ -3,8 +3,6 @@
 A paper is a name and the bytes of its file, or of its text as edited on the page.
 """
 
-from __future__ import annotations
-
 from base64 import b64decode
 from collections.abc import Mapping, Sequence
 from typing import Any

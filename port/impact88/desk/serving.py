@@ -1,7 +1,5 @@
 """The socket, the address with its token, and how the desk starts and ends."""
 
-from __future__ import annotations
-
 import secrets
 import socket
 import sys

@@ -4,8 +4,6 @@ A process can be ended from outside, a thread cannot. Each kind of work has one,
 kept between questions and replaced after it was ended.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import signal

@@ -8,8 +8,6 @@ machine.take_output()          # '?\\x001\\n.333333333\\n'
 machine.reals()                # {'A': '8100000000'}
 """
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable
 from math import prod

@@ -10,8 +10,6 @@ string. Where the ROM takes the one for the other, so does this: most functions 
 the ROM sees that the argument was a string; CHR$, PEEK, FRE and POS never look.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from ..applesoft import decimaltext, functions

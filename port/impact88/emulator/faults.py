@@ -1,7 +1,5 @@
 """Errors as the ROM finds them: with the 6502's stack pointer, which ONERR leaves where it is."""
 
-from __future__ import annotations
-
 from ..applesoft.errorcodes import ApplesoftError
 
 

@@ -11,8 +11,6 @@ program goes on with the bytes behind a line's zero. The two agree unless a prog
 itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 

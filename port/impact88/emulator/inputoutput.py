@@ -7,8 +7,6 @@ ends at a comma or colon unless it began with a quote; a number is whatever read
 it only a comma, a colon or the end will do.
 """
 
-from __future__ import annotations
-
 from ..applesoft.console import CONTROL_C
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import Number, integer

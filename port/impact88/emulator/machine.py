@@ -6,8 +6,6 @@ state; each class on top of it adds a part: `text`, `strings`, `variables`, `exp
 `intrinsics`, `printing`, `inputs`, `flow`, `editing`; the rest is here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

@@ -11,8 +11,6 @@ program (a name, a constant, a line number) is remembered until a byte of the pr
 stands on page 2 is read anew each time.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

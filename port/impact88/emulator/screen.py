@@ -10,8 +10,6 @@ row number and with the window's left edge added. So a change of the window take
 and unusual windows write outside the rows.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 from itertools import pairwise

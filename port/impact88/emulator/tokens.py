@@ -6,8 +6,6 @@ begins with TO and SCORE holds OR. REM and DATA keep their text, and so does a s
 special: AT followed at once by N or O is not AT, so that ATN and A TO are found instead.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import lru_cache
 

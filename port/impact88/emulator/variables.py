@@ -14,8 +14,6 @@ elements, the first subscript fastest. Both are made when something is assigned 
 reading a simple variable makes none. Where names lie is remembered while none is moved.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from struct import Struct
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """A spelling evaluated with running error bounds: what rounding may do to the program it is."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

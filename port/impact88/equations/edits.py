@@ -2,8 +2,6 @@
 same throughout one equation, columns read or shown otherwise (``readings.txt``), and other models
 (``variants.txt``)."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections import Counter

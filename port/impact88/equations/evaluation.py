@@ -4,8 +4,6 @@ Arrays have the scenes last, edits before them: (K, n), or (1, n) of what edits 
 All edits run through the program together, statement by statement.
 """
 
-from __future__ import annotations
-
 import ast
 from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -8,8 +8,6 @@ explains nearly all that differs. Causes that ask for about as much and leave th
 share a rank: the page cannot tell them apart.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import field as default

@@ -5,8 +5,6 @@ in double precision, the nearest replayed. A number shown in another unit was ro
 it may have been computed with several; they are searched for the nearest rows.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache

@@ -6,8 +6,6 @@ So it is run several times, each time with every stored number moved within its 
 number counts as explained within the range of these runs, which must be narrow.
 """
 
-from __future__ import annotations
-
 import math
 import random
 from collections.abc import Iterable, Iterator, Mapping

@@ -3,8 +3,6 @@
 A cause predicts for each result a range of numbers, of one number where it says what is printed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Container, Iterable, Mapping
 from decimal import Decimal

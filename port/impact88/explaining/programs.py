@@ -5,8 +5,6 @@ models, in double precision. One is named only where the numbers it explains are
 chance would give.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import cache
 from math import log2

@@ -4,8 +4,6 @@ Marks, dashes and lightness differ as well as colours, so a grey copy reads the 
 hatched: some renderers of SVG paint patterns black.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple

@@ -5,8 +5,6 @@ P_n, P_t and the moment impulse M on A, their opposites on B. Figure 3 may be dr
 without one it takes the Appendix's.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

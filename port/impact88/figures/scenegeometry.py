@@ -18,8 +18,6 @@ point masses (both distances 0) are drawn moved apart along n until they touch. 
 the contact plane is drawn as crushed, dashed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise

@@ -3,8 +3,6 @@
 Where everything is comes from `figures.scenegeometry`; here it is put on paper.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """A drawing as SVG: self-contained text, no library."""
 
-from __future__ import annotations
-
 from html import escape
 
 from .drawing import FONTS, MM_PER_POINT, Drawing, Path, Text, dashes, text_runs

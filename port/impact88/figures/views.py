@@ -1,7 +1,5 @@
 """Drawings of several views: before, impact and after; the configurations of Figure 4."""
 
-from __future__ import annotations
-
 import cmath
 from collections.abc import Mapping
 from typing import Any

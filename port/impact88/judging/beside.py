@@ -4,8 +4,6 @@ Exact means the mechanics of Equations 13 to 18 in double precision by the close
 pi, for the recovered scene: what the program would print had its arithmetic cost nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 

@@ -6,8 +6,6 @@ scene whose page is nearest counts. Numbers are compared by name, in whatever or
 lines that only the copy prints, such as prompts and the replies to them, are compared whole.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ prints fits them), contradicted (cleanly read, and not what the program prints) 
 verdict follows from these alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum

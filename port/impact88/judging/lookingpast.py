@@ -5,8 +5,6 @@ right (`rereading`) are judged as if they were the printout's own; what is still
 reader's. Of 110 readings of genuine pages 6 are settled so.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ M = 4 that is a third of all inputs. Angles that enter only as a sum are named t
 digits that are too small to show, most often an inertia's last.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 

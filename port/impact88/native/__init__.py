@@ -4,8 +4,6 @@ It is optional. Where no compiler was there when the package was installed, or w
 environment variable IMPACT88_ACCELERATED is 0, `library` is None and numpy computes the same bits.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 from collections.abc import Iterator

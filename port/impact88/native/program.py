@@ -6,8 +6,6 @@ order of the formulas and with their roundings. A product that only one sum need
 with that sum, each still rounded by itself.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache

@@ -8,8 +8,6 @@ where the copy itself gets them: numbers assigned to the scene's variables, item
 gives them, and replies that INPUT asks for. Everything else stays as the copy has it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator, Mapping
 from hashlib import sha256

@@ -3,8 +3,6 @@
 Made by tests/linetable.py from the comments of listing.py; not to be edited by hand.
 """
 
-from __future__ import annotations
-
 FIRST_PYTHON_LINE = 53
 """Where `listing.impact` begins."""
 _PYTHON = """

@@ -8,8 +8,6 @@ wrong letter. One forward pass over the text (numpy rows over the states), one t
 texts are read in windows, so time grows as the text does.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass

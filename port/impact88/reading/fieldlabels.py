@@ -5,8 +5,6 @@ two must agree. A label that reads as another of the program's, or as a word tha
 contradicts. One that is damaged within the reach of the glyph table, or missing, leaves a doubt.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 from functools import lru_cache

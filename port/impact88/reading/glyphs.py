@@ -6,8 +6,6 @@ forms are one glyph each; a soft hyphen, a superscript or a stroke through a dig
 are, for they mean something else.
 """
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from bisect import bisect_right

@@ -7,8 +7,6 @@ that need least believing first. `cut_in_five` and `cut_as` do the same for the 
 only blanks part. All price a glyph by the same channel.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Iterator
 from decimal import Decimal, InvalidOperation

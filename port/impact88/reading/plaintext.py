@@ -6,8 +6,6 @@ are level stand on one line, and a gap between two becomes as many blanks as it 
 of the page's own letters; line and column then count in that text.
 """
 
-from __future__ import annotations
-
 import csv
 import html
 import re

@@ -8,8 +8,6 @@ One file may hold several printouts, with anything between them.
 Nothing here computes: what the numbers should be is for `recovery` and `judging` to say.
 """
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from collections import Counter

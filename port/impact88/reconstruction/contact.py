@@ -5,8 +5,6 @@ TA + 180, B faces TB). One point has four numbers there, so a move of it changes
 varied apart they tear it in two.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from typing import Any

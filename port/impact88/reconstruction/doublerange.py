@@ -1,7 +1,5 @@
 """What lies beyond the range of doubles: computed without remarks, and said in words at the end."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import wraps
 from typing import ParamSpec, TypeVar

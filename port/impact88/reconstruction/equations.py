@@ -11,8 +11,6 @@ Rank is decided by singular values; everything is scaled to velocities, impulses
 mass and spins by the radius of gyration, so that they are pure numbers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

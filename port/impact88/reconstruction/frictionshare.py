@@ -4,8 +4,6 @@ The critical friction follows from the whole scene. Where that is known, MU is; 
 solved for, MUP = share · MUC is one more equation, met by trying friction until it holds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any

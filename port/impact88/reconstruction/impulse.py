@@ -11,8 +11,6 @@ contact point lies at the angle θ_b + φ_b from its center of gravity, so B fac
 θ_a + φ_a + 180°, so A faces θ_a + 180° (Table 1: A's with θ = 0 drive towards -x).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

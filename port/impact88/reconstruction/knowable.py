@@ -1,7 +1,5 @@
 """What may be known of an impact."""
 
-from __future__ import annotations
-
 from ..names import FINAL_VELOCITIES, SCENE
 
 PLAIN = (*SCENE, "MUP", *FINAL_VELOCITIES)

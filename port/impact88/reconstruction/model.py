@@ -15,8 +15,6 @@ the six; errors of the final velocities grow as 1/e. `unknowns` solves any other
 unknowns, more slowly, and says why a set cannot be solved.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ For any solution, whatever its unknowns were: it is computed from the velocities
 and from the impulse, as far as they are known.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

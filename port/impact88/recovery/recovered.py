@@ -6,8 +6,6 @@ Inputs that nothing determines have stand-ins, and only what does not depend on 
 comparison.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple

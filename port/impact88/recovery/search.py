@@ -6,8 +6,6 @@ and the best of them are replayed in the Apple's own arithmetic. What a scene co
 inputs cost to believe plus what every printed result then costs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -6,8 +6,6 @@ moved, one digit lost or doubled, two digits of one number. Nothing here is a ve
 names what is found, and `judging` says when a reader's slips may be looked past.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from functools import cached_property

@@ -6,8 +6,6 @@ print as -132.999999. And a value may have been typed with zeros that do not pri
 change its last bit (72.80 is 7280 divided twice by ten, 72.8 is 728 divided once).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import ROUND_HALF_EVEN, Decimal

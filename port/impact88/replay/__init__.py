@@ -11,8 +11,6 @@ blocks       many scenes: sorted into kinds, cut into blocks, computed
 result       what the caller gets
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Many scenes: sorted into kinds, cut into blocks that stay in cache, and computed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any

@@ -4,8 +4,6 @@ The coefficients are those of `impact88.applesoft.functions`, and so is the orde
 is a branch there is a selection here; where a branch cannot fail both ways are computed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ..applesoft import functions as scalar

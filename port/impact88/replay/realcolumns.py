@@ -1,7 +1,5 @@
 """From the columns a caller gives to the stored reals the listing would have."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """What a replay gives back."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -16,8 +16,6 @@ The same text serves arrays of reals (`reals`) and values that only note what is
 (`compiled`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import groupby
 from typing import Any, NamedTuple

@@ -4,8 +4,6 @@ The scalar text of these rules is `impact88.applesoft.decimaltext`. Here all tex
 read together, a character place at a time, and all fields written together.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 

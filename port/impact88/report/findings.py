@@ -1,7 +1,5 @@
 """The report of a collision: forward from a scene, inverse from a reconstruction file."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple

@@ -4,8 +4,6 @@ A page is one HTML file without any other, laid out for Letter or A4 when a brow
 same input gives the same bytes: nothing on it comes from a clock.
 """
 
-from __future__ import annotations
-
 import platform
 from collections.abc import Sequence
 from hashlib import sha256

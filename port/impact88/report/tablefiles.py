@@ -1,7 +1,5 @@
 """A report's tables for other programs: as CSV rows, and as a workbook with a sheet for each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from ..errors import UserError

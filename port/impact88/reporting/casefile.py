@@ -4,8 +4,6 @@ All files first, those that could not be read included; then every printout from
 the method, provenance and room for a signature last. The frame is that of `report.frame`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any
 

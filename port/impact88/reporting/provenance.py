@@ -1,7 +1,5 @@
 """Provenance: which program, listing and captures stand behind a result, by version and hash."""
 
-from __future__ import annotations
-
 import hashlib
 import platform
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Scans and photographs of printouts, verified from their pictures."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Any

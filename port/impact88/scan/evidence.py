@@ -3,8 +3,6 @@
 `THRESHOLDS` is the one table of thresholds, with what they were estimated on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple

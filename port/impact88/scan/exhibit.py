@@ -1,8 +1,6 @@
 """What a picture's verdict rests on, as a section of the report: the page with every number's cells
 outlined, the cells in doubt beside the glyphs they were compared with, and all margins."""
 
-from __future__ import annotations
-
 import base64
 import io
 from collections.abc import Sequence

@@ -5,8 +5,6 @@ Fourier component at the pitch is strong; the phase of that component says where
 Smooth polynomials carry both over the page, which takes in turned, keystoned and bent paper.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

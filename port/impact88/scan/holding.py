@@ -5,8 +5,6 @@ margin is how far it is from its predicted mean beyond its distance from the nea
 relative to how far those two means are apart: -1 is the predicted glyph itself, +1 the other.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal

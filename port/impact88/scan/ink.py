@@ -3,8 +3,6 @@
 The geometry works on points (places of inked pixels), so it does not depend on the resolution.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

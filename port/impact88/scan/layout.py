@@ -1,8 +1,6 @@
 """Where the program's page lies on the grid: which line of print is which, and which cells hold
 numbers. Blanks and inked cells decide; no character is read."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

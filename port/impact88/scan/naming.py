@@ -1,8 +1,6 @@
 """First names for the characters of numbers: small prototypes of a few styles of type, then the
 page's own means. Labels need no reading: they are known text at known places."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache
 from importlib import resources

@@ -1,7 +1,5 @@
 """Pictures of pages: PNG, JPEG and TIFF files and PDFs, as grey arrays."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterator
 from dataclasses import dataclass

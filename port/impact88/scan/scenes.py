@@ -4,8 +4,6 @@ differ in a character or two, weighed by how well the program's page fits all ce
 This is the one module that knows how text is recovered.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product

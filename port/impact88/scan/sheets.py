@@ -1,7 +1,5 @@
 """A page's picture from ink to verdict."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

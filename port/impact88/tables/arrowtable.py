@@ -4,8 +4,6 @@ Needs pyarrow (extra ``arrow``). Numbers are taken as they are stored, texts and
 digits. What was text in a CSV becomes doubles where it is a scene's, and stays text elsewhere.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import IO, Any

@@ -9,8 +9,6 @@ what is quoted is quoted from a field's begin to its end (RFC 4180), every recor
 as the header, and none is empty. From the first block that is not, it is read line by line.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import re

@@ -2,8 +2,6 @@
 header. A number is taken by the digits that read back to the double stored; openpyxl writes 16
 digits of one, so that the last bit may differ."""
 
-from __future__ import annotations
-
 import io
 import math
 import os

@@ -4,8 +4,6 @@
 None of these libraries is imported here unless the frame handed over is its own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar, cast
 

@@ -7,8 +7,6 @@ NaN, which JSON does not have, is null, and infinity 1e999, which readers take f
 have the type that they came with: texts from a CSV.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping

@@ -3,8 +3,6 @@
 A number is a `Numeral`, the text it is written as; everything else is what Python's json makes.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

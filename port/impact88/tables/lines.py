@@ -1,7 +1,5 @@
 """The lines of a text file of any length, each of bounded length, in bounded memory."""
 
-from __future__ import annotations
-
 import codecs
 import io
 import sys

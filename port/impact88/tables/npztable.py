@@ -4,8 +4,6 @@ Read and written as a whole: memory grows with the file. Anybody may have made i
 says of its size is held against its array's type and shape before any memory is taken.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import sys

@@ -3,8 +3,6 @@
 pyarrow and numpy let go of the interpreter's lock while they work, so two processors are of use.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """A scene swept: a table whose rows are one scene with some values running through ranges."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import islice, product

@@ -5,8 +5,6 @@ them, so that what the file held is passed through as it stood. Memory does not 
 (.npz excepted, which is arrays as a whole).
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from contextlib import AbstractContextManager

@@ -7,8 +7,6 @@ program is solved again with them put right. A step that gains doubles the reach
 cuts it to a quarter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Protocol
 

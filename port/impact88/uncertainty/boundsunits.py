@@ -4,8 +4,6 @@ A result is found in base units; what is shown is a multiple of it, so everythin
 multiplied: nominal values, limits, bounds, spreads, and the scenes that attain the bounds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import astuple, replace
 from typing import Any

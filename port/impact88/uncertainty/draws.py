@@ -1,7 +1,5 @@
 """What random draws tell: the `Spread` of a result, and which input makes it, `Drive`."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

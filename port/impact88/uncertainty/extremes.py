@@ -11,8 +11,6 @@ What it returns is attained (or, at a surface that belongs to the other piece, a
 proof that no value lies farther.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product

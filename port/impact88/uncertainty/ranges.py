@@ -11,8 +11,6 @@ nominal values: how well would the initial velocities have been found again? MUP
 sign line 400 gives it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

@@ -11,8 +11,6 @@ that are quadratic functions, set back a little; its end is accepted by the dens
 (Metropolis, Hastings). Bounds climb from the draws and from points spread over the box (`ascent`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace

@@ -8,8 +8,6 @@ A key is pressed when the ROM waits for one: when it reads the keyboard several 
 cycles each. Nothing of Applesoft is known here, and nothing of it is changed.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from typing import Any, NamedTuple
 

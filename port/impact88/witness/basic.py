@@ -4,8 +4,6 @@ The pointers and layouts are those of the Applesoft reference manual, appendix "
 memory". They are only read.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from typing import Any

@@ -6,8 +6,6 @@ bytes, and the array. A program is held against its capture and the emulator, a 
 its capture and the arithmetic here.
 """
 
-from __future__ import annotations
-
 import difflib
 from collections import Counter
 from collections.abc import Mapping

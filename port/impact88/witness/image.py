@@ -1,7 +1,5 @@
 """A ROM image: the file the user brings, and whether it is the one the captures were taken from."""
 
-from __future__ import annotations
-
 import hashlib
 from typing import NamedTuple
 

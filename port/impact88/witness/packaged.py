@@ -1,7 +1,5 @@
 """Cases for the ROM: the packaged captures, to be done again, and a folder of programs."""
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 from random import Random

@@ -4,8 +4,6 @@ They are those of John Crossley's "Applesoft Internal Entry Points" (Apple Orcha
 Operands are put where a program would put them, the routine is called, and the accumulator is read.
 """
 
-from __future__ import annotations
-
 from .apple import Apple
 
 FAC, FAC_SIGN, FAC_EXTENSION = 0x9D, 0xA2, 0xAC

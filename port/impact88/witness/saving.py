@@ -1,7 +1,5 @@
 """Writing what the ROM did in the captures' own form: a folder laid out as golden/ is."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import os

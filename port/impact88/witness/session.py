@@ -5,8 +5,6 @@ lines are retyped, RUN, and the two replies. The small letters of its prompts, w
 does not have, are POKEd into its text at the prompt, as was done in the days.
 """
 
-from __future__ import annotations
-
 from functools import cached_property
 from typing import Any, NamedTuple
 
