@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from fiftydigits import exact, relative_error
-from impact88.bench import figure, measure, paths, tables
-from impact88.bench.methods import COMPONENTS, METHODS, prepare, reference, relative_errors
+from impact88.bench import figure, measure, tables
+from impact88.bench.measure import COMPONENTS
+from impact88.bench.methods import METHODS, reference, relative_errors
 from impact88.bench.populations import BENCHMARK, POPULATIONS, scenes, texts
 from impact88.cli import main
 from impact88.figures import canvas
@@ -23,16 +24,17 @@ def rows():
 
 
 def test_every_method_on_every_population(rows):
-    got = [(row.population, row.method) for row in rows]
+    got = [(row["population"], row["method"]) for row in rows]
     methods = [*(method.key for method in METHODS), "mpmath"]
     assert got == [(name, method) for name in ("casework", "heavy") for method in methods]
     for row in rows:
-        assert row.seconds > 0
-        assert 0 <= row.median <= row.per_mille <= row.largest
+        assert row["seconds"] > 0
+        if row["method"] != "mpmath":
+            assert 0 <= row["median"] <= row["per_mille"] <= row["largest"]
 
 
 def test_errors_are_those_of_the_arithmetic(rows):
-    by = {(row.population, row.method): row for row in rows}
+    by = {(row["population"], row["method"]): row for row in rows}
     for method, low, high in (
         ("applesoft", 1e-10, 1e-6),
         ("float64", 1e-10, 1e-6),  # 3.14159265
@@ -41,20 +43,20 @@ def test_errors_are_those_of_the_arithmetic(rows):
         ("lapack-changes", 1e-16, 1e-12),
         ("closed-form", 1e-17, 1e-12),
     ):
-        assert low < by["casework", method].largest < high, method
+        assert low < by["casework", method]["largest"] < high, method
     replayed, port = by["casework", "replay"], by["casework", "applesoft"]
-    assert (replayed.median, replayed.largest) == (port.median, port.largest)  # bit for bit
-    assert by["heavy", "closed-form"].over_sensitivity < 64
-    assert 1000 * by["heavy", "closed-form"].largest < by["heavy", "elimination"].largest
+    assert all(replayed[key] == port[key] for key in ("median", "largest"))  # bit for bit
+    assert by["heavy", "closed-form"]["over_sensitivity"] < 64
+    assert 1000 * by["heavy", "closed-form"]["largest"] < by["heavy", "elimination"]["largest"]
 
 
 def test_errors_by_two_doubles_are_the_reference_s():
-    prepared = prepare(scenes("extreme", 10, 2))
-    hi, lo = reference(prepared)
+    columns = scenes("extreme", 10, 2)
+    hi, lo = reference(columns)
     found = hi * (1 + 1e-12) + 1e-9
     mine = relative_errors(found, hi, lo)
     for i in range(10):
-        true = exact({name: float(v[i]) for name, v in prepared.columns.items()})
+        true = exact({name: float(v[i]) for name, v in columns.items()})
         assert mine[i] == pytest.approx(relative_error(found[i].tolist(), true), rel=1e-9)
     found[3, 2] = np.nan
     assert np.isinf(relative_errors(found, hi, lo)[3])
@@ -108,14 +110,14 @@ def test_command(tmp_path, capsys):
 
 
 def test_paths_and_sizes():
-    kinds = paths.kinds(2000, 1)
-    assert [path["name"] for path in kinds] == list(paths.PATHS)
+    kinds = measure.paths(2000, 1)
+    assert [path["name"] for path in kinds] == list(measure.PATHS)
     general = kinds[0]["passes"]
     assert all(path["passes"] < general for path in kinds[1:] if "pivot" not in path["name"])
-    chosen = paths.selections(2000, 1)
+    chosen = measure.selections(2000, 1)
     assert chosen[0]["passes"] == max(path["passes"] for path in chosen)
     assert "general" in tables.listing(kinds)
-    grown = paths.sizes([1, 50_000], 1)
+    grown = measure.sizes([1, 50_000], 1)
     assert grown[1]["extra_mib"] < 16  # working arrays, not the scenes
     assert "50,000" in tables.listing(grown)
 

@@ -17,8 +17,7 @@ import pytest
 import impact88
 import kernels
 from impact88 import native
-from impact88.bench.measure import enlarged
-from impact88.bench.populations import POPULATIONS, scenes, texts
+from impact88.bench.populations import POPULATIONS, enlarged, scenes, texts
 from impact88.closedform.fused import KERNELS, program_for
 from impact88.closedform.solve import FEW, TILE, quantities
 from impact88.names import RESULTS

@@ -18,7 +18,7 @@ import numpy as np
 
 from impact88.accuracy.elimination import ORDER
 from impact88.accuracy.sensitivity import sensitivity
-from impact88.bench.methods import prepare, reference, relative_errors
+from impact88.bench.methods import reference, relative_errors
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.solve import quantities, solve
 from impact88.names import SCENE
@@ -29,7 +29,7 @@ POSITIVE = ("MA", "MB", "IA", "IB", "DA", "DB")
 
 def fitness(columns):
     """The largest error of each scene, in roundings of all its numbers; 0 where there is none."""
-    hi, lo = reference(prepare(columns))
+    hi, lo = reference(columns)
     found = solve(columns, ORDER)
     error = relative_errors(np.stack([found[name] for name in ORDER], axis=1), hi, lo)
     fit = error / (sensitivity(columns) * 2.0**-53)

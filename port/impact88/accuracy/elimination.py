@@ -186,25 +186,3 @@ def eliminate(A: list[list[Any]], smallest: Any) -> list[Any] | None:
             for CO in range(J, M + 1):
                 A[RO][CO] = A[RO][CO] - A[J][CO] * AR
     return [row[M] for row in A]
-
-
-def equilibrated_condition(A: Array, rounds: int = 20) -> Array:
-    """The condition numbers (largest row sum) of the matrices (n, 6, 6) after scaling rows and
-    columns so that the largest entry of each is near 1; infinite where singular."""
-    A = np.array(A, dtype=np.float64)
-    for _ in range(rounds):
-        for axis in (1, 2):
-            A /= np.sqrt(np.abs(A).max(axis=axis, keepdims=True))
-    try:
-        inverse = np.linalg.inv(A)
-    except np.linalg.LinAlgError:
-        return np.array([_condition(a) for a in A])
-    result: Array = np.abs(A).sum(2).max(1) * np.abs(inverse).sum(2).max(1)
-    return result
-
-
-def _condition(a: Array) -> float:
-    try:
-        return float(np.abs(a).sum(1).max() * np.abs(np.linalg.inv(a)).sum(1).max())
-    except np.linalg.LinAlgError:
-        return float("inf")

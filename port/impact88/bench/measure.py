@@ -1,85 +1,89 @@
-"""One run of the benchmark: every method on every population, errors and times together."""
+"""One run of the benchmark: every method on every population, errors and times together; what
+skipping saves; growth with the number of scenes; and files beside the computation alone.
 
+All by processor time, which other programs do not lengthen; of several threads by the clock's. Rows
+are dicts of numbers and names.
+"""
+
+import csv
 import os
 import platform
 import statistics
+import tempfile
 import time
-from collections.abc import Callable, Sequence
-from contextlib import nullcontext
-from dataclasses import dataclass, field
+import tracemalloc
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import native
-from ..accuracy.elimination import equilibrated_condition, fill
 from ..accuracy.sensitivity import movements, sensitivity
-from ..closedform.solve import solve
-from ..names import SCENE
+from ..closedform.columns import Buffers, examine, sources
+from ..closedform.fused import plan_for
+from ..closedform.solve import TILE, solve
+from ..names import FINAL_VELOCITIES, RESULTS, SCENE
+from ..native.formulas import ExpressionTable
+from ..native.program import Program, addresses
 from ..processors import processors
 from ..progress import Meter
+from ..tables import arrow
 from ..version import __version__
-from .methods import (
-    APPLESOFT,
-    COMPONENTS,
-    DOUBLE,
-    METHODS,
-    Method,
-    Prepared,
-    prepare,
-    reference,
-    relative_errors,
-)
-from .populations import POPULATIONS, Columns, scenes
+from .methods import APPLESOFT, DOUBLE, METHODS, Method, reference, relative_errors
+from .populations import BENCHMARK, POPULATIONS, Columns, enlarged, scenes
 
-Floats = NDArray[np.float64]
-
+Row = dict[str, Any]
+ORDER = tuple(FINAL_VELOCITIES)
+GENERAL = "general"
 ROOF_SCENES = 1_000_000
-"""Scenes whose columns are far too many for any cache."""
+"""Scenes whose columns are too many for any cache."""
+AT_ONCE = 500
+"""Scenes in calls that are timed together, where a call has fewer."""
+COMPONENTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "PN", "PT", "PM", "LOSS", "DVA", "MUC")
+"""Results whose errors are listed one by one."""
+_SHAPE = {"GA": 30.0, "PA": 10.0, "PB": 20.0, "TA": 5.0, "TB": 95.0, "DA": 4.0, "DB": 5.0}
+_BODIES = {"MA": 100.0, "MB": 120.0, "IA": 2000.0, "IB": 3000.0}
+PATHS: dict[str, dict[str, float]] = {
+    GENERAL: {},
+    "no spin (WA = WB = 0)": {"WA": 0, "WB": 0},
+    "no friction (MU = 0)": {"MU": 0},
+    "surface along y (GA = 0)": {"GA": 0},
+    "EM = 1 (no moment)": {"EM": 1},
+    "EM = 0": {"EM": 0},
+    "one arm 0 (DB = 0)": {"DB": 0},
+    "both arms 0 (DA = DB = 0)": {"DA": 0, "DB": 0},
+    "point mass (M = 4)": {"M": 4},
+    "barrier (B infinite)": {"MB": np.inf, "IB": np.inf, "VX": 0, "VY": 0, "WB": 0},
+    "pivot (MU = -10)": {"MU": -10},
+    "same vehicles (masses, inertias)": _BODIES,
+    "same place (all angles and arms)": _SHAPE,
+    "same scene, velocities vary": {**_SHAPE, **_BODIES, "E": 0.1, "MU": 0.5, "EM": -0.5},
+}
+"""Kinds of blocks: the columns that are the same for all scenes, as scalars."""
+SELECTIONS: dict[str, tuple[str, ...]] = {
+    "all": tuple(RESULTS),
+    "six final velocities": ORDER,
+    "four velocities (no spins)": ORDER[:4],
+    "velocities of A": ("VAX", "VAY", "WAF"),
+    "impulse PN PT": ("PN", "PT"),
+    "LOSS": ("LOSS",),
+    "DVA DVB": ("DVA", "DVB"),
+    "KI": ("KI",),
+    "contact velocities before": ("XA", "YA", "XB", "YB"),
+    "COND": ("COND",),
+    "STATUS": ("STATUS",),
+}
 
 
-@dataclass
-class Measured:
-    """One method on one population.
-
-    Relative errors of the final velocities over the scenes that have an answer; ``unanswered``
-    counts those without (ZERO DETERMINANT, an Applesoft error). ``over_condition`` and
-    ``over_sensitivity``: the largest error divided by the method's unit roundoff and the scene's
-    condition number (equilibrated 6x6 matrix) or data sensitivity. ``seconds`` per scene.
-    ``errors`` and ``conditions``: of each scene with an answer.
-    """
-
-    population: str
-    method: str
-    name: str
-    scenes: int
-    seconds: float
-    timed: int
-    unanswered: int = 0
-    median: float = 0.0
-    per_mille: float = 0.0
-    largest: float = 0.0
-    over_condition: float = 0.0
-    over_sensitivity: float = 0.0
-    errors: Floats = field(default_factory=lambda: np.empty(0), repr=False)
-    conditions: Floats = field(default_factory=lambda: np.empty(0), repr=False)
-
-    @property
-    def per_second(self) -> float:
-        return 1 / self.seconds
-
-
-def machine() -> dict[str, Any]:
+def machine() -> Row:
     """What the run ran on; ``load``: how many processes wanted a core in the minute before;
-    ``memory_roof``: seconds a scene for reading its columns and writing six results."""
-
+    ``memory_roof``: see `memory_roof`."""
     name = platform.processor() or platform.machine()
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as file:
-            names = [line.partition(":")[2].strip() for line in file if "model name" in line]
-        name = names[0] if names else name
-    except OSError:
+            name = next(line.partition(":")[2].strip() for line in file if "model name" in line)
+    except (OSError, StopIteration):
         pass
     return {
         "processor": name,
@@ -93,18 +97,31 @@ def machine() -> dict[str, Any]:
     }
 
 
-def memory_roof(repeats: int = 3) -> float:
+def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[], object]:
+    """Work that reads ``columns`` and writes ``results`` strip by strip as the compiled machine
+    does, their sum in place of the mechanics; by numpy a column at a time."""
+    count = len(next(iter(results.values())))
+    if native.library is None:
+
+        def move() -> None:
+            for column in columns.values():
+                column.max()
+            for result in results.values():
+                result.fill(1.0)
+
+        return move
+    table = ExpressionTable()
+    first, *others = (table.column(name, varies=True) for name in columns)
+    program = Program(dict.fromkeys(results, sum(others, first)), ["COPY"] * len(results))
+    read = [columns[name] for name in program.columns]
+    return lambda: program.run(addresses(read), addresses(results.values()), count)
+
+
+def memory_roof() -> float:
     """Seconds a scene that memory alone takes: 20 columns read, six written."""
-    columns = np.ones((len(SCENE) - 1, ROOF_SCENES))
-    results = np.ones((6, ROOF_SCENES))
-
-    def move() -> None:
-        for column in columns:
-            column.max()
-        for result in results:
-            result.fill(1.0)
-
-    return min(medians([move], 1)[0] for _ in range(repeats)) / ROOF_SCENES
+    columns = {name: np.ones(ROOF_SCENES) for name in SCENE if name != "M"}
+    move = mover(columns, {name: np.zeros(ROOF_SCENES) for name in ORDER})
+    return medians([move], 7)[0] / ROOF_SCENES
 
 
 def medians(works: Sequence[Callable[[], object]], repeats: int) -> list[float]:
@@ -119,26 +136,9 @@ def medians(works: Sequence[Callable[[], object]], repeats: int) -> list[float]:
     return [statistics.median(taken) for taken in times]
 
 
-def enlarged(columns: Columns, count: int) -> Columns:
-    """The scenes again and again until there are ``count``."""
-    return {name: np.resize(values, count) for name, values in columns.items()}
-
-
-def _work(method: Method, columns: Columns, count: int) -> Callable[[], float]:
-    """What times a method on ``count`` scenes: processor time, which other programs do not
-    lengthen; of several threads the clock's."""
-    many = enlarged(columns, count)
-    typed = method.roundoff == APPLESOFT or method.key == "float64"
-    ready = method.ready(prepare(many) if typed else Prepared(count, many, {}))
-    now = time.process_time if method.threads == 1 else time.perf_counter
-
-    def work() -> float:
-        with nullcontext() if method.compiled else native.switched_off():
-            start = now()
-            method.solve(ready)
-            return now() - start
-
-    return work
+def steps(populations: Sequence[str], repeats: int) -> int:
+    """How often `measure` will tell its meter."""
+    return len(populations) * (1 + len(METHODS) * (1 + repeats))
 
 
 def measure(
@@ -148,66 +148,62 @@ def measure(
     repeats: int,
     meter: Meter,
     effort: float = 1.0,
-) -> list[Measured]:
-    """Measure all methods on ``populations``, ``count`` scenes of each. Times are medians of
-    ``repeats`` rounds; a round times every method once, so that all see the same machine.
-    ``effort``: the share of `Method.timed` scenes to time."""
-    return [
-        row
-        for name in populations
-        for row in _measure_population(name, count, seed, repeats, meter, effort)
-    ]
+) -> list[Row]:
+    """All methods on ``populations``, ``count`` scenes of each. Times are medians of ``repeats``
+    rounds, each method once a round; ``effort``: the share of `Method.timed` scenes to time.
 
-
-def steps(populations: Sequence[str], repeats: int) -> int:
-    """How often `measure` will tell its meter."""
-    return len(populations) * (1 + len(METHODS) * (1 + repeats))
-
-
-def _measure_population(
-    name: str, count: int, seed: int, repeats: int, meter: Meter, effort: float
-) -> list[Measured]:
-    columns = scenes(name, count, seed)
-    prepared = prepare(columns)
-    start = time.process_time()
-    hi, lo = reference(prepared)
-    reference_seconds = (time.process_time() - start) / count
-    meter.update(1)
-    condition, sensitive = equilibrated_condition(fill(columns)[0]), sensitivity(columns)
-    rows = {}
-    works = {}
-    for method in METHODS:
-        if method.roundoff == APPLESOFT and not POPULATIONS[name].listing:
-            continue
-        error = relative_errors(method.velocities(prepared), hi, lo)
-        fine = np.isfinite(error)
-        told = error[fine]
-        timed = max(10, round(effort * method.timed))
-        works[method.key] = _work(method, columns, timed)
-        rows[method.key] = Measured(
-            *(name, method.key, method.name, count, 0.0, timed),
-            unanswered=int(count - fine.sum()),
-            median=float(np.median(told)),
-            per_mille=float(np.quantile(told, 0.999)),
-            largest=float(told.max()),
-            over_condition=float((told / (condition[fine] * method.roundoff)).max()),
-            over_sensitivity=float((told / (sensitive[fine] * method.roundoff)).max()),
-            errors=told,
-            conditions=condition[fine],
-        )
+    A row has the relative errors of the final velocities over the scenes with an answer;
+    ``unanswered`` counts those without (ZERO DETERMINANT, an Applesoft error). ``over_condition``
+    and ``over_sensitivity``: the largest error divided by the method's unit roundoff and the
+    scene's COND or data sensitivity. ``seconds`` per scene. ``errors`` and ``conditions``: arrays,
+    of each scene with an answer.
+    """
+    rows: list[Row] = []
+    for name in populations:
+        columns = scenes(name, count, seed)
+        start = time.process_time()
+        hi, lo = reference(columns)
+        reference_seconds = (time.process_time() - start) / count
         meter.update(1)
-    times: dict[str, list[float]] = {key: [] for key in works}
-    for _ in range(repeats):
-        for key, work in works.items():
-            times[key].append(work())
+        condition, sensitive = solve(columns, ["COND"])["COND"], sensitivity(columns)
+        works: list[tuple[Method, Any, list[float]]] = []
+        mine: list[Row] = []
+        for method in METHODS:
+            if method.roundoff == APPLESOFT and not POPULATIONS[name].listing:
+                continue
+            error = relative_errors(method.velocities(columns), hi, lo)
+            fine = np.isfinite(error)
+            told = error[fine]
+            timed = max(10, round(effort * method.timed))
+            works.append((method, method.prepare(enlarged(columns, timed)), []))
+            mine.append(
+                {
+                    **{"population": name, "method": method.key, "name": method.name},
+                    **{"scenes": count, "timed": timed, "unanswered": int(count - fine.sum())},
+                    "median": float(np.median(told)),
+                    "per_mille": float(np.quantile(told, 0.999)),
+                    "largest": float(told.max()),
+                    "over_condition": float((told / condition[fine]).max() / method.roundoff),
+                    "over_sensitivity": float((told / sensitive[fine]).max() / method.roundoff),
+                    **{"errors": told, "conditions": condition[fine]},
+                }
+            )
             meter.update(1)
-    for key, row in rows.items():
-        row.seconds = statistics.median(times[key]) / row.timed
-    slow = Measured(name, "mpmath", "mpmath, 50 digits", count, reference_seconds, count)
-    return [*rows.values(), slow]
+        for _ in range(repeats):
+            for method, prepared, times in works:
+                now = time.process_time if method.threads == 1 else time.perf_counter
+                start = now()
+                method.run(prepared)
+                times.append(now() - start)
+                meter.update(1)
+        for row, (_, _, times) in zip(mine, works, strict=True):
+            row["seconds"] = statistics.median(times) / row["timed"]
+        slow = {"population": name, "method": "mpmath", "name": "mpmath, 50 digits"}
+        rows += [*mine, {**slow, "scenes": count, "timed": count, "seconds": reference_seconds}]
+    return rows
 
 
-def components(populations: Sequence[str], count: int, seed: int) -> list[dict[str, Any]]:
+def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
     """The closed form's errors result by result, each relative to itself, on ``count`` scenes of
     each population and on the same with EM = 0: the median, the largest, and the largest relative
     to what rounding every number of the scene to a double does (``over_rounding``)."""
@@ -215,7 +211,7 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[dict[s
     for name in populations:
         made = scenes(name, count, seed)
         for label, columns in ((name, made), (f"{name}, EM = 0", {**made, "EM": np.zeros(count)})):
-            hi, lo = reference(prepare(columns), COMPONENTS)
+            hi, lo = reference(columns, COMPONENTS)
             found = solve(columns, COMPONENTS)
             moved = movements(columns, COMPONENTS)
             for place, result in enumerate(COMPONENTS):
@@ -224,22 +220,128 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[dict[s
                 told = np.isfinite(error) & (true != 0)
                 relative = error[told] / np.abs(true[told])
                 over = error[told] / (DOUBLE * (moved[result] + np.abs(true))[told])
-                summary = {
-                    "median": np.median(relative) if told.any() else 0.0,
-                    "largest": relative.max(initial=0.0),
-                    "over_rounding": over.max(initial=0.0),
-                }
-                row = {key: float(value) for key, value in summary.items()}
-                rows.append({"population": label, "result": result, **row})
+                sizes = [relative.max(initial=0.0), over.max(initial=0.0)]
+                rows.append(
+                    {
+                        **{"population": label, "result": result},
+                        "median": float(np.median(relative)) if told.any() else 0.0,
+                        **dict(zip(("largest", "over_rounding"), map(float, sizes), strict=True)),
+                    }
+                )
     return rows
 
 
-def as_json(rows: Sequence[Measured]) -> list[dict[str, Any]]:
-    arrays = ("errors", "conditions")
+def moving(count: int) -> Columns:
+    """Casework in which every vehicle spins: nothing to skip."""
+    rng = np.random.default_rng(1)
+    spins = {"WA": rng.uniform(0.5, 2, 4096), "WB": rng.uniform(-2, -0.5, 4096)}
+    return enlarged({**scenes("casework", 4096, 1), **spins}, count)
+
+
+def passes(columns: Any, outputs: Sequence[str]) -> int:
+    """The passes numpy's plan for these columns makes."""
+    buffers = Buffers(TILE)
+    given, (count, *_) = sources(columns)
+    block = {name: buffers.block(name, s, 0, min(TILE, count)) for name, s in given.items()}
+    return plan_for(examine(block).kinds, tuple(outputs)).passes
+
+
+def paths(count: int, repeats: int) -> list[Row]:
+    """The six velocities of all kinds of blocks of ``count`` scenes: passes, nanoseconds a scene,
+    and what of the general path's time is saved."""
+    general = moving(count)
+    return _compared(
+        {name: ({**general, **same}, ORDER) for name, same in PATHS.items()}, count, repeats
+    )
+
+
+def selections(count: int, repeats: int) -> list[Row]:
+    """The same of selections of results; what is saved is of the time for all of them."""
+    general = moving(count)
+    return _compared(
+        {name: (general, outputs) for name, outputs in SELECTIONS.items()}, count, repeats
+    )
+
+
+def _compared(
+    works: Mapping[str, tuple[Any, Sequence[str]]], count: int, repeats: int
+) -> list[Row]:
+    times = medians([partial(solve, *work, threads=1) for work in works.values()], repeats)
     return [
         {
-            **{key: value for key, value in vars(row).items() if key not in arrays},
-            "scenes_per_second": row.per_second,
+            **{"name": name, "passes": passes(*work), "nanoseconds": 1e9 * taken / count},
+            "saved": 1 - taken / times[0],
         }
+        for (name, work), taken in zip(works.items(), times, strict=True)
+    ]
+
+
+def _repeated(work: Callable[[], object], calls: int) -> None:
+    for _ in range(calls):
+        work()
+
+
+def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
+    """The six velocities for growing numbers of scenes: nanoseconds a scene, the same into arrays
+    given again and again (``out``), what memory alone takes, and MiB allocated beside the
+    results."""
+    rows = []
+    for count in counts:
+        columns = moving(count)
+        room = {name: np.zeros(count) for name in ORDER}
+        calls = max(1, AT_ONCE // count)
+        works = (
+            partial(solve, columns, ORDER, threads=1),
+            partial(solve, columns, out=room, threads=1),
+            mover({name: values for name, values in columns.items() if name != "M"}, room),
+        )
+        times = medians([partial(_repeated, work, calls) for work in works], repeats)
+        row: Row = {"scenes": count, "seconds": times[0] / calls}
+        for key, taken in zip(("nanoseconds", "nanoseconds_out", "memory"), times, strict=True):
+            row[key] = 1e9 * taken / calls / count
+        tracemalloc.start()
+        solve(columns, ORDER, threads=1)
+        row["extra_mib"] = (tracemalloc.get_traced_memory()[1] - 6 * 8 * count) / 2**20
+        tracemalloc.stop()
+        rows.append(row)
+    return rows
+
+
+def doors(count: int, solve_file: Callable[[str, str], object]) -> list[Row]:
+    """``count`` scenes with every result, in memory and by ``solve_file(from, to)``: seconds of
+    wall and of processor time, and how many times the computation alone."""
+    columns = scenes(BENCHMARK[0], count, 1988)
+    with tempfile.TemporaryDirectory() as folder:
+
+        def door(ending: str) -> Callable[[], object]:
+            return lambda: solve_file(f"{folder}/t.{ending}", f"{folder}/o.{ending}")
+
+        with open(f"{folder}/t.csv", "w", encoding="utf-8", newline="") as file:
+            lines = csv.writer(file, lineterminator="\n")
+            lines.writerow(SCENE)
+            lines.writerows(zip(*(columns[name].tolist() for name in SCENE), strict=True))
+        parser = "pyarrow" if arrow.available() else "csv of the standard library"
+        works: dict[str, Callable[[], object]] = {
+            "computation alone": lambda: solve(columns),
+            f"CSV to CSV ({parser})": door("csv"),
+        }
+        if arrow.available():
+            solve_file(f"{folder}/t.csv", f"{folder}/t.parquet")
+            works["Parquet to Parquet"] = door("parquet")
+        rows: list[Row] = []
+        for name, work in works.items():
+            wall, processor = time.perf_counter(), time.process_time()
+            work()
+            wall, processor = time.perf_counter() - wall, time.process_time() - processor
+            alone = rows[0]["processor"] if rows else processor
+            taken = {"seconds": wall, "processor": processor, "times": processor / alone}
+            rows.append({"name": name, **taken})
+    return rows
+
+
+def as_json(rows: Sequence[Row]) -> list[Row]:
+    return [
+        {key: value for key, value in row.items() if key not in ("errors", "conditions")}
+        | {"scenes_per_second": 1 / row["seconds"]}
         for row in rows
     ]

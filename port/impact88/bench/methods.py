@@ -1,15 +1,17 @@
 """The methods compared: each takes a population's scenes and gives their final velocities."""
 
-import math
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import native
 from ..accuracy.elimination import ORDER, changes, eliminate, fill, lapack
 from ..applesoft.operators import Real
 from ..closedform.solve import solve
+from ..figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
 from ..program.run import run
 from ..replay import replay
 from ..scene import Scene
@@ -21,36 +23,30 @@ DOUBLE = 2.0**-53
 APPLESOFT = 2.0**-32
 
 
-class Prepared(NamedTuple):
-    """Scenes in the form a method takes, made outside the timing."""
-
-    size: int
-    columns: Columns
-    texts: dict[str, list[str]]
-
-
-def prepare(columns: Columns) -> Prepared:
-    return Prepared(len(columns["MA"]), columns, texts(columns))
-
-
 class Method(NamedTuple):
-    """``ready`` turns scenes into what ``solve`` takes, untimed; ``solve`` gives an (n, 6) array or
-    six columns by name, NaN where there is no answer. ``timed``: how many scenes to time;
-    ``roundoff``: the unit roundoff of its numbers; ``threads``: how many it uses; ``compiled``:
-    whether by the compiled machine where it was built."""
+    """``solve``: from what ``prepare`` makes of the scenes, untimed, to an (n, 6) array or six
+    columns by name, NaN where there is no answer. ``mark`` (open with a blank) and ``colour``: in
+    figures; ``timed``: how many scenes to time; ``roundoff``: the unit roundoff of its numbers;
+    ``compiled``: whether by the compiled machine where it was built."""
 
     key: str
     name: str
-    roundoff: float
+    mark: str
+    colour: str
     timed: int
     solve: Callable[[Any], Floats | dict[str, Floats]]
-    ready: Callable[[Prepared], Any] = lambda prepared: prepared
+    prepare: Callable[[Columns], Any] = dict
+    roundoff: float = DOUBLE
     threads: int = 1
     compiled: bool = True
 
-    def velocities(self, prepared: Prepared) -> Floats:
+    def run(self, prepared: Any) -> Floats | dict[str, Floats]:
+        with nullcontext() if self.compiled else native.switched_off():
+            return self.solve(prepared)
+
+    def velocities(self, columns: Columns) -> Floats:
         """The final velocities of scenes, (n, 6)."""
-        found = self.solve(self.ready(prepared))
+        found = self.run(self.prepare(columns))
         return found if isinstance(found, np.ndarray) else np.stack([*found.values()], axis=1)
 
 
@@ -68,18 +64,10 @@ def _port(arithmetic: str, read: Callable[[Any], float]) -> Callable[[list[Scene
     return solve_each
 
 
-def _scene_list(prepared: Prepared) -> list[Scene]:
-    names, columns = list(prepared.texts), list(prepared.texts.values())
-    rows = zip(*columns, strict=True)
-    return [Scene.from_mapping(dict(zip(names, row, strict=True))) for row in rows]
-
-
-def _texts(prepared: Prepared) -> dict[str, list[str]]:
-    return prepared.texts
-
-
-def _filled(prepared: Prepared) -> tuple[Floats, Floats]:
-    return fill(prepared.columns)
+def _scenes(columns: Columns) -> list[Scene]:
+    typed = texts(columns)
+    rows = zip(*typed.values(), strict=True)
+    return [Scene.from_mapping(dict(zip(typed, row, strict=True))) for row in rows]
 
 
 def _replay(columns: dict[str, list[str]]) -> Floats:
@@ -97,78 +85,64 @@ def _listing_elimination(matrices: tuple[Floats, Floats]) -> Floats:
     return out
 
 
-def _changes_ready(prepared: Prepared) -> tuple[Floats, Floats, Floats]:
-    A, _ = fill(prepared.columns)
-    return (A, *changes(prepared.columns, A))
+def _changes(columns: Columns) -> tuple[Floats, Floats, Floats]:
+    A, _ = fill(columns)
+    return (A, *changes(columns, A))
 
 
-def _closed_form(threads: int) -> Callable[[Prepared], dict[str, Floats]]:
-    return lambda prepared: solve(prepared.columns, ORDER, threads=threads)
+def _closed(columns: Columns) -> dict[str, Floats]:
+    return solve(columns, ORDER, threads=1)
 
 
+_float64 = _port("float64", float)
+_applesoft = _port("applesoft", lambda x: float(Real.from_stored(x)))
+_TEXTS: dict[str, Any] = {"prepare": texts, "roundoff": APPLESOFT}
 METHODS: Sequence[Method] = (
+    Method("applesoft", "Applesoft port", "s ", VERMILION, 200, _applesoft, _scenes, APPLESOFT),
+    Method("replay", "replay (Applesoft, arrays)", "s", VERMILION, 20_000, _replay, **_TEXTS),
+    Method("float64", "port in float64", "o ", BLUE, 500, _float64, _scenes),
     Method(
-        "applesoft",
-        "Applesoft port",
-        APPLESOFT,
-        200,
-        _port("applesoft", lambda x: float(Real.from_stored(x))),
-        _scene_list,
-    ),
-    Method("replay", "replay (Applesoft, arrays)", APPLESOFT, 20_000, _replay, _texts),
-    Method("float64", "port in float64", DOUBLE, 500, _port("float64", float), _scene_list),
-    Method(
-        "elimination",
-        "listing's elimination, pi exact",
-        DOUBLE,
-        2000,
-        _listing_elimination,
-        _filled,
-    ),
-    Method("lapack", "LAPACK, matrices ready", DOUBLE, 100_000, lambda m: lapack(*m), _filled),
-    Method(
-        "lapack-changes",
-        "LAPACK, velocity changes",
-        DOUBLE,
-        100_000,
-        lambda made: made[2] + lapack(*made[:2]),
-        _changes_ready,
+        *("elimination", "listing's elimination, pi exact", "v", BLUE, 2000),
+        *(_listing_elimination, fill),
     ),
     Method(
-        "lapack-fill",
-        "LAPACK, filled and solved",
-        DOUBLE,
-        100_000,
-        lambda prepared: lapack(*_filled(prepared)),
-    ),
-    Method("closed-form", "closed form, one core", DOUBLE, 1_000_000, _closed_form(1)),
-    Method(
-        "closed-form-2", "closed form, two cores", DOUBLE, 1_000_000, _closed_form(2), threads=2
+        *("lapack", "LAPACK, matrices ready", "^", GREY, 100_000, lambda m: lapack(*m), fill),
     ),
     Method(
-        *("closed-form-numpy", "closed form, numpy alone", DOUBLE, 200_000, _closed_form(1)),
+        *("lapack-changes", "LAPACK, velocity changes", ">", GREY, 100_000),
+        *(lambda made: made[2] + lapack(*made[:2]), _changes),
+    ),
+    Method(
+        *("lapack-fill", "LAPACK, filled and solved", "^ ", GREY, 100_000),
+        lambda columns: lapack(*fill(columns)),
+    ),
+    Method("closed-form", "closed form, one core", "D", ORANGE, 1_000_000, _closed),
+    Method(
+        *("closed-form-2", "closed form, two cores", "D ", BLACK, 1_000_000),
+        lambda columns: solve(columns, ORDER, threads=2),
+        threads=2,
+    ),
+    Method(
+        *("closed-form-numpy", "closed form, numpy alone", "D ", ORANGE, 200_000, _closed),
         compiled=False,
     ),
     Method(
-        *("replay-numpy", "replay, numpy alone", APPLESOFT, 20_000, _replay, _texts),
+        *("replay-numpy", "replay, numpy alone", "P ", VERMILION, 20_000, _replay),
+        **_TEXTS,
         compiled=False,
     ),
 )
 """In the order of the table; the reference itself is measured beside them."""
 
 
-COMPONENTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "PN", "PT", "PM", "LOSS", "DVA", "MUC")
-"""Results whose errors are listed one by one."""
-
-
-def reference(prepared: Prepared, names: Sequence[str] = ORDER) -> tuple[Floats, Floats]:
+def reference(columns: Columns, names: Sequence[str] = ORDER) -> tuple[Floats, Floats]:
     """Results to 50 digits, a column for each of ``names``, each number as the sum of two doubles
     (hi, lo); NaN where there is none."""
     from ..accuracy.digits import fifty_digits
 
-    hi, lo = (np.full((prepared.size, len(names)), np.nan) for _ in range(2))
-    for i in range(prepared.size):
-        true = fifty_digits({name: float(values[i]) for name, values in prepared.columns.items()})
+    hi, lo = np.full((2, len(columns["MA"]), len(names)), np.nan)
+    for i in range(len(hi)):
+        true = fifty_digits({name: float(values[i]) for name, values in columns.items()})
         for j, name in enumerate(names):
             if name in true:
                 hi[i, j] = float(true[name])
@@ -186,5 +160,6 @@ def relative_errors(computed: Floats, hi: Floats, lo: Floats) -> Floats:
             scale = np.abs(hi[:, group]).max(axis=1)
             worst = error[:, group].max(axis=1)
             parts.append(np.where(worst == 0, 0.0, worst / scale))
-    largest = np.maximum(*parts)
-    return np.where(np.isnan(largest), math.inf, largest)
+    largest: Floats = np.maximum(*parts)
+    largest[np.isnan(largest)] = np.inf
+    return largest

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ..plaintable import table
-from .measure import Measured
+from .measure import Row
 from .populations import POPULATIONS
 
 BUSY = 0.5
@@ -28,70 +28,61 @@ def _times(value: float) -> str:
     return f"{value:.1f}" if value < 99.5 else _error(value)
 
 
-def _share(value: float) -> str:
-    return f"{100 * value:.0f} %"
-
-
-def _whole(value: float) -> str:
-    return f"{value:,.0f}"
-
-
 COLUMNS: dict[str, tuple[str, Callable[[Any], str]]] = {
     "name": ("", str),
     "population": ("population", str),
     "result": ("result", str),
-    "scenes": ("scenes", _whole),
-    "passes": ("passes", _whole),
+    "scenes": ("scenes", "{:,.0f}".format),
+    "passes": ("passes", "{:,.0f}".format),
     "seconds": ("seconds", "{:.6f}".format),
     "processor": ("of processors", "{:.2f}".format),
     "times": ("times the first", "{:.1f}".format),
-    "nanoseconds": ("ns/scene", _whole),
-    "saved": ("saved", _share),
-    "nanoseconds_out": ("with out=", _whole),
+    "nanoseconds": ("ns/scene", "{:,.1f}".format),
+    "saved": ("saved", "{:.0%}".format),
+    "nanoseconds_out": ("with out=", "{:,.1f}".format),
+    "memory": ("memory alone", "{:,.1f}".format),
     "extra_mib": ("MiB beside the results", "{:.1f}".format),
+    "per_second": ("scenes/s", _rate),
     "median": ("median", _error),
+    "per_mille": ("99.9 %", _error),
     "largest": ("largest", _error),
+    "over_condition": ("/(cond u)", _times),
+    "over_sensitivity": ("/(sens u)", _times),
+    "unanswered": ("none", lambda count: f"{count:,}" if count else ""),
     "over_rounding": ("/rounding", _times),
 }
 """Key of a row -> heading and how its values are written."""
+_RESULTS = (
+    *("name", "per_second", "median", "per_mille", "largest"),
+    *("over_condition", "over_sensitivity", "unanswered"),
+)
 
 
-def listing(rows: Sequence[Mapping[str, Any]]) -> str:
+def listing(rows: Sequence[Mapping[str, Any]], keys: Sequence[str] = ()) -> str:
     """Rows of one kind as a table."""
-    keys = list(rows[0])
-    lines = [[COLUMNS[key][1](row[key]) for key in keys] for row in rows]
+    keys = keys or list(rows[0])
+    lines = [[COLUMNS[key][1](row[key]) if key in row else "" for key in keys] for row in rows]
     return "\n".join(table(lines, [COLUMNS[key][0] for key in keys]))
 
 
-def results(rows: Sequence[Measured]) -> str:
+def results(rows: Sequence[Row]) -> str:
     """One table for each population."""
     parts = []
-    for name in dict.fromkeys(row.population for row in rows):
-        population = POPULATIONS[name]
-        mine = [row for row in rows if row.population == name]
-        parts.append(
-            f"{name} ({population.level}): {population.meaning}; {mine[0].scenes:,} scenes"
-        )
-        heading = ["", "scenes/s", "median", "99.9 %", "largest", "/(cond u)", "/(sens u)", "none"]
-        lines = []
-        for row in mine:
-            if row.method == "mpmath":
-                lines.append([row.name, _rate(row.per_second), *["reference", "", "", "", "", ""]])
-                continue
-            errors = [_error(x) for x in (row.median, row.per_mille, row.largest)]
-            over = [_times(row.over_condition), _times(row.over_sensitivity)]
-            none = f"{row.unanswered:,}" if row.unanswered else ""
-            lines.append([row.name, _rate(row.per_second), *errors, *over, none])
-        parts.append("\n".join(table(lines, heading)) + "\n")
+    for name in dict.fromkeys(row["population"] for row in rows):
+        mine = [{**row, "per_second": 1 / row["seconds"]} for row in rows]
+        mine = [row for row in mine if row["population"] == name]
+        what = POPULATIONS[name]
+        parts.append(f"{name} ({what.level}): {what.meaning}; {mine[0]['scenes']:,} scenes")
+        parts.append(listing(mine, _RESULTS) + "\n")
     parts.append(
-        "relative error of the final velocities; cond: condition number of the equilibrated 6x6\n"
-        "matrix, sens: sensitivity to the scene's numbers, u: unit roundoff (2^-32 for Applesoft,\n"
-        "2^-53 for double), each for the worst scene; none: scenes without an answer"
+        "relative error of the final velocities; cond: COND, sens: sensitivity to the scene's\n"
+        "numbers, u: unit roundoff (2^-32 for Applesoft, 2^-53 for double), each for the worst\n"
+        "scene; none: scenes without an answer"
     )
     return "\n".join(parts)
 
 
-def components(rows: Sequence[Mapping[str, Any]]) -> str:
+def components(rows: Sequence[Row]) -> str:
     """The closed form's errors, result by result."""
     return (
         "closed form, each result's error relative to itself; /rounding: the largest, relative to\n"
@@ -99,45 +90,41 @@ def components(rows: Sequence[Mapping[str, Any]]) -> str:
     )
 
 
-def ratios(rows: Sequence[Measured], roof: float | None = None) -> str:
-    """What the closed form's aims are measured by."""
-    by = {(row.population, row.method): row for row in rows}
+_RATIOS = (
+    ("casework", "seconds", "lapack", "closed-form", "LAPACK on ready-made matrices"),
+    ("casework", "seconds", "lapack-fill", "closed-form", "filling the matrices and solving"),
+    ("casework", "seconds", "float64", "closed-form", "the port in float64"),
+    ("casework", "seconds", "applesoft", "closed-form", "the Applesoft port"),
+    ("casework", "seconds", "closed-form-numpy", "closed-form", "by numpy alone"),
+    ("casework", "seconds", "closed-form", "closed-form-2", "one core"),
+    ("casework", "seconds", "applesoft", "replay", "the Applesoft port, bit for bit the same"),
+    ("casework", "largest", "lapack-fill", "closed-form", "LAPACK's (it depends on the seed)"),
+    ("heavy", "largest", "elimination", "closed-form", "the listing's elimination in double"),
+    ("heavy", "largest", "lapack-changes", "closed-form", "LAPACK's with velocity changes"),
+)
+"""Population, what is compared, of which method, with which, and the words for it."""
+
+
+def ratios(rows: Sequence[Row], roof: float | None = None) -> str:
+    """What the aims are measured by: times, and largest errors."""
+    by = {(row["population"], row["method"]): row for row in rows}
     lines = []
-    if ("casework", "closed-form") in by:
-        mine = by["casework", "closed-form"]
-        for other, what in (
-            ("lapack", "times as fast as LAPACK on ready-made matrices"),
-            ("lapack-fill", "times as fast as filling the matrices and solving"),
-            ("float64", "times as fast as the port in float64"),
-            ("applesoft", "times as fast as the Applesoft port"),
-            ("closed-form-numpy", "times as fast as by numpy alone"),
-        ):
-            ratio = by["casework", other].seconds / mine.seconds
-            lines.append(f"closed form, one core: {ratio:,.0f} {what}")
-        if roof:
-            lines.append(
-                f"closed form, one core: {mine.seconds / roof:.1f} times what memory alone takes"
+    for population, key, other, mine, words in _RATIOS:
+        if (population, mine) in by:
+            ratio = by[population, other][key] / by[population, mine][key]
+            name = by[population, mine]["name"]
+            how = "times as fast as" if key == "seconds" else f"largest error on {population} of"
+            text = (
+                f"{ratio:,.1f}" if ratio < 10 else f"{ratio:,.0f}" if ratio < 1e6 else _error(ratio)
             )
-        for other, what in (
-            ("lapack-fill", "LAPACK's"),
-            ("lapack-changes", "LAPACK's with velocity changes for unknowns"),
-        ):
-            lapack = by["casework", other].largest / mine.largest
-            size = f"{lapack:.1f} times smaller" if lapack > 1 else f"{1 / lapack:.1f} times larger"
-            lines.append(f"largest error on casework (it depends on the seed): {size} than {what}")
-        faster = by["casework", "applesoft"].seconds / by["casework", "replay"].seconds
-        lines.append(
-            f"replay: {faster:.0f} times as fast as the Applesoft port, bit for bit the same"
-        )
-    if ("heavy", "closed-form") in by:
-        for other, what in (
-            ("elimination", "the listing's elimination in double"),
-            ("lapack-changes", "LAPACK's with velocity changes for unknowns"),
-        ):
-            ratio = by["heavy", other].largest / by["heavy", "closed-form"].largest
             lines.append(
-                f"largest error on heavy mass ratios: {_error(ratio)} times smaller than {what}"
+                f"{name}: {text} {how} {words}"
+                if key == "seconds"
+                else f"{how} {words}: {text} times the closed form's"
             )
+    if roof and ("casework", "closed-form") in by:
+        taken = by["casework", "closed-form"]["seconds"]
+        lines.append(f"closed form, one core: {taken / roof:.1f} times what memory alone takes")
     return "\n".join(lines)
 
 

@@ -107,21 +107,21 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _skipping(arguments: argparse.Namespace) -> int:
-    from ..bench import measure, paths, tables
+    from ..bench import measure, tables
 
     record: dict[str, Any] = {}
     repeats = arguments.repeats
     if arguments.paths:
-        record["paths"] = paths.kinds(PATH_SCENES, repeats)
-        record["outputs"] = paths.selections(PATH_SCENES, repeats)
+        record["paths"] = measure.paths(PATH_SCENES, repeats)
+        record["outputs"] = measure.selections(PATH_SCENES, repeats)
     if arguments.files:
         from ..cli import main as command_line
 
-        record["files"] = paths.doors(
+        record["files"] = measure.doors(
             FILE_ROWS, lambda path, to: command_line(["solve", path, "-o", to])
         )
     if arguments.sizes:
-        record["sizes"] = paths.sizes(SIZES, repeats)
+        record["sizes"] = measure.sizes(SIZES, repeats)
     machine = measure.machine()
     if arguments.json:
         _print_json({"machine": machine, **record})
