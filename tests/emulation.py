@@ -40,12 +40,15 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
     """The emulator's variables after every line of the listing, and its run."""
     reports: list[Report] = []
 
-    def after(line: int, machine: emulated.Emulated) -> None:
-        a = machine.A
-        reals = {name: stored(value) for name, value in machine.reals.items()}
+    machine = emulated.loaded(scene, dos=False, text=text)
+
+    def after(line: int) -> None:
+        a = machine.array("A")
+        reals = {name: stored(value) for name, value in machine.reals().items()}
         reports.append((line, reals, a and [stored(value) for value in a["data"]]))
 
-    return reports, emulated.Emulated(scene, dos=False, text=text).run(after)
+    machine.machine.after_line = after
+    return reports, emulated.finished(machine)
 
 
 def first_difference(scene: Scene, text: str | None = None) -> Any:

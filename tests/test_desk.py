@@ -26,7 +26,7 @@ from impact88 import schemas
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.names import SCENE, VELOCITIES
-from impact88.program.emulated import Emulated
+from impact88.program.emulated import finished, loaded
 from impact88.program.run import run
 from impact88.scene import Scene, sample
 from installed import COMMAND
@@ -217,9 +217,9 @@ def test_a_published_run_is_answered_with_the_programs_own_printout(number: int,
 def test_the_screen_is_the_emulators_memory() -> None:
     for number in (1, 2, 3):
         told = collision.answer(dict(sample(number)))["screen"]
-        emulated = Emulated(sample(number))
-        emulated.run()
-        machine = emulated.machine.machine
+        apple = loaded(sample(number))
+        finished(apple)
+        machine = apple.machine
         assert len(told) == 24
         for row, runs in enumerate(told):
             start = 0x400 + row % 8 * 0x80 + row // 8 * 40

@@ -17,7 +17,7 @@ import desk_browser
 from captures import ROOT
 from desk_browser import Page, until
 from impact88.desk import collision as desk_collision
-from impact88.program.emulated import Emulated
+from impact88.program.emulated import finished, loaded
 from impact88.program.run import run
 from impact88.scene import sample
 from installed import impact88 as command
@@ -94,9 +94,9 @@ def test_the_answer_stands_first_in_the_units_chosen(collision: Page) -> None:
 
 
 def test_the_screen_holds_what_the_apples_memory_holds(collision: Page) -> None:
-    emulated = Emulated(sample(1))
-    emulated.run()
-    rows = [bytes(b & 0x7F for b in row).decode() for row in emulated.machine.screen_rows()]
+    machine = loaded(sample(1))
+    finished(machine)
+    rows = [bytes(b & 0x7F for b in row).decode() for row in machine.screen_rows()]
     assert collision.text("collision-apple") == "".join(row + "\n" for row in rows)
     assert not collision.at("collision-apple").is_displayed()
     collision.at("collision-tab-printout").click()

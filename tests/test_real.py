@@ -21,6 +21,10 @@ middling = st.tuples(
 )
 
 
+def exact(number: real.Number) -> Fraction:
+    return Fraction(float(Real(number)))
+
+
 def of(text: str) -> Real:
     return Real(decimaltext.number(text))
 
@@ -105,10 +109,10 @@ def test_comparisons_take_reals_only():
 def test_sum_is_near_the_exact_sum(a, b):
     """A unit of the last of 32 bits of the larger operand, in which the left one's rounding, bits
     shifted out and a sum lost in the extension all have room."""
-    total = Real(real.add(a, b)).fraction()
-    exact = Real(a).fraction() + Real(b).fraction()
-    size = max(abs(Real(a).fraction()), abs(Real(b).fraction()))
-    assert abs(total - exact) <= size * Fraction(1, 2**31)
+    total = exact(real.add(a, b))
+    true = exact(a) + exact(b)
+    size = max(abs(exact(a)), abs(exact(b)))
+    assert abs(total - true) <= size * Fraction(1, 2**31)
 
 
 @given(middling, middling)
@@ -131,7 +135,7 @@ def test_negating_twice_and_storing_is_storing(a):
 @given(numbers, numbers)
 def test_comparison_is_the_order_but_for_the_last_byte(a, b):
     stored = real.from_stored(real.to_stored(a)) if a[1] < real.LIMIT - 0x80 else a
-    difference = Real(b).fraction() - Real(stored).fraction()
-    coarse = abs(difference) <= abs(Real(b).fraction()) * Fraction(1, 2**22)
+    difference = exact(b) - exact(stored)
+    coarse = abs(difference) <= abs(exact(b)) * Fraction(1, 2**22)
     if not coarse:
         assert real.compare(stored, b) == (1 if difference > 0 else -1)

@@ -6,15 +6,12 @@ from collections.abc import Sequence
 
 from .errorcodes import ApplesoftError, illegal_quantity
 from .operators import Real
-from .real import integer
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
 SUBSCRIPT_LIMIT = 32768
-_PLACES = {integer(n): n for n in range(16)}
-"""The usual subscripts, so that a loop does not work them out each time."""
 
 
 def subscript(x: Any) -> int:
@@ -46,32 +43,16 @@ class Array:
         self._rows, self._columns = (*self.sizes, 1)[:2]
         self.data = [zero] * (self._rows * self._columns)
 
-    # The place is worked out twice below: a call for it would cost the elimination a tenth.
+    def _at(self, place: tuple[Any, Any]) -> int:
+        i, j = place
+        i = i if i.__class__ is int else subscript(i)
+        j = j if j.__class__ is int else subscript(j)
+        if i >= self._rows or j >= self._columns:
+            raise ApplesoftError("BAD SUBSCRIPT")
+        return i + self._rows * j
 
     def __getitem__(self, place: tuple[Any, Any]) -> Any:
-        i, j = place
-        if i.__class__ is Real:
-            i = _PLACES.get(i.number, i)
-        if i.__class__ is not int:
-            i = subscript(i)
-        if j.__class__ is Real:
-            j = _PLACES.get(j.number, j)
-        if j.__class__ is not int:
-            j = subscript(j)
-        if i >= self._rows or j >= self._columns:
-            raise ApplesoftError("BAD SUBSCRIPT")
-        return self.data[i + self._rows * j]
+        return self.data[self._at(place)]
 
     def __setitem__(self, place: tuple[Any, Any], value: Any) -> None:
-        i, j = place
-        if i.__class__ is Real:
-            i = _PLACES.get(i.number, i)
-        if i.__class__ is not int:
-            i = subscript(i)
-        if j.__class__ is Real:
-            j = _PLACES.get(j.number, j)
-        if j.__class__ is not int:
-            j = subscript(j)
-        if i >= self._rows or j >= self._columns:
-            raise ApplesoftError("BAD SUBSCRIPT")
-        self.data[i + self._rows * j] = self._store(value)
+        self.data[self._at(place)] = self._store(value)

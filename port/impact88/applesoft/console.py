@@ -27,16 +27,13 @@ CONTROL_X = "\x18"
 ESCAPE = "\x1b"
 PROMPT = "\0"
 """The prompt character Applesoft gives the monitor's line reader: it is sent, and shows nothing."""
-LINE_LIMIT = 239
-"""What INPUT keeps of a line."""
-BUFFER = 256
-"""A line as long as this is abandoned, as if by control-X."""
-WARNING = 248
+LINE_LIMIT, WARNING, BUFFER = 239, 248, 256
+"""What INPUT keeps of a line; where the bell begins; where a line is abandoned."""
 BELL = "\a"
 PRINTER_SLOT = 1
 NO_KEY = "?"
-_ESCAPED_BYTE = 0xDC80
-"""What Python makes of a byte 80 that it cannot decode."""
+_ESCAPED = range(0xDC80, 0xDD00)
+"""What Python makes of the bytes from 80 on that it cannot decode."""
 _MOVES = {"I": "D", "J": "B", "K": "A", "M": "C"}
 """Keys after ESC that may be repeated, and what they do once."""
 
@@ -112,48 +109,30 @@ class Console:
 
     def put(self, text: str) -> None:
         """Send characters on their way: to the disk system, or to the selected slot's device."""
-        if not text:
-            return
         if not self.dos:
             self._show(text)
             return
-        if self._command is None and "\n" not in text and text[0] != CONTROL_D:
-            self._line_begins = False  # most text: no line ends in it, and no command begins
-            self._show(text)
-            return
-        for line in text.splitlines(keepends=True) if "\n" in text else (text,):
-            self._put_piece(line)
-
-    def _put_piece(self, piece: str) -> None:
-        """A piece of one line, its newline at most at the end."""
-        if self._command is None and self._line_begins and piece[0] == CONTROL_D:
-            self._command = ""
-            piece = piece[1:]
-        ends = piece.endswith("\n")
-        self._line_begins = ends
-        if self._command is None:
-            self._show(piece)
-            return
-        self._command += piece
-        if ends:
-            command, self._command = self._command, None
-            self.disk_command(command.rstrip("\n"))
+        for piece in text.splitlines(keepends=True):
+            if self._command is None and self._line_begins and piece[0] == CONTROL_D:
+                self._command, piece = "", piece[1:]
+            self._line_begins = piece.endswith("\n")
+            if self._command is None:
+                self._show(piece)
+                continue
+            self._command += piece
+            if self._line_begins:  # of a disk's commands only PR# concerns a program's output
+                if match := re.match(_SLOT_COMMAND, self._command):
+                    self.select(int(match[1]))
+                self._command = None
 
     def select(self, slot: int) -> None:
         """PR#: output goes to a slot from now on."""
         self.slot = slot & 7
 
-    def disk_command(self, command: str) -> None:
-        """What the disk system does with a command line; only PR# concerns a program's output."""
-        match = re.match(_SLOT_COMMAND, command)
-        if match:
-            self.slot = int(match.group(1))
-
     def _show(self, text: str) -> None:
-        if self.slot == 0:
-            self.screen(text)
-        elif self.slot == PRINTER_SLOT:
-            self.printer(text)
+        device = {0: self.screen, PRINTER_SLOT: self.printer}.get(self.slot)
+        if device and text:
+            device(text)
 
     # --- input --------------------------------------------------------------------------------
 
@@ -192,7 +171,11 @@ class Console:
         else:
             typed = self._edited(prompt, typed)
         self.editor.end_line()
-        self._end_echo()
+        if self.echo:
+            self.put("\n")
+        else:  # the terminal has shown the line, RETURN included
+            self._line_begins = True
+            self.editor.typed()
         return typed[:LINE_LIMIT]
 
     def _edited(self, prompt: str, typed: str) -> str:
@@ -209,34 +192,29 @@ class Console:
             if key == CONTROL_U:
                 key = self.editor.under_cursor()
             self._show_keys(key)
-            if key == CONTROL_H and kept:
-                kept.pop()
-            elif key == CONTROL_H:
-                self._echo("\n" + prompt)
-            elif key == CONTROL_X:
-                self._cancel(kept, prompt)
-            else:
+            if key == CONTROL_H:
+                if not kept:
+                    self._echo("\n" + prompt)
+                del kept[-1:]
+                continue
+            if key != CONTROL_X:
                 if len(kept) >= WARNING:
                     self._echo(BELL)
                 kept.append(key)
-                if len(kept) == BUFFER:
-                    self._cancel(kept, prompt)
+            if key == CONTROL_X or len(kept) == BUFFER:
+                kept.clear()
+                self._echo("\\\n" + prompt)
         return "".join(kept)
-
-    def _cancel(self, kept: list[str], prompt: str) -> None:
-        kept.clear()
-        self._echo("\\\n" + prompt)
 
     def _escape(self, keys: deque[str]) -> None:
         """ESC: the keys I, J, K and M move the cursor and wait for more, any other is the last."""
-        while True:
+        key = "I"
+        while key in _MOVES:
             if not keys:  # RETURN ends it, and the line goes on with the next one
                 keys.extend(capitals(self._typed_line()))
                 return
             key = keys.popleft()
             self.editor.escape(_MOVES.get(key, key))
-            if key not in _MOVES:
-                return
 
     def _show_keys(self, keys: str) -> None:
         self.editor.begin_echo()
@@ -246,13 +224,6 @@ class Console:
     def _echo(self, text: str) -> None:
         if self.echo:
             self.put(text)
-
-    def _end_echo(self) -> None:
-        if self.echo:
-            self.put("\n")
-        else:  # the terminal has shown the line, RETURN included
-            self._line_begins = True
-            self.editor.typed()
 
     def input(self, read: Read, zero: Any) -> Iterator[Reply]:
         """INPUT of numbers: one Reply per attempt, to be called once for each variable.
@@ -299,18 +270,15 @@ class Reply:
         the ROM; a line without any character is refused before. Raises ApplesoftError OVERFLOW and
         EndOfInput.
         """
-        if self.refused:
-            return self._zero if old is None else old
-        self.begun += 1
-        if self.begun > 1:
-            if self._at_end():
-                self._console.put("??")
-                self._line = self._console.read_line()
-                self._position = 0
-            else:
+        if not self.refused:
+            self.begun += 1
+            if self.begun > 1 and not self._at_end():
                 self._position += 1  # the comma
-        if not self._line:
-            self.refused = True
+            elif self.begun > 1:
+                self._console.put("??")
+                self._line, self._position = self._console.read_line(), 0
+            self.refused = not self._line
+        if self.refused:
             return self._zero if old is None else old
         value, self._position = self._read(self._line, self._position)
         while self._line.startswith(" ", self._position):
@@ -320,7 +288,7 @@ class Reply:
 
     def _at_end(self) -> bool:
         """A colon ends a reply as it ends a statement."""
-        return self._position >= len(self._line) or self._line[self._position] == ":"
+        return self._line[self._position : self._position + 1] in ("", ":")
 
     @property
     def has_more(self) -> bool:
@@ -335,14 +303,8 @@ def keyed(text: str) -> str:
     characters have no key: ``?`` stands for them, so that a typographic minus or a micro sign is
     refused where a number is expected, and not taken for the key that has its last seven bits.
     """
-    if text.isascii():
-        return text
-    return "".join(_key(ord(character)) for character in text)
-
-
-def _key(code: int) -> str:
-    escaped = _ESCAPED_BYTE <= code < _ESCAPED_BYTE + 0x80
-    return chr(code & 0x7F) if code < 0x80 or escaped else NO_KEY
+    codes = map(ord, text)
+    return "".join(chr(n & 0x7F) if n < 0x80 or n in _ESCAPED else NO_KEY for n in codes)
 
 
 def capitals(typed: str) -> str:

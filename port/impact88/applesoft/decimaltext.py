@@ -5,6 +5,7 @@ their value: 90315.8817 and 90315.88170 differ in their last bit. Writing looks 
 a value in flight, so PRINT can show more than the variable would hold.
 """
 
+import re
 from functools import lru_cache
 
 from .errorcodes import overflow
@@ -54,37 +55,16 @@ def over_ten(x: Number) -> Number:
 Numeral = tuple[str, str, str, str, str, int]
 """The parts of a number's text, blanks taken out: sign, digits before and after the point, sign and
 digits of the exponent; and where it ends."""
+_NUMERAL = re.compile(r" *([+-]?)([0-9 ]*)(?:\.([0-9 ]*))?(?:E *([+-]?)([0-9 ]*))?")
 
 
 def scan(text: str, start: int = 0) -> Numeral:
     """The parts of the number that begins at ``start``; no number at all has empty parts."""
-    rest = text[start:].replace(" ", "")
-    length = len(rest)
-    sign, rest = _sign(rest)
-    whole, rest = _digits(rest)
-    decimals = exponent_sign = exponent_digits = ""
-    if rest.startswith("."):
-        decimals, rest = _digits(rest[1:])
-    if rest.startswith("E"):
-        exponent_sign, rest = _sign(rest[1:])
-        exponent_digits, rest = _digits(rest)
-    end = start
-    for _ in range(length - len(rest)):
-        while text[end] == " ":
-            end += 1
-        end += 1
-    return sign, whole, decimals, exponent_sign, exponent_digits, end
-
-
-def _sign(text: str) -> tuple[str, str]:
-    """A leading + or -, and the rest."""
-    return (text[0], text[1:]) if text.startswith(("+", "-")) else ("", text)
-
-
-def _digits(text: str) -> tuple[str, str]:
-    """The leading digits, and the rest."""
-    rest = text.lstrip("0123456789")
-    return text[: len(text) - len(rest)], rest
+    match = _NUMERAL.match(text, start)
+    assert match is not None  # there may be nothing in it
+    sign, *numbers = (part.replace(" ", "") for part in match.groups(""))
+    whole, decimals, exponent_sign, exponent = numbers
+    return sign, whole, decimals, exponent_sign, exponent, start + len(match[0].rstrip(" "))
 
 
 @lru_cache(maxsize=512)  # scenes and programs repeat their numbers
@@ -92,36 +72,24 @@ def read(text: str, start: int = 0) -> tuple[Number, int]:
     """The number that begins at ``start``, and where it ends; no number at all reads as zero.
 
     Blanks are passed over. The power of ten that is left, exponent less decimals, is kept in one
-    byte, and wraps. Raises OVERFLOW.
+    byte, and wraps. Raises OVERFLOW, for an exponent of three digits, too, whatever the number.
     """
-    sign, whole, decimals, exponent_sign, exponent_digits, end = scan(text, start)
+    sign, whole, decimals, exponent_sign, exponent, end = scan(text, start)
     value = ZERO
     for digit in whole + decimals:
         value = add(times_ten(value), integer(int(digit)))
-    steps = signed_byte(_exponent(exponent_sign, exponent_digits) - len(decimals))
+    power = int(exponent.lstrip("0")[:3] or "0")
+    if power >= 100:
+        if exponent_sign != "-":
+            raise overflow()
+        power = 100
+    power = (-power if exponent_sign == "-" else power) - len(decimals)
+    steps = (power + 128 & 0xFF) - 128
     for _ in range(steps):
         value = times_ten(value)
     for _ in range(-steps):
         value = over_ten(value)
     return (negate(value) if sign == "-" else value), end
-
-
-def signed_byte(n: int) -> int:
-    """What one byte keeps of a number, its top bit as the sign: -129 becomes 127."""
-    return (n + 128 & 0xFF) - 128
-
-
-def _exponent(sign: str, digits: str) -> int:
-    """The exponent after E; a third digit is one too many, whatever the first two are worth."""
-    exponent = 0
-    for digit in digits.replace(" ", ""):
-        if exponent >= 10:
-            if sign != "-":
-                raise overflow()
-            exponent = 100
-        else:
-            exponent = 10 * exponent + int(digit)
-    return -exponent if sign == "-" else exponent
 
 
 def is_number(text: str) -> bool:

@@ -103,19 +103,15 @@ def logarithm(x: Number) -> Number:
 
 def exponential(x: Number) -> Number:
     """EXP: e to the x. Raises OVERFLOW; underflows to zero."""
-    e, m, s = _over_ln_two(x)
-    if e >= BIAS + 8:
-        return _exponential_out_of_range(s)
-    i = to_integer((e, m & ~0xFF, s))
-    k = i + 129 & 0xFF
-    if not k:
-        return _exponential_out_of_range(int(i < 0))
-    k -= 1
-    if not k:
+    turns = _over_ln_two(x)
+    doublings = exponential_integer(x)
+    exponent = doublings + 129 & 0xFF if turns[0] < BIAS + 8 else 0
+    if not exponent and not x[2]:
+        raise overflow()
+    if exponent <= 1:
         return ZERO
-    g = negate(subtract(integer(i), (e, m, s)))
-    e, m, s = polynomial(EXP_COEFFICIENTS, g)
-    e = product_exponent(k, e)
+    e, m, _ = polynomial(EXP_COEFFICIENTS, negate(subtract(integer(doublings), turns)))
+    e = product_exponent(exponent - 1, e)
     return (e, m, 0) if e else ZERO
 
 
@@ -136,12 +132,6 @@ def exponential_integer(x: Number) -> int:
     range and EXP does not look for it."""
     e, m, s = _over_ln_two(x)
     return to_integer((e, m & ~0xFF, s)) if e < BIAS + 8 else 0
-
-
-def _exponential_out_of_range(negative: int) -> Number:
-    if negative:
-        return ZERO
-    raise overflow()
 
 
 def power(left: Number, right: Number) -> Number:

@@ -7,11 +7,13 @@ explicit: `Real.rounded`.
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Callable
+
 from .functions import power
 from .real import (
     BIAS,
     Number,
-    absolute,
     add,
     compare,
     divide,
@@ -24,9 +26,29 @@ from .real import (
     to_stored,
 )
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from fractions import Fraction
+
+def _binary(
+    rule: Callable[[Number, Number], Number],
+) -> tuple[Callable[[Real, Real | int], Real], Callable[[Real, int], Real]]:
+    """An operator, and what it is with a whole number on the left."""
+
+    def forward(left: Real, right: Real | int) -> Real:
+        return Real(rule(left.number, right.number if right.__class__ is Real else _number(right)))
+
+    def reflected(right: Real, left: int) -> Real:
+        return Real(rule(_number(left), right.number))
+
+    return forward, reflected
+
+
+def _comparison(holds: Callable[[int, int], bool]) -> Callable[[Real, object], bool]:
+    def compared(left: Real, right: object) -> bool:
+        if right.__class__ is not Real:
+            raise TypeError(f"a real compares with reals only, not with {right!r}")
+        stored = left.number
+        return holds(0, compare(rounded(stored) if stored[1] & 0xFF else stored, right.number))
+
+    return compared
 
 
 class Real:
@@ -44,9 +66,9 @@ class Real:
         self.number = number
 
     @classmethod
-    def from_stored(cls, stored: bytes | str, extension: int = 0) -> Real:
+    def from_stored(cls, stored: bytes | str) -> Real:
         """See `from_stored`."""
-        return cls(from_stored(stored, extension))
+        return cls(from_stored(stored))
 
     def stored(self) -> bytes:
         """See `to_stored`."""
@@ -58,33 +80,9 @@ class Real:
         return Real(rounded(number)) if number[1] & 0xFF else self
 
     @property
-    def e(self) -> int:
-        """The exponent byte."""
-        return self.number[0]
-
-    @property
-    def m(self) -> int:
-        """The 40-bit mantissa, extension included."""
-        return self.number[1]
-
-    @property
-    def s(self) -> int:
-        """The sign: 1 for negative."""
-        return self.number[2]
-
-    @property
     def extension(self) -> int:
         """The eight bits below the mantissa that storing would round away."""
         return self.number[1] & 0xFF
-
-    def fraction(self) -> Fraction:
-        """The exact value, extension included."""
-        from fractions import Fraction
-
-        e, m, s = self.number
-        scale = e - BIAS - 40
-        size = Fraction(m << scale) if scale >= 0 else Fraction(m, 1 << -scale)
-        return -size if s else size
 
     def __float__(self) -> float:
         """The exact value: 40 bits and this exponent range fit a double."""
@@ -98,71 +96,15 @@ class Real:
     def __neg__(self) -> Real:
         return Real(negate(self.number))
 
-    def __pos__(self) -> Real:
-        return self
-
-    def __abs__(self) -> Real:
-        return Real(absolute(self.number))
-
-    def __add__(self, right: Real | int) -> Real:
-        return Real(add(self.number, right.number if right.__class__ is Real else _number(right)))
-
-    def __sub__(self, right: Real | int) -> Real:
-        return Real(
-            subtract(self.number, right.number if right.__class__ is Real else _number(right))
-        )
-
-    def __mul__(self, right: Real | int) -> Real:
-        return Real(
-            multiply(self.number, right.number if right.__class__ is Real else _number(right))
-        )
-
-    def __truediv__(self, right: Real | int) -> Real:
-        return Real(
-            divide(self.number, right.number if right.__class__ is Real else _number(right))
-        )
-
-    def __pow__(self, right: Real | int) -> Real:
-        return Real(power(self.number, _number(right)))
-
-    def __radd__(self, left: int) -> Real:
-        return Real(add(_number(left), self.number))
-
-    def __rsub__(self, left: int) -> Real:
-        return Real(subtract(_number(left), self.number))
-
-    def __rmul__(self, left: int) -> Real:
-        return Real(multiply(_number(left), self.number))
-
-    def __rtruediv__(self, left: int) -> Real:
-        return Real(divide(_number(left), self.number))
-
-    def __rpow__(self, left: int) -> Real:
-        return Real(_number(left)) ** self
-
+    __add__, __radd__ = _binary(add)
+    __sub__, __rsub__ = _binary(subtract)
+    __mul__, __rmul__ = _binary(multiply)
+    __truediv__, __rtruediv__ = _binary(divide)
+    __pow__ = _binary(power)[0]
+    __lt__, __gt__ = _comparison(operator.lt), _comparison(operator.gt)
+    __le__, __ge__ = _comparison(operator.le), _comparison(operator.ge)
+    __eq__, __ne__ = _comparison(operator.eq), _comparison(operator.ne)
     __hash__ = None  # type: ignore[assignment]
-
-    def __lt__(self, right: Real) -> bool:
-        return _compare(self, right) > 0
-
-    def __gt__(self, right: Real) -> bool:
-        return _compare(self, right) < 0
-
-    def __le__(self, right: Real) -> bool:
-        return _compare(self, right) >= 0
-
-    def __ge__(self, right: Real) -> bool:
-        return _compare(self, right) <= 0
-
-    def __eq__(self, right: object) -> bool:
-        return _compare(self, right) == 0
-
-    def __ne__(self, right: object) -> bool:
-        return _compare(self, right) != 0
-
-    def __bool__(self) -> bool:
-        """Whether an IF on this value succeeds: anything but zero."""
-        return self.number[0] != 0
 
 
 def _number(operand: Real | int) -> Number:
@@ -171,12 +113,3 @@ def _number(operand: Real | int) -> Number:
     if isinstance(operand, Real):
         return operand.number
     raise TypeError(f"an Applesoft real takes whole numbers and reals, not {operand!r}")
-
-
-def _compare(left: Real, right: object) -> int:
-    if right.__class__ is not Real:
-        raise TypeError(f"a real compares with reals only, not with {right!r}")
-    stored = left.number
-    if stored[1] & 0xFF:
-        stored = rounded(stored)
-    return compare(stored, right.number)

@@ -169,7 +169,7 @@ def exact_decimal(stored: str) -> str:
     """The value of five stored bytes, which a double holds, as an exact decimal, all its digits."""
     from ..applesoft.operators import Real
 
-    return f"{Decimal(float(Real.from_stored(stored).fraction())):f}"
+    return f"{Decimal(float(Real.from_stored(stored))):f}"
 
 
 def _json_number(value: float) -> float | None:

@@ -183,11 +183,11 @@ def _answer(
 def _screen(scene: Scene) -> list[list[tuple[str, str]]]:
     """The 24 rows of the Apple's screen after the run, from the emulator's memory: stretches, each
     with its kind (normal, inverse, flashing) and text."""
-    from ..program.emulated import Emulated
+    from ..program.emulated import finished, loaded
 
-    emulated = Emulated(scene)
-    emulated.run()
-    return [screen_runs(row) for row in emulated.machine.screen_rows()]
+    machine = loaded(scene)
+    finished(machine)
+    return [screen_runs(row) for row in machine.screen_rows()]
 
 
 def screen_runs(row: bytes) -> list[tuple[str, str]]:

@@ -14,7 +14,7 @@ from .. import doubles
 from ..applesoft import decimaltext, functions
 from ..applesoft.errorcodes import ApplesoftError, division_by_zero, illegal_quantity, overflow
 from ..applesoft.operators import Real
-from ..applesoft.real import ZERO, Number, absolute, floor, integer
+from ..applesoft.real import ZERO, Number, absolute, floor
 from ..errors import UserError
 
 TYPE_CHECKING = False
@@ -68,14 +68,6 @@ def _read_real(text: str, start: int) -> tuple[Real, int]:
     return Real(number), end
 
 
-def _next_real(x: Real) -> Real:
-    """x + 1, stored; looked up for small integers."""
-    return _FOLLOWING.get(x.number) or (x + 1).rounded()
-
-
-_FOLLOWING = {integer(n): (Real(integer(n)) + 1).rounded() for n in range(16)}
-
-
 def _of_reals(function: Callable[[Number], Number]) -> Callable[[Real], Real]:
     return lambda x: Real(function(x.number))
 
@@ -119,7 +111,7 @@ APPLESOFT = Arithmetic(
     name="applesoft",
     read=_read_real,
     LET=Real.rounded,
-    NEXT=_next_real,
+    NEXT=lambda x: (x + 1).rounded(),
     INT=_of_reals(floor),
     ABS=_of_reals(absolute),
     SIN=_of_reals(functions.sine),

@@ -9,10 +9,10 @@ gives them, and replies that INPUT asks for. Everything else stays as the copy h
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from hashlib import sha256
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from .. import files
 from ..applesoft.console import EndOfInput
@@ -20,87 +20,50 @@ from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
 from ..emulator.machine import TooManyStatements
 from ..errors import UserError
-from ..files import packaged_text
 from ..names import SCENE
 from ..scene import Scene
 from .run import Run
 
 LISTING = "impact.bas"
 SLOT_LINE = 190
-ZERO_DETERMINANT_LINE = 1160
-
-AfterLine = Callable[[int, "Emulated"], object]
 
 
-class Emulated:
-    """The listing in a machine, with a scene's lines typed in.
-
-    ``text`` is the program, the restored listing unless given. `reals` and `A` are the machine's
-    variables at any moment, in the form of `run.Run`.
-    """
-
-    def __init__(
-        self, scene: Mapping[str, str], *, dos: bool = True, slot: int = 0, text: str | None = None
-    ) -> None:
-        scene = scene if isinstance(scene, Scene) else Scene.from_mapping(scene)
-        scene.check_typed()
-        # the port's printouts hold what the machine sends, not the columns it skips
-        self.machine = Applesoft(dos=dos, blanks=False)
-        self.machine.load(text or packaged_text("impact88.legacy", LISTING))
-        for line in scene.typed_lines():
-            self.machine.enter(line)
-        if slot:
-            self.machine.enter(f'{SLOT_LINE} P$ = "PR# " + "{slot}"')
-        self.machine.feed(*scene.keyboard())
-
-    @property
-    def reals(self) -> dict[str, str]:
-        """Real variables by name: stored bytes in hexadecimal."""
-        return self.machine.reals()
-
-    @property
-    def A(self) -> dict[str, Any] | None:
-        """The array A: sizes, and data with the first subscript fastest."""
-        return self.machine.array("A")
-
-    def run(self, after_line: AfterLine | None = None) -> Run:
-        """RUN; with ``after_line``, stop each time the program leaves a line.
-
-        Raises `console.EndOfInput` if a changed program asks for more than a scene holds.
-        """
-        machine = self.machine
-        inner = machine.machine
-        inner.after_line = (lambda line: after_line(line, self)) if after_line else None
-        try:
-            machine.run()
-        finally:
-            inner.after_line = None
-        return finished(machine, inner.last_line == ZERO_DETERMINANT_LINE)
+def loaded(
+    scene: Mapping[str, str], *, dos: bool = True, slot: int = 0, text: str | None = None
+) -> Applesoft:
+    """The restored listing, or ``text``, in a machine, with a scene's lines typed in, and its
+    replies to come."""
+    scene = scene if isinstance(scene, Scene) else Scene.from_mapping(scene)
+    scene.check_typed()
+    # the port's printouts hold what the machine sends, not the columns it skips
+    machine = Applesoft(dos=dos, blanks=False)
+    machine.load(text or _restored())
+    for line in scene.typed_lines():
+        machine.enter(line)
+    if slot:
+        machine.enter(f'{SLOT_LINE} P$ = "PR# " + "{slot}"')
+    machine.feed(*scene.keyboard())
+    return machine
 
 
-def finished(machine: Applesoft, zero_determinant: bool = False) -> Run:
-    """What a program's run left in a machine; ``zero_determinant``: whether that is how it ended,
-    unless by an error."""
-    error = machine.machine.error
+def finished(machine: Applesoft) -> Run:
+    """RUN, and what it left. Raises `console.EndOfInput` if a changed program asks for more than a
+    scene holds."""
+    machine.run()
+    printout, error = machine.take_output(), machine.machine.error
     return Run(
-        machine.take_output(),
+        printout,
         error.message if error else None,
         error.line if error else None,
         machine.reals(),
         machine.array("A"),
-        error is None and zero_determinant,
+        error is None and "ZERO DETERMINANT" in printout,
     )
 
 
-def run(
-    scene: Mapping[str, str],
-    *,
-    dos: bool = True,
-    slot: int = 0,
-    after_line: AfterLine | None = None,
-) -> Run:
+def run(scene: Mapping[str, str], *, dos: bool = True, slot: int = 0) -> Run:
     """Run the listing on a scene in the emulator, and keep everything."""
-    return Emulated(scene, dos=dos, slot=slot).run(after_line)
+    return finished(loaded(scene, dos=dos, slot=slot))
 
 
 LARGEST_COPY = 100_000
@@ -108,7 +71,8 @@ LARGEST_COPY = 100_000
 STATEMENTS = 100_000
 """Statements a run takes at most; the listing's takes 3,900, Todd's elimination included."""
 
-_STATEMENT = re.compile(r'(?:"[^"]*"?|[^":])*')
+_STATEMENT = re.compile(r'\s*REM.*|(?:"[^"]*"?|[^":])*', re.I | re.S)
+"""A remark is one statement, whatever stands in it."""
 _NUMBER = r"[-+]?\s*(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?"
 _ASSIGNED = re.compile(rf"(?P<before>\s*(?:LET\s*)?(?P<name>[A-Z]+)\s*=\s*){_NUMBER}\s*", re.I)
 _LIST = re.compile(r"\s*(?P<verb>READ|INPUT|DATA)\b\s*(?:\"[^\"]*\"\s*;)?\s*(?P<items>.*)", re.I)
@@ -142,11 +106,15 @@ class ListingCopy:
     def changed_lines(self) -> list[ChangedLine]:
         """The lines in which the copy is another program than the restored listing; remarks and
         blanks apart."""
-        restored = _listed(packaged_text("impact88.legacy", LISTING))
-        return [
-            ChangedLine(number, self._source.get(number, ""), restored.get(number, ""))
+        restored = _listed(_restored())
+        pairs = {
+            number: (self._source.get(number, ""), restored.get(number, ""))
             for number in sorted({*self._source, *restored})
-            if _plain(self._source.get(number, "")) != _plain(restored.get(number, ""))
+        }
+        return [
+            ChangedLine(number, copy, listed)
+            for number, (copy, listed) in pairs.items()
+            if _plain(copy) != _plain(listed)
         ]
 
     def run(self, scene: Mapping[str, str], *, dos: bool = True) -> Run:
@@ -158,19 +126,16 @@ class ListingCopy:
             machine.feed(",".join(scene.get(name.upper(), "0") for name in names))
         machine.machine.statements_left = STATEMENTS
         try:
-            machine.run()
+            return finished(machine)
         except EndOfInput:
             raise UserError("asks for more than a scene holds", self.file) from None
         except TooManyStatements:
             raise UserError(f"does not end within {STATEMENTS:,} statements", self.file) from None
-        return finished(machine)
 
     def _lists(self, verb: str) -> Iterator[list[str]]:
         """The items of every READ or INPUT, in the order of the lines."""
         for _, text in sorted(self._source.items()):
-            for statement in _split(text):
-                if items := _items(statement, verb):
-                    yield items
+            yield from filter(None, (_items(statement, verb) for statement in _split(text)))
 
     def _with(self, scene: Mapping[str, str]) -> Iterator[str]:
         """The program's lines with the scene's values in place of its own."""
@@ -196,6 +161,10 @@ def _items(statement: str, verb: str) -> list[str]:
     return [item.strip() for item in match["items"].split(",")] if match and found else []
 
 
+def _restored() -> str:
+    return files.packaged_text("impact88.legacy", LISTING)
+
+
 def _listed(text: str) -> dict[int, str]:
     """The lines of a program by number, as LIST shows them."""
     machine = Applesoft()
@@ -204,21 +173,15 @@ def _listed(text: str) -> dict[int, str]:
     return {int(number): rest for number, _, rest in pairs}
 
 
-def _split(text: str) -> list[str]:
-    """The statements of a line; a remark is one, whatever stands in it."""
-    statements, place = [], 0
-    while place <= len(text):
-        if text[place:].lstrip().upper().startswith("REM"):
-            statements.append(text[place:])
-            break
-        match = _STATEMENT.match(text, place)
-        assert match is not None
-        statements.append(match[0])
+def _split(text: str) -> Iterator[str]:
+    """The statements of a line."""
+    place = 0
+    while place <= len(text) and (match := _STATEMENT.match(text, place)):
+        yield match[0]
         place = match.end() + 1
-    return statements
 
 
 def _plain(text: str) -> str:
     """A line without blanks and remarks."""
-    kept = [one for one in _split(text) if not one.lstrip().upper().startswith("REM")]
+    kept = (one for one in _split(text) if not one.lstrip().upper().startswith("REM"))
     return ":".join("".join(statement.split()) for statement in kept)

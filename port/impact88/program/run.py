@@ -20,24 +20,14 @@ from .arithmetics import Arithmetic
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, NamedTuple
-
-    class _Run(NamedTuple):
-        printout: str
-        error: str | None
-        line: int | None
-        reals: dict[str, Any]
-        A: dict[str, Any] | None
-        zero_determinant: bool
-else:
-    _Run = namedtuple("_Run", ("printout", "error", "line", "reals", "A", "zero_determinant"))
+    from typing import Any
 
 BELL = "\a"
 _UNPRINTED = {code: None for code in range(32) if chr(code) not in "\n\b"}
 """Control-H stays: without it what was typed and taken back would look typed."""
 
 
-class Run(_Run):
+class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
     """What a run left behind.
 
     ``printout``: every character sent, RETURN as newline, control characters kept (`page` removes
@@ -52,11 +42,16 @@ class Run(_Run):
     """
 
     __slots__ = ()
+    printout: str
+    error: str | None
+    line: int | None
+    reals: dict[str, Any]
+    A: dict[str, Any] | None
+    zero_determinant: bool
 
     @property
     def page(self) -> str:
-        """The printout as a person reads it, without what only a machine acts on: the form feed of
-        line 200, bells, the NULs that INPUT shows for a prompt, control-D."""
+        """The printout as a person reads it."""
         return page(self.printout)
 
     @property
@@ -79,7 +74,8 @@ class Run(_Run):
 
 
 def page(text: str) -> str:
-    """Text for a person: without control characters, line ends excepted."""
+    """Text for a person, without what only a machine acts on: the form feed of line 200, bells,
+    the NULs that INPUT shows for a prompt, control-D."""
     return text.translate(_UNPRINTED)
 
 
@@ -91,10 +87,9 @@ def start(
     after_line: stepping.AfterLine | None = None,
 ) -> Run:
     """Run the port on a console until the program ends; the Run's printout is empty, because the
-    console's devices have it.
+    console's devices have it, an error's message too.
 
-    An error's message goes to the console, as the ROM prints it. Raises UserError for an unknown
-    arithmetic and `console.EndOfInput`.
+    Raises UserError for an unknown arithmetic and `console.EndOfInput`.
     """
     chosen = arithmetics.named(arithmetic)
     error = None
@@ -113,19 +108,18 @@ def start(
             raise
         error.line = stepping.line_of(exception.__traceback__)
         names = stepping.names_in(exception.__traceback__)
-    values = stepping.variables(names, chosen.unset)
+    reals, array = stepping.variables(names, chosen.unset)
     if error is not None and error.line is not None:
         asked = console.reply.begun if console.reply else None
-        begun = stepping.begun_assignment(error.line, values.reals, asked)
-        if begun:
-            values = stepping.Variables({**values.reals, begun: chosen.zero}, values.A)
+        if begun := stepping.begun_assignment(error.line, reals, asked):
+            reals[begun] = chosen.zero
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
     return Run(
         "",
         error.message if error else None,
         error.line if error else None,
-        {name: _shown(value) for name, value in values.reals.items()},
-        {"dims": values.A.sizes, "data": list(map(_shown, values.A.data))} if values.A else None,
+        {name: _shown(value) for name, value in reals.items()},
+        {"dims": array.sizes, "data": list(map(_shown, array.data))} if array else None,
         zero_determinant,
     )
 

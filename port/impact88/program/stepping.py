@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from bisect import bisect_right
+from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import CodeType, FrameType, TracebackType
@@ -27,14 +28,12 @@ if _LISTING.co_firstlineno != linetable.FIRST_PYTHON_LINE:
     raise ImportError("linetable.py does not belong to listing.py; run python tests/linetable.py")
 
 
-class Variables:
+class Variables(namedtuple("Variables", "reals A")):
     """The listing's variables at a moment: reals by name, if assigned so far, and the array A."""
 
-    __slots__ = ("A", "reals")
-
-    def __init__(self, reals: Mapping[str, Any], A: Array | None) -> None:
-        self.reals = reals
-        self.A = A
+    __slots__ = ()
+    reals: dict[str, Any]
+    A: Array | None
 
 
 def basic_line(python_line: int) -> int | None:

@@ -95,7 +95,7 @@ def _read_together(
         rows = np.flatnonzero(more)
         _treat(x, rows, partial(_next_digit, digit=digit[rows]))
     exponent = np.where(numerals.exponent_negative, -numerals.exponent, numerals.exponent)
-    steps = (exponent - numerals.decimals + 128 & 0xFF) - 128  # `scalar.signed_byte`
+    steps = (exponent - numerals.decimals + 128 & 0xFF) - 128  # in one byte, as `scalar.read`
     for step, count in ((times_ten, steps), (over_ten, -steps)):
         rows = np.flatnonzero(count > 0)
         finished = 0
