@@ -9,6 +9,7 @@ cycles each. Nothing of Applesoft is known here, and nothing of it is changed.
 """
 
 from collections import deque
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from ..emulator.screen import BASE, HEIGHT, WIDTH, shown_character
@@ -22,7 +23,9 @@ COUT = 0xFDED
 CURSOR_COLUMN = 0x24
 RETURN = "\r"
 _WAITING_POLLS, _POLL_CYCLES = 4, 60
-"""The monitor asks every 16 cycles or so; a running program at most once a statement."""
+"""Polls in a row, and cycles between two at most, while the ROM waits: the monitor asks every 16
+cycles or so, a running program at most once a statement. Twice as many of either changes nothing."""
+_NOT_WAITING = "the machine does not wait for a key"
 PLENTY, BOOT_PLENTY = 80_000_000, 4_000_000
 """Instructions that nothing captured needs, and that switching on does not need."""
 
@@ -39,14 +42,15 @@ class State(NamedTuple):
 
 
 class Memory(bytearray):
-    """64K: RAM, the keyboard's two addresses, and the ROM."""
+    """64K: RAM, the keyboard's two addresses, and the ROM. ``cpu``: what reads it."""
+
+    cpu: Any
 
     def __init__(self, rom: bytes) -> None:
         super().__init__(bytes(START) + rom)
         self.keys: deque[int] = deque()
         self.key = 0
         self.waiting = False
-        self.cycles = lambda: 0
         self._last_poll = self._polls = 0
 
     def __getitem__(self, address: Any) -> Any:
@@ -63,18 +67,16 @@ class Memory(bytearray):
     def _read_io(self, address: int) -> int:
         if address in STROBE:
             self.key &= 0x7F
-        elif address in KEYBOARD:
-            now = self.cycles()  # type: ignore[no-untyped-call]
-            self._polls = self._polls + 1 if now - self._last_poll < _POLL_CYCLES else 0
-            self._last_poll = now
-            if self._polls >= _WAITING_POLLS and self.key < 0x80:
-                self._polls = 0
-                if self.keys:
-                    self.key = self.keys.popleft() | 0x80
-                else:
-                    self.waiting = True
-            return self.key
-        return 0
+        if address not in KEYBOARD:
+            return 0
+        now = self.cpu.processorCycles
+        self._polls = self._polls + 1 if now - self._last_poll < _POLL_CYCLES else 0
+        self._last_poll = now
+        if self._polls >= _WAITING_POLLS and self.key < 0x80:
+            self._polls = 0
+            self.waiting = not self.keys
+            self.key = self.keys.popleft() | 0x80 if self.keys else self.key
+        return self.key
 
 
 class Apple:
@@ -92,8 +94,7 @@ class Apple:
                 "the witness needs py65, which is not installed; pip install 'impact88[witness]'"
             ) from None
         self.memory = Memory(rom)
-        self.cpu = MPU(self.memory, pc=None)
-        self.memory.cycles = lambda: self.cpu.processorCycles
+        self.cpu = self.memory.cpu = MPU(self.memory, pc=None)
         self.instructions = 0
         self.blanks = True
         self._output: list[str] = []
@@ -103,37 +104,51 @@ class Apple:
         """Switch on, and wait until the ROM waits for a key. Returns what was displayed."""
         self.cpu.reset()
         self._column = 0
-        self._go(limit)
+        self._wait(limit)
         return self.take_output()
 
-    def type_keys(self, keys: str, limit: int = PLENTY) -> None:
+    def type_keys(self, keys: str) -> None:
         """Type, newlines as RETURN, and wait until the machine waits for more."""
         self.memory.keys.extend(ord(key) & 0x7F for key in keys.replace("\n", RETURN))
-        self._go(limit)
+        self._wait(PLENTY)
 
-    def _go(self, limit: int) -> None:
-        """Run until the ROM waits for a key that has not been typed. Raises Lost."""
-        cpu, memory, step = self.cpu, self.memory, self.cpu.step
+    def call(self, address: int, stops: tuple[int, ...]) -> int:
+        """Run from an address until the processor comes to one of ``stops``; returns which one."""
+        cpu = self.cpu
+        cpu.pc = address
+        self._step(
+            lambda: cpu.pc in stops, PLENTY, f"the routine at ${address:04X} does not return"
+        )
+        return int(cpu.pc)
+
+    def _wait(self, limit: int) -> None:
+        """Run until the ROM waits for a key that has not been typed."""
+        cpu, memory = self.cpu, self.memory
         memory.waiting = False
-        remaining = limit
+        last = self.instructions + limit
+        while not memory.waiting:
+            if cpu.pc == COUT:
+                self._display(last - self.instructions)
+            left = last - self.instructions
+            self._step(lambda: memory.waiting or cpu.pc == COUT, left, _NOT_WAITING)
+
+    def _step(self, done: Callable[[], bool], limit: int, says: str) -> None:
+        """Run until something is so. Raises Lost, with what is not so, and off the memory's end."""
+        cpu, count = self.cpu, 0
         try:
-            while not memory.waiting and remaining >= 0:
-                if cpu.pc == COUT:
-                    remaining -= self._display()
-                else:
-                    step()
-                    remaining -= 1
+            while not done():
+                cpu.step()
+                count += 1
+                if count > limit:
+                    raise Lost(
+                        f"{says} after {count:,} instructions (program counter ${cpu.pc:04X})"
+                    )
         except IndexError:  # an address past $FFFF
             raise Lost(f"the machine ran off the end of memory (${cpu.pc:04X})") from None
-        if remaining < 0:
-            raise Lost(
-                f"the machine does not wait for a key after {limit:,} instructions "
-                f"(program counter ${cpu.pc:04X})"
-            )
-        self.instructions += limit - remaining
+        self.instructions += count
 
-    def _display(self) -> int:
-        """Let the monitor display a character and take it; returns the instructions it took."""
+    def _display(self, limit: int) -> None:
+        """Let the monitor display a character and take it."""
         cpu, memory = self.cpu, self.memory
         character = chr(cpu.a & 0x7F)
         gap = max(memory[CURSOR_COLUMN] - self._column, 0)
@@ -141,26 +156,9 @@ class Apple:
             self._output.append(" " * gap * self.blanks)
             gap = 0
         self._output.append("\n" if character == RETURN else character)
-        top, count = cpu.sp, 0
-        # RTS leaves the stack two bytes shorter than at the call
-        while cpu.sp != (top + 2) & 0xFF:
-            cpu.step()
-            count += 1
-            if count > PLENTY:
-                raise Lost(f"the monitor never finished displaying {character!r}")
+        top = cpu.sp + 2 & 0xFF  # RTS leaves the stack two bytes shorter than at the call
+        self._step(lambda: cpu.sp == top, limit, _NOT_WAITING)
         self._column = 0 if character == RETURN else memory[CURSOR_COLUMN] - gap
-        return count
-
-    def call(self, address: int, stops: tuple[int, ...], limit: int = PLENTY) -> int:
-        """Run from an address until the processor comes to one of ``stops``; returns which one."""
-        cpu = self.cpu
-        cpu.pc = address
-        for done in range(limit):
-            if cpu.pc in stops:
-                self.instructions += done
-                return int(cpu.pc)
-            cpu.step()
-        raise Lost(f"the routine at ${address:04X} does not return")
 
     def take_output(self) -> str:
         """What was displayed since the last call: high bit dropped, RETURN as newline."""

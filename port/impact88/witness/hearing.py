@@ -71,49 +71,66 @@ def hear(session: Session, case: Case) -> Heard:
     return _hear_program(session, case)
 
 
-# --- scenes --------------------------------------------------------------------------------------
+Sides = dict[str, tuple[Mapping[str, str], Mapping[str, str]]]
+"""Whom the ROM is held against -> what it did and what they did, by name."""
+
+
+def _held(kind: str, name: str, sides: Sides, capture: Any) -> Heard:
+    """Where the ROM and others differ; an array of another size is one difference."""
+    differences = []
+    for who, (rom, other) in sides.items():
+        apart = [each for each in dict.fromkeys([*rom, *other]) if rom.get(each) != other.get(each)]
+        if "DIM A" in apart:
+            apart = [each for each in apart if not each.startswith("A(")]
+        differences += [
+            Difference(who, each, rom.get(each, "absent"), other.get(each, "absent"))
+            for each in apart
+        ]
+    return Heard(kind, name, tuple(sides), differences, capture)
 
 
 def hear_scene(
-    session: Session, name: str, scene: Scene, capture: dict[str, Any] | None = None
+    session: Session,
+    name: str,
+    scene: Scene,
+    capture: dict[str, Any] | None = None,
+    published: str = "",
 ) -> Heard:
-    """A scene run on the ROM, by port, emulator and replay, and held against its capture."""
+    """A scene run on the ROM, by port, emulator and replay, and held against its capture, or what
+    was published: without the lines that a disk system takes, which the Apple of 1988 had and this
+    one has not."""
     from ..replay import replay
 
     rom = session.run_scene(scene)
-    others: dict[str, Finished] = {}
-    if capture:
-        others[CAPTURE] = Finished(capture["printout"], capture["reals"], capture["A"])
-    for who, its_run in ((PORT, run), (EMULATOR, emulated.run)):
-        ported = its_run(scene, dos=False)
-        others[who] = Finished(ported.printout, ported.reals, ported.A)
     mine = _left_behind(rom)
-    differences = [
-        one for who, other in others.items() for one in _apart(who, mine, _left_behind(other))
-    ]
+    sides: Sides = {}
+    if capture:
+        captured_run = Finished(capture["printout"], capture["reals"], capture["A"])
+        sides[CAPTURE] = mine, _left_behind(captured_run)
+    for who, its_run in ((PORT, run), (EMULATOR, emulated.run)):
+        done = its_run(scene, dos=False)
+        sides[who] = mine, _left_behind(Finished(done.printout, done.reals, done.A))
     alone = replay({each: [scene[each]] for each in SCENE})
     replayed = {each: text for each in FIELDS if (text := alone.printed(each).tolist()[0])}
-    differences += _apart(REPLAY, outcome_fields(rom.printout), replayed)
-    done = {
+    sides[REPLAY] = outcome_fields(rom.printout), replayed
+    if published:
+        pieces: list[str] = []
+        Console(lambda: None, pieces.append, dos=True).put(rom.printout)
+        sides[PUBLISHED] = {"printout": "".join(pieces)}, {"printout": published}
+    row = {
         "id": name,
         "scene": dict(scene),
         "typed_lines": scene.typed_lines(),
         "keyboard": scene.keyboard(),
         **rom._asdict(),
     }
-    return Heard(SCENES, name, (*others, REPLAY), differences, done)
+    return _held(SCENES, name, sides, row)
 
 
 def hear_sample(session: Session, number: int) -> Heard:
-    """A published run, held against what was published too: without the lines that a disk system
-    takes, which the Apple of 1988 had and this one has not."""
-    heard = hear_scene(session, f"sample {number}", sample(number))
-    pieces: list[str] = []
-    Console(lambda: None, pieces.append, dos=True).put(heard.capture["printout"])
+    """A published run, held against what was published too."""
     published = packaged_bytes("impact88.golden", f"printouts/{GOLDEN_RUNS[number]}.txt").decode()
-    both = {"printout": "".join(pieces)}, {"printout": published}
-    differences = [*heard.differences, *_apart(PUBLISHED, *both)]
-    return heard._replace(compared=(*heard.compared, PUBLISHED), differences=differences)
+    return hear_scene(session, f"sample {number}", sample(number), published=published)
 
 
 def _left_behind(run: Finished) -> dict[str, str]:
@@ -125,21 +142,6 @@ def _left_behind(run: Finished) -> dict[str, str]:
         whole["DIM A"] = f"{[rows, columns]}"
         whole |= {f"A({at % rows},{at // rows})": text for at, text in enumerate(cells)}
     return whole
-
-
-def _apart(who: str, rom: Mapping[str, str], other: Mapping[str, str]) -> list[Difference]:
-    """Where the ROM and another differ; an array of another size is one difference."""
-    names = dict.fromkeys([*rom, *other])
-    if rom.get("DIM A") != other.get("DIM A"):
-        names = {name: None for name in names if not name.startswith("A(")}
-    return [
-        Difference(who, name, rom.get(name, "absent"), other.get(name, "absent"))
-        for name in names
-        if rom.get(name) != other.get(name)
-    ]
-
-
-# --- programs and calculations -------------------------------------------------------------------
 
 
 def _hear_program(session: Session, case: Case) -> Heard:
@@ -163,28 +165,28 @@ def _hear_program(session: Session, case: Case) -> Heard:
             others[EMULATOR]["screen"] = machine.screen_text()
     except Lost as lost:
         rom["displayed"] = session.apple.take_output()
-        others.clear()
+        others = {EMULATOR: {}}
         differences.append(Difference(EMULATOR, "the ROM", str(lost), "not compared"))
     except TooManyStatements:
         allowed = f"no end after {captured.PLENTY:,} statements"
         differences.append(Difference(EMULATOR, "the emulator", "came to an end", allowed))
-    for who, other in others.items():
-        differences += _apart(who, {what: rom[what] for what in other}, other)
     done = {**data, "output" if fuzz else "out": rom["displayed"]}
     if not fuzz:
         done["instructions"] = session.apple.instructions - before
     if case.kind == OWN or "scr" in data:
         done["scr"] = rom["screen"]
-    return Heard(case.kind, case.name, tuple(others or (EMULATOR,)), differences, done)
+    sides: Sides = {who: ({what: rom[what] for what in o}, o) for who, o in others.items()}
+    heard = _held(case.kind, case.name, sides, done)
+    return heard._replace(differences=differences + heard.differences)
 
 
 def _hear_call(session: Session, case: Case) -> Heard:
     *asked, expected = case.data
-    rom = session.calculate(*asked)
+    rom, what = session.calculate(*asked), " ".join(filter(None, asked))
     others = {CAPTURE: captured.result(expected), HERE: captured.call(*asked)}
-    what, mine = " ".join(filter(None, asked)), captured.result(rom)
-    differences = [d for who, one in others.items() for d in _apart(who, {what: mine}, {what: one})]
-    return Heard(ARITHMETIC, case.name, tuple(others), differences, [*asked, rom])
+    mine = {what: captured.result(rom)}
+    sides: Sides = {who: (mine, {what: text}) for who, text in others.items()}
+    return _held(ARITHMETIC, case.name, sides, [*asked, rom])
 
 
 # --- the record -----------------------------------------------------------------------------------
