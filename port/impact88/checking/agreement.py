@@ -16,16 +16,15 @@ Where rounding decides which way the contact slides, either way of MU's sign is 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
 from ..closedform.solve import solve
-from ..doubles import double, doubles
+from ..doubles import double
 from ..equations.bounded import running_errors
 from ..equations.evaluation import Run
 from ..equations.spelling import A_IMPULSE, IMPULSES, LISTING, spellings
@@ -69,8 +68,7 @@ class Verdict(NamedTuple):
     relative: Floats
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(NamedTuple):
     """Rows of a table, theirs and ours: arrays with the rows last, the ``names`` of results before.
 
     ``units``: the last digit written of ``values`` (0 where there is none); ``sizes``: what errors
@@ -93,7 +91,7 @@ class Case:
 
     def part(self, rows: NDArray[np.intp] | Bools) -> Case:
         """Some of the rows."""
-        return _each(self, lambda name: getattr(self, name)[..., rows])
+        return Case(self.names, *(column[..., rows] for column in self[1:]))
 
     @property
     def columns(self) -> dict[str, Floats]:
@@ -126,11 +124,8 @@ class Case:
 
 def joined(cases: Sequence[Case]) -> Case:
     """Rows of several blocks of one table."""
-    return _each(cases[0], lambda name: np.concatenate([getattr(c, name) for c in cases], -1))
-
-
-def _each(case: Case, made: Callable[[str], Any]) -> Case:
-    return replace(case, **{one.name: made(one.name) for one in fields(Case)[1:]})
+    columns = zip(*(case[1:] for case in cases), strict=True)
+    return Case(cases[0].names, *(np.concatenate(column, -1) for column in columns))
 
 
 def case_of(
@@ -143,14 +138,11 @@ def case_of(
         few = {name: column[undecided] for name, column in scene.items()}
         some = {name: (a[undecided], b[undecided]) for name, (a, b) in theirs.items()}
         other, _ = _case({**few, "MU": -few["MU"]}, some, rtol)
-        better = _agree(other) & ~_agree(case.part(undecided))
-        for name in ("ours", "sizes", "condition", "best", "loose", "per_unit"):
-            getattr(case, name)[..., undecided[better]] = getattr(other, name)[..., better]
+        agree, now = ((c.judged().grade < DIFFER).all(0) for c in (other, case.part(undecided)))
+        better = agree & ~now
+        for column, instead in zip(case[6:], other[6:], strict=True):
+            column[..., undecided[better]] = instead[..., better]
     return case
-
-
-def _agree(case: Case) -> Bools:
-    return np.asarray((case.judged().grade < DIFFER).all(0))
 
 
 def _case(
@@ -217,16 +209,11 @@ def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Flo
     texts = ["" if cell is None else str(cell).strip() for cell in column]
     there = [index for index, text in enumerate(texts) if not _NOTHING.fullmatch(text)]
     values, units = np.full(rows.count, np.nan), np.zeros(rows.count)
-    try:
-        values[there] = doubles([texts[index] for index in there])
-    except ValueError:
-        for index in there:
-            try:
-                values[index] = double(texts[index])
-            except ValueError:
-                reason = f"{quoted(texts[index])} is not a number"
-                rows.bad.append(rows.cell(index, name, reason))
     for index in there:
+        try:
+            values[index] = double(texts[index])
+        except ValueError:
+            rows.bad.append(rows.cell(index, name, f"{quoted(texts[index])} is not a number"))
         written = _WRITTEN.fullmatch(texts[index])
         if written:
             decimals, exponent = written.groups(default="")
@@ -250,16 +237,15 @@ def violated(case: Case) -> dict[str, Bools]:
         return {}
     values, room = [], []
     for name in spelling.unknown:
-        value = np.full(point.size, np.nan) if name in missing else case.values[case.of(name)]
-        slack = np.zeros(point.size)
-        if name not in missing:
+        if name in missing:
+            value, slack = scene[name[:2]], np.zeros(point.size)
+        else:
             row = case.of(name)
+            value = case.values[row]
             slack = case.units[row] * 0.5 + case.loose * case.sizes[row]
-        if name in ("WAF", "WBF"):
-            value = np.where(point, scene[name[:2]], value)
-            slack = np.where(point, 0.0, slack)
-        values.append(value)
-        room.append(slack)
+        kept = point & (name in ("WAF", "WBF"))
+        values.append(np.where(kept, scene.get(name[:2], value), value))
+        room.append(np.where(kept, 0.0, slack))
     matrix, right = (whole[0] for whole in Run(spelling, scene).system({}))
     with np.errstate(all="ignore"):
         terms = matrix * np.stack(values, 1)[:, None, :]

@@ -44,9 +44,9 @@ from .vectors import FAILURE
 Bools = NDArray[np.bool_]
 
 WORST = 20
-"""Rows that disagree most, kept for the report."""
+"""Rows that are shown of those that disagree most, and of those not compared."""
 LOOKED_INTO = 4000
-"""Rows that agree, and must bear a cause out, and rows that disagree whose texts are kept."""
+"""Rows that agree, and must bear a cause out: with twice as many the same causes stand."""
 NOT_COMPARED = ("STATUS", "COND")
 CARRIED = ("id", "class", "label", "expect", "flags", "comment")
 """Columns of test vectors that say which row it is."""
@@ -108,13 +108,21 @@ class Elimination:
 
 
 @dataclass
+class Skipped:
+    """Rows not compared for one reason: how many, and the first of them."""
+
+    rows: int = 0
+    first: list[int] = field(default_factory=list)
+
+
+@dataclass
 class Comparison:
     """The result of `compare_file`.
 
     ``causes``: likely cause -> rows it explains; ``evidence`` and ``programs``: what bears out each
     cause that is a program, and the program; ``differences``: every row that disagrees;
-    ``not_compared``: reason -> rows; ``unknown``: columns that were not recognised -> the name that
-    was meant, or "".
+    ``not_compared``: by reason; ``unknown``: columns that were not recognised -> the name that was
+    meant, or "".
     """
 
     rows: int = 0
@@ -123,7 +131,7 @@ class Comparison:
     tallies: dict[str, Tally] = field(default_factory=dict)
     causes: Counter[str] = field(default_factory=Counter)
     differences: list[Row] = field(default_factory=list)
-    not_compared: dict[str, list[int]] = field(default_factory=dict)
+    not_compared: dict[str, Skipped] = field(default_factory=dict)
     elimination: Elimination = field(default_factory=Elimination)
     evidence: list[Cause] = field(default_factory=list)
     programs: list[Program] = field(default_factory=list)
@@ -140,16 +148,12 @@ class Comparison:
     def silent(self) -> list[str]:
         """What would pass without a word: columns, rows and cells that were not compared."""
         said = [f"column {name} not recognised" for name in self.unknown]
-        said += [
-            f"{len(rows)} rows not compared: {reason}"
-            for reason, rows in self.not_compared.items()
-            if reason not in HARMLESS
-        ]
-        said += [
-            f"{tally.missing} cells of {name} are empty where there is a result"
-            for name, tally in self.tallies.items()
-            if tally.missing
-        ]
+        for reason, skipped in self.not_compared.items():
+            if reason not in HARMLESS:
+                said.append(f"{skipped.rows} rows not compared: {reason}")
+        for name, tally in self.tallies.items():
+            if tally.missing:
+                said.append(f"{tally.missing} cells of {name} are empty where there is a result")
         return said
 
     @property
@@ -157,11 +161,9 @@ class Comparison:
         """One line."""
         rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
         line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
-        skipped = sum(map(len, self.not_compared.values()))
-        if skipped:
+        if skipped := sum(one.rows for one in self.not_compared.values()):
             line += f", {skipped} not compared"
-        if self.causes:
-            cause, count = self.causes.most_common(1)[0]
+        for cause, count in self.causes.most_common(1):
             line += f"; likely cause of {count}: {cause}"
         return line
 
@@ -185,23 +187,12 @@ class Comparison:
                     {"row": one.row, "id": one.id, "cause": one.cause} for one in self.differences
                 ],
                 "elimination": vars(self.elimination),
-                "not_compared": {
-                    reason: {"rows": len(rows), "first": rows[:WORST]}
-                    for reason, rows in self.not_compared.items()
-                },
+                "not_compared": {name: vars(one) for name, one in self.not_compared.items()},
                 "unknown_columns": self.unknown,
                 "bad_rows": [str(bad) for bad in self.bad],
             }
         )
         return whole
-
-
-class _Kept(NamedTuple):
-    """Rows of one block kept for the diagnosis, those that disagree, and their scenes as text."""
-
-    case: Case
-    wrong: Bools
-    texts: list[dict[str, str]]
 
 
 def compare_file(
@@ -232,25 +223,22 @@ def compare_file(
     """
     values = texts(values or {})
     path = os.fspath(path)
-    form = format_of(path, form)
+    where = called(path)
     comparison = Comparison()
-    kept: list[_Kept] = []
-    with open_reader(path, form, encoding) as reader:
+    kept: list[tuple[Case, Bools]] = []
+    with open_reader(path, format_of(path, form), encoding) as reader:
         wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
-        where = called(path)
         known = {*SCENE, *RESULTS, *CARRIED}
         comparison.unknown = {name: _meant(name) for name in reader.names if name not in known}
         if not wanted:
-            hint = ", ".join(
-                f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant
-            )
+            hints = [f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant]
+            hint = f" ({', '.join(hints)}?)" if hints else ""
             raise UserError(
-                f"no column of results{f' ({hint}?)' if hint else ''}; expected some of "
-                f"{' '.join(RESULTS)}, beside the scene's",
+                f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
+                "scene's",
                 where,
             )
-        scene_names = [name for name in reader.names if name in SCENE]
-        check_scene_columns(scene_names, list(values), ("M",))
+        check_scene_columns([name for name in reader.names if name in SCENE], list(values), ("M",))
         comparison.tallies = {name: Tally() for name in wanted}
         with progress(reader.total, "compare", "B") as meter:
             before = 0
@@ -271,11 +259,11 @@ def _meant(name: str) -> str:
     """The result or scene column that a name stands for: in other letters, with something behind
     it, or nearly."""
     known = (*RESULTS, *SCENE)
-    for text in (name.strip().upper(), re.split(r"[^A-Z]", name.strip().upper())[0]):
+    whole = name.strip().upper()
+    for text in (whole, re.split(r"[^A-Z]", whole)[0]):
         if text in known:
             return text
-    close = difflib.get_close_matches(name.strip().upper(), known, 1, 0.75)
-    return close[0] if close else ""
+    return next(iter(difflib.get_close_matches(whole, known, 1, 0.75)), "")
 
 
 @np.errstate(all="ignore")
@@ -285,8 +273,9 @@ def _compare_block(
     comparison: Comparison,
     rtol: float | None,
     units: TableUnits,
-) -> _Kept:
-    """Judge a block and count; the rows to be explained are returned."""
+) -> tuple[Case, Bools]:
+    """Judge a block and count; the rows that may be looked into are returned, and which of them
+    disagree."""
     whole = {"M": DEFAULT_M, **values}
     scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
     scene |= numbers(rows, units)
@@ -308,21 +297,22 @@ def _compare_block(
     comparison.differing += int(wrong.sum())
     for reason, which in _skipped(rows, readable, case):
         if found := (rows.first + np.flatnonzero(which & ~compared)).tolist():
-            comparison.not_compared.setdefault(reason, []).extend(found)
-    by_row = np.where(~wrong & (grades == ELIMINATION), relative, 0.0).max(0)
+            skipped = comparison.not_compared.setdefault(reason, Skipped())
+            skipped.rows += len(found)
+            skipped.first = (skipped.first + found)[:WORST]
+    loosely = ~wrong & (grades == ELIMINATION)
+    by_row = np.where(loosely, relative, 0.0).max(0)
     loose = comparison.elimination
-    loose.rows += int((~wrong & (grades == ELIMINATION)).any(0).sum())
+    loose.rows += int(loosely.any(0).sum())
     if (largest := float(by_row.max(initial=0.0))) > loose.worst_relative:
         worst = int(by_row.argmax())
         loose.worst_row, loose.worst_relative = rows.first + worst, largest
         loose.worst_condition = float(case.condition[worst])
-    places = np.flatnonzero(wrong)
-    off = np.where(grades == DIFFER, relative, -1.0)
-    comparison.differences += _differing(rows, places, np.argmax(off, 0), relative, case)
-    room = LOOKED_INTO - len(comparison.differences) + places.size
-    kept = list(_texts(rows, values, units, scene, places[: max(room, 0)]))
-    looked_into = np.concatenate([places, np.flatnonzero(compared & ~wrong)[:LOOKED_INTO]])
-    return _Kept(case.part(looked_into), wrong[looked_into], kept)
+    off = np.where(grades == DIFFER, relative, -1.0).argmax(0)
+    comparison.differences += _differing(rows, np.flatnonzero(wrong), off, relative, case)
+    right = np.flatnonzero(compared & ~wrong)[:LOOKED_INTO]
+    looked_into = np.concatenate([np.flatnonzero(wrong), right])
+    return case.part(looked_into), wrong[looked_into]
 
 
 def _skipped(rows: Rows, readable: Bools, case: Case) -> Iterator[tuple[str, Bools]]:
@@ -357,34 +347,18 @@ def _differing(
         )
 
 
-def _texts(
-    rows: Rows, values: Mapping[str, str], units: TableUnits, scene: Any, places: Any
-) -> Iterator[dict[str, str]]:
-    """Scenes as they are written, or as numbers where units are converted."""
-    converted = any(units.converts(name) for name in scene)
-    columns = {n: scene[n] if converted else rows.columns[n] for n in SCENE if n in rows.columns}
-    for index in places.tolist():
-        yield {
-            name: str(columns[name][index]) if name in columns else values.get(name, DEFAULT_M)
-            for name in SCENE
-        }
-
-
-def _explain(kept: Sequence[_Kept], comparison: Comparison) -> None:
+def _explain(kept: Sequence[tuple[Case, Bools]], comparison: Comparison) -> None:
     """Find the causes, over the whole table at once."""
-    wrong = np.concatenate([one.wrong for one in kept])
+    wrong = np.concatenate([wrong for _, wrong in kept])
     places = np.concatenate([np.flatnonzero(wrong), np.flatnonzero(~wrong)[:LOOKED_INTO]])
-    written = [scene for one in kept for scene in one.texts]
-    diagnosis = diagnose(joined([one.case for one in kept]).part(places), wrong[places], written)
-    comparison.equations = diagnosis.equations
+    found = diagnose(joined([case for case, _ in kept]).part(places), wrong[places])
     rows = comparison.differences
+    comparison.equations, comparison.programs = found.equations, found.programs
     comparison.evidence = [
         one._replace(parts={says: rows[place].row for says, place in one.parts.items()})
-        for one in diagnosis.evidence
+        for one in found.evidence
     ]
-    comparison.programs = diagnosis.programs
     comparison.differences = [
-        row._replace(cause=cause)
-        for row, cause in zip(comparison.differences, diagnosis.causes, strict=True)
+        row._replace(cause=cause) for row, cause in zip(rows, found.causes, strict=True)
     ]
-    comparison.causes.update(diagnosis.causes)
+    comparison.causes.update(found.causes)

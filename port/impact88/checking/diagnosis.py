@@ -68,6 +68,8 @@ _WIDTHS = {SINGLE: (24, (27.0, 33.5)), APPLESOFT: (32, (34.0, 40.0))}
 rounding spoils a few bits less than the bound allows."""
 _EQUIVALENTS = 4
 """Other ways to say a cause that are listed."""
+_REPLAYED = 4000
+"""Rows that the 1988 program is run on."""
 
 
 class Cause(NamedTuple):
@@ -96,13 +98,12 @@ class Diagnosis:
 
 
 @np.errstate(all="ignore")
-def diagnose(case: Case, wrong: Bools, texts: Sequence[Mapping[str, str]]) -> Diagnosis:
-    """The likely causes of a case's disagreements. ``wrong``: the rows that disagree; ``texts``:
-    the scenes of the first of them as decimal text."""
+def diagnose(case: Case, wrong: Bools) -> Diagnosis:
+    """The likely causes of a case's disagreements. ``wrong``: the rows that disagree."""
     causes = np.where(wrong, UNKNOWN, "").astype(object)
     result = Diagnosis([])
     measure = _Measure(case, wrong)
-    if not _by_digits(causes, case, wrong, texts):
+    if not _by_digits(causes, case, wrong):
         _by_search(causes, case, measure, result)
         if (causes == UNKNOWN).sum() > (1 - BORNE_OUT) * wrong.sum():
             _by_precision(causes, case, measure)
@@ -343,12 +344,10 @@ _BRANCHES = (
 # --- digits and rounding -------------------------------------------------------------------------
 
 
-def _by_digits(
-    causes: NDArray[np.object_], case: Case, wrong: Bools, texts: Sequence[Mapping[str, str]]
-) -> bool:
+def _by_digits(causes: NDArray[np.object_], case: Case, wrong: Bools) -> bool:
     """Name the way right numbers are written, as the 1988 program does, floored or cut off, where
     that is all; whether it is."""
-    fits = {PRINTED: _as_printed(case, wrong, texts)}
+    fits = {PRINTED: _as_printed(case, wrong)}
     fits |= {FLOORED: _are_cut(case, np.floor), TRUNCATED: _are_cut(case, np.trunc)}
     best = max(fits, key=lambda says: int((fits[says] & wrong).sum()))
     if (fits[best] & wrong).sum() < BORNE_OUT * wrong.sum():
@@ -367,14 +366,15 @@ def _are_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
     return np.asarray((fits | ~np.isfinite(case.values)).all(0))
 
 
-def _as_printed(case: Case, wrong: Bools, texts: Sequence[Mapping[str, str]]) -> Bools:
-    """Rows that are the 1988 program's own digits, of those whose texts are kept."""
+def _as_printed(case: Case, wrong: Bools) -> Bools:
+    """Rows that are the 1988 program's own digits; beyond so many, where those are, floored."""
     rows = np.zeros(wrong.size, bool)
-    places = np.flatnonzero(wrong)[: len(texts)]
+    places, more = np.split(np.flatnonzero(wrong), [_REPLAYED])
     if not all(name in FIELDS for name in case.names):
         return rows
+    columns = zip(SCENE, case.scene[:, places].tolist(), strict=True)
     try:
-        replayed = replay({name: [scene[name] for scene in texts] for name in SCENE})
+        replayed = replay({name: [f"{x:.15G}" for x in column] for name, column in columns})
     except UserError:
         return rows
     rows[places] = True
@@ -382,9 +382,7 @@ def _as_printed(case: Case, wrong: Bools, texts: Sequence[Mapping[str, str]]) ->
         printed = replayed.printed(name).tolist()
         values = np.array([float(text) if text else np.nan for text in printed])
         rows[places] &= ~np.isfinite(column) | (values == column)
-    if rows[places].mean() >= BORNE_OUT:
-        # beyond those, what is floored
-        rows[np.flatnonzero(wrong)[len(texts) :]] = _are_cut(case, np.floor)[wrong][len(texts) :]
+    rows[more] = (rows[places].mean() >= BORNE_OUT) & _are_cut(case, np.floor)[more]
     return rows
 
 

@@ -97,10 +97,10 @@ def _talk(comparison: Comparison) -> Iterator[str]:
         yield f"column {name} is not recognised{hint}"
     if len(comparison.unknown) > SHOWN:
         yield f"and {len(comparison.unknown) - SHOWN} more columns are not recognised"
-    for reason, rows in comparison.not_compared.items():
+    for reason, skipped in comparison.not_compared.items():
         if reason not in HARMLESS:
-            first = ", ".join(map(str, rows[:5])) + (", ..." if len(rows) > 5 else "")
-            yield f"{len(rows)} rows not compared ({first}): {reason}"
+            first = ", ".join(map(str, skipped.first[:5])) + (", ..." if skipped.rows > 5 else "")
+            yield f"{skipped.rows} rows not compared ({first}): {reason}"
     for name, tally in comparison.tallies.items():
         if tally.missing:
             yield f"{tally.missing} cells of {name} are empty where there is a result"
@@ -145,9 +145,9 @@ def _lines(comparison: Comparison) -> Iterator[str]:
                 f"  {place}{name}: {cell.result} {shown(cell.theirs, 40)}, here {cell.ours:.12g}, "
                 f"off by {cell.relative:.2g}; {cell.cause}"
             )
-    for reason, rows in comparison.not_compared.items():
+    for reason, skipped in comparison.not_compared.items():
         yield ""
-        yield f"{len(rows)} rows not compared: {reason}"
+        yield f"{skipped.rows} rows not compared: {reason}"
 
 
 def _evidence(comparison: Comparison) -> Iterator[str]:

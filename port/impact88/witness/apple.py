@@ -24,7 +24,7 @@ CURSOR_COLUMN = 0x24
 RETURN = "\r"
 _WAITING_POLLS, _POLL_CYCLES = 4, 60
 """Polls in a row, and cycles between two at most, while the ROM waits: the monitor asks every 16
-cycles or so, a running program at most once a statement. Twice as many of either changes nothing."""
+cycles or so, a running program at most once a statement."""
 _NOT_WAITING = "the machine does not wait for a key"
 PLENTY, BOOT_PLENTY = 80_000_000, 4_000_000
 """Instructions that nothing captured needs, and that switching on does not need."""
