@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import gzip
 import json
-from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
@@ -25,25 +24,12 @@ SCENES, PROGRAMS, FUZZ, ARITHMETIC = "scenes", "programs", "fuzz", "arithmetic"
 ENDINGS = ("bas", "in", "out", "scr")
 """Of a program's files: itself, the replies, what is displayed, the screen at the end."""
 
-_BINARY: Mapping[str, Callable[[real.Number, real.Number], real.Number]] = {
-    "add": real.add,
-    "sub": real.subtract,
-    "mul": real.multiply,
-    "div": real.divide,
-    "pow": functions.power,
-}
-_UNARY: Mapping[str, Callable[[real.Number], real.Number]] = {
-    "neg": real.negate,
-    "abs": real.absolute,
-    "sgn": functions.sign,
-    "int": real.floor,
-    "sqr": functions.square_root,
-    "exp": functions.exponential,
-    "log": functions.logarithm,
-    "sin": functions.sine,
-    "cos": functions.cosine,
-    "tan": functions.tangent,
-    "atn": functions.arc_tangent,
+_ROUTINES: Mapping[str, Callable[..., real.Number]] = {
+    **{"add": real.add, "sub": real.subtract, "mul": real.multiply, "div": real.divide},
+    **{"pow": functions.power, "neg": real.negate, "abs": real.absolute, "sgn": functions.sign},
+    **{"int": real.floor, "sqr": functions.square_root, "exp": functions.exponential},
+    **{"log": functions.logarithm, "sin": functions.sine, "cos": functions.cosine},
+    **{"tan": functions.tangent, "atn": functions.arc_tangent},
 }
 
 
@@ -60,12 +46,11 @@ def rows(folder: Any, name: str) -> list[dict[str, Any]]:
 
 def calls(folder: Any) -> dict[str, list[list[str]]]:
     """The captured calls of the arithmetic, by file: operation, operands, extension, result."""
-    files = sorted(folder.joinpath(ARITHMETIC).iterdir(), key=lambda one: str(one.name))
     return {
         file.name.partition(".")[0]: [
             row.split("\t") for row in gzip.decompress(file.read_bytes()).decode().splitlines()
         ]
-        for file in files
+        for file in _files(folder, ARITHMETIC)
         if file.name.endswith(".tsv.gz")
     }
 
@@ -73,11 +58,15 @@ def calls(folder: Any) -> dict[str, list[list[str]]]:
 def programs(folder: Any) -> dict[str, dict[str, str]]:
     """The captured programs by name: their texts by ending."""
     found: dict[str, dict[str, str]] = {}
-    for file in sorted(folder.joinpath(PROGRAMS).iterdir(), key=lambda one: str(one.name)):
+    for file in _files(folder, PROGRAMS):
         name, _, ending = file.name.rpartition(".")
         if ending in ENDINGS:
             found.setdefault(name, {})[ending] = file.read_bytes().decode("latin-1")
     return {name: texts for name, texts in found.items() if "bas" in texts}
+
+
+def _files(folder: Any, name: str) -> list[Any]:
+    return sorted(folder.joinpath(name).iterdir(), key=lambda file: str(file.name))
 
 
 def call(operation: str, first: str, second: str, extension: str) -> str:
@@ -96,9 +85,8 @@ def call(operation: str, first: str, second: str, extension: str) -> str:
         if operation == "cmp":
             order = real.compare(x, real.from_stored(second, low))
             return {1: "01", 0: "00", -1: "ff"}[order]
-        if operation in _BINARY:
-            return _shown(_BINARY[operation](x, real.from_stored(second, low)))
-        return _shown(_UNARY[operation](x))
+        others = [real.from_stored(second, low)] if second else []
+        return _shown(_ROUTINES[operation](x, *others))
     except ApplesoftError as error:
         return f"E{error.code}"
 
@@ -139,26 +127,17 @@ def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Apple
     Returns the machine and all that was displayed after the echo of RUN up to the final prompt.
     ``blanks``: whether skipped columns are written as blanks.
     """
-    from ..applesoft.console import Keys
     from ..emulator.emulator import Applesoft
 
-    lines = deque(filter(None, program.split("\n")))
-    *replies, rest = keys.split("\n")
-    replies += [Keys(rest)] if rest else []
-
-    def keyboard() -> str | None:
-        if lines:
-            return lines.popleft()
-        if not start:
-            return None
+    def typed() -> Iterator[str]:
+        yield from filter(None, program.split("\n"))
         machine.take_output()
         machine.machine.statements_left = PLENTY
-        machine.feed(*replies)
-        return start.pop()
+        machine.feed_keys(keys)
+        yield "RUN"
 
-    start = ["RUN"]
-
-    machine = Applesoft(keyboard, blanks=blanks)
+    lines = typed()
+    machine = Applesoft(lambda: next(lines, None), blanks=blanks)
     machine.prompt()
     return machine, machine.take_output().removeprefix("RUN\n").removesuffix("\n]")
 

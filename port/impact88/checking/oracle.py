@@ -65,9 +65,13 @@ class Request:
         if wrong:
             raise ValueError(f"{wrong[0]} is not a number; expected a number or its decimal text")
         scene = Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", self.units)
-        if doubles.double(scene["M"]) not in (4, 6):
-            raise ValueError(f"M is {scene['M']}; expected 6 or 4")
+        _check_model(scene)
         self.scene = scene
+
+
+def _check_model(scene: Mapping[str, Any]) -> None:
+    if doubles.double(scene["M"]) not in (4, 6):
+        raise UserError(f"M is {scene['M']}; expected 6 or 4")
 
 
 def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[str, Any]]:
@@ -106,8 +110,7 @@ def look_up(
 
     scenes = [typed(scene) for scene in ([scenes] if isinstance(scenes, Mapping) else scenes)]
     for scene in scenes:
-        if doubles.double(scene["M"]) not in (4, 6):
-            raise UserError(f"M is {scene['M']}; expected 6 or 4")
+        _check_model(scene)
     if not scenes:
         return []
 
@@ -123,13 +126,17 @@ def look_up(
     found = solve(numbers)
     solved = {name: column.tolist() for name, column in found.items()}
     replayed = replay(texts)
-    applesoft = {}
-    for name in RESULTS:
-        if name in replayed.names:
-            present, stored = replayed.present(name).tolist(), replayed.reals(name).tolist()
-            printed = replayed.printed(name).tolist() if name != "KF" else [""] * len(scenes)
-            applesoft[name] = (present, printed, stored)
+    applesoft = {
+        name: (
+            replayed.present(name).tolist(),
+            replayed.printed(name).tolist() if name != "KF" else [None] * len(scenes),
+            replayed.reals(name).tolist(),
+        )
+        for name in RESULTS
+        if name in replayed.names
+    }
     double, listing = errorbound.oracle_bounds(scenes, numbers, found)
+    nothing = ([False] * len(scenes),) * 3
     out = []
     for index, scene in enumerate(scenes):
         ported = run(scene)
@@ -138,23 +145,22 @@ def look_up(
         for name in RESULTS:
             if name in _NO_NUMBERS:
                 continue
-            row: dict[str, Any] = {"printed": None, "stored": None, "decimal": None}
-            if name in applesoft and applesoft[name][0][index]:
-                _, printed, stored = (column[index] for column in applesoft[name])
-                row["printed"] = printed or None
-                if name != "LOSS":  # line 690 prints it without storing it
-                    row["stored"] = f"{stored:010x}"
-                    row["decimal"] = exact_decimal(row["stored"])
-            row["double"] = _json_number(solved[name][index])
-            row["reference"] = digits.get(name)
-            results[name] = row
-        condition = solved["COND"][index]
+            present, text, real = (column[index] for column in applesoft.get(name, nothing))
+            # line 690 prints LOSS without storing it
+            stored = f"{real:010x}" if present and name != "LOSS" else None
+            results[name] = {
+                "printed": (present and text) or None,
+                "stored": stored,
+                "decimal": exact_decimal(stored) if stored else None,
+                "double": _json_number(solved[name][index]),
+                "reference": digits.get(name),
+            }
         out.append(
             {
                 "printout": ported.printout,
                 "ending": "ZERO DETERMINANT" if ported.zero_determinant else ported.error,
                 "results": results,
-                "condition": _json_number(condition),
+                "condition": _json_number(solved["COND"][index]),
                 "error_bound": {
                     "double": _json_number(double[index]),
                     "applesoft": _json_number(listing[index]),

@@ -45,22 +45,16 @@ def checks(folder: Any = None) -> Iterator[Check]:
     golden = folder or captured.golden()
     for name, (compared, cases) in CHECKS.items():
         start = time.perf_counter()
-        total = right = 0
-        first_wrong = ""
-        for case, ok in _guarded(cases, golden):
+        total, wrong = 0, []
+        try:
+            for case, ok in cases(golden):
+                total += 1
+                wrong += [] if ok else [case]
+        except Exception as error:  # a check that breaks down is a check that fails
             total += 1
-            right += ok
-            if not ok and not first_wrong:
-                first_wrong = case
-        yield Check(name, compared, total, right, time.perf_counter() - start, first_wrong)
-
-
-def _guarded(cases: Callable[[Any], Counted], golden: Any) -> Counted:
-    """The cases; a check that breaks down is a check that fails, with the reason."""
-    try:
-        yield from cases(golden)
-    except Exception as error:
-        yield f"broke down: {type(error).__name__}: {error}", False
+            wrong.append(f"broke down: {type(error).__name__}: {error}")
+        seconds = time.perf_counter() - start
+        yield Check(name, compared, total, total - len(wrong), seconds, next(iter(wrong), ""))
 
 
 def record(checks: list[Check]) -> dict[str, Any]:
