@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import captures
 from impact88.applesoft.console import EndOfInput
 from impact88.emulator.emulator import Applesoft
-from impact88.emulator.machine import TooManyStatements
+from impact88.emulator.faults import TooManyStatements
 from impact88.emulator.tokens import FIRST, KEYWORDS
 
 STATEMENTS = 400

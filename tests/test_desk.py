@@ -181,8 +181,8 @@ def test_what_is_no_question_gets_a_sentence(client: Client, body: bytes) -> Non
         ("collision", {"values": {}, "units": "furlongs"}, "'furlongs' is not a system of units"),
         ("bounds", {"values": {}, "units": ["us"]}, "'units' is not text"),
         ("reconstruct", {"values": {}, "units": 7}, "'units' is not text"),
-        ("scene-file", {"values": {}, "title": []}, "'title' is not text"),
-        ("scene-file", {"values": {}, "title": "\ud800"}, "is not JSON"),
+        ("file/collision", {"values": {}, "title": []}, "'title' is not text"),
+        ("file/collision", {"values": {}, "title": "\ud800"}, "is not JSON"),
         ("report", {}, "'papers' is not a list"),
         ("report", {"papers": 3, "words": {}}, "'papers' is not a list"),
         ("report", {"papers": [3], "words": {}}, "'papers' is not a list"),
@@ -270,7 +270,7 @@ def test_the_case_report_is_the_commands_own(
 ) -> None:
     asked = {"values": dict(sample(1)), "title": "One", "units": units}
     saved = client.post("case-report/collision", asked)
-    (tmp_path / "scene.toml").write_bytes(client.post("scene-file", asked).data)
+    (tmp_path / "scene.toml").write_bytes(client.post("file/collision", asked).data)
     own("report", "scene.toml", "-o", "case.html")
     assert saved.data == (tmp_path / "case.html").read_bytes()
     known = {"values": {**reconstruction.known_of_sample(1)["values"], "E": "0.1"}, "units": units}
@@ -333,7 +333,7 @@ def test_units_are_the_commands_units(client: Client, tmp_path: Path, own: Own) 
     assert unit == "mph"
     assert float(amount) == pytest.approx(exact["VAX"] * 3600 / 5280, rel=1e-5)
     plain = {**values, "VY": "17"}
-    saved = client.post("scene-file", {"values": plain, "title": "", "units": "us"})
+    saved = client.post("file/collision", {"values": plain, "title": "", "units": "us"})
     (tmp_path / "scene.toml").write_bytes(saved.data)
     printed = own("run", "scene.toml")
     assert printed == collision.answer(plain, "us")["page"]
@@ -359,7 +359,7 @@ def test_what_was_estimated_is_said_and_outlines_are_kept(client: Client) -> Non
     assert "is estimated: MA (LA² + BA²)/12" in read["remarks"][0]
     asked = {"values": {**read["values"], **read["extra"]}, "title": "", "units": ""}
     assert "A drawn as measured, 15 by 6." in client.post("figure", asked).get_data(as_text=True)
-    assert b'LA = "15"' in client.post("scene-file", asked).data
+    assert b'LA = "15"' in client.post("file/collision", asked).data
     known = client.post("known?name=k", text.encode()).json
     assert known["values"]["IA"] == read["values"]["IA"]
 
@@ -374,7 +374,7 @@ def test_a_contact_point_in_a_vehicles_own_axes_is_worked_out(client: Client) ->
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_a_scene_saved_is_the_commands_own_file(client: Client, number: int, own: Own) -> None:
     scene = client.post(f"sample/{number}").json
-    saved = client.post("scene-file", scene)
+    saved = client.post("file/collision", scene)
     assert saved.data == own("scene", "--sample", str(number)).encode()
     assert 'filename="scene.toml"' in saved.headers["Content-Disposition"]
     assert client.post("scene?name=scene.toml", saved.data).json == scene
@@ -383,7 +383,7 @@ def test_a_scene_saved_is_the_commands_own_file(client: Client, number: int, own
 def test_a_scene_file_with_ranges_is_read_again(client: Client) -> None:
     values = {**sample(1), "MU": "0.7 .. 0.9", "GA": ""}
     title = "box 7, \"the\" \\ '''file''' # 3"
-    saved = client.post("scene-file", {"values": values, "title": title})
+    saved = client.post("file/collision", {"values": values, "title": title})
     again = client.post("scene?name=s", saved.data).json
     assert again == {"values": values, "title": title, "units": ""}
 
@@ -512,7 +512,7 @@ def test_what_is_known_is_saved_as_the_commands_file(
     client: Client, tmp_path: Path, own: Own
 ) -> None:
     known = {**client.post("known/1").json["values"], "VAX": "-13.26 +- 0.5", "UY": "0"}
-    saved = client.post("known-file", {"values": known})
+    saved = client.post("file/reconstruction", {"values": known})
     assert saved.status_code == 200
     read = client.post("known?name=k.toml", saved.data).json
     assert {name: text for name, text in read.pop("values").items() if text} == known
@@ -521,7 +521,10 @@ def test_what_is_known_is_saved_as_the_commands_file(
     printed = own("reconstruct", "known.toml")
     assert printed.rstrip("\n") == reconstruction.answer(known)["solutions"][0]["printed"]
     template = own("reconstruct", "--template")
-    assert client.post("known-file", {"values": {"M": "6"}}).get_data(as_text=True) == template
+    assert (
+        client.post("file/reconstruction", {"values": {"M": "6"}}).get_data(as_text=True)
+        == template
+    )
     refused = client.post("known?name=k.toml", b"QQ = 1")
     assert refused.json["problem"].startswith("k.toml: 'QQ' is not a name used here")
 
@@ -647,20 +650,25 @@ def in_thread(work: Any) -> tuple[threading.Thread, list[Any]]:
     return thread, outcome
 
 
+def worker(asking: workers.Bench) -> Any:
+    """The process of a bench, once it has been asked something."""
+    wait_until(lambda: any(future.running() for future in asking._asked.values()))
+    (process,) = asking._pool._pool_manager.worker_manager.workers.values()
+    return process
+
+
 def test_a_newer_question_ends_the_older_and_another_page_waits() -> None:
     asking = workers.Bench("collision")
     question = {"values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
         first, first_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
-        wait_until(lambda: asking._asking == "page" and asking._worker is not None)
-        process = asking._worker[0]
+        process = worker(asking)
         other, other_outcome = in_thread(lambda: asking.ask("other", "bounds_answer", **question))
         newer, newer_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
         for thread in (first, other, newer):
             thread.join()
         assert [type(outcome) for outcome in first_outcome] == [workers.SupersededError]
-        assert process is not None
-        assert not process.is_alive()
+        wait_until(lambda: not process.is_alive())
         assert newer_outcome[0]["inputs"]["MU"]["limits"] == [0.7, 0.9]
         assert newer_outcome == other_outcome
         with pytest.raises(UserError, match="no ranges"):
@@ -692,15 +700,13 @@ def test_stopping_ends_what_a_page_waits_for_and_no_other_pages() -> None:
     question = {"values": {**sample(1), "MU": "0.7 .. 0.9"}}
     try:
         thread, outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **question))
-        wait_until(lambda: asking._asking == "page" and asking._worker is not None)
-        process = asking._worker[0]
-        assert process is not None
+        process = worker(asking)
         asking.stop("other")
         assert process.is_alive()
         asking.stop("page")
         thread.join()
         assert [type(one) for one in outcome] == [workers.SupersededError]
-        assert not process.is_alive()
+        wait_until(lambda: not process.is_alive())
     finally:
         asking.close()
 
@@ -799,7 +805,7 @@ def test_without_the_extra_one_line_says_what_to_install(monkeypatch: pytest.Mon
     monkeypatch.setattr(serving, "find_spec", lambda name: None)
     with pytest.raises(UserError, match=r"pip install 'impact88\[desk\]'") as caught:
         serving.serve(0, False, lambda address: pytest.fail("it must not start"))
-    assert "Flask and waitress" in str(caught.value)
+    assert "Flask, pebble, waitress" in str(caught.value)
 
 
 def test_a_scene_of_the_form_is_the_scene_of_its_texts() -> None:

@@ -12,7 +12,7 @@ from impact88.applesoft.console import EndOfInput
 from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.checking.captured import displayed, session
 from impact88.emulator.emulator import Applesoft
-from impact88.emulator.machine import TooManyStatements
+from impact88.emulator.faults import TooManyStatements
 from impact88.emulator.tokens import KEYWORDS, TOKENS, split_number, tokenise, untokenised
 
 BEL = "\a"

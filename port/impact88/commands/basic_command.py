@@ -23,7 +23,7 @@ from types import FrameType
 from ..applesoft.console import EndOfInput
 from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
-from ..emulator.machine import TooManyStatements
+from ..emulator.faults import TooManyStatements
 from ..errors import UserError
 from ..files import called, packaged_text, read_text, replacing, typed_line
 from ..program.run import page

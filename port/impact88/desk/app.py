@@ -26,10 +26,8 @@ from .guard import HEADERS, LARGEST_BODY, refusal
 from .workers import Bench, BrokenError, SupersededError
 
 BENCHES = {
-    "edit": "paper",
-    "paper": "paper",
-    "bounds": "collision",
-    "reconstruction": "reconstruction",
+    **{"edit": "paper", "paper": "paper"},
+    **{"bounds": "collision", "reconstruction": "reconstruction"},
 }
 """What takes long, and the module that does it; the text being edited overtakes papers waiting."""
 
@@ -85,12 +83,10 @@ def _problem(error: Exception) -> Any:
     if isinstance(error, SupersededError):
         return {"superseded": True}, 409
     if isinstance(error, HTTPException):
-        return {"problem": _REFUSED.get(error.code or 0, error.name)}, error.code or 500
+        too_large = f"more than {LARGEST_BODY:,} bytes, the limit here"
+        return {"problem": too_large if error.code == 413 else error.name}, error.code or 500
     detail = str(error) if isinstance(error, BrokenError) else f"{type(error).__name__}: {error}"
     return {"problem": f"a fault of impact88 {__version__}, not of your input: {detail}"}, 500
-
-
-_REFUSED = {413: f"more than {LARGEST_BODY:,} bytes, the limit here"}
 
 
 def _addresses(desk: Desk) -> Blueprint:
@@ -104,6 +100,9 @@ def _addresses(desk: Desk) -> Blueprint:
 
     def table(macro: str, content: Any) -> str:
         return str(flask.get_template_attribute("answers.html", macro)(content))
+
+    routes.post("/sample/<int:which>")(collision.sample_scene)
+    routes.post("/known/<int:which>")(reconstruction.known_of_sample)
 
     @routes.get("/")
     def whole_page() -> str:
@@ -149,19 +148,21 @@ def _addresses(desk: Desk) -> Blueprint:
         found = asked("bounds", "bounds_answer", **_form())
         return {"found": found, "table": table("bounds", found)}
 
-    @routes.post("/scene-file")
-    def scene_file() -> Response:
-        text = collision.scene_file(**_form(), title=_text("title"))
-        return _saved(text, "application/toml", "scene.toml")
+    def file_of(view: str) -> tuple[str, str]:
+        if view == "collision":
+            return collision.scene_file(**_form(), title=_text("title")), "scene.toml"
+        if view == "reconstruction":
+            return reconstruction.known_file(**_form()), "known.toml"
+        abort(404)
+
+    @routes.post("/file/<view>")
+    def file(view: str) -> Response:
+        text, name = file_of(view)
+        return _saved(text, "application/toml", name)
 
     @routes.post("/case-report/<view>")
     def case_report(view: str) -> Response:
-        if view == "collision":
-            text, name = collision.scene_file(**_form(), title=_text("title")), "scene.toml"
-        elif view == "reconstruction":
-            text, name = reconstruction.known_file(**_form()), "known.toml"
-        else:
-            abort(404)
+        text, name = file_of(view)
         written = asked("bounds", "case_report", text=text, name=name)
         return _saved(written, "text/html", "case.html")
 
@@ -169,26 +170,14 @@ def _addresses(desk: Desk) -> Blueprint:
     def scene() -> Any:
         return filled_in(request.get_data(), _name(), SCENE)
 
-    @routes.post("/sample/<int:number>")
-    def sample(number: int) -> Any:
-        return collision.sample_scene(number)
-
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
         answer = asked("reconstruction", "answer", **_form())
         return {**answer, "tables": table("solutions", answer["solutions"])}
 
-    @routes.post("/known-file")
-    def known_file() -> Response:
-        return _saved(reconstruction.known_file(**_form()), "application/toml", "known.toml")
-
     @routes.post("/known")
-    def read_known() -> Any:
+    def known() -> Any:
         return filled_in(request.get_data(), _name(), KNOWABLE)
-
-    @routes.post("/known/<int:number>")
-    def known(number: int) -> Any:
-        return reconstruction.known_of_sample(number)
 
     @routes.post("/stop/<bench>")
     def stop(bench: str) -> Any:
@@ -210,7 +199,6 @@ def _saved(text: str, kind: str, name: str) -> Response:
 
 
 def _object() -> dict[str, Any]:
-    """The JSON object that was sent. Raises UserError."""
     try:
         whole = json.loads(request.get_data())
         json.dumps(whole, ensure_ascii=False).encode()  # half a pair of surrogates is not text
@@ -222,7 +210,6 @@ def _object() -> dict[str, Any]:
 
 
 def _name() -> str:
-    """What a file that was sent is called."""
     return request.args.get("name", "the file")[:200]
 
 
@@ -230,15 +217,13 @@ def _form() -> dict[str, Any]:
     """A form's ``values``, texts by name, and its system of ``units``, empty for any consistent
     ones. Raises UserError."""
     units = _text("units")
-    if units and units not in dict(page.SYSTEMS):
-        raise UserError(
-            f"{units!r} is not a system of units; expected {', '.join(dict(page.SYSTEMS))}"
-        )
+    known = dict(page.SYSTEMS)
+    if units and units not in known:
+        raise UserError(f"{units!r} is not a system of units; expected {', '.join(known)}")
     return {"values": _texts("values"), "units": units}
 
 
 def _text(name: str) -> str:
-    """One entry of the object sent that may be missing: a text. Raises UserError."""
     text = _object().get(name)
     if not isinstance(text, str | None):
         raise UserError(f"{name!r} is not text")
@@ -250,7 +235,6 @@ def _is_texts(value: object) -> TypeGuard[dict[str, str]]:
 
 
 def _texts(name: str) -> dict[str, str]:
-    """One entry of the object sent: texts by name. Raises UserError."""
     values = _object().get(name)
     if not _is_texts(values):
         raise UserError(f"{name!r} is not an object of texts")
@@ -258,7 +242,6 @@ def _texts(name: str) -> dict[str, str]:
 
 
 def _papers() -> list[dict[str, str]]:
-    """The papers sent, each with a ``name`` and ``data`` in base 64. Raises UserError."""
     papers = _object().get("papers")
     if not isinstance(papers, list) or not all(map(_is_texts, papers)):
         raise UserError("'papers' is not a list of objects of texts")

@@ -1,17 +1,16 @@
 """Processes for what takes long, so that the page stays quick and a newer question ends an older.
 
-A process can be ended from outside, a thread cannot. Each kind of work has one, started in advance,
-kept between questions and replaced after it was ended.
+A process can be ended from outside, a thread cannot. Each kind of work has one: pebble starts it in
+advance, keeps it between questions, ends it with its question and starts another.
 """
 
 import multiprocessing
-import os
-import signal
 import threading
+from concurrent.futures import CancelledError
 from importlib import import_module
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
 from typing import Any
+
+from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from ..errors import UserError
 
@@ -25,7 +24,7 @@ class SupersededError(Exception):
 
 
 class BrokenError(Exception):
-    """The process ended by itself, or said that a fault of this project stopped it."""
+    """The process ended by itself, or a fault of this project stopped it."""
 
 
 class Bench:
@@ -36,115 +35,74 @@ class Bench:
     """
 
     def __init__(self, module: str) -> None:
-        self._module = module
-        self._turn = threading.Condition()
-        self._worker: tuple[SpawnProcess, Connection] | None = None
-        self._asking: str | None = None
-        self._latest: dict[str, int] = {}
-        self._closed = False
+        self._module = f"{__package__}.{module}"
+        self._pool = ProcessPool(
+            1,
+            initializer=_warm,
+            initargs=(self._module,),
+            context=multiprocessing.get_context("spawn"),
+        )
+        self._lock = threading.Lock()
+        self._asked: dict[str, ProcessFuture[Any]] = {}
 
     def warm(self) -> None:
         """Start the process, so that the first question need not wait for it."""
-        with self._turn:
-            if not self._closed:
-                self._ready()
+        assert self._pool.active
 
     def ask(self, page: str, function: str, /, **arguments: Any) -> Any:
         """What a function of the bench's module returns.
 
         Raises UserError with what is wrong with the question, SupersededError, and BrokenError.
         """
-        with self._turn:
-            mine = self._latest[page] = self._latest.get(page, 0) + 1
-            if self._asking == page:
-                self._end()
-            self._turn.notify_all()
-            while self._asking is not None and self._latest[page] == mine:
-                self._turn.wait()
-            if self._latest[page] != mine or self._closed:
-                raise SupersededError
-            self._asking = page
-            worker = self._ready()
-        kind, answer = "ended", None
+        with self._lock:
+            self._cancel(page)
+            asked = self._pool.schedule(
+                _answer, (self._module, function, arguments), timeout=ANSWERED_WITHIN
+            )
+            self._asked[page] = asked
         try:
-            worker[1].send((function, arguments))
-            kind = "late"
-            if worker[1].poll(ANSWERED_WITHIN):
-                kind, answer = worker[1].recv()
-        except (OSError, EOFError):
-            kind = "ended"
+            problem, answer = asked.result()
+        except CancelledError:
+            raise SupersededError from None
+        except TimeoutError:
+            raise UserError(f"is not answered within {ANSWERED_WITHIN:.0f} seconds") from None
+        except ProcessExpired:
+            raise BrokenError("the process that computes ended unexpectedly") from None
+        except Exception as error:
+            raise BrokenError(f"{type(error).__name__}: {error}") from error
         finally:
-            with self._turn:
-                superseded = self._latest[page] != mine or self._worker is not worker
-                if not superseded:
-                    del self._latest[page]
-                if kind in ("ended", "late") and self._worker is worker:
-                    self._end()  # the next question starts another
-                self._asking = None
-                self._turn.notify_all()
-        if superseded:
-            raise SupersededError
-        if kind == "late":
-            raise UserError(f"is not answered within {ANSWERED_WITHIN:.0f} seconds")
-        if kind == "ended":
-            raise BrokenError("the process that computes ended unexpectedly")
-        if kind == "problem":
-            raise UserError(str(answer))
-        if kind == "fault":
-            raise BrokenError(answer)
+            with self._lock:
+                if self._asked.get(page) is asked:
+                    del self._asked[page]
+        if problem:
+            raise UserError(problem)
         return answer
+
+    def _cancel(self, page: str) -> None:
+        if page in self._asked:
+            self._asked.pop(page).cancel()  # type: ignore[no-untyped-call]
 
     def stop(self, page: str) -> None:
         """End what ``page`` is waiting for, if anything."""
-        with self._turn:
-            if page in self._latest:
-                self._latest[page] += 1
-                if self._asking == page:
-                    self._end()
-                self._turn.notify_all()
+        with self._lock:
+            self._cancel(page)
 
     def close(self) -> None:
         """End the process; nothing is answered any more."""
-        with self._turn:
-            self._closed = True
-            self._end()
-            self._turn.notify_all()
-
-    def _ready(self) -> tuple[SpawnProcess, Connection]:
-        if self._worker is None or not self._worker[0].is_alive():
-            context = multiprocessing.get_context("spawn")
-            ours, theirs = context.Pipe()
-            process = context.Process(target=_work, args=(self._module, theirs), daemon=True)
-            process.start()
-            theirs.close()
-            self._worker = process, ours
-        return self._worker
-
-    def _end(self) -> None:
-        if self._worker is not None:
-            process, _ = self._worker
-            self._worker = None
-            process.kill()
-            process.join()
+        with self._lock:
+            for page in list(self._asked):
+                self._cancel(page)
+            self._pool.stop()  # type: ignore[no-untyped-call]
+        self._pool.join()
 
 
-def _work(name: str, line: Connection) -> None:
-    """What runs in the process: answer until the line is closed. Control-C is for the parent, which
-    ends this process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    module = import_module(f"{__package__}.{name}")
-    module.warm()
-    while True:
-        try:
-            function, arguments = line.recv()
-        except EOFError:
-            return
-        try:
-            reply = "answer", getattr(module, function)(**arguments)
-        except UserError as error:
-            reply = "problem", str(error)
-        except Exception as error:
-            if os.environ.get("IMPACT88_DEBUG"):
-                raise
-            reply = "fault", f"{type(error).__name__}: {error}"
-        line.send(reply)
+def _warm(module: str) -> None:
+    import_module(module).warm()
+
+
+def _answer(module: str, function: str, arguments: dict[str, Any]) -> tuple[str, Any]:
+    """What is wrong with the question, or nothing, and what the function returns."""
+    try:
+        return "", getattr(import_module(module), function)(**arguments)
+    except UserError as error:
+        return str(error), None

@@ -54,14 +54,8 @@ class Applesoft:
         self._queue: deque[str] = deque()
         self._keyboard = keyboard
         self._output: list[str] = []
-        self.machine = Machine(
-            self._next_line,
-            screen or self._output.append,
-            printer,
-            dos=dos,
-            echo=echo,
-            blanks=blanks,
-        )
+        shown = screen or self._output.append
+        self.machine = Machine(self._next_line, shown, printer, dos=dos, echo=echo, blanks=blanks)
 
     def _next_line(self) -> str | None:
         if self._queue:
@@ -92,13 +86,10 @@ class Applesoft:
         return self.machine.screen.text()
 
     def load(self, text: str) -> None:
-        """A program from text, one numbered line a row; replaces the one there is. Small letters
-        are capitals outside quotes and remarks.
-
-        Raises ValueError, naming the row, for a row that does not begin with a number up to 63999
-        or holds more than could have been typed, and ApplesoftError OUT OF MEMORY; the program that
-        was there stays then.
-        """
+        """A program from text, one numbered line a row, in place of the one there is. Small letters
+        are capitals outside quotes and remarks. Raises ValueError, naming the row, for one without
+        a number up to 63999 or longer than could be typed, and ApplesoftError OUT OF MEMORY; the
+        program that was there stays then."""
         lines: list[tuple[int, bytes]] = []
         for row, line in enumerate(text.split("\n"), 1):
             if not line.strip():
@@ -112,18 +103,14 @@ class Applesoft:
             number, rest = numbered
             tokens = tokenise(rest, folded=True)
             if len(tokens) > LINE_LIMIT:
-                raise ValueError(
-                    f"row {row} has {len(tokens)} characters and keywords; "
-                    f"a line that can be typed has {LINE_LIMIT}"
-                )
+                has = f"row {row} has {len(tokens)} characters and keywords"
+                raise ValueError(f"{has}; a line that can be typed has {LINE_LIMIT}")
             lines.append((number, tokens))
         self.machine.load(lines)
 
     def type_line(self, text: str) -> ApplesoftError | None:
-        """What the machine does with a line typed at the prompt, once RETURN is pressed.
-
-        Small letters become capitals, as on its keyboard. Returns the error it ended in.
-        """
+        """What the machine does with a line typed at the prompt, small letters as capitals. Returns
+        the error it ended in."""
         return self.enter(capitals(text)[:LINE_LIMIT])
 
     def enter(self, text: str) -> ApplesoftError | None:
@@ -164,17 +151,13 @@ class Applesoft:
         return source(self.machine.lines())
 
     def run(self) -> ApplesoftError | None:
-        """RUN. Returns the error that ended the program, None if it simply ended.
-
-        Raises `console.EndOfInput` when it asks for more than was fed, `machine.TooManyStatements`.
-        """
+        """RUN. Returns the error that ended the program, or None. Raises `console.EndOfInput` when
+        it asks for more than was fed, and `faults.TooManyStatements`."""
         return self.enter("RUN")
 
     def prompt(self, handle: Callable[[str], bool] | None = None) -> None:
-        """Read and do lines at the ``]`` prompt until the keyboard ends.
-
-        ``handle`` may take a line for itself by returning True (the disk system's commands).
-        """
+        """Read and do lines at the ``]`` prompt until the keyboard ends. ``handle`` may take one
+        for itself by returning True (the disk system's commands)."""
         while True:
             self.machine.console.put("\n")
             try:
@@ -209,10 +192,8 @@ class Applesoft:
             return None
         start = self.machine.arytab + array.offset + array.head
         places = range(start, start + prod(array.sizes) * array.element, array.element)
-        return {
-            "dims": list(reversed(array.sizes)),
-            "data": [self._shown(key, place) for place in places],
-        }
+        data = [self._shown(key, place) for place in places]
+        return {"dims": list(reversed(array.sizes)), "data": data}
 
     def _shown(self, key: int, place: int) -> Any:
         """A value as text: a string's characters, a number's stored bytes."""

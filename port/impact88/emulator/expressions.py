@@ -1,13 +1,10 @@
 """Formulas: FRMEVL, its operators and elements, and the functions that are built in.
 
-The ROM reads and computes in one go. Each level of FRMEVL has on the 6502's stack a precedence, and
-for each operator that waits for its right operand the left one, rounded to five bytes. So the order
-of events, errors included, is that of the ROM, and so is the room on the stack: ``sp`` is the stack
-pointer at a routine's entry.
-
-A value is what the accumulator (FAC) holds, a triple of `real`; ``valtyp`` says whether that is a
-string. Where the ROM takes the one for the other, so does this: most functions are computed before
-the ROM sees that the argument was a string; CHR$, PEEK, FRE and POS never look.
+The ROM reads and computes in one go, and so does this: the order of events is the same, errors
+included, and the room on the 6502's stack, whose pointer at a routine's entry is ``sp``. A value is
+what the accumulator (FAC) holds, a triple of `real`; ``valtyp`` says whether that is a string.
+Where the ROM takes the one for the other, so does this: most functions are computed before it sees
+that the argument was a string; CHR$, PEEK, FRE and POS never look.
 """
 
 from collections.abc import Callable
@@ -43,10 +40,9 @@ from .variables import (
     stored_at,
 )
 
-ROOM = 59
-"""CHKMEM: a formula needs the stack pointer to be at least here."""
-PENDING = 12
-"""Bytes on the stack for an operator that waits for its right operand."""
+ROOM, PENDING = 59, 12
+"""CHKMEM: where the stack pointer has to be at least for a formula; bytes on the stack for an
+operator that waits for its right operand."""
 POINT, DIGIT_0, DIGIT_9, LETTER_A, LETTER_Z = map(ord, ".09AZ")
 FN, PLUS_TOKEN, MINUS_TOKEN, NOT_TOKEN, OR_TOKEN, GREATER, LESS, FIRST_FUNCTION = (
     TOKENS[word] for word in ("FN", "+", "-", "NOT", "OR", ">", "<", "SGN")
@@ -62,10 +58,8 @@ ONE = integer(1)
 ARITHMETIC: tuple[Callable[[Number, Number], Number], ...] = (add, subtract, multiply, divide)
 ERROR_DEPTHS = (3, 3, 5, 3, 6)
 """How far below a level's entry + - * / and ^ find their errors."""
-SIGNS = (1, 2, 4)
-"""CPRTYP's bits for >, = and <."""
-TRUTHS = {1: 4, 0: 2, -1: 1}
-"""CPRMASK's bits by what `compare` says of the right operand."""
+SIGNS, TRUTHS = (1, 2, 4), {1: 4, 0: 2, -1: 1}
+"""CPRTYP's bits for >, = and <; CPRMASK's by what `compare` says of the right operand."""
 
 NUMERIC: dict[str, Callable[[Number], Number]] = {
     "SGN": functions.sign,
@@ -84,16 +78,14 @@ LOOKING_FOR_INT: dict[str, Callable[[Number], Number]] = {
 FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
 """How far below a formula's entry they find their errors; others 5."""
 WORDS = {token: word for word, token in TOKENS.items()}
-FIRST_SLICE = TOKENS["LEFT$"]
+FIRST_SLICE, SCREEN_DOT = TOKENS["LEFT$"], TOKENS["SCRN("]
 DIGITS_COUNTED = 36
-SCREEN_DOT = TOKENS["SCRN("]
 LARGEST_ADDRESS = 0x90
 """Exponent of the largest number GETADR takes."""
 
 
 def address_of(x: Number, sp: int) -> int:
-    """GETADR: a 16-bit address; a negative one counts from the top. Raises ILLEGAL QUANTITY past
-    65535."""
+    """GETADR: an address, from the top if negative. Raises ILLEGAL QUANTITY past 65535."""
     if x[0] > LARGEST_ADDRESS:
         raise Fault("ILLEGAL QUANTITY", sp)
     return to_integer(x) & 0xFFFF
@@ -252,8 +244,8 @@ class Expressions(Variables):
             raise placed(error, sp - 1) from None
 
     def element(self, sp: int) -> Number:
-        """FRM_ELEMENT: a constant, a variable, a string, a function or a parenthesis. ``sp`` is
-        that of the formula it stands in."""
+        """FRM_ELEMENT of a formula with this ``sp``: a constant, a variable, a string, a function
+        or a parenthesis."""
         ram = self.ram
         pos = self.txtptr
         byte = ram[pos]
@@ -263,10 +255,6 @@ class Expressions(Variables):
         self.valtyp = 0
         if LETTER_A <= byte <= LETTER_Z:
             name, self.txtptr, subscripts = self.names.get(pos) or self.name_at(pos)
-            if subscripts and not name & INTEGER and not self.subflg:
-                self.inttyp = False
-                e, m = stored_at(ram, self.array_element(name, sp - 5))
-                return (e, (m | 0x80000000) << 8, m >> 31) if e else ZERO
             return self._variable(sp - 5, name, subscripts)
         self.txtptr = pos
         try:
@@ -299,8 +287,7 @@ class Expressions(Variables):
         return fac
 
     def _variable(self, sp: int, name: int, subscripts: bool) -> Number:
-        """FRM_VARIABLE: the value of a variable or an element; of a string, where its descriptor
-        lies."""
+        """FRM_VARIABLE: the value of a variable or an element."""
         kind = name & INTEGER
         self.inttyp = kind == INTEGER
         if subscripts and not self.subflg:
@@ -320,11 +307,8 @@ class Expressions(Variables):
         return self.integer_value(address) if kind else self.value(address)
 
     def function_name(self, sp: int) -> int:
-        """FNC: the address of the function named after FN, which is made if there is none.
-
-        A string's name makes a variable before it is refused: with both marks in its name, that of
-        the kind and that of a function, it is an integer.
-        """
+        """FNC: the address of the function named after FN, which is made if there is none. With a
+        string's mark and a function's in its name a variable is an integer; it is made, too."""
         self.expect(FN, sp - 2)
         self.subflg = SUBFLG_SIMPLE
         address = self.variable(sp - 2, mark=FUNCTION)
@@ -333,8 +317,7 @@ class Expressions(Variables):
         return address
 
     def _function_call(self, sp: int) -> Number:
-        """FUNCT: the formula of DEF FN, with its variable set to the argument. Raises UNDEF'D
-        FUNCTION and SYNTAX; an error leaves the argument in the variable."""
+        """FUNCT: the formula of DEF FN, its variable set to the argument (an error leaves it)."""
         ram = self.ram
         place = self.function_name(sp - 5)
         argument = self.parenthesis(sp - 7)
@@ -354,8 +337,7 @@ class Expressions(Variables):
         return fac
 
     def function(self, token: int, sp: int) -> Number:
-        """UNARY: a function of one argument, or of a string and numbers; ``sp`` is that of the
-        formula it stands in. Raises SYNTAX, TYPE MISMATCH, and what the function does."""
+        """UNARY: a function in a formula with this ``sp``."""
         if token >= FIRST_SLICE:
             return self._slice(token, sp)
         if token == SCREEN_DOT:
@@ -373,11 +355,11 @@ class Expressions(Variables):
     def _applied(self, word: str, fac: Number, sp: int) -> Number:
         if word in NUMERIC:
             return NUMERIC[word](fac)
-        if word in LOOKING_FOR_INT:
-            result: Number = LOOKING_FOR_INT[word](fac)
-            self.charac = word, ZERO, fac
-        else:  # the method named for the function
-            result = getattr(self, f"_{word.rstrip('$').lower()}")(fac, sp)
+        if word not in LOOKING_FOR_INT:  # the method named for the function
+            own: Number = getattr(self, f"_{word.rstrip('$').lower()}")(fac, sp)
+            return own
+        result = LOOKING_FOR_INT[word](fac)
+        self.charac = word, ZERO, fac
         return result
 
     def _int(self, fac: Number, sp: int) -> Number:
@@ -443,7 +425,7 @@ class Expressions(Variables):
         return ZERO
 
     def _text(self, fac: Number, sp: int) -> bytes:
-        """GETSTR: the characters of the argument, which becomes a number. Raises TYPE MISMATCH."""
+        """GETSTR. Raises TYPE MISMATCH."""
         if not self.valtyp:
             raise Fault("TYPE MISMATCH", sp - 6)
         self.valtyp = 0
@@ -453,15 +435,13 @@ class Expressions(Variables):
         return integer(len(self._text(fac, sp)))
 
     def _asc(self, fac: Number, sp: int) -> Number:
-        """ASC. Raises ILLEGAL QUANTITY for the empty string."""
         text = self._text(fac, sp)
         if not text:
             raise Fault("ILLEGAL QUANTITY", sp)
         return integer(text[0])
 
     def _val(self, fac: Number, sp: int) -> Number:
-        """VAL: the number a string begins with, zero if it begins with none. Raises OVERFLOW, and
-        leaves behind the string the zero that is put there to end it."""
+        """VAL. OVERFLOW leaves behind the string the zero that is put there to end it."""
         address = self.word(descriptor(fac) + 1) if self.valtyp else 0
         text = self._text(fac, sp)
         if not text:
@@ -495,13 +475,10 @@ class Expressions(Variables):
 
     def _chr(self, fac: Number, sp: int) -> Number:
         code = byte_of(fac, sp - 2)
-        address = self.room(1)
-        self.ram[address] = code
-        return self.temporary(1, address, shifted_out(fac))
+        return self.made(bytes((code,)), shifted_out(fac))
 
     def _slice(self, token: int, sp: int) -> Number:
-        """LEFT$, RIGHT$ and MID$: parts of a string. Raises ILLEGAL QUANTITY for a first number of
-        0."""
+        """LEFT$, RIGHT$ and MID$. Raises ILLEGAL QUANTITY for a first number of 0."""
         self.expect(OPEN, sp - 6)
         string = self.formula(sp - 6)
         self.expect(COMMA, sp - 6)
@@ -509,8 +486,7 @@ class Expressions(Variables):
             raise Fault("TYPE MISMATCH", sp - 6)
         place = descriptor(string)
         last = self.number(sp - 10)
-        first = byte_of(last, sp - 8)
-        length = LONGEST
+        first, length = byte_of(last, sp - 8), LONGEST
         word = WORDS.get(token, "")
         if word == "MID$" and self.character() != CLOSE:
             self.expect(COMMA, sp - 10)

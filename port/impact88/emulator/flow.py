@@ -1,14 +1,10 @@
 """What comes next: GOTO, FOR and NEXT, ONERR, END and CONT; and the program as it is typed: lines
 put in and taken out, NEW, DEL.
 
-FOR and GOSUB put 18 and 7 bytes on the 6502's stack. A frame is found only from the stack pointer
-on, frame upon frame: what an error that ONERR caught left on the stack hides all below it, until
-RESUME or the manual's CALL -3288 sets the stack pointer back.
-
-In memory a line is the address of the next one, its number (two bytes each, low byte first), its
-tokens and a zero; an address of 0 ends the program. LIST and GOTO follow the addresses; a running
-program goes on with the bytes behind a line's zero. The two agree unless a program pokes into
-itself.
+FOR and GOSUB put 18 and 7 bytes on the 6502's stack, and are found only from the stack pointer on,
+frame upon frame: what an error that ONERR caught left there hides all below it. In memory a line is
+the address of the next one, its number, its tokens and a zero; an address of 0 ends the program.
+LIST and GOTO follow the addresses; a running program goes on with the bytes behind a line's zero.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -32,7 +28,7 @@ NO_VARIABLE = -1
 
 class Frame(NamedTuple):
     """A loop or, without a variable, a subroutine: the stack pointer below it, the address of the
-    variable, and where it goes back to; ``sign`` is that of the step."""
+    variable, where it goes back to; ``sign``: of the step."""
 
     sp: int
     variable: int
@@ -43,9 +39,7 @@ class Frame(NamedTuple):
     sign: int = 0
 
 
-NO_FRAME = Frame(-1, NO_VARIABLE, 0, 0)
-
-END_MARK = b"\0\0"
+NO_FRAME, END_MARK = Frame(-1, NO_VARIABLE, 0, 0), b"\0\0"
 
 
 class Flow(InputOutput):
@@ -56,8 +50,7 @@ class Flow(InputOutput):
     def __init__(self, *arguments: object, **options: object) -> None:
         super().__init__(*arguments, **options)  # type: ignore[arg-type]
         self.frames: list[Frame] = []
-        self.last_line = 0
-        self.broken = False
+        self.last_line, self.broken = 0, False
 
     def set_stack(self, sp: int) -> None:
         """TXS: what lay below is gone."""
@@ -89,7 +82,7 @@ class Flow(InputOutput):
 
     def _find_loop(self) -> tuple[int, int]:
         """GTFORPNT: the loop with FORPNT's variable, or the innermost one if FORPNT's high byte is
-        0; -1 if there is none. Then where the stack pointer came to in looking."""
+        0, or -1; where the stack pointer came to in looking."""
         sp, frames = self.sp, self.frames
         for n in range(len(frames) - 1, -1, -1):
             frame = frames[n]
@@ -103,11 +96,10 @@ class Flow(InputOutput):
         return -1, sp
 
     def let_(self) -> None:
-        """LET with its keyword."""
         self.let(self.sp - 2)
 
     def let(self, sp: int) -> None:
-        """LET. Raises SYNTAX, TYPE MISMATCH, ILLEGAL QUANTITY, and what its formulas do."""
+        """LET, with its keyword or without."""
         known = self.atoms.get(self.txtptr)
         if known and known[1] in self.simple and self.ram[known[0]] == EQUAL:
             self.forpnt = self.varpnt = target = self.simple[known[1]]
@@ -129,7 +121,7 @@ class Flow(InputOutput):
             store(self.ram, target, e, m >> 8 & 0x7FFFFFFF | s << 31)
 
     def for_(self) -> None:
-        """FOR. Raises OUT OF MEMORY, SYNTAX, TYPE MISMATCH."""
+        """FOR. The ROM goes on with whatever stands behind it."""
         self.subflg = SUBFLG_SIMPLE
         self.let(self.sp - 4)
         n, sp = self._find_loop()
@@ -153,7 +145,6 @@ class Flow(InputOutput):
         sign = (-1 if step[2] else 1) if step[0] else 0
         self.sp = sp - FOR_SIZE & 0xFF
         self.frames.append(Frame(self.sp, self.forpnt, self.curlin, back, limit, step, sign))
-        # the ROM goes on with whatever stands here
 
     def next_(self) -> None:
         """NEXT. Raises NEXT WITHOUT FOR."""
@@ -183,8 +174,7 @@ class Flow(InputOutput):
             self.forpnt = self.variable(self.sp - 4)
 
     def goto_(self, sp: int = 0) -> None:
-        """GOTO, at once from a place where it has been done before. Raises SYNTAX and UNDEF'D
-        STATEMENT."""
+        """GOTO, at once from a place where it has been done before."""
         target = self.targets.get(self.txtptr)
         if target is None:
             self.goto(sp or self.sp - 2)
@@ -193,7 +183,7 @@ class Flow(InputOutput):
             self.charac = 0
 
     def goto(self, sp: int) -> None:
-        """GOTO, the line looked up."""
+        """GOTO, the line looked up. Raises SYNTAX and UNDEF'D STATEMENT."""
         start = self.txtptr
         number = self.line_number(sp - 2)
         self.rem_()
@@ -206,7 +196,6 @@ class Flow(InputOutput):
             self.targets[start] = self.txtptr
 
     def gosub_(self) -> None:
-        """GOSUB. Raises OUT OF MEMORY, SYNTAX and UNDEF'D STATEMENT."""
         if self.sp - 4 & 0xFF < GOSUB_ROOM - 4:
             raise Fault("OUT OF MEMORY", self.sp - 4)
         frame = Frame(self.sp - GOSUB_SIZE & 0xFF, NO_VARIABLE, self.curlin, self.txtptr)
@@ -215,7 +204,6 @@ class Flow(InputOutput):
         self.sp = frame.sp
 
     def return_(self) -> None:
-        """RETURN. Raises RETURN WITHOUT GOSUB."""
         if not self.at_end():
             return
         frame = self._subroutine()
@@ -224,16 +212,12 @@ class Flow(InputOutput):
         self.data_()
 
     def pop_(self) -> None:
-        """POP. Raises RETURN WITHOUT GOSUB."""
         if self.at_end():
             self._subroutine()
 
     def _subroutine(self) -> Frame:
-        """The innermost GOSUB, which is over then, and the loops within it.
-
-        The ROM looks for a loop whose variable lies at $xxFF, xx being left over from the last
-        assignment, and fails if there is one.
-        """
+        """The innermost GOSUB, which is over then. The ROM looks for a loop whose variable lies at
+        $xxFF, xx being left over from the last assignment, and fails if there is one."""
         self.forpnt |= 0xFF
         n, sp = self._find_loop()
         if n < 0 or sp != self.sp:
@@ -245,7 +229,6 @@ class Flow(InputOutput):
         return frame
 
     def on_(self) -> None:
-        """ON. Raises SYNTAX, ILLEGAL QUANTITY, and what GOTO or GOSUB do."""
         sp = self.sp - 2
         count = self.byte(sp - 2)
         command = self.character()
@@ -256,11 +239,7 @@ class Flow(InputOutput):
             count -= 1
             if not count:
                 self.character()
-                if command == GOTO:
-                    self.goto_()
-                else:
-                    self.gosub_()
-                return
+                return self.goto_() if command == GOTO else self.gosub_()
             self.line_number(sp - 3)
             if self.character() != COMMA:
                 return
@@ -281,7 +260,6 @@ class Flow(InputOutput):
             self.execute()
 
     def onerr_(self) -> None:
-        """ONERR GOTO. Raises SYNTAX."""
         self.expect(GOTO, self.sp - 4)
         self.txtpsv = self.txtptr
         self.errflg = 0x80 | self.errflg >> 1
@@ -291,12 +269,9 @@ class Flow(InputOutput):
     def handle(self, code: int, stack: int) -> None:
         """HANDLERR: an error goes to ONERR's line, and leaves the stack as it is. Raises UNDEF'D
         STATEMENT, where the ROM would loop."""
-        self.errnum = code
-        self.errstk = self.remstk
-        self.errlin = self.curlin
-        self.errpos = self.oldtext
-        self.txtptr = self.txtpsv
-        self.curlin = self.cursv
+        self.errnum, self.errstk = code, self.remstk
+        self.errlin, self.errpos = self.curlin, self.oldtext
+        self.txtptr, self.curlin = self.txtpsv, self.cursv
         self.sp = stack & 0xFF
         if stack < 0:
             self.frames.clear()
@@ -308,8 +283,7 @@ class Flow(InputOutput):
 
     def resume_(self) -> None:
         """RESUME. Where there was no error the ROM goes on at address 0."""
-        self.curlin = self.errlin
-        self.txtptr = self.errpos
+        self.curlin, self.txtptr = self.errlin, self.errpos
         self.forget_error()
 
     def forget_error(self) -> None:
@@ -317,11 +291,8 @@ class Flow(InputOutput):
         self.set_stack(self.errstk)
 
     def run_(self) -> None:
-        """RUN. Raises UNDEF'D STATEMENT.
-
-        To say that a program runs now the machine takes 256 from the line number, also from that
-        of a line that runs already.
-        """
+        """RUN. To say that a program runs now the machine takes 256 from the line number, also
+        from that of a line that runs already."""
         self.curlin = self.curlin - 0x100 & 0xFFFF
         if self.at_end():
             self.set_pointers()
@@ -332,8 +303,7 @@ class Flow(InputOutput):
     def _note_place(self) -> None:
         """Where CONT goes on, unless at the prompt."""
         if self.curlin < DIRECT:
-            self.oldtext = self.txtptr
-            self.oldlin = self.curlin
+            self.oldtext, self.oldlin = self.txtptr, self.curlin
 
     def end_(self) -> None:
         if self.at_end():
@@ -356,25 +326,18 @@ class Flow(InputOutput):
         self.broken = True
         self._stop()
 
-    def show_line_number(self) -> None:
-        """LINPRT of CURLIN."""
-        self.show_number(integer(self.curlin))
-
     def message(self, text: bytes) -> None:
         """What stands before the prompt: a text, the bell, the line if there is one."""
         self.show_message(text + b"\a")
         if self.curlin < DIRECT:
             self.show_message(b" IN ")
-            self.show_line_number()
+            self.show_number(integer(self.curlin))
 
     def cont_(self) -> None:
-        """CONT. Raises CAN'T CONTINUE."""
-        if not self.at_end():
-            return
-        if not self.oldtext >> 8:
-            raise Fault("CAN'T CONTINUE", self.sp - 2)
-        self.txtptr = self.oldtext
-        self.curlin = self.oldlin
+        if self.at_end():
+            if not self.oldtext >> 8:
+                raise Fault("CAN'T CONTINUE", self.sp - 2)
+            self.txtptr, self.curlin = self.oldtext, self.oldlin
 
     def lines(self) -> Iterator[tuple[int, bytes]]:
         """Numbers and tokens, as the addresses lead."""
@@ -387,11 +350,8 @@ class Flow(InputOutput):
 
     def load(self, lines: Iterable[tuple[int, bytes]]) -> None:
         """Put lines in place of the program. Raises OUT OF MEMORY, and changes nothing then."""
-        image = bytearray()
-        for number, tokens in sorted(dict(lines).items()):
-            if tokens:
-                image += b"\1\1" + number.to_bytes(2, "little") + tokens + b"\0"
-        image += END_MARK
+        numbered = sorted(dict(lines).items())
+        image = b"".join(_linked(*line) for line in numbered if line[1]) + END_MARK
         if self.txttab + len(image) >= self.memsiz:
             raise Fault("OUT OF MEMORY", self.sp)
         self.ram[self.txttab : self.txttab + len(image)] = image
@@ -413,11 +373,10 @@ class Flow(InputOutput):
                 raise Fault("OUT OF MEMORY", self.sp)
             ram[line + size : self.vartab + size] = ram[line : self.vartab]
             self.vartab += size
-            ram[line : line + size] = b"\1\1" + number.to_bytes(2, "little") + tokens + b"\0"
+            ram[line : line + size] = _linked(number, tokens)
         self.fix_links()
 
     def _close(self, start: int, end: int) -> None:
-        """Take out what lies from start to end."""
         if start <= end <= self.vartab:
             self.ram[start : start + self.vartab - end] = self.ram[end : self.vartab]
             self.vartab -= end - start
@@ -445,7 +404,7 @@ class Flow(InputOutput):
         self.set_pointers()
 
     def del_(self) -> None:
-        """DEL. The program ends, unless the range lies before its own beginning. Raises SYNTAX."""
+        """DEL. The program ends, unless the range lies before its own beginning."""
         sp = self.sp - 2
         if not is_digit(self.character()):
             raise Fault("SYNTAX", sp)
@@ -460,3 +419,8 @@ class Flow(InputOutput):
         self._close(start, end)
         self.fix_links()
         raise Restart
+
+
+def _linked(number: int, tokens: bytes) -> bytes:
+    """A line in memory, its link to be fixed."""
+    return b"\1\1" + number.to_bytes(2, "little") + tokens + b"\0"

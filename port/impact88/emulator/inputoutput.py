@@ -1,10 +1,9 @@
 """PRINT, LIST and the messages; READ, INPUT and GET.
 
-READ, INPUT and GET take values from DATA, from a reply and from a key by the same routine. TXTPTR
-changes places between the statement's variables and the values. Each variable is found, its value
-read and stored, then what follows the value is judged; so values before a bad one stay. A string
-ends at a comma or colon unless it began with a quote; a number is whatever reads as one, and after
-it only a comma, a colon or the end will do.
+READ, INPUT and GET take values by the same routine: TXTPTR changes places between the variables and
+the values. Each variable is found, its value read and stored, then what follows the value is
+judged; so values before a bad one stay. A string ends at a comma or colon unless it began with a
+quote; after a number only a comma, a colon or the end will do.
 """
 
 from ..applesoft.console import CONTROL_C
@@ -83,9 +82,7 @@ class InputOutput(Expressions):
         self.show_message(self.digits(x), IN_STACK_PAGE)
 
     def print_(self) -> None:
-        """PRINT. Raises SYNTAX, and what its formulas do."""
-        sp = self.sp - 2
-        newline = True
+        sp, newline = self.sp - 2, True
         while (byte := self.character()) and byte != COLON:
             newline = False
             if byte in (TAB, SPC):
@@ -109,7 +106,7 @@ class InputOutput(Expressions):
             self.console.put("\n")
 
     def _skip_columns(self, token: int, sp: int) -> None:
-        """SPC: so many blanks; TAB: up to a column, counted from 1, 0 as 256. Raises SYNTAX."""
+        """SPC: so many blanks; TAB: up to a column, counted from 1, 0 as 256."""
         self.txtptr += 1
         columns = self.byte(sp - 2)
         if self.character() != CLOSE:
@@ -121,11 +118,10 @@ class InputOutput(Expressions):
             self.put(" " * columns)
 
     def byte(self, sp: int) -> int:
-        """GETBYT: a number from 0 to 255. Raises SYNTAX, TYPE MISMATCH, ILLEGAL QUANTITY."""
+        """GETBYT: a number from 0 to 255."""
         return byte_of(self.number(sp - 2), sp)
 
     def htab_(self) -> None:
-        """HTAB: to a column, counted from 1, on a later line if there is none such on this one."""
         column = self.byte(self.sp - 4) - 1 & 0xFF
         while column >= WIDTH:
             self.put("\n")
@@ -133,7 +129,6 @@ class InputOutput(Expressions):
         self.screen.column = column
 
     def vtab_(self) -> None:
-        """VTAB: to a row, counted from 1. Raises ILLEGAL QUANTITY past 24."""
         row = self.byte(self.sp - 4)
         if not 1 <= row <= HEIGHT:
             raise Fault("ILLEGAL QUANTITY", self.sp - 2)
@@ -145,7 +140,6 @@ class InputOutput(Expressions):
         self.screen.mask = mask
 
     def list_(self) -> None:
-        """LIST. Raises SYNTAX for a line number past 63999."""
         sp = self.sp - 2
         byte = self.character()
         if not (is_digit(byte) or self.at_end() or byte in (MINUS, COMMA)):
@@ -172,9 +166,9 @@ class InputOutput(Expressions):
             if number > last:
                 break
             self.show_number(integer(number))
-            tokens = ram[line + HEADER : ram.index(0, line + HEADER)]
-            for piece in (" ", *map(_listed, tokens)):
-                self.put(piece)
+            self.put(" ")
+            for byte in ram[line + HEADER : ram.index(0, line + HEADER)]:
+                self.put(chr(byte) if byte < FIRST else f" {spelling(byte)} ")
                 if self.screen.column >= WRAP_COLUMN:
                     self.put("\n")
                     self.screen.column = INDENT
@@ -186,17 +180,15 @@ class InputOutput(Expressions):
         if self.curlin >= DIRECT:
             raise Fault("ILLEGAL DIRECT", sp)
 
-    def put_in_buffer(self, text: str) -> None:
+    def _put_in_buffer(self, text: str) -> None:
         """INLIN's bytes, on page 2."""
         data = text.encode("latin-1") + b"\0"
         self.ram[INPUT_BUFFER : INPUT_BUFFER + len(data)] = data
 
     def read_(self) -> None:
-        """READ. Raises OUT OF DATA, and SYNTAX in the line of the DATA for what is not a number."""
         self._take_items(FROM_DATA, self.datptr, self.sp - 2)
 
     def restore_(self) -> None:
-        """RESTORE: READ begins with the first DATA again."""
         self.datptr = self.txttab - 1
 
     def _next_data(self, sp: int) -> None:
@@ -214,7 +206,6 @@ class InputOutput(Expressions):
                 return
 
     def input_(self) -> None:
-        """INPUT. Raises ILLEGAL DIRECT, and what a bad reply does."""
         sp = self.sp - 2
         if self.character() == QUOTE:
             prompt = self.literal(self.txtptr + 1)
@@ -229,14 +220,12 @@ class InputOutput(Expressions):
         except KeyboardInterrupt:
             reply = CONTROL_C
         self.ram[INPUT_BUFFER - 1] = COMMA
-        self.put_in_buffer(reply)
+        self._put_in_buffer(reply)
         if reply.startswith(CONTROL_C):
             raise KeyboardInterrupt
         self._take_items(FROM_REPLY, INPUT_BUFFER - 1, sp)
 
     def get_(self) -> None:
-        """GET. Raises ILLEGAL DIRECT, and SYNTAX, as if at the prompt, for a key that begins no
-        number."""
         self.refuse_direct(self.sp - 4)
         self.ram[INPUT_BUFFER + 1] = 0
         self._take_items(FROM_KEY, INPUT_BUFFER + 1, self.sp - 4)
@@ -272,13 +261,12 @@ class InputOutput(Expressions):
     def _more_values(self, source: int, sp: int) -> None:
         """Where the values are used up: the next DATA, a key, or another reply."""
         if source == FROM_DATA:
-            self._next_data(sp)
-            return
+            return self._next_data(sp)
         if source == FROM_KEY:
             self.ram[INPUT_BUFFER] = ord(self.console.read_key()) & 0x7F
         else:
             self.put("??")
-            self.put_in_buffer(self.console.read_line())
+            self._put_in_buffer(self.console.read_line())
         self.txtptr = INPUT_BUFFER - 1
 
     def _take_item(self, source: int, sp: int) -> bool:
@@ -286,9 +274,8 @@ class InputOutput(Expressions):
         if not self.valtyp:
             if source == FROM_REPLY and not self.ram[INPUT_BUFFER]:
                 return True
-            integer_ = self.inttyp
             value = self.numeral()
-            if integer_:
+            if self.inttyp:
                 self.assign_integer(self.forpnt, value, sp - 2)
                 self.fac = value
             else:
@@ -307,8 +294,8 @@ class InputOutput(Expressions):
         return False
 
     def _refuse_value(self, source: int, sp: int) -> None:
-        """INPUTERR. Raises SYNTAX for DATA and keys; a reply is asked for again, from where the ROM
-        noted last that a statement begins, unless ONERR is on."""
+        """INPUTERR. A reply is asked for again, from where the ROM noted last that a statement
+        begins, unless ONERR is on."""
         if source == FROM_REPLY:
             if self.errflg & 0x80:
                 raise Fault("SYNTAX", sp, BAD_REPLY)
@@ -317,8 +304,3 @@ class InputOutput(Expressions):
             return
         self.curlin = self.datlin if source == FROM_DATA else AFTER_GET
         raise Fault("SYNTAX", sp)
-
-
-def _listed(byte: int) -> str:
-    """What LIST writes for a byte before it asks where the cursor is."""
-    return chr(byte) if byte < FIRST else f" {spelling(byte)} "

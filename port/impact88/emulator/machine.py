@@ -2,8 +2,7 @@
 
 One method a routine of the ROM, named in its docstring by the label that the published listings of
 the ROM give it; a statement's is named for its keyword, with an underscore. `memory` holds the
-state; each class on top of it adds a part: `text`, `strings`, `variables`, `expressions`,
-`intrinsics`, `printing`, `inputs`, `flow`, `editing`; the rest is here.
+state; `variables`, `expressions`, `inputoutput` and `flow` add a part each.
 """
 
 from collections.abc import Callable
@@ -11,26 +10,25 @@ from functools import partial
 from typing import Any
 
 from ..applesoft.errorcodes import ApplesoftError
+from ..applesoft.real import integer
 from .expressions import address_of
-from .faults import Fault, Restart, TooManyStatements, placed
+from .faults import Fault, Restart, placed
 from .flow import EQUAL, Flow
 from .memory import BLANK, CLOSE, COLON, COMMA, DIRECT, INPUT_BUFFER, OPEN, RTS, SPEED
 from .screen import FLASHING, INVERSE, NORMAL
-from .tokens import KEYWORDS, LAST_STATEMENT
+from .tokens import FIRST, KEYWORDS, LAST_STATEMENT
 from .variables import SUBFLG_SIMPLE
 
-COLOR, HIGH_COLOR, SCALE, ROTATION = 0x30, 0xE4, 0xE7, 0xF9
 EVERY_BYTE = bytes(range(256))
 KEPT = {
     "SPEED=": (SPEED, bytes(-n & 0xFF for n in EVERY_BYTE)),
-    "COLOR=": (COLOR, bytes((n & 15) * 17 for n in EVERY_BYTE)),
-    "HCOLOR=": (HIGH_COLOR, bytes.fromhex("00 2A 55 7F 80 AA D5 FF")),
-    "ROT=": (ROTATION, EVERY_BYTE),
-    "SCALE=": (SCALE, EVERY_BYTE),
+    "COLOR=": (0x30, bytes((n & 15) * 17 for n in EVERY_BYTE)),
+    "HCOLOR=": (0xE4, bytes.fromhex("00 2A 55 7F 80 AA D5 FF")),
+    "ROT=": (0xF9, EVERY_BYTE),
+    "SCALE=": (0xE7, EVERY_BYTE),
 }
 """Statements that put a byte into memory for drawing, which is not done here, and for PEEK: where,
 and what for each number."""
-FIRST_TOKEN = 0x80
 FLASH_BIT = 0x40
 AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
 """What the ROM's parser leaves in the accumulator: an address."""
@@ -39,9 +37,8 @@ AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
 class Machine(Flow):
     """An Apple II Plus with 48K as far as a BASIC program can tell.
 
-    ``after_line(number)`` is called each time the program leaves a line; ``broken``: whether
-    control-C ended the last program; ``last_line``: where it ended; ``error``: the error it ended
-    in.
+    ``after_line(number)`` is called each time the program leaves a line. Of the last program:
+    ``broken``, whether control-C ended it, ``last_line``, where, and ``error``, in which.
     """
 
     def __init__(self, *devices: Any, **options: Any) -> None:
@@ -61,7 +58,7 @@ class Machine(Flow):
             others.get(word)
             or getattr(self, f"{word.lower().rstrip('#:')}_", None)
             or partial(self.refuse, word)
-            for word in KEYWORDS[: LAST_STATEMENT - FIRST_TOKEN + 1]
+            for word in KEYWORDS[: LAST_STATEMENT - FIRST + 1]
         ]
         self.text_changed()
         self.variables_changed()
@@ -76,11 +73,10 @@ class Machine(Flow):
 
     def go(self, step: Callable[[], None]) -> None:
         """Do a line typed without a number, or RUN (``step``: `execute` or `next_statements`), and
-        whatever follows, until the machine is back at the prompt; ``error`` is then the error that
-        ended it, or None. Raises TooManyStatements and `console.EndOfInput`."""
+        whatever follows, until the machine is back at the prompt. Raises TooManyStatements and
+        `console.EndOfInput`."""
         self.curlin |= DIRECT
-        self.error = None
-        self.broken = False
+        self.error, self.broken = None, False
         while True:
             try:
                 try:
@@ -139,7 +135,7 @@ class Machine(Flow):
                     self.after_line(line)
                 if self.trcflg & 0x80 and self.curlin < DIRECT:
                     self.put("#")
-                    self.show_line_number()
+                    self.show_number(integer(self.curlin))
                     self.put(" ")
                 line = self.curlin
             pos += 1
@@ -147,11 +143,11 @@ class Machine(Flow):
             while byte == BLANK:
                 pos += 1
                 byte = ram[pos]
-            if byte >= FIRST_TOKEN:
+            if byte >= FIRST:
                 self.txtptr = pos + 1
                 if byte > LAST_STATEMENT:
                     raise Fault("SYNTAX", self.sp - 2)
-                statements[byte - FIRST_TOKEN]()
+                statements[byte - FIRST]()
             else:
                 self.txtptr = pos
                 if byte and byte != COLON:
@@ -160,11 +156,11 @@ class Machine(Flow):
     def execute(self) -> None:
         """EXECUTE_STATEMENT: the statement at TXTPTR. Raises SYNTAX."""
         byte = self.character()
-        if byte >= FIRST_TOKEN:
+        if byte >= FIRST:
             self.txtptr += 1
             if byte > LAST_STATEMENT:
                 raise Fault("SYNTAX", self.sp - 2)
-            self.statements[byte - FIRST_TOKEN]()
+            self.statements[byte - FIRST]()
         elif byte and byte != COLON:
             self.let(self.sp - 2)
 
@@ -176,8 +172,7 @@ class Machine(Flow):
             self.expect(COMMA, self.sp - 4)
 
     def def_(self) -> None:
-        """DEF: where the formula stands, and the variable of the argument. Errors in the formula
-        show when it is used. Raises SYNTAX, TYPE MISMATCH, ILLEGAL DIRECT."""
+        """DEF: where the formula stands, and the variable of the argument."""
         sp = self.sp - 4
         function = self.function_name(sp)
         self.refuse_direct(sp)
@@ -194,7 +189,6 @@ class Machine(Flow):
         self.data_()
 
     def _address(self) -> int:
-        """FRMNUM and GETADR: a 16-bit address. Raises ILLEGAL QUANTITY."""
         return address_of(self.number(self.sp - 4), self.sp - 4)
 
     def _address_and_byte(self) -> tuple[int, int]:
@@ -209,8 +203,7 @@ class Machine(Flow):
 
     def wait_(self) -> None:
         """WAIT: until bits come up, which nothing but control-C does here."""
-        place, mask = self._address_and_byte()
-        flip = 0
+        (place, mask), flip = self._address_and_byte(), 0
         if not self.at_end():
             self.expect(COMMA, self.sp - 6)
             flip = self.byte(self.sp - 4)
@@ -220,17 +213,11 @@ class Machine(Flow):
     def call_(self) -> None:
         """CALL of a routine that is known, or of a bare RTS."""
         place = self._address()
+        bell, normal = partial(self.put, "\a"), partial(self.set_mode, NORMAL)
         routines: dict[int, Callable[[], object]] = {
-            0xF328: self.forget_error,
-            0xD66C: self.clear,
-            0xD683: self.clear_stack,
-            0xFD8E: partial(self.put, "\n"),
-            0xFF3A: partial(self.put, "\a"),
-            0xFBDD: partial(self.put, "\a"),
-            0xFE80: partial(self.set_mode, INVERSE),
-            0xFE84: partial(self.set_mode, NORMAL),
-            0xF273: partial(self.set_mode, NORMAL),
-            0xFCA8: int,  # WAIT
+            **{0xF328: self.forget_error, 0xD66C: self.clear, 0xD683: self.clear_stack},
+            **{0xFD8E: partial(self.put, "\n"), 0xFF3A: bell, 0xFBDD: bell, 0xFCA8: int},  # WAIT
+            **{0xFE80: partial(self.set_mode, INVERSE), 0xFE84: normal, 0xF273: normal},
         }
         if place in routines:
             routines[place]()
@@ -238,14 +225,12 @@ class Machine(Flow):
             self.refuse(f"CALL {place}")
 
     def himem_(self) -> None:
-        """HIMEM:. Raises OUT OF MEMORY below the arrays."""
         place = self._address()
         if place < self.strend:
             raise Fault("OUT OF MEMORY", self.sp - 2)
         self.memsiz = self.fretop = place
 
     def lomem_(self) -> None:
-        """LOMEM:, which clears all variables. Raises OUT OF MEMORY outside the free room."""
         place = self._address()
         if not self.vartab <= place < self.memsiz:
             raise Fault("OUT OF MEMORY", self.sp - 2)
@@ -257,7 +242,6 @@ class Machine(Flow):
             self.clear()
 
     def keep_byte(self, place: int, table: bytes) -> None:
-        """SPEED= and the statements that prepare for drawing. Raises ILLEGAL QUANTITY."""
         n = self.byte(self.sp - 4)
         if n >= len(table):
             raise Fault("ILLEGAL QUANTITY", self.sp - 2)
@@ -275,6 +259,3 @@ class Machine(Flow):
 
     def notrace_(self) -> None:
         self.trcflg >>= 1
-
-
-__all__ = ["Machine", "TooManyStatements"]

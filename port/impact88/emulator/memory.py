@@ -1,14 +1,9 @@
 """The machine's memory: 64K of bytes, page 0 by name, PEEK and POKE, and the program's text.
 
-Everything a program can look at lies in ``ram`` where the ROM puts it: the program from TXTTAB,
-variables from VARTAB, arrays from ARYTAB, strings down from MEMSIZ, a typed line on page 2, the
-text screen on pages 4 to 7. The pointers of page 0 are attributes here, by the names of the ROM's
-listing in small letters; `POINTERS` says where they lie. Other RAM keeps what is put there and
-reads as 0 before. There is no ROM to read.
-
-``txtptr`` is the address of the next byte to be read. What has been read at an address of the
-program (a name, a constant, a line number) is remembered until a byte of the program changes; what
-stands on page 2 is read anew each time.
+All that a program can look at lies in ``ram`` where the ROM puts it. The pointers of page 0 are
+attributes, by the names of the ROM's listing in small letters (`POINTERS`); there is no ROM to
+read. What has been read at an address of the program (a name, a constant, a line number) is
+remembered until a byte of the program changes; page 2 is read anew each time.
 """
 
 import re
@@ -21,39 +16,30 @@ from .faults import Fault, TooManyStatements
 from .screen import BASE, END, Screen
 from .tokens import TOKENS
 
-TEXT_START = 0x801
-"""TXTTAB: where programs begin."""
-TOP_OF_MEMORY = 0xC000
-"""48K: HIMEM without a disk system."""
-INPUT_BUFFER = 0x200
+TEXT_START, TOP_OF_MEMORY = 0x801, 0xC000
+"""TXTTAB and, without a disk system, HIMEM."""
+INPUT_BUFFER, BUFFER_END = 0x200, 0x300
 """Page 2, where typed lines are read in and their tokens put in their place."""
-BUFFER_END = 0x300
 STACK = 0xF8
 """The stack pointer when nothing is on the stack."""
 DIRECT = 0xFF00
 """CURLIN from here on means: typed without a line number."""
 TEMPORARIES, TEMPORARIES_END = 0x55, 0x5E
 """TEMPST: the descriptors of three temporary strings."""
+ROM, RTS = 0xC000, 0x60
 EMPTY = 0xE09A
 """A zero in ROM, where a variable is found that was never made."""
-ROM = 0xC000
-RTS = 0x60
 APPLE_II_PLUS = {0xFBB3: 0xEA}
 """The byte of the monitor by which programs identify the model."""
 PAGE_ZERO = bytes.fromhex("4C3CD4 4C3ADB 000000 00 4C99E1")
 """The jumps with which switching on begins page 0: to the prompt, to print a text, and USR's."""
 FIRST_SEED = from_stored("804FC75200")
 """RND's seed after switching on: of the ROM's five bytes, which end in 58, four are copied."""
-SPEED = 241
-SEED = range(201, 206)
-SCREEN = range(BASE, END)
-ADDRESSES = 0x10000
-REFUSALS = 8
-MORE_REFUSED = "more of the kind"
-"""What is not done here is remembered up to a number of different ones."""
+SPEED, SEED, SCREEN, ADDRESSES = 241, range(201, 206), range(BASE, END), 0x10000
+REFUSALS, MORE_REFUSED = 8, "more of the kind"
+"""How many different requests for what is not done here are remembered; a program makes few."""
 _BEYOND = 0x200
 """Zeros behind the last address, so that text that runs on to the end of memory ends there."""
-
 
 WORDS = (
     "67 txttab 69 vartab 6B arytab 6D strend 6F fretop 73 memsiz 75 curlin 77 oldlin 79 oldtext "
@@ -65,13 +51,11 @@ BYTES = (
     "F8 remstk"
 )
 POINTERS: dict[int, tuple[str, int, int]] = {}
-"""What page 0 holds at an address: an attribute, its shift, and the bits of it that stand
-elsewhere."""
-for _address, _name in zip(BYTES.split()[::2], BYTES.split()[1::2], strict=True):
+"""By address of page 0: an attribute, its shift, and the bits of it that stand elsewhere."""
+for _address, _name in re.findall(r"(\w+) (\w+)", BYTES):
     POINTERS[int(_address, 16)] = _name, 0, 0
-for _address, _name in zip(WORDS.split()[::2], WORDS.split()[1::2], strict=True):
-    POINTERS[int(_address, 16)] = _name, 0, 0xFF00
-    POINTERS[int(_address, 16) + 1] = _name, 8, 0x00FF
+for _address, _name in re.findall(r"(\w+) (\w+)", WORDS):
+    POINTERS |= {int(_address, 16): (_name, 0, 0xFF00), int(_address, 16) + 1: (_name, 8, 0x00FF)}
 OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
 
 BLANK, QUOTE, COLON, COMMA, SEMICOLON = map(ord, ' ":,;')
@@ -101,10 +85,9 @@ def is_digit(byte: int) -> bool:
 class Memory:
     """``ram``, the pointers, the devices, and the program's bytes from ``txtptr`` on.
 
-    ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``refused``
-    holds what was asked for and is not done here: drawing, tape, machine code. ``charac``: the
-    ROM's CHARAC, in which INT leaves a byte too, or the function and its operands whose INT left it
-    (`expressions`). ``variables_changed`` reads names and sizes among the variables anew.
+    ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``refused``:
+    what was asked for and is not done here (drawing, tape, machine code); ``charac``: CHARAC, in
+    which INT leaves a byte too, or the function and its operands whose INT left it.
     """
 
     variables_changed: Callable[[], None]
@@ -131,20 +114,17 @@ class Memory:
         self.vartab = self.arytab = self.strend = self.prgend = TEXT_START + 2
         self.fretop = self.memsiz = TOP_OF_MEMORY
         self.curlin = DIRECT
-        self.oldlin = self.oldtext = self.datlin = 0
         self.datptr = self.txtptr = TEXT_START - 1
-        self.varpnt = self.forpnt = 0
-        self.errflg = self.errlin = self.errpos = self.errnum = self.errstk = 0
-        self.txtpsv = self.cursv = self.remstk = 0
-        self.subflg = self.trcflg = self.flash = self.lock = 0
-        self.temppt, self.lastpt = TEMPORARIES, 0
+        self.oldlin = self.oldtext = self.datlin = self.varpnt = self.forpnt = self.remstk = 0
+        self.errflg = self.errlin = self.errpos = self.errnum = self.errstk = self.lastpt = 0
+        self.txtpsv = self.cursv = self.subflg = self.trcflg = self.flash = self.lock = 0
+        self.temppt = TEMPORARIES
         self.interrupted = False
         self.statements_left: int | None = None
         self.refused: list[str] = []
 
     def pause(self) -> None:
-        """ISCNTC: control-C, or no more statements. Raises KeyboardInterrupt and
-        TooManyStatements."""
+        """ISCNTC. Raises KeyboardInterrupt and TooManyStatements."""
         if self.interrupted:
             raise KeyboardInterrupt
         if self.statements_left is not None:
@@ -196,7 +176,7 @@ class Memory:
         return self.ram[address] | self.ram[address + 1] << 8
 
     def put_word(self, address: int, value: int) -> None:
-        """Two bytes, the low one first."""
+        """The same, put there."""
         self.ram[address] = value & 0xFF
         self.ram[address + 1] = value >> 8 & 0xFF
 
@@ -204,8 +184,8 @@ class Memory:
     charac: int | tuple[str, Number, Number] = 0
 
     def text_changed(self) -> None:
-        """Forget what has been found at addresses of the program: names; reals and constants, each
-        with the address behind it and its name or value; where GOTO leads."""
+        """Forget what stands at addresses of the program: names; reals and constants, each with
+        the address behind it and its name or value; where GOTO leads."""
         self.names: dict[int, Name] = {}
         self.atoms: dict[int, tuple[int, int, Number | None]] = {}
         self.targets: dict[int, int] = {}
@@ -232,11 +212,9 @@ class Memory:
 
     def data_(self) -> None:
         """DATA: to the next colon outside quotes, or the line's end."""
-        ram, pos = self.ram, self.txtptr
-        quoted = False
+        ram, pos, quoted = self.ram, self.txtptr, False
         while (byte := ram[pos]) and (quoted or byte != COLON):
-            if byte == QUOTE:
-                quoted = not quoted
+            quoted ^= byte == QUOTE
             pos += 1
         self.txtptr = pos
         self.charac = 0
@@ -253,18 +231,16 @@ class Memory:
         first, second, mark = match.groups()
         key = ord(first) << 8 | ord(second or b"\0") | _MARKS[mark]
         end = match.end()
-        name = (key, end, self.ram[end] == OPEN)
+        subscripts = self.ram[end] == OPEN
         if BUFFER_END <= pos < self.prgend:
-            self.names[pos] = name
-            if not name[2] and not mark:
+            self.names[pos] = key, end, subscripts
+            if not subscripts and not mark:
                 self.atoms[pos] = end, key, None
-        return name
+        return key, end, subscripts
 
     def numeral(self) -> Number:
-        """FIN: the number that begins at TXTPTR, and past it; zero if none does. Raises OVERFLOW.
-
-        Tokens stand for the signs behind an E.
-        """
+        """FIN: the number that begins at TXTPTR, and past it; zero if none does. Tokens stand for
+        the signs behind an E. Raises OVERFLOW."""
         match = _NUMERAL.match(self.ram, self.txtptr)
         assert match is not None  # it matches nothing, too
         self.txtptr = match.end()
@@ -292,8 +268,8 @@ class Memory:
         return number
 
     def find_line(self, number: int, address: int) -> tuple[bool, int]:
-        """FNDLIN: whether a line of this number comes, from the line at an address on, and where
-        it lies, or the first with a larger number, or the end."""
+        """FNDLIN: whether a line has this number, from an address on; where it lies, or the next
+        larger one, or the end."""
         ram = self.ram
         for _ in range(ADDRESSES):  # addresses poked may lead in a circle, where the ROM stays
             if not ram[address + 1]:

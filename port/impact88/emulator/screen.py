@@ -2,12 +2,9 @@
 
 Characters arrive with their high bit dropped and go on to a device in the same form; columns that
 the cursor skipped (comma zones, HTAB) may be passed on as blanks when a character follows on the
-line. Rows have no newline at column 40.
-
-Rows lie in memory in three groups, 128 bytes from one to the next, with eight bytes between the
-groups that no row shows. The monitor computes a row's address when the cursor enters it, for any
-row number and with the window's left edge added. So a change of the window takes effect only then,
-and unusual windows write outside the rows.
+line. Rows have no newline at column 40. The monitor computes a row's address when the cursor enters
+it, for any row number and with the window's left edge added: a change of the window takes effect
+only then, and unusual windows write outside the rows.
 """
 
 from collections.abc import Callable
@@ -16,12 +13,10 @@ from itertools import pairwise
 
 from ..applesoft.console import Editor
 
-WIDTH = 40
-HEIGHT = 24
+WIDTH, HEIGHT = 40, 24
 BASE, END = 0x400, 0x800
 NORMAL, INVERSE, FLASHING = 0xFF, 0x3F, 0x7F
-_BLANK = 0xA0
-_SMALL_LETTERS = 0xE0
+_BLANK, _SMALL_LETTERS = 0xA0, 0xE0
 _TITLE, _TITLE_COLUMN = bytes(code | 0x80 for code in b"APPLE ]["), 15
 """What switching on shows in the first row."""
 _ESCAPES = {
@@ -39,18 +34,14 @@ def _codes(mask: int) -> bytes:
 
 
 class Screen(Editor):
-    """Where characters appear, in ``ram``, and where the next one will.
-
-    ``column`` and ``row`` are the cursor's, from 0; ``left``, ``width``, ``top`` and ``bottom`` the
-    window's. ``blanks``: whether skipped columns are passed on as blanks; the machine sends none.
-    """
+    """Where characters appear, in ``ram``, and where the next one will: ``column`` and ``row`` from
+    0, in a window with ``left``, ``width``, ``top`` and ``bottom``. ``blanks``: whether skipped
+    columns are passed on as blanks; the machine sends none."""
 
     def __init__(
         self, ram: bytearray, device: Callable[[str], object], *, blanks: bool = True
     ) -> None:
-        self._ram = ram
-        self._device = device
-        self._blanks = blanks
+        self._ram, self._device, self._blanks = ram, device, blanks
         self.column = self._expected = 0
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
         self.mask = self._program_mask = NORMAL
@@ -61,13 +52,9 @@ class Screen(Editor):
 
     def write(self, text: str) -> None:
         """Show characters, and pass them on."""
-        gap = self.column - self._expected
-        if gap > 0 and self._blanks:
-            shown, gap = _filled(text, gap)
-            self._device(shown)
-        else:
-            gap = 0
-            self._device(text)
+        gap = max(self.column - self._expected, 0) if self._blanks else 0
+        shown, gap = _filled(text, gap)
+        self._device(shown)
         self._draw(text)
         self._expected = self.column - gap
 
@@ -137,8 +124,7 @@ class Screen(Editor):
         return [bytes(self._ram[start : start + WIDTH]) for start in starts]
 
     def text(self) -> str:
-        """The 24 rows as text, blanks at the end of each cut; inverse and flashing characters as
-        normal ones."""
+        """The 24 rows as text, blanks at the end of each cut."""
         return "".join("".join(map(shown_character, row)).rstrip(" ") + "\n" for row in self.rows())
 
     def home(self) -> None:
@@ -221,8 +207,7 @@ class Screen(Editor):
 
 
 def row_address(row: int, left: int) -> int:
-    """Where a row begins in a window with this left edge, whether the screen has such a row or
-    not."""
+    """Where a row begins in a window with this left edge, be there such a row or not."""
     low = (row & 0x18) * 5 + (row & 1) * 0x80 + left
     return BASE + (row >> 1 & 3) * 0x100 + (low & 0xFF)
 
@@ -244,7 +229,7 @@ def row_moves(top: int, bottom: int, left: int, width: int) -> list[tuple[slice,
 def _filled(text: str, gap: int) -> tuple[str, int]:
     """``text`` with blanks before the first character that shows on this line, and how many are
     still to come."""
-    for n, character in enumerate(text):
+    for n, character in enumerate(text if gap else ""):
         if character >= " ":
             return text[:n] + " " * gap + text[n:], 0
         if character == "\n":

@@ -26,11 +26,7 @@ KEYWORDS = (
 """In the ROM's order: the first has token 0x80."""
 
 TOKENS = {word: FIRST + n for n, word in enumerate(KEYWORDS)}
-
-DATA = TOKENS["DATA"]
-REM = TOKENS["REM"]
-AT = TOKENS["AT"]
-PRINT = TOKENS["PRINT"]
+DATA, REM, AT, PRINT = (TOKENS[word] for word in ("DATA", "REM", "AT", "PRINT"))
 LAST_STATEMENT = TOKENS["NEW"]
 """Keywords up to here may begin a statement."""
 LAST_LINE = 63999
@@ -63,9 +59,7 @@ def _keyword(text: str, start: int) -> tuple[int, int] | None:
 @lru_cache(maxsize=4096)
 def tokenise(kept: str, *, folded: bool = False) -> bytes:
     """The bytes of a line's statements as the ROM's parser leaves them, without the final zero.
-
-    ``folded``: small letters become capitals outside quotes and remarks.
-    """
+    ``folded``: small letters become capitals outside quotes and remarks."""
     kept = keyed(kept)
     text = kept.upper() if folded else kept
     out = bytearray()
@@ -102,9 +96,7 @@ def tokenise(kept: str, *, folded: bool = False) -> bytes:
 
 def split_number(text: str) -> tuple[int, str] | None:
     """The line number a typed line begins with and its rest; None if it begins with no digit.
-
-    Blanks before and within the number do not count. Raises ValueError past 63999.
-    """
+    Blanks before and within the number do not count. Raises ValueError past 63999."""
     number = None
     for position, character in enumerate(text):
         if character == " ":
@@ -123,12 +115,9 @@ def source(lines: Iterable[tuple[int, bytes]]) -> str:
 
 
 def untokenised(tokens: bytes) -> str:
-    """Statement text that tokenises into ``tokens``.
-
-    Blanks stand around keywords, except after REM and DATA, whose text is kept as it is. The blank
-    after AT keeps a following N or O from becoming ATN or TO. PRINT is written as it was typed, as
-    a question mark, where its letters would make another word with those before: ``PO?``.
-    """
+    """Statement text that tokenises into ``tokens``: blanks stand around keywords, except after REM
+    and DATA, whose text is kept. PRINT is written as a question mark where its letters would make
+    another word with those before: ``PO?``."""
     text = _spelled(tokens, "PRINT")
     return text if tokenise(text) == tokens else _spelled(tokens, "?")
 

@@ -1,17 +1,13 @@
 """Strings, variables and arrays in memory.
 
 A descriptor is three bytes, a length and an address. The characters of a string in the program lie
-in the program's text, all others in the string area, which grows down from MEMSIZ to FRETOP. When
-it meets the arrays, strings that no variable holds any more are collected.
-
-A string in the accumulator is a number as it lies there: the length of one just made for the
-exponent, its address in the first two bytes of the mantissa, and in the last two the address of
-the descriptor, which is all that counts. The ROM's STRNG1 is the accumulator's extension too.
+in its text, all others in the string area, which grows down from MEMSIZ to FRETOP. A string in the
+accumulator is a number as it lies there: the length of one just made for the exponent, its address
+in two bytes of the mantissa, in two more that of the descriptor, which is all that counts.
 
 A simple variable: two bytes of name, five of value. An array: two of name, two of length, the
-number of dimensions, each dimension's size with the last first and the high byte first, then its
-elements, the first subscript fastest. Both are made when something is assigned to them; merely
-reading a simple variable makes none. Where names lie is remembered while none is moved.
+number of dimensions, their sizes, the last first and high byte first, the elements, the first
+subscript fastest. Assignment makes them; where names lie is remembered while none is moved.
 """
 
 from collections.abc import Callable, Iterator
@@ -34,9 +30,7 @@ from .memory import (
     Memory,
 )
 
-DESCRIPTOR = 3
-IS_STRING = 0xFF
-LONGEST = 255
+DESCRIPTOR, IS_STRING, LONGEST = 3, 0xFF, 255
 
 
 def descriptor(string: Number) -> int:
@@ -45,8 +39,7 @@ def descriptor(string: Number) -> int:
     return mantissa >> 16 & 0xFF | mantissa & 0xFF00
 
 
-VARIABLE_SIZE = 7
-ARRAY_HEADER = 5
+VARIABLE_SIZE, ARRAY_HEADER, ADDRESS_LIMIT = 7, 5, 0xFFFF
 AUTOMATIC = 11
 """Elements per dimension of an array that no DIM made."""
 LOWEST = from_stored("9080000020")
@@ -60,7 +53,6 @@ SUBFLG_SIMPLE = 0x80
 """SUBFLG: no array and no integer may come, because of FOR or DEF FN."""
 _STORED = Struct(">BI")
 stored_at, store = _STORED.unpack_from, _STORED.pack_into
-ADDRESS_LIMIT = 0xFFFF
 
 
 def element_size(name: int) -> int:
@@ -69,8 +61,7 @@ def element_size(name: int) -> int:
 
 
 def positive_integer(x: Number, sp: int) -> int:
-    """MKINT: a number from 0 to 32767, rounded down. Raises ILLEGAL QUANTITY for a negative or
-    larger one, however small its fraction."""
+    """MKINT: a number from 0 to 32767, rounded down. Raises ILLEGAL QUANTITY."""
     e, m, s = x
     if s or e > LARGEST_INTEGER:
         raise Fault("ILLEGAL QUANTITY", sp)
@@ -88,10 +79,8 @@ class Array(NamedTuple):
 
 
 class Variables(Memory):
-    """The string area, the temporaries, simple variables from VARTAB, arrays from ARYTAB to STREND.
-
-    ``fac``: what the accumulator held last; ``valtyp``: `IS_STRING` when that is a string.
-    """
+    """Strings and variables. ``fac``: what the accumulator held last; ``valtyp``: `IS_STRING` when
+    that is a string."""
 
     fac: Number
     valtyp = 0
@@ -99,10 +88,7 @@ class Variables(Memory):
 
     def collect_garbage(self) -> None:
         """GARBAG: move the strings that variables hold together below MEMSIZ, the highest first.
-
-        When the highest of those left to move is a temporary, the ROM takes it for the end: it and
-        all strings below stay where they are, and what is made later overwrites them.
-        """
+        Where that is a temporary, the ROM takes it for the end: it and all below stay."""
         ram = self.ram
         self.fretop = self.memsiz
         places = [*range(TEMPORARIES, self.temppt, DESCRIPTOR)]
@@ -127,10 +113,7 @@ class Variables(Memory):
 
     def room(self, length: int) -> int:
         """GETSPA: the address of new room for characters. Raises OUT OF MEMORY."""
-        if self.fretop - length < self.strend:
-            self.collect_garbage()
-            if self.fretop - length < self.strend:
-                raise ApplesoftError("OUT OF MEMORY")
+        self.reason(self.strend + length - 1)
         self.fretop -= length
         return self.fretop
 
@@ -163,9 +146,8 @@ class Variables(Memory):
         return self.fac
 
     def literal(self, address: int, *ends: int) -> Number:
-        """STRLIT, STRLT2: the string that begins at an address and ends at a zero or one of
-        ``ends``, a quote unless given; STRNG2 is behind it, and behind its quote. What stands on
-        page 0 or 2 is copied. Raises OUT OF MEMORY and FORMULA TOO COMPLEX."""
+        """STRLIT, STRLT2: the string from an address to a zero or one of ``ends``, a quote unless
+        given; STRNG2 is behind it, and behind its quote. What stands on page 0 or 2 is copied."""
         ram = self.ram
         end = ram.index(0, address)
         for byte in ends or (QUOTE,):
@@ -181,11 +163,11 @@ class Variables(Memory):
             address = copy
         return self.temporary(length, address, page)
 
-    def made(self, text: bytes) -> Number:
+    def made(self, text: bytes, extension: int = 0) -> Number:
         """STRINI and PUTNEW: a temporary with characters."""
         address = self.room(len(text))
         self.ram[address : address + len(text)] = text
-        return self.temporary(len(text), address)
+        return self.temporary(len(text), address, extension)
 
     def release(self, place: int) -> bool:
         """FRETMS: give back a temporary's place if it is the latest; whether it was."""
@@ -210,8 +192,7 @@ class Variables(Memory):
         return bytes(self.ram[address : address + length])
 
     def assign_string(self, target: int, string: Number) -> None:
-        """PUTSTR: a variable takes the string in the accumulator: itself if it is a temporary or
-        its characters are the program's, a copy of another variable's. Raises OUT OF MEMORY."""
+        """PUTSTR: a variable takes the string in the accumulator, of another variable's a copy."""
         ram = self.ram
         place = descriptor(string)
         if self.word(place + 1) >= self.fretop and place >= self.vartab:
@@ -226,8 +207,7 @@ class Variables(Memory):
             self.put_word(target + 1, address)
 
     def joined(self, left: int, right: int) -> Number:
-        """CAT: left + right, by their descriptors. Raises STRING TOO LONG past 255 characters,
-        OUT OF MEMORY and FORMULA TOO COMPLEX."""
+        """CAT: left + right, by their descriptors. Raises STRING TOO LONG past 255 characters."""
         ram = self.ram
         size = ram[left]
         length = size + ram[right]
@@ -248,8 +228,7 @@ class Variables(Memory):
         return self.temporary(length, address, extension)
 
     def compare_strings(self, left: int, right: Number) -> int:
-        """STRCMP: 1 if the string of the left descriptor is larger, 0 if they are equal, -1 if it
-        is smaller."""
+        """STRCMP: 1 if the string of the left descriptor is larger, 0 if equal, -1 if smaller."""
         other = self.used(right)
         length, address = self.freed(left)
         text = bytes(self.ram[address : address + length])
@@ -265,14 +244,12 @@ class Variables(Memory):
             self.simple.setdefault(ram[place] << 8 | ram[place + 1], place + 2)
         self.arrays: dict[int, Array] = {}
         for place, size in self._array_places():
-            sizes = tuple(
-                ram[at] << 8 | ram[at + 1] for at in range(place + 5, place + size - 1, 2)
-            )[: ram[place + 4]]
+            ends = range(place + 5, place + size - 1, 2)[: ram[place + 4]]
+            sizes = tuple(ram[at] << 8 | ram[at + 1] for at in ends)
             name = ram[place] << 8 | ram[place + 1]
             self.arrays.setdefault(name, self._array(name, place, sizes))
 
     def _array_places(self) -> Iterator[tuple[int, int]]:
-        """Where each array lies, and its length."""
         place = self.arytab
         while place < self.strend and (size := self.word(place + 2)):
             yield place, size
@@ -290,9 +267,8 @@ class Variables(Memory):
                 raise ApplesoftError("OUT OF MEMORY")
 
     def variable(self, sp: int, dimensions: int = 0, mark: int = 0) -> int:
-        """PTRGET: the address of the value of the variable that comes next, which is made if there
-        is none. ``dimensions``: for DIM, whose arrays must be new; ``mark``: for FN, whose names
-        have a top bit. Raises SYNTAX, BAD SUBSCRIPT, REDIM'D ARRAY, OUT OF MEMORY."""
+        """PTRGET: where the value of the variable that comes next lies; it is made if there is
+        none. ``dimensions``: for DIM, whose arrays must be new; ``mark``: the top bit for FN."""
         known = self.names.get(self.txtptr)
         if not known:
             if not 65 <= self.character() <= 90:  # ISLETC: A to Z; a small letter begins no name
@@ -389,9 +365,7 @@ class Variables(Memory):
         return address
 
     def _make_array(self, name: int, last: list[int], dimensions: int) -> Array:
-        """A new array: header and zeros. Raises OUT OF MEMORY."""
-        ram = self.ram
-        place = self.strend
+        ram, place = self.ram, self.strend
         start = place + ARRAY_HEADER + 2 * len(last)
         self.reason(start)
         sizes = tuple(n + 1 for n in reversed(last)) if dimensions else (AUTOMATIC,) * len(last)
@@ -401,8 +375,6 @@ class Variables(Memory):
         size = element_size(name)
         for n in sizes:
             size *= n
-            if size > ADDRESS_LIMIT:
-                raise ApplesoftError("OUT OF MEMORY")
         end = start + size
         if end > ADDRESS_LIMIT:
             raise ApplesoftError("OUT OF MEMORY")
@@ -431,11 +403,7 @@ class Variables(Memory):
 
     def assign_integer(self, address: int, x: Number, sp: int) -> None:
         """AYINT: an integer variable takes a number, rounded. Raises ILLEGAL QUANTITY from 32768
-        and -32768 on.
-
-        The ROM means to let -32768 through, but its constant has a bit too many: it lets through
-        -32768.0005 only, which is stored as 32767.
-        """
+        and -32768 on; a bit too many in the ROM's constant lets -32768.0005 through, as 32767."""
         try:
             x = rounded(x)
             if x[0] >= 0x90 and compare(LOWEST, x):

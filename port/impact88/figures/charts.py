@@ -13,23 +13,9 @@ from ..names import PIVOT, quantity
 from ..scene import numbers_of
 from ..status import Status
 from ..units import System, system_of
+from . import drawing as d
 from .axes import Panel, key, span
-from .drawing import (
-    BLACK,
-    BLUE,
-    COLUMN,
-    GREY,
-    ROW,
-    TEXT,
-    VERMILION,
-    Box,
-    Drawing,
-    Text,
-    check_drawable,
-    short,
-    text_width,
-    wrapped,
-)
+from .drawing import Box, Drawing, Text, short
 
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
@@ -53,31 +39,25 @@ def _label(name: str, units: System) -> str:
     return f"{what.meaning}, {unit}"
 
 
-def _chosen(result: Bounds, outputs: Sequence[str] | None) -> list[str]:
-    wanted = list(outputs or result.bounds)
-    for name in wanted:
-        if name not in result.bounds:
-            raise UserError(
-                f"{name!r} is not among the results; expected {' '.join(result.bounds)}"
-            )
-    _check_count(wanted)
-    return wanted
-
-
 def _check_count(outputs: Sequence[str]) -> None:
     if len(outputs) > MOST_PANELS:
         raise UserError(f"{len(outputs)} results do not fit a page; expected {MOST_PANELS} at most")
 
 
-def _ranges(result: Bounds, names: Sequence[str]) -> str:
-    """Nominal values and bounds in words."""
-    units = system_of(result.units)
-    return " ".join(
-        f"{_label(name, units)}: {short(bound.nominal)}, bounds {short(bound.lower)} to "
-        f"{short(bound.upper)}."
-        for name in names
-        for bound in [result.bounds[name]]
+def _begun(result: Bounds, outputs: Sequence[str] | None, title: str) -> tuple[list[str], Drawing]:
+    """The results that are drawn, and a drawing that says their nominal values and bounds."""
+    names, units = list(outputs or result.bounds), system_of(result.units)
+    for name in names:
+        if name not in result.bounds:
+            known = " ".join(result.bounds)
+            raise UserError(f"{name!r} is not among the results; expected {known}")
+    _check_count(names)
+    bounds = [(_label(name, units), result.bounds[name]) for name in names]
+    said = (
+        f"{label}: {short(bound.nominal)}, bounds {short(bound.lower)} to {short(bound.upper)}."
+        for label, bound in bounds
     )
+    return names, Drawing(d.COLUMN, title, " ".join(said))
 
 
 def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
@@ -86,22 +66,22 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
     ``result`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks
     and for more than fit.
     """
-    names, units = _chosen(result, outputs), system_of(result.units)
-    drawing = Drawing(COLUMN, "Results of the draws", _ranges(result, names))
+    names, drawing = _begun(result, outputs, "Results of the draws")
+    units = system_of(result.units)
     columns = 1 if len(names) == 1 else 2
-    wide = (COLUMN - 2) / columns
+    wide = (d.COLUMN - 2) / columns
     top = drawing.heading()
-    labels = [wrapped(_label(name, units), wide - _LEFT + 4) for name in names]
+    labels = [d.wrapped(_label(name, units), wide - _LEFT + 4) for name in names]
     tallest = max(map(len, labels))
     for place, name in enumerate(names):
         row, column = divmod(place, columns)
         draws = result.draws[name]
         draws = draws[np.isfinite(draws)]
-        check_drawable((draws.min(), draws.max()), name)
+        d.check_drawable((draws.min(), draws.max()), name)
         bound, quantiles = result.bounds[name], result.spreads[name].quantiles
         heights, edges = np.histogram(draws, BINS)
         heights = heights * (100 / len(draws))
-        upper = top - (30 + ROW * tallest) * row - _TOP
+        upper = top - (30 + d.ROW * tallest) * row - _TOP
         left = _LEFT + column * wide - 3 * column
         box = Box(left, upper - 18, left + wide - _LEFT + (1 if column else -1), upper)
         panel = Panel(
@@ -111,18 +91,16 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
             x_ticks=4 if columns == 2 else 8,
         )
         steps = np.repeat(edges, 2), np.concatenate([[0], np.repeat(heights, 2), [0]])
-        panel.line(*steps, BLUE, 0.2, fill=_PALE, role="draws")
+        panel.line(*steps, d.BLUE, 0.2, fill=_PALE, role="draws")
         panel.rule(bound.nominal, role="nominal")
         for share in (0.05, 0.95):
-            panel.rule(quantiles[share], VERMILION, _DASHED, role="quantile")
+            panel.rule(quantiles[share], d.VERMILION, _DASHED, role="quantile")
         for end in (bound.lower, bound.upper):
             panel.mark(end, 0.03 * panel.y.high, "D", role="bound")
     rows = -(-len(names) // columns)
-    y = key(
-        *(drawing, top - (30 + ROW * tallest) * rows - 1, ("nominal", BLACK, ())),
-        *(("5 % and 95 %", VERMILION, _DASHED), ("bounds", BLACK, "D")),
-    )
-    drawing.height = 2 - y
+    looks = (("5 % and 95 %", d.VERMILION, _DASHED), ("bounds", d.BLACK, "D"))
+    low = top - (30 + d.ROW * tallest) * rows - 1
+    drawing.height = 2 - key(drawing, low, ("nominal", d.BLACK, ()), *looks)
     return drawing
 
 
@@ -132,39 +110,36 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
     Bars end at the results of the input's limits, whiskers where the result goes in between.
     Raises UserError for a result it lacks.
     """
-    names, units = _chosen(result, outputs), system_of(result.units)
+    names, drawing = _begun(result, outputs, "What drives the results")
+    units = system_of(result.units)
     bars = min(len(result.inputs), MOST_BARS)
     texts = {}
     for source in result.inputs:
         low, high = result.limits[source]
         amount = f"{short(low)} … {short(high)} {units.unit(source)}".strip()
         texts[source] = f"{quantity(source).symbol}  {amount}"
-    left = max(text_width(text, TEXT) for text in texts.values()) + 3.5
-    drawing = Drawing(COLUMN, "What drives the results", _ranges(result, names))
+    left = max(d.text_width(text, d.TEXT) for text in texts.values()) + 3.5
     top = drawing.heading() - 2
     for name in names:
         bound = result.bounds[name]
         drives = sorted(result.drives[name].items(), key=lambda entry: -entry[1].swing)
         for _, drive in drives:
-            check_drawable((drive.lowest, drive.highest), name)
+            d.check_drawable((drive.lowest, drive.highest), name)
         ends = [x for _, drive in drives[:bars] for x in (drive.lowest, drive.highest)]
         ticks = [(-place, texts[source]) for place, (source, _) in enumerate(drives[:bars])]
-        box = Box(left, top - 4.2 * bars, COLUMN - 4, top)
+        box = Box(left, top - 4.2 * bars, d.COLUMN - 4, top)
         limits = span([*ends, bound.nominal]), (0.5 - bars, 0.5)
         panel = Panel(drawing, box, *limits, _label(name, units), y_ticks=ticks, x_ticks=5)
         for place, (source, drive) in enumerate(drives[:bars]):
-            sides = [(drive.at_low, "#ffffff", "low"), (drive.at_high, BLUE, "high")]
+            sides = [(drive.at_low, d.WHITE, "low"), (drive.at_high, d.BLUE, "high")]
             # where both lie on one side the shorter bar stands on the longer
             for value, colour, end in sorted(sides, key=lambda side: -abs(side[0] - bound.nominal)):
                 panel.bar(bound.nominal, value, -place, 1.3, colour, f"{source} {end}")
             panel.line([drive.lowest, drive.highest], [-place] * 2, width=0.3, role="whisker")
         panel.rule(bound.nominal, role="nominal")
-        top = box.bottom - 11.5 - ROW * (len(wrapped(_label(name, units), box.width + 8)) - 1)
-    y = key(
-        *(drawing, top, ("at its lower limit", "#ffffff", None)),
-        *(("at its upper limit", BLUE, None), ("in between", BLACK, ())),
-    )
-    drawing.height = 2 - y
+        top = box.bottom - 11.5 - d.ROW * (len(d.wrapped(_label(name, units), box.width + 8)) - 1)
+    looks = (("at its upper limit", d.BLUE, None), ("in between", d.BLACK, ()))
+    drawing.height = 2 - key(drawing, top, ("at its lower limit", d.WHITE, None), *looks)
     return drawing
 
 
@@ -233,16 +208,16 @@ def _along(
     found = solve({**numbers, name: axis}, [*outputs, "STATUS"])
     faulty = (found["STATUS"] & np.uint16(faults & 0xFFFF)) != 0
     for output in outputs:
-        check_drawable(found[output], output)
-    check_drawable(axis, name)
+        d.check_drawable(found[output], output)
+    d.check_drawable(axis, name)
     axis, own = axis * factors[name], own * factors[name]
     here = {n: float(value) * factors[n] for n, value in solve(numbers, outputs).items()}
     summary = " ".join(f"{_label(output, units)}: {short(here[output])}." for output in outputs)
-    drawing = Drawing(COLUMN, titles[0], f"In this scene: {summary}")
+    drawing = Drawing(d.COLUMN, titles[0], f"In this scene: {summary}")
     top = drawing.heading() - _TOP
     entries: list[tuple[str, str, Any]] = []
     for group in groups:
-        box = Box(_LEFT, top - 27, COLUMN - 3, top)
+        box = Box(_LEFT, top - 27, d.COLUMN - 3, top)
         values = {output: found[output] * factors[output] for output in group}
         y = span([x for output in group for x in (*values[output], here[output])])
         if len(group) > 1:  # sizes
@@ -253,22 +228,22 @@ def _along(
         below = titles[1] if group == groups[-1] else ""
         panel = Panel(drawing, box, (float(axis[0]), float(axis[-1])), y, below, label)
         if y[0] < 0 < y[1]:
-            panel.line(axis[[0, -1]], [0, 0], GREY, 0.2)
-        for output, colour, dash in zip(group, (BLUE, VERMILION), ((), _DASHED), strict=False):
+            panel.line(axis[[0, -1]], [0, 0], d.GREY, 0.2)
+        for output, colour, dash in zip(group, (d.BLUE, d.VERMILION), ((), _DASHED), strict=False):
             panel.line(axis, values[output], colour, dash=dash, role=output)
             if len(group) > 1:
                 entries.append((quantity(output).symbol, colour, dash))
             if axis.min() <= own <= axis.max():
-                panel.mark(own, here[output], colour=colour if len(group) > 1 else BLACK)
+                panel.mark(own, here[output], colour=colour if len(group) > 1 else d.BLACK)
         edges = np.flatnonzero(np.diff(np.concatenate([[0], faulty.astype(int), [0]])))
         for first, last in edges.reshape(-1, 2):
             panel.shade(axis[first], axis[last - 1], _UNPHYSICAL)
         if limit:
             panel.rule(limit, dash=_DOTTED, role="critical")
         top = box.bottom - 11.5
-    entries.append((words[0], BLACK, "o"))
+    entries.append((words[0], d.BLACK, "o"))
     if limit:
-        entries.append((f"critical: {short(limit)}", BLACK, _DOTTED))
+        entries.append((f"critical: {short(limit)}", d.BLACK, _DOTTED))
     if faulty.any():
         entries.append((words[1], _UNPHYSICAL, None))
     drawing.height = 2 - key(drawing, top, *entries)
@@ -293,7 +268,7 @@ def figure_5() -> Drawing:
             series["impact equations"].append((x, float(computed[name]), name[-1]))
             series["Equation 19"].append((x, float(rule[name]), name[-1]))
     drawing = Drawing(
-        COLUMN,
+        d.COLUMN,
         "Staged collisions: calculated against experimental ΔV",
         "Each vehicle's ΔV by the impact equations and by Equation 19 against the measured one; "
         "the line is where they are equal.",
@@ -303,13 +278,13 @@ def figure_5() -> Drawing:
     box = Box(_LEFT, top - 65, _LEFT + 65, top)
     names = ("experimental ΔV, ft/s", "calculated ΔV, ft/s")
     panel = Panel(drawing, box, (0.0, most), (0.0, most), *names, y_ticks=6)
-    panel.line([0, most], [0, most], GREY, 0.3)
-    looks = {"impact equations": ("o", BLUE), "Equation 19": ("^", VERMILION)}
+    panel.line([0, most], [0, most], d.GREY, 0.3)
+    looks = {"impact equations": ("o", d.BLUE), "Equation 19": ("^", d.VERMILION)}
     for name, points in series.items():
         for x, y, vehicle in points:
             panel.mark(x, y, *looks[name], vehicle == "A", name)
     entries = [(name, colour, mark) for name, (mark, colour) in looks.items()]
-    entries.append(("equal", GREY, ()))  # type: ignore[arg-type]
+    entries.append(("equal", d.GREY, ()))  # type: ignore[arg-type]
     note = "filled: vehicle A; open: vehicle B"
     drawing.height = 2 - key(drawing, box.bottom - 11.5, *entries, note=note)
     return drawing
@@ -318,7 +293,7 @@ def figure_5() -> Drawing:
 def force_and_impulse() -> Drawing:
     """Figure 1: a typical force between vehicles, and the average force of the same impulse."""
     drawing = Drawing(
-        COLUMN,
+        d.COLUMN,
         "Force between vehicles and its impulse",
         "A typical force rises to its peak F_M and falls to 0 at t_f; the average force F_A over "
         "the same time has the same impulse.",
@@ -328,7 +303,7 @@ def force_and_impulse() -> Drawing:
     force = time**2.6 * (1 - time) ** 4.2 * (1 + 0.1 * np.sin(9 * np.pi * time))
     force /= force.max()
     mean = float(((force[1:] + force[:-1]) / 2 * np.diff(time)).sum())
-    top = drawing.heading() - 2 * ROW
+    top = drawing.heading() - 2 * d.ROW
     for column, (level, name, title, shape) in enumerate(
         (
             (1.0, "F_M", "a. typical force", (time, force)),
@@ -341,8 +316,8 @@ def force_and_impulse() -> Drawing:
             x_ticks=[(0, "0"), (1, "t_f")],
             y_ticks=[(level, name)],
         )
-        panel.line(*shape, BLUE, fill=_PALE, role="force")
-        panel.line([0, 1], [level] * 2, GREY, 0.2, _DASHED)
+        panel.line(*shape, d.BLUE, fill=_PALE, role="force")
+        panel.line([0, 1], [level] * 2, d.GREY, 0.2, _DASHED)
         at = panel.at(0.4, 0.35 * mean)
         drawing.add(Text(at, "impulse", anchor="middle"))
     drawing.height = 38 - top

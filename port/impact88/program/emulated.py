@@ -18,7 +18,7 @@ from .. import files
 from ..applesoft.console import EndOfInput
 from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
-from ..emulator.machine import TooManyStatements
+from ..emulator.faults import TooManyStatements
 from ..errors import UserError
 from ..names import SCENE
 from ..scene import Scene

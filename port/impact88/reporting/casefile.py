@@ -122,7 +122,7 @@ def _printout(result: Verification) -> dict[str, Any]:
         "drawing": _drawing(result),
         "inputs": [inputs[at : at + 8] for at in range(0, len(inputs), 8)],
         "guessed": "; † not read exactly on the paper" if result.guessed else "",
-        "exhibit": result.exhibit() if result.exhibit else "",
+        "exhibit": result.exhibit() if result.exhibit else None,
         "text": list(_as_read(result)),
     }  # fmt: skip
 

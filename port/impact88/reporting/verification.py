@@ -59,7 +59,7 @@ class Verification:
     labels: list[LabelCheck] = field(default_factory=list)
     cells: list[dict[str, Any]] = field(default_factory=list)
     basis: str = ""
-    exhibit: Callable[[], str] | None = field(default=None, repr=False)
+    exhibit: Callable[[], dict[str, Any]] | None = field(default=None, repr=False)
     page: int | None = None
     start: int = 0
     stop: int = 0

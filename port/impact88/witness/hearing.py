@@ -16,7 +16,7 @@ from ..applesoft.console import Console
 from ..checking import captured
 from ..checking.captured import ARITHMETIC, FUZZ, SCENES
 from ..checking.selfcheck import GOLDEN_RUNS
-from ..emulator.machine import TooManyStatements
+from ..emulator.faults import TooManyStatements
 from ..fields import FIELDS, outcome_fields
 from ..files import packaged_bytes
 from ..names import SCENE

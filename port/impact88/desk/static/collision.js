@@ -167,7 +167,7 @@ export function collision() {
     }
   });
   page("collision-save").addEventListener("click", () => doing(async () =>
-    save(await ask("scene-file", question()))));
+    save(await ask("file/collision", question()))));
   page("collision-report").addEventListener("click", () => doing(async () => {
     const busy = page("collision-busy");
     const response = await watched(busy, "Writing the report", "bounds", ask("case-report/collision", question()));

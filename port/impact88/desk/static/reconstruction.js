@@ -155,7 +155,7 @@ export function reconstruction() {
     });
   });
   page("reconstruction-save").addEventListener("click", () => doing(async () =>
-    save(await ask("known-file", whole()))));
+    save(await ask("file/reconstruction", whole()))));
   page("reconstruction-report").addEventListener("click", () => doing(async () => {
     const busy = page("reconstruction-busy");
     const response = await watched(busy, "Writing the report", "bounds", ask("case-report/reconstruction", whole()));
