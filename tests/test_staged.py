@@ -214,12 +214,12 @@ def test_measured_velocities_of_no_1_do_not_close():
     ma, mb, ia = 143.5, 95.8, 3728
     before = ma * 29.04**2 + mb * (14.52**2 + 25.15**2)
     after = ma * (12.33**2 + 7.91**2) + mb * (6.80**2 + 16.97**2) + ia * 1.57**2
-    assert found.loss == pytest.approx(100 * (1 - after / before), rel=1e-12)
-    assert round(found.loss, 1) == 64.3
+    assert found["loss"] == pytest.approx(100 * (1 - after / before), rel=1e-12)
+    assert round(found["loss"], 1) == 64.3
     assert round(float(forward(collisions()[0])["LOSS"]), 1) == 57.5
-    assert found.x_of_a == pytest.approx(ma * (29.04 - 12.33))
-    assert found.x_of_b == pytest.approx(mb * (14.52 + 6.80))
-    assert (round(found.x_of_a), round(found.x_of_b)) == (2398, 2042)
+    assert found["x_of_a"] == pytest.approx(ma * (29.04 - 12.33))
+    assert found["x_of_b"] == pytest.approx(mb * (14.52 + 6.80))
+    assert (round(found["x_of_a"]), round(found["x_of_b"])) == (2398, 2042)
 
 
 def test_a_simulated_collision_closes():
@@ -228,11 +228,11 @@ def test_a_simulated_collision_closes():
     solved = forward(first)
     velocities = {name: float(solved[name]) for name in AFTER}
     found = closure(replace(first, measured=velocities))
-    assert found.x_of_a == pytest.approx(found.x_of_b, rel=1e-12)
-    assert found.y_of_a == pytest.approx(found.y_of_b, rel=1e-12)
-    assert found.spin_of_a == pytest.approx(float(solved["PM"]), rel=1e-9)
-    assert found.spin_of_b == pytest.approx(float(solved["PM"]), rel=1e-9)
-    assert found.loss == pytest.approx(float(solved["LOSS"]), rel=1e-12)
+    assert found["x_of_a"] == pytest.approx(found["x_of_b"], rel=1e-12)
+    assert found["y_of_a"] == pytest.approx(found["y_of_b"], rel=1e-12)
+    assert found["spin_of_a"] == pytest.approx(float(solved["PM"]), rel=1e-9)
+    assert found["spin_of_b"] == pytest.approx(float(solved["PM"]), rel=1e-9)
+    assert found["loss"] == pytest.approx(float(solved["LOSS"]), rel=1e-12)
 
 
 def test_a_collision_of_one_s_own(tmp_path, capsys):

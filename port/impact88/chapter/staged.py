@@ -9,12 +9,10 @@ its evidence (``legacy/emendations.csv``). Three ways from Table 1 to Table 2:
 
 `comparison` puts them beside Table 2, cell by cell.
 
-The fit minimises  Σ(V - V_measured)² + 25 ft² Σ(Ω - Ω_measured)²  over the final velocities. The
-weight is not published; 25 ft² comes closest to Table 2 (with e_m held at the printed value: rms
-.006 in e and in μ). Bounds: 0 <= e <= 1, -1 <= e_m <= 0, μ free. For a given e_m the final
-velocities are linear in the impulse (P_n, P_t), so the minimum is found exactly, and e_m is then
-searched for alone. The profile in e_m shows why that number means little: the sum hardly changes.
-Units: ft, s, slug (Table 1).
+The fit minimises  Σ(V - V_measured)² + 25 ft² Σ(Ω - Ω_measured)²  over the final velocities,
+0 <= e <= 1, -1 <= e_m <= 0, μ free. The weight is not published; 25 ft² comes closest to Table 2
+(with e_m held at the printed value: rms .006 in e and in μ). For a given e_m the final velocities
+are linear in the impulse; e_m is then searched for alone. Units: ft, s, slug (Table 1).
 """
 
 from __future__ import annotations
@@ -55,9 +53,8 @@ first one separates local minima; twice as many points move no fit of the eleven
 
 @dataclass(frozen=True)
 class Emendation:
-    """One remark on a cell: ``kind`` is emended, moved (by the scan, number unchanged), lost,
-    doubtful (suspicious but kept) or slip (of Table 2: recomputation gives ``emended``). ``column``
-    ``*`` is a whole row."""
+    """One remark on a cell, or a row (``column`` ``*``): ``kind`` is emended, moved (by the scan),
+    lost, doubtful (kept) or slip (of Table 2: recomputation gives ``emended``)."""
 
     table: int
     row: str
@@ -70,8 +67,7 @@ class Emendation:
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell of a table: the text as printed (where it belongs, if the scan moved it) and as
-    emended, with the remark on it, if any."""
+    """A cell as printed (where it belongs, if the scan moved it) and as emended."""
 
     table: int
     row: str
@@ -107,16 +103,16 @@ def cells() -> tuple[Cell, ...]:
         printed = _printed_1(row)
         for column in COLUMNS_1:
             key = f"{column}_deg" if column in ("phi", "theta", "Gamma") else column
-            result.append(
-                Cell(1, name, column, printed[column], row[key], _remark(1, name, column))
-            )
+            remark = _remark(1, name, column)
+            result.append(Cell(1, name, column, printed[column], row[key], remark))
     for row in _rows("table2.csv"):
         name = row["collision"]
         for column in COLUMNS_2:
             key = {"loss": "loss_percent", "mu": "mu_signed_Pt_over_Pn"}.get(column, column)
             remark = _remark(2, name, column)
-            emended = remark.emended if remark else row[key]
-            result.append(Cell(2, name, column, row[key], emended, remark))
+            result.append(
+                Cell(2, name, column, row[key], remark.emended if remark else row[key], remark)
+            )
     return tuple(result)
 
 
@@ -134,23 +130,16 @@ def _printed_1(row: Mapping[str, str]) -> dict[str, str]:
         texts = [*texts[1:], ""]
     elif moved:
         texts = ["", *texts[:-1]]
-    category, m, inertia, d, phi, theta, gamma, before, spin, after = (
-        text.replace("- ", "-") for text in texts
-    )
-    vx, _, vy = before.partition("/")
-    ax, _, ay = after.partition("/")
-    values = (category, m, inertia, d, phi, theta, gamma, vx, vy, spin, ax, ay)
+    *first, before, spin, after = (text.replace("- ", "-") for text in texts)
+    values = (*first, *before.split("/"), spin, *(after.split("/") if after else ("", "")))
     return {name: value.strip() for name, value in zip(COLUMNS_1, values, strict=True)}
 
 
 @dataclass(frozen=True)
 class Collision:
-    """One staged collision, emended, as numbers.
-
-    ``scene``: its values by the listing's names without the coefficients (initial spins are 0, as
-    Section V says); ``measured``: the final velocities, NaN where lost; ``table2``: Table 2's row
-    as printed, by column.
-    """
+    """One staged collision, emended: ``scene`` by the listing's names without coefficients (initial
+    spins are 0, as Section V says); ``measured``: final velocities, NaN where lost; ``table2``:
+    Table 2's row as printed, by column."""
 
     number: int
     category: str
@@ -238,27 +227,11 @@ def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
     return delta_v({**scene, **speeds, "LOSS": loss})
 
 
-@dataclass(frozen=True)
-class Closure:
-    """What the measured velocities of one collision say by themselves (NaN where one is lost).
-
-    ``loss``: the kinetic energy lost, percent. ``x_of_a`` ... ``spin_of_b``: the change of A's
-    momentum along x and y, and of angular momentum about the origin of Equation 17, and minus B's:
-    equal where momentum is conserved. Units slug·ft/s and slug·ft²/s.
-    """
-
-    number: int
-    loss: float
-    x_of_a: float
-    x_of_b: float
-    y_of_a: float
-    y_of_b: float
-    spin_of_a: float
-    spin_of_b: float
-
-
-def closure(collision: Collision) -> Closure:
-    """Equations 13, 14 and 17 and the energy of the velocities as measured, nothing fitted."""
+def closure(collision: Collision) -> dict[str, float]:
+    """Equations 13, 14 and 17 and the energy of the velocities as measured, nothing fitted: the
+    ``number``, the energy ``loss`` in percent, the change of A's momentum along x and y and of the
+    angular momentum about the origin of Equation 17, and minus B's: equal where momentum is
+    conserved; slug·ft/s and slug·ft²/s, NaN where a velocity is lost."""
     values = {**collision.scene, **collision.measured}
     given = {name: np.asarray(value) for name, value in values.items()}
     here = Geometry.of(given)
@@ -266,14 +239,13 @@ def closure(collision: Collision) -> Closure:
         values[late] - values[early] for early, late in zip(VELOCITIES, FINAL_STATE, strict=True)
     )
     ma, mb, ia, ib = (values[name] for name in ("MA", "MB", "IA", "IB"))
-    # the impulse acts at (-d4, -d3) from A's center: M = I ΔΩ - r x m ΔV, and on B the opposite
-    moment_on_a = ia * wa - ma * (-here.d4 * ay + here.d3 * ax)
-    moment_on_b = ib * wb - mb * (here.d2 * by - here.d1 * bx)
-    return Closure(
-        collision.number,
-        float(State.of_known(given)["LOSS"]),
-        *(float(x) for x in (ma * ax, -mb * bx, ma * ay, -mb * by, moment_on_a, -moment_on_b)),
-    )
+    return {
+        **{"number": collision.number, "loss": float(State.of_known(given)["LOSS"])},
+        **{"x_of_a": ma * ax, "x_of_b": -mb * bx, "y_of_a": ma * ay, "y_of_b": -mb * by},
+        # the impulse acts at (-d4, -d3) from A's center: M = I ΔΩ - r x m ΔV, and on B the opposite
+        "spin_of_a": float(ia * wa - ma * (-here.d4 * ay + here.d3 * ax)),
+        "spin_of_b": float(-ib * wb + mb * (here.d2 * by - here.d1 * bx)),
+    }
 
 
 # -- least squares
@@ -296,26 +268,24 @@ def fit(collision: Collision, em: float | None = None, spin_weight: float = SPIN
     Velocities Table 1 lacks (8/A) are left out of the sum. Raises LinAlgError where doubles do not
     hold the equations.
     """
-    model = _Linear.of(collision, spin_weight)
+    best_at = _fitter(collision, spin_weight)
     if em is not None:
-        return model.at(em)
+        return best_at(em)
     low, high = EM_BOUNDS
     for count in _GRIDS:
-        fits = [model.at(float(x)) for x in np.linspace(low, high, count)]
+        fits = [best_at(x) for x in np.linspace(low, high, count).tolist()]
         best = int(np.argmin([found.sum_of_squares for found in fits]))
         low, high = fits[max(best - 1, 0)].EM, fits[min(best + 1, count - 1)].EM
-    found = fits[best]
-    near = [bound for bound in EM_BOUNDS if abs(found.EM - bound) < 1e-6]
-    if near:
-        found = model.at(near[0])
-        return replace(found, at_bound=(*found.at_bound, "EM"))
-    return found
+    for bound in EM_BOUNDS:
+        if abs(fits[best].EM - bound) < 1e-6:
+            found = best_at(bound)
+            return replace(found, at_bound=(*found.at_bound, "EM"))
+    return fits[best]
 
 
 def profile(collision: Collision, count: int = 11) -> list[Fit]:
-    """The best fits with EM held at ``count`` values from -1 to 0."""
-    model = _Linear.of(collision)
-    return [model.at(float(em)) for em in np.linspace(*EM_BOUNDS, count)]
+    """The best fits with EM held at ``count`` values from -1 to 0: the sum hardly changes."""
+    return [*map(_fitter(collision, SPIN_WEIGHT), np.linspace(*EM_BOUNDS, count).tolist())]
 
 
 def undetermined_range(
@@ -323,66 +293,42 @@ def undetermined_range(
 ) -> tuple[float, float]:
     """The values of EM whose best fit's root-mean-square misfit is within 0.1 ft/s of the least:
     how little the data fix it."""
-    model = _Linear.of(collision, spin_weight)
-    grid = np.linspace(*EM_BOUNDS, 401)
-    misfit = np.sqrt([model.at(float(em)).sum_of_squares / model.measured for em in grid])
+    best_at, grid = _fitter(collision, spin_weight), np.linspace(*EM_BOUNDS, 401)
+    measured = np.isfinite([*collision.measured.values()]).sum()
+    misfit = np.sqrt([best_at(em).sum_of_squares / measured for em in grid.tolist()])
     close = grid[misfit <= misfit.min() + 0.1]
     return float(close.min()), float(close.max())
 
 
-@dataclass(frozen=True)
-class _Linear:
-    """The final velocities as a linear function of the impulse: misfit = w (J·p - change)."""
+def _fitter(collision: Collision, spin_weight: float) -> Callable[[float], Fit]:
+    """The best fit for each EM. The final velocities are linear in the impulse p = (Pn, Pt, M)."""
+    geometry = Geometry.of(collision.scene)
+    jacobian = np.array([geometry.changes(*unit) for unit in np.eye(3)], float).T
+    directions = np.array(geometry.relative([*np.eye(6)]))
+    before = np.array([collision.scene[name] for name in VELOCITIES])
+    after = np.array([collision.measured[name] for name in FINAL_STATE])
+    known = np.isfinite(after)
+    root_weight = np.sqrt(np.where(known, [1.0, 1.0, spin_weight] * 2, 0.0))
+    change = np.where(known, after - before, 0.0)
+    approach, _, spin_before = directions @ before
+    normal, _, spin = directions @ jacobian
 
-    jacobian: Array  # 6 x 3, of the velocities over (Pn, Pt, M)
-    change: Array
-    root_weight: Array
-    normal: Array  # of Gn over (Pn, Pt, M)
-    spin: Array
-    approach: float
-    spin_before: float
-    measured: int
-
-    @classmethod
-    def of(cls, collision: Collision, spin_weight: float = SPIN_WEIGHT) -> _Linear:
-        geometry = Geometry.of(collision.scene)
-        jacobian = np.array([geometry.changes(*unit) for unit in np.eye(3)], float).T
-        directions = np.array(geometry.relative([*np.eye(6)]))
-        before = np.array([collision.scene[name] for name in VELOCITIES])
-        after = np.array([collision.measured[name] for name in FINAL_STATE])
-        known = np.isfinite(after)
-        weight = np.where(known, [1.0, 1.0, spin_weight] * 2, 0.0)
-        normal, _, spin = directions @ before
-        return cls(
-            jacobian=jacobian,
-            change=np.where(known, after - before, 0.0),
-            root_weight=np.sqrt(weight),
-            normal=directions[0] @ jacobian,
-            spin=directions[2] @ jacobian,
-            approach=float(normal),
-            spin_before=float(spin),
-            measured=int(known.sum()),
-        )
-
-    def at(self, em: float) -> Fit:
-        """The best impulse with the moment impulse that Equation 18 gives for ``em``."""
-        # (1 - em)(spin·p + spin before) = em·M/Ired, and spin[2] is 1/Ired
-        row = (1 - em) * self.spin - em * self.spin[2] * np.array([0.0, 0.0, 1.0])
-        constant = -(1 - em) * self.spin_before / row[2]
+    def best_at(em: float) -> Fit:
+        # Equation 18: (1 - em)(spin·p + spin before) = em·M/Ired, and spin[2] is 1/Ired
+        row = (1 - em) * spin - [0.0, 0.0, em * spin[2]]
         lift = np.array([[1.0, 0.0], [0.0, 1.0], [-row[0] / row[2], -row[1] / row[2]]])
-        offset = np.array([0.0, 0.0, constant])
-        weighted = self.root_weight[:, None] * (self.jacobian @ lift)
-        right = self.root_weight * (self.change - self.jacobian @ offset)
+        offset = np.array([0.0, 0.0, -(1 - em) * spin_before / row[2]])
+        weighted = root_weight[:, None] * (jacobian @ lift)
+        right = root_weight * (change - jacobian @ offset)
         if not (np.isfinite(weighted).all() and np.isfinite(right).all()):
             raise np.linalg.LinAlgError("not finite")  # LAPACK may seek without end
         free = np.linalg.lstsq(weighted, right, rcond=None)[0]
-        slope = self.normal @ lift
-        e = -(self.approach + slope @ free + self.normal @ offset) / self.approach
+        slope = normal @ lift
+        e = -(approach + slope @ free + normal @ offset) / approach
         bound = min(max(e, E_BOUNDS[0]), E_BOUNDS[1])
         if bound != e:
             # on the line of impulses with e at its bound: the sum of squares is convex
-            target = -bound * self.approach - self.approach - self.normal @ offset
-            start = slope * target / (slope @ slope)
+            start = slope * (-(1 + bound) * approach - normal @ offset) / (slope @ slope)
             along = np.array([-slope[1], slope[0]])
             step = weighted @ along
             free = start + along * (step @ (right - weighted @ start)) / (step @ step)
@@ -390,18 +336,17 @@ class _Linear:
         at_bound = ("E",) if bound != e else ()
         return Fit(float(bound), em, float(free[1] / free[0]), float(misfit @ misfit), at_bound)
 
+    return best_at
+
 
 # -- against Table 2
 
 
 @dataclass(frozen=True)
 class Compared:
-    """A cell of Table 2 beside its recomputation.
-
-    ``low`` ... ``high``: what the rounding of the printed inputs (coefficients, for the predicted
-    values the loss) leaves open. ``agrees``: whether the printed digits lie within that, rounded.
-    ``explanation``: for a cell that does not agree, why.
-    """
+    """A cell of Table 2 beside its recomputation. ``low`` ... ``high``: what the rounding of the
+    printed inputs (coefficients, for the predicted values the loss) leaves open; ``agrees``:
+    whether the printed digits lie within that, rounded; ``explanation``: why not."""
 
     collision: int
     column: str
@@ -422,26 +367,21 @@ def comparison() -> list[Compared]:
         rounded_loss = collision.table2["loss"] + np.array([0, -_HALF_DIGIT, _HALF_DIGIT])
         equation_19 = predicted(collision, rounded_loss)
         values: dict[str, tuple[float, Any]] = {"loss": (float(centre["LOSS"]), spread["LOSS"])}
-        for vehicle in "ab":
-            name = f"DV{vehicle.upper()}"
+        for vehicle, name in (("a", "DVA"), ("b", "DVB")):
             values[f"dV{vehicle}_exp"] = (measured[name], measured[name])
             values[f"dV{vehicle}_comp"] = (float(centre[name]), spread[name])
             values[f"dV{vehicle}_pred"] = (float(equation_19[name][0]), equation_19[name])
-        for column in COLUMNS_2:
-            if column in values:
-                rows.append(_compared(collision, column, *values[column]))
+        rows += [_compared(collision, c, *values[c]) for c in COLUMNS_2 if c in values]
     return rows
 
 
 def _with_rounding(collision: Collision) -> tuple[dict[str, Array], dict[str, Array]]:
     """The forward results, and the same with each coefficient half a printed digit off."""
-    step = _HALF_DIGIT_COEFFICIENT
-    offsets = np.array(list(product((-step, 0, step), repeat=3))).T
-    coefficients = {
-        name: value + offset
-        for (name, value), offset in zip(collision.coefficients.items(), offsets, strict=True)
-    }
-    return forward(collision), forward(collision, coefficients)
+    half = _HALF_DIGIT_COEFFICIENT
+    offsets = np.array(list(product((-half, 0, half), repeat=3))).T
+    printed = np.array([*collision.coefficients.values()])[:, None]
+    rounded = dict(zip(collision.coefficients, printed + offsets, strict=True))
+    return forward(collision), forward(collision, rounded)
 
 
 def _compared(collision: Collision, column: str, value: float, spread: Any) -> Compared:
@@ -450,9 +390,7 @@ def _compared(collision: Collision, column: str, value: float, spread: Any) -> C
     # a printed last digit stands for half a unit either way; 1e-9 for the decimal's own rounding
     agrees = low - _HALF_DIGIT - 1e-9 <= printed <= high + _HALF_DIGIT + 1e-9
     remark = _remark(2, str(collision.number), column)
-    explanation = ""
-    if not agrees:
-        explanation = remark.evidence if remark else "not explained"
+    explanation = "" if agrees else remark.evidence if remark else "not explained"
     return Compared(collision.number, column, printed, value, low, high, bool(agrees), explanation)
 
 
@@ -466,11 +404,8 @@ CONTACT_TIMES = (0.1, 0.2)
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim: where it stands, its words in short, what was varied, what it does.
-
-    ``sides``: lowest and highest over the front-to-side collisions, ``others`` over the rest;
-    ``unit``: of both; ``verdict``: what follows, in a few words.
-    """
+    """A claim of the text, what was varied, and the lowest and highest it makes of the
+    front-to-side collisions (``sides``) and the ``others``, in ``unit``."""
 
     where: str
     claim: str
@@ -503,18 +438,11 @@ def _turned(name: str, degrees: float) -> Callable[[Collision], Array]:
     return lambda c: _change_of_delta_v(c, {name: c.scene[name] + turns})
 
 
-def _turned_vehicle(collision: Collision) -> Array:
-    """Either vehicle 22.5 degrees on, the middle of a turn by 45 during contact; its own contact
-    point stays."""
-    return np.concatenate([_turned(name, 22.5)(collision) for name in ("TA", "TB")])
-
-
 def _force_over_weight(collision: Collision) -> Array:
     found = forward(collision)
-    impulse = float(np.hypot(found["PN"], found["PT"]))
-    average = forces(impulse, np.array(CONTACT_TIMES))["FA"]
+    average = forces(np.hypot(found["PN"], found["PT"]), np.array(CONTACT_TIMES))["FA"]
     weights = np.array([collision.scene["MA"], collision.scene["MB"]]) * GRAVITY
-    return np.asarray(average[:, None] / weights).ravel()
+    return np.asarray(average[:, None] / weights)
 
 
 def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple[float, float]:
@@ -530,6 +458,8 @@ def claims() -> tuple[Claim, ...]:
     around = np.radians(np.arange(0, 360, 5.0))
     contact = {"CX": np.cos(around), "CY": np.sin(around)}
     moments = {"EM": np.linspace(-1, 0, 21)}
+    # either vehicle's own contact point stays
+    turned_a, turned_b = (_turned(name, 22.5) for name in ("TA", "TB"))
     rows = (
         (
             *("IV-A", "results not critically sensitive to Γ", "Γ by 10 degrees either way"),
@@ -549,8 +479,9 @@ def claims() -> tuple[Claim, ...]:
         ),
         (
             *("IV-A", "turns during contact below 45 degrees matter little"),
-            *("one vehicle's heading by 22.5 degrees, half the turn", _turned_vehicle),
-            *("% of ΔV", "they matter: up to a fifth of ΔV"),
+            "one vehicle's heading by 22.5 degrees, half the turn",
+            *(lambda c: np.concatenate([turned_a(c), turned_b(c)]), "% of ΔV"),
+            "they matter: up to a fifth of ΔV",
         ),
         (
             *("III", "average force 5 to 10 times the weight", "contact time .1 to .2 s"),

@@ -110,7 +110,7 @@ def _fitted(
     low, high = staged.undetermined_range(own, spin_weight=weight)
     measured = staged.closure(own)
     whole = {
-        **{"fit": asdict(found), "closure": asdict(measured)},
+        **{"fit": asdict(found), "closure": measured},
         **{"spin_weight": weight, "em_range": (low, high), "base_units": units},
     }
     rows = [
@@ -153,13 +153,12 @@ def _claims() -> list[str]:
 
 
 def _closures(
-    closures: Sequence[staged.Closure], calculated: dict[int, float] | None = None
+    closures: Sequence[dict[str, float]], calculated: dict[int, float] | None = None
 ) -> list[str]:
     rows = []
-    for c in closures:
-        row = [str(c.number), fixed(c.loss, 1) or "lost"] if calculated else [fixed(c.loss, 1)]
-        row += [fixed(calculated[c.number], 1)] if calculated else []
-        changes = (c.x_of_a, c.x_of_b, c.y_of_a, c.y_of_b, c.spin_of_a, c.spin_of_b)
+    for number, loss, *changes in (closure.values() for closure in closures):
+        row = [str(number), fixed(loss, 1) or "lost"] if calculated else [fixed(loss, 1)]
+        row += [fixed(calculated[int(number)], 1)] if calculated else []
         rows.append([*row, *(fixed(x, 0) or "lost" for x in changes)])
     heading = ["no.", "loss %, measured", "calculated"] if calculated else ["loss %, measured"]
     sides = [f"{what}, {vehicle}" for what in ("x", "y", "M") for vehicle in "AB"]
