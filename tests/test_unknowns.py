@@ -15,14 +15,10 @@ from hypothesis import strategies as st
 from impact88 import sample, solve, solve_for
 from impact88.bench.populations import scenes
 from impact88.errors import UserError
+from impact88.names import COEFFICIENTS, FINAL_STATE, VELOCITIES
 from impact88.reconstruction.model import initial_impact
 from impact88.reconstruction.outcome import outcome
-from impact88.reconstruction.unknowns import (
-    COEFFICIENTS,
-    FINAL,
-    INITIAL,
-    UnsolvableError,
-)
+from impact88.reconstruction.unknowns import UnsolvableError
 from reference_cases import Case, cases_of
 
 VEHICLES = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
@@ -31,7 +27,7 @@ VEHICLES = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 def table_3() -> dict[str, float]:
     """Table 3's scene with its final velocities and its signed friction."""
     scene = {name: float(text) for name, text in sample(3).items()}
-    after = solve(scene, (*FINAL, "MUP"))
+    after = solve(scene, (*FINAL_STATE, "MUP"))
     return scene | {name: float(value) for name, value in after.items()}
 
 
@@ -46,7 +42,7 @@ def generically_solvable(unknown: Sequence[str]) -> bool:
     scene = {n: rng.uniform(0.5, 2.0) for n in ("DA", "DB", "MA", "MB", "IA", "IB")}
     scene |= {n: rng.uniform(-90.0, 90.0) for n in ("GA", "PA", "PB", "TA", "TB")}
     scene |= {"E": 0.37, "EM": -0.61, "MUP": 0.43}
-    scene |= {n: rng.uniform(-2.0, 2.0) for n in (*INITIAL, *FINAL)}
+    scene |= {n: rng.uniform(-2.0, 2.0) for n in (*VELOCITIES, *FINAL_STATE)}
     try:
         solve_for({n: v for n, v in scene.items() if n not in unknown}, unknown)
     except UnsolvableError:
@@ -61,8 +57,8 @@ def residuals(s: dict[str, Any]) -> list[float]:
     d1, d2 = s["DB"] * np.sin(b), s["DB"] * np.cos(b)
     d3, d4 = s["DA"] * np.sin(a), s["DA"] * np.cos(a)
     ma, mb, ia, ib, mu, e, em = (s[n] for n in ("MA", "MB", "IA", "IB", "MUP", "E", "EM"))
-    vax, vay, wa, vbx, vby, wb = (s[n] for n in INITIAL)
-    Vax, Vay, Wa, Vbx, Vby, Wb = (s[n] for n in FINAL)
+    vax, vay, wa, vbx, vby, wb = (s[n] for n in VELOCITIES)
+    Vax, Vay, Wa, Vbx, Vby, Wb = (s[n] for n in FINAL_STATE)
     approach = [
         (vay - d4 * wa - vby - d2 * wb) * np.sin(g),
         (vax + d3 * wa - vbx + d1 * wb) * np.cos(g),
@@ -95,7 +91,7 @@ def residuals(s: dict[str, Any]) -> list[float]:
             em * mb * d2 * (Vby - vby) / ib,
         ],
     ]
-    speed = max(abs(s[n]) for n in (*INITIAL, *FINAL))
+    speed = max(abs(s[n]) for n in (*VELOCITIES, *FINAL_STATE))
     sizes = [(ma + mb), (ma + mb), 1, ma + mb, (ia + ib), 1 + ma / ia + mb / ib]
     return [
         abs(sum(terms)) / max(size * speed, *map(abs, terms))
@@ -146,14 +142,14 @@ def test_what_follows_from_a_solution(case: Case) -> None:
 def test_640_of_the_924_sets_of_six_velocities_are_generically_solvable() -> None:
     # IMPACT88_SETS=1 tries all of them
     every = 1 if os.environ.get("IMPACT88_SETS") else 14
-    sets = list(combinations((*INITIAL, *FINAL), 6))[::every]
+    sets = list(combinations((*VELOCITIES, *FINAL_STATE), 6))[::every]
     assert sum(map(generically_solvable, sets)) == {1: 640, 14: 47}[every]
 
 
 @pytest.mark.parametrize("vehicle", ["A", "B"])
 def test_all_six_of_one_vehicle_are_refused(vehicle: str) -> None:
     at = 0 if vehicle == "A" else 3
-    names = (*INITIAL[at : at + 3], *FINAL[at : at + 3])
+    names = (*VELOCITIES[at : at + 3], *FINAL_STATE[at : at + 3])
     assert not generically_solvable(names)
     with pytest.raises(UnsolvableError, match=f"all velocities of {vehicle} are unknown"):
         solve_for(without(table_3(), *names))
@@ -171,7 +167,7 @@ def test_all_six_of_one_vehicle_are_refused(vehicle: str) -> None:
 def test_a_reconstruction_without_solution_is_refused_with_the_reason(
     changes: dict[str, float], reason: str
 ) -> None:
-    known = without(table_3(), *INITIAL)
+    known = without(table_3(), *VELOCITIES)
     solve_for(known)
     with pytest.raises(UnsolvableError, match=reason):
         solve_for(known | changes)
@@ -199,7 +195,7 @@ def test_too_many_unknowns_are_counted_and_what_is_determined_is_named() -> None
 
 
 def test_coefficients_of_nothing_have_no_value() -> None:
-    still = dict.fromkeys((*INITIAL, *FINAL), 0.0)
+    still = dict.fromkeys((*VELOCITIES, *FINAL_STATE), 0.0)
     known = {name: table_3()[name] for name in VEHICLES} | still
     with pytest.raises(UnsolvableError) as refusal:
         solve_for(known)
@@ -222,11 +218,11 @@ def test_coefficients_of_nothing_have_no_value() -> None:
 )
 def test_unusable_values_are_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(UserError, match=message):
-        solve_for(without(table_3(), *FINAL) | changes)
+        solve_for(without(table_3(), *FINAL_STATE) | changes)
 
 
 def test_arrays_that_do_not_fit_and_bodies_that_cannot_be_are_refused() -> None:
-    known = without(table_3(), *INITIAL)
+    known = without(table_3(), *VELOCITIES)
     with pytest.raises(UserError, match="do not broadcast together: E"):
         solve_for(known | {"E": np.ones(3), "VAX": np.ones(2)})
     with pytest.raises(UserError, match="MA and MB are both infinite"):
@@ -239,7 +235,7 @@ def test_arrays_that_do_not_fit_and_bodies_that_cannot_be_are_refused() -> None:
 
 
 def test_missing_vehicles_and_wrong_wishes_are_refused() -> None:
-    known = without(table_3(), *FINAL)
+    known = without(table_3(), *FINAL_STATE)
     with pytest.raises(UserError, match="missing MA"):
         solve_for(without(known, "MA", "MU"))
     with pytest.raises(UserError, match="UX is both known and wanted"):
@@ -254,21 +250,23 @@ def test_missing_vehicles_and_wrong_wishes_are_refused() -> None:
 
 
 def test_both_signs_of_friction_are_returned_where_both_agree() -> None:
-    known = without(table_3(), *INITIAL, "MUP") | {"MU": 0.89}
+    known = without(table_3(), *VELOCITIES, "MUP") | {"MU": 0.89}
     solutions = solve_for(known)
     assert [float(s["MUP"]) for s in solutions] == [0.89, -0.89]
     assert [float(s["MU"]) for s in solutions] == [0.89, 0.89]
     for solution in solutions:
-        scene = {**known, **{name: float(solution[name]) for name in INITIAL}}
-        again = solve({name: scene[name] for name in (*VEHICLES, "E", "MU", "EM", *INITIAL)}, FINAL)
-        assert largest_error(again, {n: known[n] for n in FINAL}) < 1e-13
+        scene = {**known, **{name: float(solution[name]) for name in VELOCITIES}}
+        again = solve(
+            {name: scene[name] for name in (*VEHICLES, "E", "MU", "EM", *VELOCITIES)}, FINAL_STATE
+        )
+        assert largest_error(again, {n: known[n] for n in FINAL_STATE}) < 1e-13
 
 
 def test_a_sign_that_disagrees_with_its_own_sliding_is_not_returned() -> None:
     # with little friction only the sign that opposes the sliding of Table 3 remains
     scene = {name: float(text) for name, text in sample(3).items()} | {"MU": 0.1}
-    after = {name: float(value) for name, value in solve(scene, FINAL).items()}
-    known = {n: v for n, v in scene.items() if n not in INITIAL} | after
+    after = {name: float(value) for name, value in solve(scene, FINAL_STATE).items()}
+    known = {n: v for n, v in scene.items() if n not in VELOCITIES} | after
     (found,) = solve_for(known)
     assert float(found["MUP"]) == 0.1
     assert float(found["UX"]) == pytest.approx(-36.667)
@@ -280,7 +278,7 @@ def test_the_forward_problem_applies_line_400() -> None:
     turned = known | {"GA": 150.0}  # gt > 0: the sign changes
     (found,) = solve_for(turned)
     assert float(found["MUP"]) == -0.911
-    expected = {n: float(v) for n, v in solve(turned, FINAL).items()}
+    expected = {n: float(v) for n, v in solve(turned, FINAL_STATE).items()}
     assert largest_error(found, expected) < 1e-14
 
 
@@ -288,7 +286,7 @@ def test_the_forward_problem_applies_line_400() -> None:
 
 
 def test_arrays_give_what_each_scene_gives_alone_and_nan_where_there_is_nothing() -> None:
-    known = without(table_3(), *INITIAL)
+    known = without(table_3(), *VELOCITIES)
     e = np.array([[0.0, 0.1], [0.25, 0.5]])
     (found,) = solve_for(known | {"E": e})
     assert found["UX"].shape == (2, 2)
@@ -296,14 +294,14 @@ def test_arrays_give_what_each_scene_gives_alone_and_nan_where_there_is_nothing(
     assert found.agrees.tolist() == [[False, True], [True, True]]
     for index in ((0, 1), (1, 0), (1, 1)):
         (alone,) = solve_for(known | {"E": e[index]})
-        for name in INITIAL:
+        for name in VELOCITIES:
             assert found[name][index] == pytest.approx(float(alone[name]), rel=1e-13, abs=1e-12)
     with pytest.raises(UnsolvableError, match="E = 0"):
         solve_for(known | {"E": np.zeros(3)})
 
 
 def test_arrays_with_friction_known_in_size_say_where_each_sign_agrees() -> None:
-    known = without(table_3(), *INITIAL, "MUP")
+    known = without(table_3(), *VELOCITIES, "MUP")
     mu = np.array([0.02, 0.3, 0.7, 0.89])
     found = {float(s["MUP"][0]) > 0: s for s in solve_for(known | {"MU": mu})}
     masks = {sign: solution.agrees.tolist() for sign, solution in found.items()}
@@ -323,11 +321,11 @@ def test_arrays_with_friction_known_in_size_say_where_each_sign_agrees() -> None
 
 def test_closed_form_reconstruction_over_arrays_agrees_with_the_general_solver() -> None:
     rng = np.random.default_rng(3)
-    known = without(table_3(), *INITIAL)
+    known = without(table_3(), *VELOCITIES)
     columns = {n: v * rng.uniform(0.9, 1.1, 200) for n, v in known.items()} | {"MUP": 0.3}
     (general,) = solve_for(columns)
     closed = initial_impact(columns)
-    for name in (*INITIAL, "PN", "PT", "PM"):
+    for name in (*VELOCITIES, "PN", "PT", "PM"):
         np.testing.assert_allclose(closed[name], general[name], rtol=1e-10, atol=1e-10)
     assert not np.isfinite(initial_impact(columns | {"MUP": -10.0})["UX"]).any()
 
@@ -340,7 +338,7 @@ def test_amplification_is_the_error_that_known_errors_make() -> None:
     (found,) = solve_for(known)
     step = 1e-5
     squares = dict.fromkeys(found.unknown, 0.0)
-    for name in (*INITIAL, *FINAL):
+    for name in (*VELOCITIES, *FINAL_STATE):
         if name not in known:
             continue
         unit = step / float(found.gyration) if name.startswith("W") else step
@@ -355,7 +353,7 @@ def test_amplification_is_the_error_that_known_errors_make() -> None:
 
 
 def test_a_small_restitution_is_flagged_as_badly_conditioned() -> None:
-    known = without(table_3(), *INITIAL)
+    known = without(table_3(), *VELOCITIES)
     assert not solve_for(known)[0].badly_conditioned
     (found,) = solve_for(known | {"E": 0.005})
     assert found.badly_conditioned
@@ -396,13 +394,13 @@ def impacts(draw: Any, point: bool = False) -> dict[str, float]:
         **{name: number(-3.0, 3.0) for name in ("WA", "WB")},
         "M": 4.0 if point else 6.0,
     }
-    after = solve(scene, (*FINAL, "MUP", "PN"))
+    after = solve(scene, (*FINAL_STATE, "MUP", "PN"))
     return scene | {name: float(value) for name, value in after.items()}
 
 
 PROBLEMS = {
-    "forward": FINAL,
-    "reconstruction": INITIAL,
+    "forward": FINAL_STATE,
+    "reconstruction": VELOCITIES,
     "before of A, after of B": ("UX", "UY", "WA", "VBX", "VBY", "WBF"),
     "before of B, after of A": ("VX", "VY", "WB", "VAX", "VAY", "WAF"),
     "coefficients and three": ("UX", "VY", "WBF", *COEFFICIENTS),
@@ -417,7 +415,7 @@ PROBLEMS = {
 @settings(max_examples=15, deadline=None)
 @given(scene=impacts())
 def test_every_problem_inverts_the_forward_solution(problem: str, scene: dict[str, float]) -> None:
-    assume(np.isfinite([scene[n] for n in FINAL]).all())
+    assume(np.isfinite([scene[n] for n in FINAL_STATE]).all())
     assume(abs(scene["PN"]) > 1.0)
     names = PROBLEMS[problem]
     expected = {name: scene[name] for name in names}
@@ -429,7 +427,7 @@ def test_every_problem_inverts_the_forward_solution(problem: str, scene: dict[st
         assert problem not in ("forward", "reconstruction", "coefficients")
         assume(False)
     assume(float(found.worst) < 1e6)
-    speed = max(abs(scene[n]) for n in (*INITIAL, *FINAL))
+    speed = max(abs(scene[n]) for n in (*VELOCITIES, *FINAL_STATE))
     tolerance = 1e-12 * max(1.0, float(found.worst)) * speed
     for name, value in expected.items():
         assert float(found[name]) == pytest.approx(value, abs=max(tolerance, 1e-12))
@@ -438,8 +436,9 @@ def test_every_problem_inverts_the_forward_solution(problem: str, scene: dict[st
 
 SOLVABLE = [
     names
-    for names in combinations((*INITIAL, *FINAL), 6)
-    if not {*names} >= {*INITIAL[:3], *FINAL[:3]} and not {*names} >= {*INITIAL[3:], *FINAL[3:]}
+    for names in combinations((*VELOCITIES, *FINAL_STATE), 6)
+    if not {*names} >= {*VELOCITIES[:3], *FINAL_STATE[:3]}
+    and not {*names} >= {*VELOCITIES[3:], *FINAL_STATE[3:]}
 ]
 
 
@@ -448,7 +447,7 @@ SOLVABLE = [
 def test_any_set_of_six_is_recovered_or_refused_as_its_rank_says(
     scene: dict[str, float], names: tuple[str, ...]
 ) -> None:
-    assume(np.isfinite([scene[n] for n in FINAL]).all())
+    assume(np.isfinite([scene[n] for n in FINAL_STATE]).all())
     known = {n: v for n, v in scene.items() if n not in (*names, "MU", "PN")}
     if not generically_solvable(names):
         with pytest.raises(UnsolvableError):
@@ -465,10 +464,10 @@ def test_any_set_of_six_is_recovered_or_refused_as_its_rank_says(
 @settings(max_examples=20, deadline=None)
 @given(scene=impacts())
 def test_momentum_and_angular_momentum_are_conserved(scene: dict[str, float]) -> None:
-    assume(np.isfinite([scene[n] for n in FINAL]).all())
-    known = {n: v for n, v in scene.items() if n not in (*FINAL, "MUP", "PN")}
+    assume(np.isfinite([scene[n] for n in FINAL_STATE]).all())
+    known = {n: v for n, v in scene.items() if n not in (*FINAL_STATE, "MUP", "PN")}
     s = known | {n: float(v) for n, v in solve_for(known)[0].values.items()}
-    speed = max(abs(s[n]) for n in (*INITIAL, *FINAL))
+    speed = max(abs(s[n]) for n in (*VELOCITIES, *FINAL_STATE))
     for before, after in ((("UX", "VX"), ("VAX", "VBX")), (("UY", "VY"), ("VAY", "VBY"))):
         momentum = [s["MA"] * s[x[0]] + s["MB"] * s[x[1]] for x in (before, after)]
         assert momentum[0] == pytest.approx(momentum[1], abs=1e-11 * speed * (s["MA"] + s["MB"]))
@@ -508,7 +507,7 @@ def test_a_fit_of_contradictions_does_not_stand_beside_a_solution() -> None:
     for number in range(50, 60):
         scene = {name: float(values[number]) for name, values in columns.items()}
         scene["MU"] = abs(scene["MU"])
-        whole = scene | {name: float(v) for name, v in solve(scene, FINAL).items()}
+        whole = scene | {name: float(v) for name, v in solve(scene, FINAL_STATE).items()}
         known = {n: v for n, v in whole.items() if n not in ("UX", "UY", "WA", "VX", "VY")}
         try:
             solutions = solve_for(known)

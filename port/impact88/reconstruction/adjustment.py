@@ -25,34 +25,17 @@ from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, chec
 from ..uncertainty.uncertain import Uncertain, fixed
 from .doublerange import within_doubles
 from .geometry import NAMES as GEOMETRY
-from .geometry import Geometry
 from .knowable import OTHERS
-from .state import (
-    CHANGES,
-    CONTACT,
-    COURSES,
-    CRUSH,
-    DIRECTIONS,
-    ENERGIES,
-    FORCES,
-    QUANTITIES,
-    SPEEDS,
-    State,
-)
+from .state import COURSES, DIRECTIONS, FORCES, QUANTITIES, SPEEDS, State
+from .system import MEASURABLE, PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, solve_for, typed
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
-PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
-"""Known values that enter the conditions; the others are quantities a state has."""
-MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES, *CONTACT)
 KNOWABLE = ("M", *PARAMETERS, "MU", *MEASURABLE)
 """What may be known."""
-_SPINS = ("WA", "WB", "WAF", "WBF")
-_CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
-"""Quantities that more than one impact may have."""
 _STARTS = 120
 """With half of them one of several impacts was missed in 2 of 48 problems seen from elsewhere (axes
 turned, mirrored, vehicles exchanged), with twice as many none more is found."""
@@ -80,371 +63,187 @@ _CLOSE = 0.5
 """Of the variables: no longer step leads to the exact solution."""
 _DIFFERENCE, _DOWNWARD = 1e-6, 1e-9
 """Half the distance slopes are compared over, for curvatures; and curvatures that are rounding."""
-_TINY = 1e-30
-"""Of a scaled variable: the imaginary step whose derivative has no error."""
-_AT_ONCE = 4096
-"""Impacts whose derivatives are taken at once, times the variables: past it copies do not pay."""
 _RANK, _OPEN = 1e-10, 1e-7
 """Singular values, and shares of a gradient in the null space, up to that are none."""
 _LIKELY = 4.0
 """Impacts with so many times the least sum of squares are reported, too."""
 _TOLD_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 """Of what is not known, what can be found out best."""
-DEGREES = float(np.degrees(1.0))
 
 
-class System:
-    """The equations of one reading of what is known, in scaled variables (rows) of n impacts.
+def straight(system: System, starts: Floats) -> tuple[Floats, Floats]:
+    """Gauss and Newton from several starts, a column each: where their steps end, and the
+    largest of what conditions leave over there. Steps may climb, as long as the conditions hold
+    no worse."""
+    count, x = len(system.conditions), starts.copy()
+    going = np.arange(x.shape[1])
+    for _ in range(_STEPS):
+        here = x[:, going]
+        residual, slopes = system.linearized(here, system.left)
+        steps = _steps(residual, slopes, count)
+        size = np.abs(steps).max(axis=0, initial=0.0)
+        longest = _LONGEST * np.maximum(1.0, np.abs(here).max(axis=0, initial=0.0))
+        steps = steps * np.minimum(1.0, longest / np.maximum(size, longest))
+        before = np.abs(residual[:count]).max(axis=0, initial=0.0)
+        for _ in range(12):
+            tried = here + steps
+            after = np.abs(system.left(system.state(tried))[:count]).max(axis=0, initial=0.0)
+            worse = after > np.maximum(1.5 * before, 1e-9)
+            if not worse.any():
+                break
+            steps = np.where(worse, steps / 2, steps)
+        x[:, going] = tried
+        going = going[size >= _LAST * (1 + np.abs(tried).max(axis=0, initial=0.0))]
+        if not len(going):
+            break
+    left_over = np.abs(system.left(system.state(x))[:count]).max(axis=0, initial=0.0)
+    return x, np.broadcast_to(left_over, x.shape[1:])
 
-    ``known``: by name, friction as MUP; ``adjusted``: whether values with a tolerance are adjusted
-    (each a variable or a quantity with an observation) or taken as they are (conditions all).
-    """
 
-    def __init__(
-        self, known: Mapping[str, Uncertain], adjusted: bool, progress: Progress = lambda n: None
-    ) -> None:
-        self.progress = progress
-        self.known, self.adjusted = dict(known), adjusted
-        self.nominal = {name: item.nominal for name, item in known.items()}
-        self.point = self.nominal.get("M", 6.0) == 4
-        geometry = Geometry.of(self.nominal)
-        # numpy's numbers: beyond the range of doubles they are infinite, where Python's raise
-        self.mass = np.float64(1 / geometry.inverse_mass)
-        self.gyration = np.float64(1.0)
-        if not self.point:
-            turning = geometry.inverse_mass / geometry.inverse_spin_inertia
-            self.gyration = np.float64(np.sqrt(turning))
-        still = self._still()
-        self.speed = np.float64(self._typical_speed())
-        loose = {n for n, item in known.items() if adjusted and item.varies}
-        parameters = [n for n in known if n in PARAMETERS and n in loose]
-        unknown = [n for n in VELOCITIES if n not in still and (n not in known or n in loose)]
-        self.from_after: tuple[str, ...] = ()
-        if not adjusted:
-            self.from_after = tuple(n for n in unknown if FINAL_STATE[VELOCITIES.index(n)] in known)
-            unknown = [n for n in unknown if n not in self.from_after]
-        impulses = [n for n in IMPULSES if n not in still]
-        self.variables = (*unknown, *impulses, *parameters)
-        self.scales = np.array([self.scale(name) for name in self.variables])
-        self.constants = {**dict.fromkeys(still, 0.0), **self.nominal}
-        laws = [n for n in COEFFICIENTS if n in known and not (self.point and n == "EM")]
-        exact = [
-            n
-            for n in known
-            if (
-                (n in MEASURABLE and n not in loose) or n in SPEEDS or n in DIRECTIONS or n == "ELA"
+def tightened(system: System, x: Floats) -> tuple[Floats, Floats]:
+    """Least squares from several starts, a column each, and the largest of what conditions
+    leave over at each end. Tight tolerances among loose ones make a narrow curved valley: all
+    begin loose and are tightened little by little."""
+    held = np.full(len(system.conditions), _HELD)
+    shares = np.array(
+        [system.known[n].standard_deviation / system.scale(n) for n in system.observations]
+    )
+    # vehicles and coefficients are known about well enough to begin with
+    spared = np.array([n in GEOMETRY or n in COEFFICIENTS for n in system.observations])
+    loosest, tightest = 1.0, max(float(shares.min()), _TIGHTEST)
+    while loosest > tightest:
+        weights = np.where(spared, 1.0, np.minimum(1.0, shares / loosest))
+        rows = np.concatenate([held / loosest, weights])
+        x = _descended(system, x, rows[:, None], _ROUGHLY)
+        loosest *= _TIGHTER
+    rows = np.concatenate([held / tightest, np.ones(len(shares))])
+    x = _descended(system, x, rows[:, None], _CLOSELY)
+    return x, np.abs(system.left(system.state(x))[: len(held)]).max(axis=0, initial=0.0)
+
+
+def _descended(system: System, x: Floats, rows: Floats, enough: float) -> Floats:
+    """Least squares of what conditions and observations leave over, ``rows`` times as much, in
+    damped steps (Levenberg, Marquardt) until three gain less than the share ``enough``."""
+    x, residual = x.copy(), rows * system.left(system.state(x))
+    squares, damping = _squares(residual), np.full(x.shape[1], 1e-3)
+    idle, going = np.zeros(x.shape[1], int), np.isfinite(squares)
+    for _ in range(2 * _STEPS):
+        who = np.flatnonzero(going)
+        jacobian = rows[:, None] * system.linearized(x[:, who], system.left)[1]
+        finite = np.isfinite(jacobian).all(axis=(0, 1))
+        going[who[~finite]] = False
+        who, jacobian = who[finite], jacobian[:, :, finite].transpose(2, 0, 1)
+        if not len(who):
+            break
+        u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
+        first, trying = squares.copy(), np.arange(len(who))
+        while len(trying):
+            one, width = who[trying], s[trying]
+            damped = width**2 + damping[one, None] * width[:, :1] ** 2
+            inverse = (vt[trying].swapaxes(1, 2) * (width / damped)[:, None]) @ (
+                u[trying].swapaxes(1, 2)
             )
-            and n not in VELOCITIES
-            and not (
-                n in FINAL_STATE and VELOCITIES[FINAL_STATE.index(n)] in (*still, *self.from_after)
-            )
-        ]
-        self.laws, self.exact = laws, exact
-        self.conditions = (*laws, *exact)
-        self.observations = tuple(n for n in known if n in loose and n not in still)
-        self.geometry = None if set(parameters) & set(GEOMETRY) else geometry
-        self.linear = not adjusted and not any(
-            n in _CURVED and _COURSE_OF.get(n) not in known for n in known
-        )
+            step = -_times(inverse, residual[:, one])
+            size = np.abs(step).max(axis=0, initial=0.0)
+            going[one] = size > _LAST
+            step *= np.minimum(1.0, _LONGEST / np.where(going[one], size, 1.0))
+            promised = residual[:, one] + _times(jacobian[trying], step)
+            tried, after = _bent(system, x[:, one] + step, promised, inverse, rows)
+            less = _squares(after) < squares[one]
+            kept, won = going[one] & less, one[going[one] & less]
+            x[:, won], residual[:, won] = tried[:, kept], after[:, kept]
+            squares[won] = _squares(after)[kept]
+            damping[one] = np.where(less, np.maximum(damping[one] / 10, 1e-16), damping[one] * 10)
+            trying = trying[going[one] & ~less]
+        gained = first[who] - squares[who] > enough * first[who]
+        idle[who] = np.where(gained, 0, idle[who] + 1)
+        going[who[idle[who] == 3]] = False
+    return x
 
-    def _still(self) -> tuple[str, ...]:
-        """What is 0 and no variable: a point mass's spins, a barrier's velocities."""
-        still: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
-        for mass, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
-            if np.isinf(self.nominal[mass]):
-                still += names
-        return still
 
-    def _typical_speed(self) -> float:
-        sizes = [abs(v) for n, v in self.nominal.items() if n in _VELOCITY_LIKE]
-        sizes += [abs(v) * self.gyration for n, v in self.nominal.items() if n in _SPINS]
-        energies = [abs(v) for n, v in self.nominal.items() if n in ("KI", "KF", "EL", *CRUSH)]
-        sizes += [float(np.sqrt(2 * v / self.mass)) for v in energies]
-        return max(sizes, default=1.0) or 1.0
+def _bent(
+    system: System, x: Floats, promised: Floats, inverse: Floats, rows: Floats
+) -> tuple[Floats, Floats]:
+    """Straight steps' ends brought to where what is left over is what the slopes promised, as
+    long as that lessens it: so steps follow narrow curved valleys."""
+    after = rows * system.left(system.state(x))
+    squares, straight, who = _squares(after), _squares(promised), np.arange(x.shape[1])
+    for _ in range(_STEPS):
+        who = who[squares[who] > 1.1 * straight[who]]
+        if not len(who):
+            break
+        tried = x[:, who] - _times(inverse[who], after[:, who] - promised[:, who])
+        residual = rows * system.left(system.state(tried))
+        better = _squares(residual) < 0.9 * squares[who]
+        who = who[better]
+        x[:, who], after[:, who] = tried[:, better], residual[:, better]
+        squares[who] = _squares(after[:, who])
+    return x, after
 
-    def scale(self, name: str) -> float:
-        """What a quantity of ordinary size measures in the problem's units."""
-        speed, mass, length = self.speed, self.mass, self.gyration
-        if name in _SPINS:
-            return speed / length
-        if name in IMPULSES:
-            return mass * speed * (length if name == "PM" else 1.0)
-        if name in DIRECTIONS or name in ("GA", "PA", "PB", "TA", "TB"):
-            return DEGREES
-        if name in COEFFICIENTS or name == "DT":
-            return 1.0
-        if name in ("KI", "KF", "EL", *CRUSH):
-            return mass * speed**2
-        if name in ("DA", "DB"):
-            return length
-        if name in GEOMETRY:
-            return abs(self.nominal[name])
-        return 100.0 if name == "LOSS" else speed
 
-    # -- residuals
-
-    def state(
-        self, x: Array, data: Mapping[str, Array] | None = None, geometry: Geometry | None = None
-    ) -> State:
-        """The impact with these variables; ``data`` replaces known values (when not adjusted) and
-        ``geometry`` is what they make, where it has been worked out before."""
-        moved = {
-            n: row * scale for n, row, scale in zip(self.variables, x, self.scales, strict=True)
-        }
-        if geometry is None and not (data and set(data) & set(GEOMETRY)):
-            geometry = self.geometry
-        return State({**self.constants, **(data or {}), **moved}, geometry, self.from_after)
-
-    def left(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
-        """What conditions, then observations leave over, scaled: rows, one column an impact."""
-        targets = {**self.nominal, **(targets or {})}
-        rows = [state.law(n) / self._law_scale(n) for n in self.laws]
-        rows += [self._exact(state, n, targets) for n in self.exact]
-        for name in self.observations:
-            off = self.measured(state, name) - targets[name]
-            rows.append(off / standard_deviation(self.known[name]))
-        if not rows:
-            return np.empty((0, 1))
-        return np.stack(np.broadcast_arrays(*map(np.atleast_1d, rows)))
-
-    def measured(self, state: State, name: str) -> Any:
-        """What an observation is of: an adjusted value that conditions hold, or a quantity."""
-        return state.values[name] if name in self.variables else state[name]
-
-    def _law_scale(self, coefficient: str) -> float:
-        if coefficient == "MUP" and self.nominal["MUP"] != PIVOT:
-            return self.mass * self.speed
-        return self.speed / (self.gyration if coefficient == "EM" else 1.0)
-
-    def _exact(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
-        if name in DIRECTIONS:
-            return state.across(name) / (self.speed * (self.mass if name in FORCES else 1.0))
-        if name == "ELA":
-            return (state["EL"] - state.values["ELA"] - state.values["ELB"]) / self.scale("EL")
-        if name in SPEEDS:
-            course = _COURSE_OF[name]
-            size = state.along(course) if course in self.known else state[name]
-            value = state.values[name] if name in self.variables else targets[name]
-            return (size - value) / self.speed
-        return (state[name] - targets[name]) / self.scale(name)
-
-    def linearized(
-        self,
-        x: Array,
-        rows: Callable[[State, Mapping[str, Array] | None], Any],
-        data: Mapping[str, Array] | None = None,
-        targets: Mapping[str, Array] | None = None,
-    ) -> tuple[Floats, Floats]:
-        """``rows(state, targets)``, rows and impacts, and their derivatives over the scaled
-        variables: rows, variables, impacts. ``data`` as for `state`, ``targets`` as for `left`, a
-        column an impact."""
-        size, count = len(self.variables), x.shape[1]
-        self.progress(count)
-        if not size:
-            values = np.real(rows(self.state(x, data), targets))
-            return values, np.empty((len(values), 0, count))
-        # of few impacts all derivatives at once, by a copy of the impacts each; of many in turn
-        copies = size if size * count <= _AT_ONCE else 1
-        again = [
-            given and {name: np.tile(column, copies) for name, column in given.items()}
-            for given in (data, targets)
-        ]
-        parts = []
-        for first in range(0, size, copies):
-            moved = np.tile(x.astype(complex), copies)
-            for i in range(copies):
-                moved[first + i, i * count : (i + 1) * count] += 1j * _TINY
-            values = rows(self.state(moved, again[0]), again[1])
-            values = np.broadcast_to(values, (len(values), copies * count))
-            parts.append((np.imag(values) / _TINY).reshape(len(values), copies, count))
-        return np.real(values[:, :count]), np.concatenate(parts, axis=1)
-
-    def slopes(self, x: Array) -> Floats:
-        """Of what conditions and observations leave over, for one impact."""
-        return self.linearized(x, self.left)[1][:, :, 0]
-
-    def gradient(self, x: Array, name: str) -> Floats:
-        """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
-        if name in self.variables and name not in QUANTITIES:
-            result: Floats = self.scales * (np.array(self.variables) == name)
-            return result
-        return self.linearized(x, lambda state, _: np.reshape(state[name], (1, -1)))[1][0, :, 0]
-
-    # -- one impact
-
-    def start(self, rng: np.random.Generator, count: int) -> Floats:
-        """Scaled variables to begin with, ``count`` columns."""
-        x = rng.standard_normal((count, len(self.variables))).T
-        for i, name in enumerate(self.variables):
-            if name in self.nominal:
-                x[i] = self.nominal[name] / self.scales[i]
-        return x
-
-    def straight(self, starts: Floats) -> tuple[Floats, Floats]:
-        """Gauss and Newton from several starts, a column each: where their steps end, and the
-        largest of what conditions leave over there. Steps may climb, as long as the conditions hold
-        no worse."""
-        count, x = len(self.conditions), starts.copy()
-        going = np.arange(x.shape[1])
-        for _ in range(_STEPS):
-            here = x[:, going]
-            residual, slopes = self.linearized(here, self.left)
-            steps = _steps(residual, slopes, count)
-            size = np.abs(steps).max(axis=0, initial=0.0)
-            longest = _LONGEST * np.maximum(1.0, np.abs(here).max(axis=0, initial=0.0))
-            steps = steps * np.minimum(1.0, longest / np.maximum(size, longest))
-            before = np.abs(residual[:count]).max(axis=0, initial=0.0)
-            for _ in range(12):
-                tried = here + steps
-                after = np.abs(self.left(self.state(tried))[:count]).max(axis=0, initial=0.0)
-                worse = after > np.maximum(1.5 * before, 1e-9)
-                if not worse.any():
-                    break
-                steps = np.where(worse, steps / 2, steps)
-            x[:, going] = tried
-            going = going[size >= _LAST * (1 + np.abs(tried).max(axis=0, initial=0.0))]
-            if not len(going):
-                break
-        left_over = np.abs(self.left(self.state(x))[:count]).max(axis=0, initial=0.0)
-        return x, np.broadcast_to(left_over, x.shape[1:])
-
-    def tightened(self, x: Floats) -> tuple[Floats, Floats]:
-        """Least squares from several starts, a column each, and the largest of what conditions
-        leave over at each end. Tight tolerances among loose ones make a narrow curved valley: all
-        begin loose and are tightened little by little."""
-        held = np.full(len(self.conditions), _HELD)
-        shares = np.array(
-            [standard_deviation(self.known[n]) / self.scale(n) for n in self.observations]
-        )
-        # vehicles and coefficients are known about well enough to begin with
-        spared = np.array([n in GEOMETRY or n in COEFFICIENTS for n in self.observations])
-        loosest, tightest = 1.0, max(float(shares.min()), _TIGHTEST)
-        while loosest > tightest:
-            weights = np.where(spared, 1.0, np.minimum(1.0, shares / loosest))
-            rows = np.concatenate([held / loosest, weights])
-            x = self._descended(x, rows[:, None], _ROUGHLY)
-            loosest *= _TIGHTER
-        rows = np.concatenate([held / tightest, np.ones(len(shares))])
-        x = self._descended(x, rows[:, None], _CLOSELY)
-        return x, np.abs(self.left(self.state(x))[: len(held)]).max(axis=0, initial=0.0)
-
-    def _descended(self, x: Floats, rows: Floats, enough: float) -> Floats:
-        """Least squares of what conditions and observations leave over, ``rows`` times as much, in
-        damped steps (Levenberg, Marquardt) until three gain less than the share ``enough``."""
-        x, residual = x.copy(), rows * self.left(self.state(x))
-        squares, damping = _squares(residual), np.full(x.shape[1], 1e-3)
-        idle, going = np.zeros(x.shape[1], int), np.isfinite(squares)
-        for _ in range(2 * _STEPS):
-            who = np.flatnonzero(going)
-            jacobian = rows[:, None] * self.linearized(x[:, who], self.left)[1]
-            finite = np.isfinite(jacobian).all(axis=(0, 1))
-            going[who[~finite]] = False
-            who, jacobian = who[finite], jacobian[:, :, finite].transpose(2, 0, 1)
-            if not len(who):
-                break
-            u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
-            first, trying = squares.copy(), np.arange(len(who))
-            while len(trying):
-                one, width = who[trying], s[trying]
-                damped = width**2 + damping[one, None] * width[:, :1] ** 2
-                inverse = (vt[trying].swapaxes(1, 2) * (width / damped)[:, None]) @ (
-                    u[trying].swapaxes(1, 2)
-                )
-                step = -_times(inverse, residual[:, one])
-                size = np.abs(step).max(axis=0, initial=0.0)
-                going[one] = size > _LAST
-                step *= np.minimum(1.0, _LONGEST / np.where(going[one], size, 1.0))
-                promised = residual[:, one] + _times(jacobian[trying], step)
-                tried, after = self._bent(x[:, one] + step, promised, inverse, rows)
-                less = _squares(after) < squares[one]
-                kept, won = going[one] & less, one[going[one] & less]
-                x[:, won], residual[:, won] = tried[:, kept], after[:, kept]
-                squares[won] = _squares(after)[kept]
-                damping[one] = np.where(
-                    less, np.maximum(damping[one] / 10, 1e-16), damping[one] * 10
-                )
-                trying = trying[going[one] & ~less]
-            gained = first[who] - squares[who] > enough * first[who]
-            idle[who] = np.where(gained, 0, idle[who] + 1)
-            going[who[idle[who] == 3]] = False
-        return x
-
-    def _bent(
-        self, x: Floats, promised: Floats, inverse: Floats, rows: Floats
-    ) -> tuple[Floats, Floats]:
-        """Straight steps' ends brought to where what is left over is what the slopes promised, as
-        long as that lessens it: so steps follow narrow curved valleys."""
-        after = rows * self.left(self.state(x))
-        squares, straight, who = _squares(after), _squares(promised), np.arange(x.shape[1])
-        for _ in range(_STEPS):
-            who = who[squares[who] > 1.1 * straight[who]]
-            if not len(who):
-                break
-            tried = x[:, who] - _times(inverse[who], after[:, who] - promised[:, who])
-            residual = rows * self.left(self.state(tried))
-            better = _squares(residual) < 0.9 * squares[who]
-            who = who[better]
-            x[:, who], after[:, who] = tried[:, better], residual[:, better]
-            squares[who] = _squares(after[:, who])
-        return x, after
-
-    def polished(self, x: Floats) -> tuple[Floats, float]:
-        """Newton's method from close by, for conditions that hold exactly and adjustments that are
-        least, curvature and all: the adjusted impact, and the largest of what its conditions leave
-        over, infinite where no impact is found that is least."""
-        count, last, begin = len(self.conditions), np.inf, x
-        for _ in range(_STEPS):
-            residual, slopes = self.linearized(x, self.left)
-            step, least = self._newton(x, residual[:, 0], slopes[:, :, 0])
-            size, far = np.abs(step).max(initial=0.0), 1 + np.abs(x).max(initial=0.0)
-            if not size < _CLOSE * far:
-                return x, np.inf
-            x = x + step[:, None]
-            if size < _LAST * far or 1e-9 * far > size > 0.5 * last:
-                break
-            last = size
-        else:
+def polished(system: System, x: Floats) -> tuple[Floats, float]:
+    """Newton's method from close by, for conditions that hold exactly and adjustments that are
+    least, curvature and all: the adjusted impact, and the largest of what its conditions leave
+    over, infinite where no impact is found that is least."""
+    count, last, begin = len(system.conditions), np.inf, x
+    for _ in range(_STEPS):
+        residual, slopes = system.linearized(x, system.left)
+        step, least = _newton(system, x, residual[:, 0], slopes[:, :, 0])
+        size, far = np.abs(step).max(initial=0.0), 1 + np.abs(x).max(initial=0.0)
+        if not size < _CLOSE * far:
             return x, np.inf
-        before, after = self.left(self.state(begin)), self.left(self.state(x))
-        # neither a saddle nor another valley
-        if not least or _squares(after[count:])[0] > 1.01 * _squares(before[count:])[0] + 1e-9:
-            return x, np.inf
-        return x, float(np.abs(after[:count]).max(initial=0.0))
-
-    def _newton(self, x: Floats, residual: Floats, jacobian: Floats) -> tuple[Floats, bool]:
-        """The step to where the gradient of the squares has no part along the conditions, and
-        whether they curve upward there. What nothing determines to first order stays."""
-        count, size = len(self.conditions), len(x)
-        inverse, null = pseudo_inverse(jacobian[:count])
-        loose, measured = jacobian[count:], residual[count:]
-        multipliers = np.concatenate([-inverse.T @ (loose.T @ measured), measured])
-        aside = _DIFFERENCE * np.eye(size)
-        slopes = self.linearized(np.concatenate([x + aside, x - aside], axis=1), self.left)[1]
-        ahead, behind = np.split(np.einsum("r,rik->ik", multipliers, slopes), 2, axis=1)
-        curvature = (ahead - behind) / (2 * _DIFFERENCE)
-        # the step along what is determined, the adjustments after it, and the multipliers
-        *_, along, _ = _decomposed(jacobian)
-        weight = np.abs(loose).max(initial=0.0) or 1.0
-        tight, narrow = jacobian[:count] @ along.T, loose @ along.T / weight
-        free, rows = len(along), len(loose)
-        whole = np.zeros((free + rows + count,) * 2)
-        whole[:free, :free] = along @ (curvature + curvature.T) @ along.T / (2 * weight * weight)
-        whole[:free, free : free + rows], whole[:free, free + rows :] = narrow.T, tight.T
-        whole[free : free + rows, :free], whole[free + rows :, :free] = narrow, tight
-        whole[free : free + rows, free : free + rows] = -np.eye(rows)
-        right = np.zeros(len(whole))
-        right[free : free + rows], right[free + rows :] = -measured / weight, -residual[:count]
-        if not (np.isfinite(whole).all() and np.isfinite(right).all()):
-            raise np.linalg.LinAlgError("not finite")
-        solution = np.linalg.lstsq(whole, right, rcond=1e-15)[0]
-        # for every residual and every condition that says something, one curves downward
-        downward = np.linalg.eigvalsh(_balanced(whole)) < -_DOWNWARD
-        step: Floats = along.T @ solution[:free]
-        return step, bool(downward.sum() <= rows + size - null.shape[1])
+        x = x + step[:, None]
+        if size < _LAST * far or 1e-9 * far > size > 0.5 * last:
+            break
+        last = size
+    else:
+        return x, np.inf
+    before, after = system.left(system.state(begin)), system.left(system.state(x))
+    # neither a saddle nor another valley
+    if not least or _squares(after[count:])[0] > 1.01 * _squares(before[count:])[0] + 1e-9:
+        return x, np.inf
+    return x, float(np.abs(after[:count]).max(initial=0.0))
 
 
-_VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES, *CONTACT} - {*_SPINS}
-_COURSE_OF = {speed: course for course, speed in COURSES.items()}
+def _newton(system: System, x: Floats, residual: Floats, jacobian: Floats) -> tuple[Floats, bool]:
+    """The step to where the gradient of the squares has no part along the conditions, and
+    whether they curve upward there. What nothing determines to first order stays."""
+    count, size = len(system.conditions), len(x)
+    inverse, null = pseudo_inverse(jacobian[:count])
+    loose, measured = jacobian[count:], residual[count:]
+    multipliers = np.concatenate([-inverse.T @ (loose.T @ measured), measured])
+    aside = _DIFFERENCE * np.eye(size)
+    slopes = system.linearized(np.concatenate([x + aside, x - aside], axis=1), system.left)[1]
+    ahead, behind = np.split(np.einsum("r,rik->ik", multipliers, slopes), 2, axis=1)
+    curvature = (ahead - behind) / (2 * _DIFFERENCE)
+    # the step along what is determined, the adjustments after it, and the multipliers
+    *_, along, _ = _decomposed(jacobian)
+    weight = np.abs(loose).max(initial=0.0) or 1.0
+    tight, narrow = jacobian[:count] @ along.T, loose @ along.T / weight
+    free, rows = len(along), len(loose)
+    whole = np.zeros((free + rows + count,) * 2)
+    whole[:free, :free] = along @ (curvature + curvature.T) @ along.T / (2 * weight * weight)
+    whole[:free, free : free + rows], whole[:free, free + rows :] = narrow.T, tight.T
+    whole[free : free + rows, :free], whole[free + rows :, :free] = narrow, tight
+    whole[free : free + rows, free : free + rows] = -np.eye(rows)
+    right = np.zeros(len(whole))
+    right[free : free + rows], right[free + rows :] = -measured / weight, -residual[:count]
+    if not (np.isfinite(whole).all() and np.isfinite(right).all()):
+        raise np.linalg.LinAlgError("not finite")
+    solution = np.linalg.lstsq(whole, right, rcond=1e-15)[0]
+    # for every residual and every condition that says something, one curves downward
+    downward = np.linalg.eigvalsh(_balanced(whole)) < -_DOWNWARD
+    step: Floats = along.T @ solution[:free]
+    return step, bool(downward.sum() <= rows + size - null.shape[1])
+
+
+def _start(system: System, rng: np.random.Generator, count: int) -> Floats:
+    """Scaled variables to begin with, ``count`` columns."""
+    x = rng.standard_normal((count, len(system.variables))).T
+    for i, name in enumerate(system.variables):
+        if name in system.nominal:
+            x[i] = system.nominal[name] / system.scales[i]
+    return x
 
 
 def _squares(rows: Floats) -> Floats:
@@ -507,22 +306,6 @@ def _decomposed(matrix: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     u, s, vt = np.linalg.svd(matrix)
     rank = int((s > _RANK * s[0]).sum()) if s[0] else 0
     return u[:, :rank], s[:rank], vt[:rank], vt[rank:].T
-
-
-def standard_deviation(item: Uncertain) -> float:
-    """Of a value known within limits; a normal's is its own, limits or not."""
-    width = item.high - item.low
-    if item.kind == "uniform":
-        return float(width / np.sqrt(12))
-    if item.kind == "triangular":
-        a, c, b = item.low, item.nominal, item.high
-        return float(np.sqrt((a * a + b * b + c * c - a * b - a * c - b * c) / 18))
-    return item.deviation
-
-
-def tolerance(item: Uncertain) -> float:
-    """What a person calls the tolerance: half of a range, a normal's standard deviation."""
-    return item.deviation if item.kind == "normal" else (item.high - item.low) / 2
 
 
 # -- solutions
@@ -743,7 +526,7 @@ def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertai
     if m.varies or m.nominal not in (4, 6):
         raise UserError("M must be 6, or 4 for point masses")
     if m.nominal == 4:
-        ignored = (*_SPINS, "EM", "DA", "DB", "PA", "PB", "IA", "IB")
+        ignored = (*SPINS, "EM", "DA", "DB", "PA", "PB", "IA", "IB")
         given = {name: item for name, item in given.items() if name not in ignored}
         given |= {name: fixed(0.0) for name in ("DA", "DB", "PA", "PB")}
         given |= {"IA": fixed(1.0), "IB": fixed(1.0)}
@@ -786,7 +569,7 @@ def _solutions(
     system = found.system
     if found.assumed != fits:
         return []
-    ends, over = system.straight(begin)
+    ends, over = straight(system, begin)
     squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
     for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
         if found.is_open and len(found.followed) >= _FEW:
@@ -796,10 +579,10 @@ def _solutions(
     met = bool((over <= _NEARLY).any())
     few, more = begin[:, :_TIGHTENED_FIRST], begin[:, _TIGHTENED_FIRST:_TIGHTENED]
     for some in () if at_hand else (few, more):
-        straight = begin.shape[1] == 1 or (some is more and not found.is_open)
-        if not some.size or (found.solutions and straight):
+        settled = begin.shape[1] == 1 or (some is more and not found.is_open)
+        if not some.size or (found.solutions and settled):
             break
-        nearby, left_over = system.tightened(some)
+        nearby, left_over = tightened(system, some)
         for i in np.flatnonzero(left_over <= _NEARLY):
             met = True
             found.follow(nearby[:, i : i + 1])
@@ -827,7 +610,7 @@ def _starts(known: Mapping[str, Uncertain], progress: Progress) -> tuple[Floats,
     count = 1 if plain.linear and not loose else _STARTS  # one valley, without bends
     # more conditions than variables: no start meets them, unless all do
     tried = 1 if len(plain.conditions) > len(plain.variables) else count
-    x, left_over = plain.straight(plain.start(rng, tried))
+    x, left_over = straight(plain, _start(plain, rng, tried))
     at_hand = left_over <= _HOLDS
     assumed = False
     if not at_hand.any():
@@ -835,12 +618,12 @@ def _starts(known: Mapping[str, Uncertain], progress: Progress) -> tuple[Floats,
     system = System(known, adjusted=True, progress=progress)
     if at_hand.any():
         state = plain.state(x[:, at_hand])
-        begin = system.start(rng, int(at_hand.sum()))
+        begin = _start(system, rng, int(at_hand.sum()))
         for row, name in enumerate(system.variables):
             if name in VELOCITIES or name in IMPULSES:
                 begin[row] = state[name] / system.scales[row]
     else:
-        begin = system.start(rng, count)
+        begin = _start(system, rng, count)
     return begin, bool(at_hand.any()), _Found(system, assumed)
 
 
@@ -864,7 +647,7 @@ class _Found:
             return
         self.followed.append(nearby)
         try:
-            x, left_over = self.system.polished(nearby)
+            x, left_over = polished(self.system, nearby)
         except np.linalg.LinAlgError:
             return  # something is not finite there
         if not left_over <= _HOLDS:
@@ -884,7 +667,7 @@ def _with_tolerances(known: Mapping[str, Uncertain]) -> tuple[Mapping[str, Uncer
     length = System(known, adjusted=False).gyration
     measured = {
         name: Uncertain(
-            *("normal", item.nominal, -np.inf, np.inf), 1 / length if name in _SPINS else 1.0
+            *("normal", item.nominal, -np.inf, np.inf), 1 / length if name in SPINS else 1.0
         )
         for name, item in known.items()
         if name in (*VELOCITIES, *FINAL_STATE)
@@ -903,7 +686,7 @@ def _described(system: System, x: Floats, residual: float, assumed: bool) -> Rec
     undetermined = []
     with np.errstate(all="ignore"):
         for name in QUANTITIES:
-            if system.point and name in (*_SPINS, "PM", "EM"):
+            if system.point and name in (*SPINS, "PM", "EM"):
                 continue
             if name in COEFFICIENTS and name in system.known:
                 values[name] = float(np.ravel(state.values[name])[0])
@@ -925,7 +708,7 @@ def _described(system: System, x: Floats, residual: float, assumed: bool) -> Rec
     for name in system.observations:
         item = system.known[name]
         value = float(np.ravel(system.measured(state, name))[0])
-        adjusted.append(Adjusted(name, item.nominal, tolerance(item), value))
+        adjusted.append(Adjusted(name, item.nominal, item.tolerance, value))
     return Reconstruction(
         system=system,
         x=x,

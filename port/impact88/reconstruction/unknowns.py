@@ -2,19 +2,21 @@
 
 Twelve velocities (six before, six after the impact) and three coefficients stand in six equations.
 Whatever is not given is unknown: six final velocities (what the 1988 program solves), six initial
-ones, three of each, three velocities and e, e_m, μ, or any other set of six or fewer. Fewer than
-six leave equations over: they are then fitted by least squares (each written as a velocity, spins
-times the radius `gyration`, with equal weight) and the mismatch is given. Rank and condition of the
-equations (`Equations`) decide; a set that is not determined is refused with the reason.
+ones, three velocities and e, e_m, μ, or any other set. A coefficient that is unknown stands in one
+equation alone (e in 15, μ in 16, e_m in 18), which gives it at the end; the others are linear
+(`system.System`), so that one step of Newton's solves them. Equations left over are fitted by least
+squares and the mismatch is given. Singular values decide; a set that is not determined is refused
+with the reason.
 
 Friction: ``MUP`` is the signed P_t/P_n as printed; ``MU`` is what line 280 would hold, whose sign
-line 400 chooses so that friction opposes the sliding. The rule needs the initial velocities; where
-they are unknown both signs are tried, and each solution that agrees with its own sign is returned.
+line 400 chooses so that friction opposes the sliding. Where the initial velocities are unknown both
+signs are tried, and each solution that agrees with its own sign is returned.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import reduce
 from itertools import combinations
@@ -26,26 +28,41 @@ from numpy.typing import NDArray
 from ..closedform.solve import solve
 from ..errors import UserError
 from ..mappings import columns
-from ..names import COEFFICIENTS, IMPULSES, PIVOT, RESULTS, SCENE, check_names, missing, quantity
+from ..names import (
+    COEFFICIENTS,
+    FINAL_STATE,
+    IMPULSES,
+    PIVOT,
+    RESULTS,
+    SCENE,
+    VELOCITIES,
+    check_names,
+    missing,
+    quantity,
+)
+from ..uncertainty.uncertain import fixed
 from .doublerange import within_doubles
-from .equations import FINAL, INITIAL, SPINS, Equations, Found
 from .geometry import NAMES as GEOMETRY
 from .geometry import with_point_masses
+from .state import State
+from .system import SPINS, TINY, System
 
 Array = NDArray[np.float64]
 
-UNKNOWNS = (*INITIAL, *FINAL, *COEFFICIENTS)
+UNKNOWNS = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
 
 BADLY_CONDITIONED = 10.0
 """From this amplification on a solution is flagged: an error of the known velocities is found
 tenfold, or worse, in some unknown."""
 ORDINARY = {"E": 0.37, "EM": -0.61, "MUP": 0.43}
 """Coefficients at which nothing special happens."""
-IMPULSES_AND_SPINS = (*IMPULSES, *SPINS)
 CHUNK = 1 << 12
-"""Scenes whose equations are made and solved at a time."""
+"""Scenes solved at a time: bounds the memory."""
 TIE = 1e-14
 """Sliding below this share of the largest speed is rounding, and counts as line 400's tie."""
+_RANK, _NOTHING, _OPEN, _MISMATCH = 1e-12, 1e-12, 1e-9, 1e-9
+"""Singular values, denominators of coefficients, what is left open in a quantity, and equations'
+mismatch: smaller shares of the largest are rounding."""
 
 
 class UnsolvableError(UserError):
@@ -103,7 +120,7 @@ class Solution:
     @property
     def contradictory(self) -> NDArray[np.bool_]:
         """Whether the known values contradict one another beyond rounding."""
-        speeds = [np.abs(self.values[n]) for n in (*INITIAL, *FINAL) if n in self.values]
+        speeds = [np.abs(self.values[n]) for n in (*VELOCITIES, *FINAL_STATE) if n in self.values]
         result: NDArray[np.bool_] = self.mismatch > 1e-9 * np.max(speeds, axis=0)
         return result
 
@@ -205,7 +222,7 @@ class _Problem:
         mu = self.known["MU"]
         if self.pivot or not mu.any():
             return [self._solved(mu)]
-        if all(name in self.known for name in INITIAL if not (self.point and name in SPINS)):
+        if all(name in self.known for name in VELOCITIES if not (self.point and name in SPINS)):
             # solve's own line 400; what else a scene has does not matter to it
             scene = {"WA": 0.0, "WB": 0.0, "E": 0.0, "EM": 0.0, **self.known}
             signed = solve({name: scene[name] for name in SCENE if name in scene}, ("MUP",))
@@ -219,38 +236,30 @@ class _Problem:
         if mu is not None:
             flat["MUP"] = np.broadcast_to(mu, self.shape).reshape(count)
         parts = [
-            self._equations({n: v[first : first + CHUNK] for n, v in flat.items()})
-            for first in range(0, max(count, 1), CHUNK)
+            _determined({n: v[at : at + CHUNK] for n, v in flat.items()}, self.wanted, self.point)
+            for at in range(0, max(count, 1), CHUNK)
         ]
 
-        def whole(pieces: Iterable[Array]) -> Array:
-            return np.concatenate(list(pieces)).reshape(self.shape)
+        def whole(name: str) -> Array:
+            return np.concatenate([part[name] for part in parts]).reshape(self.shape)
 
-        names = [n for n in (*self.names, *IMPULSES_AND_SPINS) if any(n in p.values for p in parts)]
-        missing = np.full(1, np.nan)
-        values = {
-            n: whole(np.broadcast_to(p.values.get(n, missing), len(p.sliding)) for p in parts)
-            for n in dict.fromkeys(names)
-        }
-        sliding = whole(p.sliding for p in parts)
+        values = {name: whole(name) for name in (*UNKNOWNS, *IMPULSES) if name in parts[0]}
+        values = {n: v for n, v in values.items() if n in self.wanted or not np.isnan(v).all()}
+        sliding = whole("sliding")
         agrees = np.all([np.isfinite(values[n]) for n in self.wanted], axis=0)
         if "MUP" in values:
-            speeds = [values[n] for n in (*INITIAL, *FINAL) if n in values]
+            speeds = [values[n] for n in (*VELOCITIES, *FINAL_STATE) if n in values]
             values["MU"] = typed(values["MUP"], sliding, speeds)
             if must_agree:
                 agrees = agrees & ((values["MU"] == self.known["MU"]) | np.isnan(sliding))
         return Solution(
             values=values,
             unknown=self.wanted,
-            amplification={n: whole(p.amplification[n] for p in parts) for n in self.wanted},
+            amplification={name: whole(f"error of {name}") for name in self.wanted},
             agrees=agrees,
-            mismatch=whole(p.mismatch for p in parts),
-            gyration=whole(p.gyration for p in parts),
+            mismatch=whole("mismatch"),
+            gyration=whole("gyration"),
         )
-
-    def _equations(self, block: Mapping[str, Array]) -> Found:
-        with np.errstate(all="ignore"):
-            return Equations(block, point=self.point).solve(self.wanted)
 
     # -- why a set is refused
 
@@ -280,7 +289,7 @@ class _Problem:
                 f"{len(self.absent) - count} more"
             )
         for vehicle, at in (("A", 0), ("B", 3)):
-            its = {*INITIAL[at : at + 3], *FINAL[at : at + 3]} & {*self.names}
+            its = {*VELOCITIES[at : at + 3], *FINAL_STATE[at : at + 3]} & {*self.names}
             if its <= {*self.absent}:
                 return (
                     f"all velocities of {vehicle} are unknown: those of the other determine the "
@@ -307,11 +316,113 @@ class _Problem:
         """A wanted coefficient whose parts are determined but give no quotient."""
         bad = []
         for name in self.wanted:
-            if name in COEFFICIENTS and not self._determined([name]):
-                problem = self._first([name])
-                if problem._equations(problem.known).made_of_something.all():
-                    bad.append(_NO_VALUE[name])
+            alone = name in COEFFICIENTS and not self._determined([name])
+            if alone and _determined(self._first([name]).known, [name], self.point)["parts"].all():
+                bad.append(_NO_VALUE[name])
         return "; and ".join(bad) or None
+
+
+@np.errstate(all="ignore")
+def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) -> dict[str, Array]:
+    """What the equations of n scenes determine, n each, NaN elsewhere: quantities by name, the
+    ``error of`` each wanted one (`Solution.amplification`), ``sliding`` before the impact,
+    ``mismatch``, ``gyration``, and whether the ``parts`` of all wanted coefficients are."""
+    count, ignored = len(given["MA"]), (*SPINS, "EM", "PM") if point else ()
+    system = System(
+        {n: fixed(v) for n, v in given.items() if n not in ignored}, adjusted=False, barrier=False
+    )
+
+    def held(state: State) -> State:
+        """A velocity known after the impact is that, whatever its momentum equation leaves over."""
+        after = zip(FINAL_STATE, state.after, strict=True)
+        state.after = [state.values.get(late, value) for late, value in after]
+        return state
+
+    def left(state: State, _: Any = None) -> Array:
+        laws, momentum = copy(state), system.left(state, state.values)[len(system.laws) :]
+        rows = system.left(held(laws), state.values)[: len(system.laws)]
+        return np.concatenate([rows, momentum])
+
+    start = np.zeros((len(system.variables), count))
+    residual, jacobian = system.linearized(start, left)
+    # a barrier's momentum is nobody's equation
+    said = jacobian.any(axis=(1, 2)) | residual.any(axis=1)
+    residual, jacobian = residual[said], jacobian[said]
+    weight = np.ones((len(jacobian), 1))
+    if len(jacobian) <= len(system.variables):
+        # the solution is the same however the equations are scaled; this is best for rounding
+        largest = np.abs(jacobian).max(axis=1, initial=0.0)
+        weight = np.where(largest > 0, largest, 1.0)
+    inverse, left_open = _pseudo_inverse((jacobian / weight[:, None]).transpose(2, 0, 1))
+    x = -np.einsum("nvr,rn->vn", inverse, residual / weight)
+    rest = residual + np.einsum("rvn,vn->rn", jacobian, x)
+    # each known velocity in error by one unit
+    known = [n for n in (*VELOCITIES, *FINAL_STATE) if n in system.nominal]
+    sizes = np.max([np.zeros(count), *(np.abs(given[n] / system.scale(n)) for n in known)], axis=0)
+    moved = {
+        name: given[name] + 1j * TINY * system.scale(name) * unit[:, None]
+        for name, unit in zip(known, np.eye(len(known)), strict=True)
+    }
+    missed = np.imag(left(system.state(x[:, None].astype(complex), moved))) / TINY
+    errors = -np.einsum("nvr,rkn->vkn", inverse, missed[said] / weight[:, None])
+
+    names = [n for n in (*VELOCITIES, *FINAL_STATE, *IMPULSES) if n not in ignored]
+    unknown = [n for n in COEFFICIENTS if n not in given and n not in ignored]
+
+    def told(state: State, _: Any = None) -> Array:
+        rows = [held(state)[name] / system.scale(name) for name in names]
+        for name in unknown:
+            unit = {"MUP": system.mass, "EM": 1 / system.gyration}.get(name, 1.0) * system.speed
+            rows += [part / unit for part in state.quotient(name)]
+        rows += [velocity / system.speed for velocity in state.relative_before[:2]]
+        return np.stack(np.broadcast_arrays(*rows))
+
+    rows, slopes = system.linearized(x, told)
+    unsure = np.abs(np.einsum("qvn,nvw->qwn", slopes, left_open)).max(axis=1)
+    sure = unsure <= _OPEN * np.abs(slopes).max(axis=1)
+    growth = np.imag(told(system.state(x[:, None] + 1j * TINY * errors, moved))) / TINY
+    closing = np.hypot(*rows[-2:])
+    rows, growth = np.where(sure, rows, np.nan), np.where(sure[:, None], growth, np.nan)
+    result = {n: row * system.scale(n) for n, row in zip(names, rows, strict=False)}
+    error = dict(zip(names, growth, strict=False))
+    parts = np.ones(count, bool)
+    for at, name in enumerate(unknown, len(names)):
+        two = slice(2 * at - len(names), 2 * at - len(names) + 2)
+        (above, below), (da, db) = rows[two], growth[two]
+        value = np.where(np.abs(below) > _NOTHING * sizes, above / below, np.nan)
+        result[name], error[name] = value, (da - value * db) / below * closing
+        parts &= sure[two].all(axis=0) | (name not in wanted)
+    if point:  # nothing turns a point mass: no moment, and a spin passes through
+        result["PM"] = np.zeros(count)
+        for pair in (("WA", "WAF"), ("WB", "WBF")):
+            spins = [given[name] for name in pair if name in given]
+            result |= dict.fromkeys(pair, spins[0]) if spins else {}
+    mismatch = np.sqrt((rest**2).sum(axis=0) / max(len(rest), 1))
+    return {
+        **result,
+        **{n: given[n] for n in UNKNOWNS if n in given and not (point and n == "EM")},
+        **{f"error of {name}": np.sqrt((error[name] ** 2).sum(axis=0)) for name in wanted},
+        "sliding": rows[-1] * system.speed,
+        "mismatch": np.where(mismatch > _MISMATCH * sizes, mismatch * system.speed, 0.0),
+        "gyration": np.broadcast_to(system.gyration, count),
+        "parts": parts,
+    }
+
+
+def _pseudo_inverse(matrix: Array) -> tuple[Array, Array]:
+    """The Moore-Penrose inverse of each matrix, and a projector on what it leaves open.
+
+    A matrix with a number that is not finite (masses beyond all bounds) leaves everything open.
+    """
+    finite = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
+    u, s, vt = np.linalg.svd(np.where(finite[:, None, None], matrix, 0.0))
+    free = np.ones(vt.shape[:2], bool)
+    rank = s.shape[1]
+    free[:, :rank] = s <= _RANK * s.max(axis=1, initial=0.0)[:, None]
+    inverse = np.where(free[:, :rank], 0.0, 1 / s)
+    v = vt.swapaxes(1, 2)
+    pseudo = (v[:, :, :rank] * inverse[:, None]) @ u[:, :, :rank].swapaxes(1, 2)
+    return pseudo, (v * free[:, None]) @ vt
 
 
 def typed(mup: Any, sliding: Any, velocities: Iterable[Any]) -> Array:
@@ -352,7 +463,7 @@ def _blame(name: str, value: float) -> str:
 
 
 def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:
-    allowed = {*GEOMETRY, "M", *INITIAL, *FINAL, "E", "EM", "MU", "MUP"}
+    allowed = {*GEOMETRY, "M", *VELOCITIES, *FINAL_STATE, "E", "EM", "MU", "MUP"}
     values = columns(known)
     check_names(values, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
     given = {name: np.asarray(value, np.float64) for name, value in values.items()}

@@ -20,17 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..names import COEFFICIENTS, IMPULSES, VELOCITIES
-from ..reconstruction.adjustment import (
-    PARAMETERS,
-    Reconstruction,
-    System,
-    pseudo_inverse,
-    standard_deviation,
-    tolerance,
-)
+from ..reconstruction.adjustment import Reconstruction, pseudo_inverse
 from ..reconstruction.geometry import NAMES as GEOMETRY
 from ..reconstruction.geometry import Geometry
 from ..reconstruction.state import CRUSH, DIRECTIONS, State
+from ..reconstruction.system import PARAMETERS, TINY, System
 from .ascent import OUTSIDE, climb, extremes_of
 from .draws import Spread, spread_of
 from .uncertain import Uncertain
@@ -73,7 +67,6 @@ NEAR = 1.5
 """No farther from the middle between walls are they learnt: a quotient's pole would spoil them."""
 RIDGE = 1e-9
 """Holds still what the places met do not tell of the walls."""
-_TINY = 1e-30
 _SINGULAR = 1e-12
 """Singular values of so little of the largest are none."""
 _GROWS = 1e10
@@ -312,14 +305,14 @@ class _Box:
             moved = {name: np.tile(column.astype(complex), k) for name, column in data.items()}
             for i, name in enumerate(self.kept):
                 item = self.items[name]
-                moved[name][i * n : (i + 1) * n] += 1j * _TINY * (item.high - item.low)
+                moved[name][i * n : (i + 1) * n] += 1j * TINY * (item.high - item.low)
             still = np.tile(x.astype(complex), k)
-            left = np.imag(system.left(system.state(still, moved), moved)) / _TINY
+            left = np.imag(system.left(system.state(still, moved), moved)) / TINY
             right = np.broadcast_to(left, (len(left), k * n)).reshape(len(left), k, n)
             turns = -_solved(jacobian, right.transpose(2, 0, 1))
-            still += 1j * _TINY * turns.transpose(1, 2, 0).reshape(len(x), -1)
+            still += 1j * TINY * turns.transpose(1, 2, 0).reshape(len(x), -1)
             functions, walls = (
-                (np.imag(part) / _TINY).reshape(k, n, part.shape[1]).transpose(1, 2, 0)
+                (np.imag(part) / TINY).reshape(k, n, part.shape[1]).transpose(1, 2, 0)
                 for part in self._told(system.state(still, moved), k * n)
             )
         return np.nan_to_num(functions), np.nan_to_num(walls), turns
@@ -345,9 +338,9 @@ class _Box:
                 divided += np.log(np.abs(state.quotient(name)[1]))
         rows = []
         for name in IMPULSES[: len(laws)]:
-            pushed = State({**values, name: values[name] + 1j * _TINY}, state.here)
+            pushed = State({**values, name: values[name] + 1j * TINY}, state.here)
             rows.append([np.broadcast_to(np.imag(pushed.law(n)), len(u)) for n in laws])
-        forward = np.linalg.slogdet(np.array(rows).transpose(2, 0, 1) / _TINY)[1]
+        forward = np.linalg.slogdet(np.array(rows).transpose(2, 0, 1) / TINY)[1]
         inverse = np.linalg.slogdet(jacobian.transpose(2, 0, 1))[1]
         return np.asarray(forward - inverse - divided)
 
@@ -418,7 +411,7 @@ def _cut(item: Uncertain, sigmas: float) -> Uncertain:
 
 def _normal(item: Uncertain, adjusted: float) -> Uncertain:
     """A normal value instead, that reaches well beyond the adjusted one."""
-    deviation = standard_deviation(item)
+    deviation = item.standard_deviation
     low, high = sorted((item.nominal, adjusted))
     return Uncertain(
         *("normal", item.nominal, low - FAR * deviation, high + FAR * deviation), deviation
@@ -628,7 +621,7 @@ def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
         range(len(system.observations)),
         key=lambda i: (
             system.observations[i] not in (*GEOMETRY, *CRUSH),
-            tolerance(system.known[system.observations[i]]) / system.scale(system.observations[i]),
+            system.known[system.observations[i]].tolerance / system.scale(system.observations[i]),
         ),
     )
     rank = _rank(basis)

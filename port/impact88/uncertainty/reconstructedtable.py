@@ -15,7 +15,7 @@ from .. import notebook
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..plaintable import number, paragraph, plain, table
 from ..reconstruction import adjustment
-from ..reconstruction.adjustment import Reconstruction, standard_deviation, typed_friction
+from ..reconstruction.adjustment import Reconstruction, typed_friction
 from ..reconstruction.doublerange import within_doubles
 from ..reconstruction.solutiontable import Spread, completed, in_turn, numbers, tables
 from ..reconstruction.state import COURSES, FORCES, SPEEDS
@@ -220,7 +220,7 @@ class Measured(NamedTuple):
             factor = units.factor(a.name)
             item = self.solution.system.known[a.name]
             half = math.nan if item.kind == "normal" else a.tolerance
-            sizes = [number(factor * size, 3) for size in (half, standard_deviation(item))]
+            sizes = [number(factor * size, 3) for size in (half, item.standard_deviation)]
             cells = [a.name, number(factor * a.measured), *sizes, number(factor * a.adjusted)]
             rows.append([*cells, f"{a.moved + 0.0:.2f}", units.label(quantity(a.name).unit)])
         heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]

@@ -70,6 +70,19 @@ class Uncertain:
         """Whether there is anything uncertain about it."""
         return self.kind != "fixed"
 
+    @property
+    def standard_deviation(self) -> float:
+        """A normal's is its own, limits or not."""
+        if self.kind == "triangular":
+            a, c, b = self.low, self.nominal, self.high
+            return math.sqrt((a * a + b * b + c * c - a * b - a * c - b * c) / 18)
+        return (self.high - self.low) / math.sqrt(12) if self.kind == "uniform" else self.deviation
+
+    @property
+    def tolerance(self) -> float:
+        """What a person calls it: half of a range, a normal's standard deviation."""
+        return self.deviation if self.kind == "normal" else (self.high - self.low) / 2
+
     def limits(self, sigmas: float) -> tuple[float, float]:
         """The interval bounds are sought over; a normal is cut at ``sigmas`` deviations."""
         if self.kind != "normal":

@@ -1,0 +1,205 @@
+"""What is known of impacts as equations, in scaled variables (rows) of n impacts.
+
+Equations 13, 14 and 17 hold by the way an impact is written (`State`); Equations 15, 16 and 18 and
+the exact values are conditions, values with a tolerance observations. Each is a velocity over a
+typical one: impulses by the reduced mass, spins by the radius of gyration. For exact values alone
+all is linear but speeds, directions, changes of velocity and energies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import reduce
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
+from ..uncertainty.uncertain import Uncertain
+from .geometry import NAMES as GEOMETRY
+from .geometry import Geometry
+from .state import (
+    CHANGES,
+    CONTACT,
+    COURSES,
+    CRUSH,
+    DIRECTIONS,
+    ENERGIES,
+    FORCES,
+    QUANTITIES,
+    SPEEDS,
+    State,
+)
+
+Array = NDArray[Any]
+Floats = NDArray[np.float64]
+
+SPINS = ("WA", "WB", "WAF", "WBF")
+PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
+"""Known values that enter the conditions; the others are quantities a state has."""
+MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES, *CONTACT)
+TINY = 1e-30
+"""The imaginary step whose derivative has no error."""
+_VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES, *CONTACT} - {*SPINS}
+_COURSE_OF = {speed: course for course, speed in COURSES.items()}
+_CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
+"""Quantities that more than one impact may have."""
+
+
+class System:
+    """The equations of one reading of what is known.
+
+    ``known``: by name, friction as MUP; nominal values may be arrays where nothing is adjusted;
+    ``adjusted``: whether values with a tolerance are adjusted (each a variable or a quantity with
+    an observation) or taken as they are (conditions all); ``barrier``: whether a vehicle of
+    infinite mass is at rest; ``progress`` is called with the impacts looked at.
+    """
+
+    def __init__(
+        self,
+        known: Mapping[str, Uncertain],
+        adjusted: bool,
+        progress: Callable[[int], object] = lambda n: None,
+        barrier: bool = True,
+    ) -> None:
+        self.progress = progress
+        self.known, self.adjusted = dict(known), adjusted
+        self.nominal: dict[str, Any] = {name: item.nominal for name, item in known.items()}
+        self.point = bool(np.all(self.nominal.get("M", 6.0) == 4))
+        geometry = Geometry.of(self.nominal)
+        # numpy's numbers: beyond the range of doubles they are infinite, where Python's raise
+        self.mass: Any = np.float64(1) / geometry.inverse_mass
+        self.gyration: Any = np.float64(1.0)
+        if not self.point:
+            self.gyration = np.sqrt(geometry.inverse_mass / geometry.inverse_spin_inertia)
+        still: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
+        for mass, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
+            if barrier and np.all(np.isinf(self.nominal[mass])):
+                still += names
+        self.speed: Any = self._typical_speed()
+        loose = {n for n, item in known.items() if adjusted and item.varies}
+        parameters = [n for n in known if n in PARAMETERS and n in loose]
+        unknown = [n for n in VELOCITIES if n not in still and (n not in known or n in loose)]
+        self.from_after: tuple[str, ...] = ()
+        after = dict(zip(VELOCITIES, FINAL_STATE, strict=True))
+        if not adjusted:
+            self.from_after = tuple(n for n in unknown if after[n] in known)
+            unknown = [n for n in unknown if n not in self.from_after]
+        impulses = [n for n in IMPULSES if n not in still]
+        self.variables = (*unknown, *impulses, *parameters)
+        self.scales = np.array([*np.broadcast_arrays(*map(self.scale, self.variables))])
+        self.constants = {**dict.fromkeys(still, 0.0), **self.nominal}
+        self.laws = [n for n in COEFFICIENTS if n in known and not (self.point and n == "EM")]
+        settled = {after[n] for n in (*still, *self.from_after) if n in after}
+        self.exact = [
+            n
+            for n in known
+            if (n in MEASURABLE and n not in (*loose, *VELOCITIES, *settled))
+            or n in (*SPEEDS, *DIRECTIONS, "ELA")
+        ]
+        self.conditions = (*self.laws, *self.exact)
+        self.observations = tuple(n for n in known if n in loose and n not in still)
+        self.geometry = None if set(parameters) & set(GEOMETRY) else geometry
+        self.linear = not adjusted and not any(
+            n in _CURVED and _COURSE_OF.get(n) not in known for n in known
+        )
+
+    def _typical_speed(self) -> Any:
+        sizes = [np.abs(v) for n, v in self.nominal.items() if n in _VELOCITY_LIKE]
+        sizes += [np.abs(v) * self.gyration for n, v in self.nominal.items() if n in SPINS]
+        energies = [np.abs(v) for n, v in self.nominal.items() if n in ("KI", "KF", "EL", *CRUSH)]
+        sizes += [np.sqrt(2 * v / self.mass) for v in energies]
+        largest = reduce(np.maximum, sizes, np.float64(0.0))
+        return np.where(largest == 0, 1.0, largest)[()]
+
+    def scale(self, name: str) -> Any:
+        """What a quantity of ordinary size measures in the problem's units."""
+        speed, mass, length = self.speed, self.mass, self.gyration
+        if name in SPINS:
+            return speed / length
+        if name in IMPULSES:
+            return mass * speed * (length if name == "PM" else 1.0)
+        if name in DIRECTIONS or name in ("GA", "PA", "PB", "TA", "TB"):
+            return np.degrees(1.0)
+        if name in COEFFICIENTS or name == "DT":
+            return 1.0
+        if name in ("KI", "KF", "EL", *CRUSH):
+            return mass * speed**2
+        if name in ("DA", "DB"):
+            return length
+        if name in GEOMETRY:
+            return abs(self.nominal[name])
+        return 100.0 if name == "LOSS" else speed
+
+    def state(
+        self, x: Array, data: Mapping[str, Array] | None = None, geometry: Geometry | None = None
+    ) -> State:
+        """The impact with these variables; ``data`` replaces known values (when not adjusted) and
+        ``geometry`` is what they make, where it has been worked out before."""
+        moved = {
+            n: row * scale for n, row, scale in zip(self.variables, x, self.scales, strict=True)
+        }
+        if geometry is None and not (data and set(data) & set(GEOMETRY)):
+            geometry = self.geometry
+        return State({**self.constants, **(data or {}), **moved}, geometry, self.from_after)
+
+    def left(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
+        """What conditions, then observations leave over, scaled: rows, one column an impact."""
+        targets = {**self.nominal, **(targets or {})}
+        rows = [state.law(n) / self._law_scale(n) for n in self.laws]
+        rows += [self._exact(state, n, targets) for n in self.exact]
+        for name in self.observations:
+            off = self.measured(state, name) - targets[name]
+            rows.append(off / self.known[name].standard_deviation)
+        # with the impulse, for the shape where there are none
+        return np.stack(np.broadcast_arrays(state.values["PN"], *rows))[1:]
+
+    def measured(self, state: State, name: str) -> Any:
+        """What an observation is of: an adjusted value that conditions hold, or a quantity."""
+        return state.values[name] if name in self.variables else state[name]
+
+    def _law_scale(self, coefficient: str) -> Any:
+        if coefficient == "MUP" and not np.all(self.nominal["MUP"] == PIVOT):
+            return self.mass * self.speed
+        return self.speed / (self.gyration if coefficient == "EM" else 1.0)
+
+    def _exact(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
+        if name in DIRECTIONS:
+            return state.across(name) / (self.speed * (self.mass if name in FORCES else 1.0))
+        if name == "ELA":
+            return (state["EL"] - state.values["ELA"] - state.values["ELB"]) / self.scale("EL")
+        if name in SPEEDS:
+            course = _COURSE_OF[name]
+            size = state.along(course) if course in self.known else state[name]
+            value = state.values[name] if name in self.variables else targets[name]
+            return (size - value) / self.speed
+        return (state[name] - targets[name]) / self.scale(name)
+
+    def linearized(
+        self,
+        x: Array,
+        rows: Callable[[State, Mapping[str, Array] | None], Any],
+        data: Mapping[str, Array] | None = None,
+        targets: Mapping[str, Array] | None = None,
+    ) -> tuple[Floats, Floats]:
+        """``rows(state, targets)``, rows and impacts, and their derivatives over the scaled
+        variables: rows, variables, impacts. ``data`` as for `state`, ``targets`` as for `left`, a
+        column an impact."""
+        size, count = len(self.variables), x.shape[1]
+        self.progress(count)
+        moved = x[:, None] + 1j * TINY * np.eye(size)[:, :, None]
+        values = rows(self.state(moved, data), targets)
+        values = np.broadcast_to(values, (len(values), size, count))
+        return np.real(values[:, 0]), np.imag(values) / TINY
+
+    def slopes(self, x: Array) -> Floats:
+        """Of what conditions and observations leave over, for one impact."""
+        return self.linearized(x, self.left)[1][:, :, 0]
+
+    def gradient(self, x: Array, name: str) -> Floats:
+        """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
+        if name in self.variables and name not in QUANTITIES:
+            result: Floats = self.scales * (np.array(self.variables) == name)
+            return result
+        return self.linearized(x, lambda state, _: np.asarray(state[name])[None])[1][0, :, 0]
