@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from impact88.closedform.plan import Plan
 from impact88.native.formulas import ExpressionTable
+from impact88.native.schedule import Schedule
 
 LENGTH = 7
 PLAIN = {"+": operator.add, "-": operator.sub, "*": operator.mul}
@@ -22,12 +23,15 @@ COLUMNS = {
 }
 
 
+def planned(results):
+    return Plan(Schedule(results, ["RESULT"] * len(results)))
+
+
 def run(plan):
-    results = {name: np.empty(LENGTH) for name in plan.results}
-    fixed = plan.fixed_values({"fixed": COLUMNS["fixed"]})
-    varying = {name: COLUMNS[name] for name in plan.varying}
+    results = {name: np.empty(LENGTH) for name in plan.program.results}
+    varying = [COLUMNS[name] for name in plan.program.columns]
     with np.errstate(all="ignore"):
-        plan.run(fixed, varying, results, plan.workspace(LENGTH))
+        plan.run(varying, results, {"fixed": 1.75}, 4)
     return results
 
 
@@ -69,7 +73,7 @@ def test_any_formulas_give_what_numpy_gives(data):
         if not np.all(np.abs(pool[-1][1]) < 1e6):
             pool.pop()
     wanted = [pool[data.draw(pick) % len(pool)] for _ in range(data.draw(st.integers(1, 4)))]
-    found = run(Plan({f"r{i}": e for i, (e, _) in enumerate(wanted)}))
+    found = run(planned({f"r{i}": e for i, (e, _) in enumerate(wanted)}))
     for i, (_, value) in enumerate(wanted):
         np.testing.assert_allclose(
             found[f"r{i}"], np.broadcast_to(value, LENGTH), rtol=1e-7, atol=1e-7
@@ -103,11 +107,11 @@ def test_only_what_is_wanted_is_planned():
     a, b = table.column("a", True), table.column("b", True)
     shared = a * b
     costly = table.root(shared)
-    plan = Plan({"x": shared + a})
+    plan = planned({"x": shared + a})
     assert plan.passes == 2
-    assert Plan({"x": costly, "y": costly + 1.0}).passes == 3
-    assert Plan({"x": a * 2.0}).columns == ["a"]
-    constant = Plan({"x": table.column("fixed", False) * 2.0})
+    assert planned({"x": costly, "y": costly + 1.0}).passes == 3
+    assert planned({"x": a * 2.0}).program.columns == ["a"]
+    constant = planned({"x": table.column("fixed", False) * 2.0})
     assert constant.passes == 0
     assert run(constant)["x"].tolist() == [3.5] * LENGTH
 
@@ -115,8 +119,7 @@ def test_only_what_is_wanted_is_planned():
 @pytest.mark.parametrize("zero", [0.0, -0.0])
 def test_sign_rule_keeps_the_sign_on_either_zero(zero):
     table = ExpressionTable()
-    plan = Plan({"x": table.against(table.column("a", True), table.column("b", True))})
+    plan = planned({"x": table.against(table.column("a", True), table.column("b", True))})
     found = {"x": np.empty(3)}
-    columns = {"a": np.array([1.5, -1.5, 2.0]), "b": np.array([zero, zero, 5e-324])}
-    plan.run(plan.fixed_values({}), columns, found, plan.workspace(3))
+    plan.run([np.array([1.5, -1.5, 2.0]), np.array([zero, zero, 5e-324])], found, {}, 3)
     assert found["x"].tolist() == [1.5, -1.5, -2.0]

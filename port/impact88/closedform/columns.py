@@ -18,6 +18,7 @@ from ..fields import ANGLES
 from ..mappings import in_base, in_doubles
 from ..names import DEFAULT_M, PIVOT, SCENE
 from ..native.program import addresses, extremes
+from .written import LARGE_ANGLE
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
@@ -28,11 +29,6 @@ BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """What a point-mass scene (M = 4) does not look at."""
 _UNUSED_ANGLES = tuple(name for name in UNUSED_BY_POINTS if name in ANGLES)
-
-LARGE_ANGLE = 720.0
-"""Angles beyond this, in degrees, are taken modulo 360 (which is exact) before they are added up:
-the sums are then rounded no more coarsely than the angles people give are."""
-
 
 Limits = tuple[float, float]
 """Least and most."""

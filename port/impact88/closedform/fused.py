@@ -40,8 +40,8 @@ CIRCLE = ctypes.addressof(_CIRCLE)
 
 @lru_cache(maxsize=1024)
 def plan_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None) -> Plan:
-    """By numpy; MU's sign by line 400's rule or as `solve.quantities` has it."""
-    return Plan(_expressions(kinds, wanted, sign))
+    """By numpy."""
+    return Plan(program_for(kinds, wanted, sign))
 
 
 @lru_cache(maxsize=1024)

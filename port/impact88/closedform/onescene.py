@@ -1,16 +1,14 @@
 """One scene, for root finders and notebooks: a few microseconds a call.
 
-The compiled machine computes all results of one scene sooner than Python asks for them. Without it
-the expressions of `closedform.impact`, the only text of the formulas, are written out as the lines
-of a Python function of the scene's values, once for each selection of results and kind of scene.
-Python's floats are the same doubles, so the bits are those of the arrays. Whatever is out of the
-ordinary (values that are no plain numbers or cannot be used, infinite bodies, a division by zero, a
-result that is not finite) is left to the arrays: `solve_one` then says None.
+The compiled machine computes all results of one scene sooner than Python asks for them; without it
+a Python function of the scene's values does (`written`), one for each selection of results and kind
+of scene. Whatever is out of the ordinary (values that are no plain numbers or cannot be used,
+infinite bodies, a division by zero, a result that is not finite) is left to the arrays.
 """
 
 import math
-from collections import Counter, defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from operator import itemgetter
 from typing import Any
@@ -19,26 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import native
-from ..fields import ANGLES
-from ..names import PIVOT, RESULTS, SCENE
+from ..names import PIVOT, RESULTS
 from ..native import program
-from ..native.formulas import Expression, ExpressionTable
-from .columns import INERTIAS, LARGE_ANGLE, ORDINARY, UNUSED_BY_POINTS
+from .columns import INERTIAS, ORDINARY, UNUSED_BY_POINTS
 from .fused import CIRCLE, program_for, varying
-from .impact import Impact
-from .sinetable import sine_and_cosine
+from .written import NAMES, written
 
-NAMES, ALL = tuple(SCENE), tuple(RESULTS)
-LONGEST_PART = 60
-"""Characters up to which what is used once is written where it is used: a local variable less. All
-results take 13.7 microseconds with 0, 9.9 with 30, 9.1 with 60, 8.9 with twice that."""
+ALL = tuple(RESULTS)
 PLAIN = {float, int, np.float64}
-_BINARY = {
-    **{"add": "+", "subtract": "-", "multiply": "*", "divide": "/"},
-    **{"less": "<", "less_or_equal": "<=", "both": "and", "either": "or"},
-}
-_UNARY = {"negative": "-", "absolute": "abs", "not": "not ", "bits": "int"}
-_HALVES = {"sine": 0, "cosine": 1}
 _M, _MU = NAMES.index("M"), NAMES.index("MU")
 _in_order = itemgetter(*NAMES)
 
@@ -65,7 +51,7 @@ def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any
         if native.library is not None:
             return by_machine(values, wanted, M == 4, MU == PIVOT)
         results = _function(wanted, M == 4, MU == PIVOT)(*map(float, values))
-    except (LeftToArrays, ZeroDivisionError, OverflowError):
+    except ArithmeticError:
         return None
     if not math.isfinite(sum(results)):
         return None
@@ -124,7 +110,7 @@ def by_machine(
     return by_name
 
 
-class LeftToArrays(Exception):
+class LeftToArrays(ArithmeticError):
     """Values that are not plainly usable."""
 
 
@@ -142,78 +128,7 @@ def _function(
     wanted: tuple[str, ...], point: bool, pivot: bool
 ) -> Callable[..., tuple[float, ...]]:
     """The function of the scene's values, in the table's order, that gives the results."""
-    table = ExpressionTable()
-    scene = {name: table.column(name, varies=True) for name in NAMES}
-    impact = Impact(table, scene, pivot, point, infinite=False)
-    return _defined(*_written([getattr(impact, name) for name in wanted], point))
-
-
-def _defined(source: str, constants: Mapping[str, float]) -> Callable[..., tuple[float, ...]]:
-    """The function ``results`` of a source text."""
-    names = {
-        "fmod": math.fmod,
-        "isfinite": math.isfinite,
-        "LeftToArrays": LeftToArrays,
-        "sine_and_cosine": sine_and_cosine,
-        "sqrt": math.sqrt,
-        **constants,
-    }
-    exec(compile(source, "<the formulas of one scene>", "exec"), names)
-    function: Callable[..., tuple[float, ...]] = names["results"]  # type: ignore[assignment]
-    return function
-
-
-def _checks(point: bool) -> list[str]:
-    """The lines that look whether the values can be used, and reduce angles as the arrays do."""
     asked = [name for name in NAMES if not (point and name in UNUSED_BY_POINTS)]
-    usable = [f"isfinite({' + '.join(asked)})", *(f"{x} > 0.0" for x in INERTIAS if x in asked)]
-    lines = [f"    if not ({' and '.join(usable)}): raise LeftToArrays"]
-    for name in ANGLES:
-        if name in asked:
-            lines.append(f"    if not -{LARGE_ANGLE} <= {name} <= {LARGE_ANGLE}:")
-            lines.append(f"        {name} = fmod({name}, 360.0)")
-    return lines
-
-
-def _written(results: Sequence[Expression], point: bool) -> tuple[str, dict[str, float]]:
-    """The lines of the function, and the constants in them by name."""
-    order = program.in_order(results)
-    uses = Counter(id(operand) for e in order for operand in e.operands)
-    uses.update({id(e): 2 for e in results})
-    constants: dict[str, float] = {}
-    text: dict[int, str] = {}
-    lines = [f"def results({', '.join(NAMES)}):", *_checks(point)]
-    for number, e in enumerate(order):
-        name = f"v{number}"
-        if e.operation == "column":
-            text[id(e)] = str(e.value)
-        elif e.operation == "constant":
-            text[id(e)] = repr(e.value) if math.isfinite(e.value) else name
-            constants[name] = e.value
-        else:
-            formula = _formula(e.operation, [text[id(operand)] for operand in e.operands])
-            if uses[id(e)] == 1 and len(formula) < LONGEST_PART:
-                text[id(e)] = f"({formula})"
-            else:
-                lines.append(f"    {name} = {formula}")
-                text[id(e)] = name
-    # adding 0.0 clears the sign of a zero, as the arrays do
-    tuple_ = "".join(f"{text[id(e)]}{' + 0.0' if e.dtype == 'float' else ''}, " for e in results)
-    lines.append(f"    return ({tuple_})")
-    return "\n".join(lines), constants
-
-
-def _formula(operation: str, operands: Sequence[str]) -> str:
-    if operation in _BINARY:
-        return f"{operands[0]} {_BINARY[operation]} {operands[1]}"
-    if operation in _HALVES:
-        return f"{operands[0]}[{_HALVES[operation]}]"
-    if operation in _UNARY:
-        return f"{_UNARY[operation]}({operands[0]})"
-    if operation == "against":
-        value, slip = operands
-        return f"-{value} if {slip} > 0.0 else {value}"
-    if operation == "choose":
-        where, chosen, other = operands
-        return f"{chosen} if {where} else {other}"
-    return f"{operation}({', '.join(operands)})"
+    unusable = [f"not {name} > 0.0" for name in INERTIAS if name in asked]
+    unusable.append(f"not isfinite({' + '.join(asked)})")
+    return written(program_for(varying(pivot, point), wanted), " or ".join(unusable))

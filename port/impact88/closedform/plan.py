@@ -1,10 +1,5 @@
-"""Plans: expressions put in order and run over blocks of scenes, a tile at a time.
-
-A plan is a list of passes. Each pass is one numpy operation over a *tile*, a run of scenes short
-enough that its working arrays stay in the processor's cache, and writes into a working array that
-was allotted beforehand and is used again as soon as its value is no longer needed. Values that are
-the same for all scenes are computed once per block, as arrays of length 1.
-"""
+"""Programs run by numpy: one operation at a time over a *tile*, a run of scenes short enough that
+its working arrays stay in the processor's cache."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -12,193 +7,127 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..native.formulas import Expression
-from ..native.program import PROJECTIONS, in_order
+from ..native.schedule import Schedule
 from .degrees import sine_and_cosine
 
 Array = NDArray[Any]
 
-_DTYPES = {"float": np.float64, "bool": np.bool_, "bits": np.uint16}
+CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
+"""Operations that make conditions, which are bytes in a working array's place."""
+
+
+def _product(with_sum: Callable[..., object]) -> Callable[..., None]:
+    """``with_sum``: of the product, the other operand and ``out``."""
+
+    def operation(a: Array, b: Array, c: Array, out: Array, work: Array) -> None:
+        with_sum(np.multiply(a, b, out=work), c, out)
+
+    return operation
+
+
+def _products(with_sum: Callable[..., object]) -> Callable[..., None]:
+    def operation(
+        a: Array, b: Array, c: Array, d: Array, out: Array, work: Array, more: Array
+    ) -> None:
+        with_sum(np.multiply(a, b, out=work), np.multiply(c, d, out=more), out)
+
+    return operation
 
 
 def _against(value: Array, slip: Array, out: Array) -> None:
+    where = slip > 0  # before out takes the place of either
     np.copyto(out, value)
-    np.negative(value, out=out, where=slip > 0)
+    np.negative(value, out=out, where=where)
 
 
-def _choose(where: Array, a: Array, b: Array, out: Array) -> None:
-    np.copyto(out, b)
-    np.copyto(out, a, where=where)
+def _choose(where: Array, a: Array, b: Array, out: Array, work: Array) -> None:
+    np.copyto(work, b)
+    np.copyto(work, a, where=where)
+    np.copyto(out, work)
 
 
-def _bits(number: Array, out: Array) -> None:
-    np.copyto(out, number, casting="unsafe")
+def _sine_and_cosine(angle: Array, sine: Array, cosine: Array, *work: Array) -> None:
+    sine_and_cosine(angle, sine, cosine, (work[0], work[1], work[2], work[3]))
 
 
-OPERATIONS: dict[str, Callable[..., object]] = {
-    "add": np.add,
-    "subtract": np.subtract,
-    "multiply": np.multiply,
-    "divide": np.divide,
-    "negative": np.negative,
-    "absolute": np.absolute,
-    "sqrt": np.sqrt,
-    "equal": np.equal,
-    "less": np.less,
-    "less_or_equal": np.less_equal,
-    "both": np.logical_and,
-    "either": np.logical_or,
-    "not": np.logical_not,
-    "bits": _bits,
-    "against": _against,
-    "choose": _choose,
+def _result(value: Array, out: Array) -> None:
+    np.add(value, 0.0, out=out)  # -0.0 becomes 0.0: a zero's sign would tell which path led to it
+
+
+OPERATIONS: dict[str, tuple[Callable[..., object], int, int]] = {
+    **{"ADD": (np.add, 0, 1), "SUBTRACT": (np.subtract, 0, 1), "MULTIPLY": (np.multiply, 0, 1)},
+    **{"DIVIDE": (np.divide, 0, 1), "NEGATIVE": (np.negative, 0, 1), "SQRT": (np.sqrt, 0, 1)},
+    **{"ABSOLUTE": (np.absolute, 0, 1), "EQUAL": (np.equal, 0, 1), "LESS": (np.less, 0, 1)},
+    **{"LESS_OR_EQUAL": (np.less_equal, 0, 1), "BOTH": (np.logical_and, 0, 1)},
+    **{"EITHER": (np.logical_or, 0, 1), "NOT": (np.logical_not, 0, 1), "AGAINST": (_against, 0, 3)},
+    "PRODUCT_PLUS": (_product(np.add), 1, 2),
+    "PRODUCT_MINUS": (_product(np.subtract), 1, 2),
+    "MINUS_PRODUCT": (_product(lambda product, c, out: np.subtract(c, product, out)), 1, 2),
+    "PRODUCTS_PLUS": (_products(np.add), 2, 3),
+    "PRODUCTS_MINUS": (_products(np.subtract), 2, 3),
+    "CHOOSE": (_choose, 1, 3),
+    "SINE_AND_COSINE": (_sine_and_cosine, 4, 26),
+    **{"RESULT": (_result, 0, 0), "RESULT_OR_INFINITE": (_result, 0, 0)},
+    "BITS": (lambda number, out: np.copyto(out, number, casting="unsafe"), 0, 0),
 }
-"""Operation -> the function of its operands and ``out``."""
+"""Operation -> the function of its operands, what it makes and working arrays; how many of these;
+how many passes over the tile it makes, what every result takes aside."""
 
 
 class Plan:
-    """The passes that compute ``results`` (name -> expression).
+    """The steps of a program as numpy runs them; ``passes``: how many operations of each scene."""
 
-    ``columns``: the names of the columns the plan reads, those that vary from scene to scene in
-    ``varying``. ``passes``: how many operations it does for each scene.
-    """
+    def __init__(self, program: Schedule) -> None:
+        self.program = program
+        self._views: dict[tuple[int, bool, bool], int] = {}
+        """Place, whether as conditions, whether of one value for all scenes -> index."""
+        conditions: set[int] = set()
+        single = {program.moving + number for number in range(len(program.scalars))}
+        self._steps: list[tuple[Callable[..., object], tuple[int, ...]]] = []
+        self.passes = 0
+        for number, (name, places) in enumerate(program.steps):
+            once = number < program.once
+            operation, work, passes = OPERATIONS[name]
+            made = 2 if name == "SINE_AND_COSINE" else 1
+            views = [self._view(p, p in conditions, p in single) for p in places[:-made]]
+            for place in places[-made:]:
+                (conditions.add if name in CONDITIONS else conditions.discard)(place)
+                (single.add if once else single.discard)(place)
+                views.append(self._view(place, place in conditions, once))
+            views += [self._view(program.places + k, False, once) for k in range(work)]
+            self._steps.append((operation, tuple(views)))
+            self.passes += 0 if once else passes
 
-    def __init__(self, results: Mapping[str, Expression]) -> None:
-        self.results = dict(results)
-        order = in_order(list(self.results.values()))
-        self.columns = [str(e.value) for e in order if e.operation == "column"]
-        self.varying = [str(e.value) for e in order if e.operation == "column" and e.varies]
-        self._fixed = [e for e in order if not e.varies]
-        tiled = [e for e in order if e.varies]
-        self.passes = sum(_weight(e) for e in tiled)
-        self._schedule(tiled)
-
-    def _schedule(self, tiled: Sequence[Expression]) -> None:
-        """Give every value its place and put the passes in order. A place is an index into what
-        `run` lays out: fixed values, columns, results (written where the caller wants them), and
-        working arrays, which are shared by values that are not needed at the same time."""
-        index = self._index = {id(e): i for i, e in enumerate(self._fixed)}
-        for e in tiled:
-            if e.operation == "column":
-                index[id(e)] = len(index)
-        self._direct: list[str] = []
-        for name, e in self.results.items():
-            if e.varies and id(e) not in index:
-                index[id(e)] = len(index)
-                self._direct.append(name)
-        first = len(index)
-        last_use = {id(operand): e for e in tiled for operand in e.operands}
-        free: dict[str, list[int]] = {dtype: [] for dtype in _DTYPES}
-        working: set[int] = set()
-        self._dtypes: list[str] = []
-
-        def working_array(dtype: str) -> int:
-            if not free[dtype]:
-                free[dtype].append(first + len(self._dtypes))
-                self._dtypes.append(dtype)
-            return free[dtype].pop()  # the last one given back is still in cache
-
-        def place(e: Expression) -> int:
-            if id(e) not in index:
-                index[id(e)] = working_array(e.dtype)
-                working.add(id(e))
-            return index[id(e)]
-
-        def release(values: Sequence[Expression], e: Expression) -> None:
-            for value in values:
-                if last_use.get(id(value), e) is e and id(value) in working:
-                    working.discard(id(value))
-                    free[value.dtype].append(index[id(value)])
-
-        self._steps: list[tuple[Callable[..., object] | None, tuple[int, ...]]] = []
-        for e in tiled:
-            if e.operation == "column" or e.operation in PROJECTIONS:
-                continue
-            operands = tuple(index[id(operand)] for operand in e.operands)
-            if e.operation == "sine_and_cosine":
-                halves = [e.table.half(e, half) for half in PROJECTIONS]
-                places = [place(half) for half in halves]
-                spare = [working_array("float") for _ in range(4)]
-                free["float"] += spare
-                self._steps.append((None, (*operands, *places, *spare)))
-                release([*halves, *e.operands], e)
-            else:
-                operation = OPERATIONS[e.operation]
-                if isinstance(operation, np.ufunc):
-                    # it may write over an operand that is not needed any more
-                    release(e.operands, e)
-                self._steps.append((operation, (*operands, place(e))))
-                release(e.operands, e)
-
-    def workspace(self, tile: int) -> list[Array]:
-        """The working arrays for tiles of up to ``tile`` scenes (one set for each thread)."""
-        return [np.empty(tile, _DTYPES[dtype]) for dtype in self._dtypes]
-
-    def fixed_values(self, columns: Mapping[str, Array]) -> list[Array]:
-        """The values that are the same for all scenes of a block, each of length 1.
-
-        ``columns``: arrays of length 1 for the columns that do not vary.
-        """
-        values: dict[int, Array] = {}
-        for e in self._fixed:
-            operands = [values[id(operand)] for operand in e.operands]
-            if e.operation == "constant":
-                value = np.array([e.value], np.float64)
-            elif e.operation == "column":
-                value = columns[str(e.value)]
-            elif e.operation in PROJECTIONS:
-                value = operands[0][PROJECTIONS.index(e.operation)]
-            elif e.operation == "sine_and_cosine":
-                value, work = np.empty((2, 1)), np.empty((4, 1))
-                both, four = (value[0], value[1]), (work[0], work[1], work[2], work[3])
-                sine_and_cosine(operands[0], *both, four)
-            else:
-                value = np.empty(1, _DTYPES[e.dtype])
-                OPERATIONS[e.operation](*operands, value)
-            values[id(e)] = value
-        return list(values.values())
+    def _view(self, *view: Any) -> int:
+        return self._views.setdefault(view, len(self._views))
 
     def run(
         self,
-        fixed: Sequence[Array],
-        columns: Mapping[str, Array],
+        columns: Sequence[Array],
         results: Mapping[str, Array],
-        workspace: Sequence[Array],
+        fixed: Mapping[str, float],
+        tile: int,
     ) -> None:
-        """Compute one tile: read the varying ``columns`` (equally long float64 arrays), write the
-        ``results`` (name -> array of that length)."""
+        """Read the varying ``columns`` (equally long float64 arrays, in the program's order), write
+        the ``results``; ``fixed``: the columns that do not vary."""
         length = len(next(iter(results.values())))
-        if workspace and len(workspace[0]) != length:
-            workspace = [array[:length] for array in workspace]
-        places: list[Array] = [
-            *fixed,
-            *(columns[name] for name in self.varying),
-            *(results[name] for name in self._direct),
-            *workspace,
-        ]
-        for operation, place in self._steps:
-            if operation is None:
-                a, s, c, w0, w1, w2, w3 = place
-                sine_and_cosine(
-                    places[a],
-                    places[s],
-                    places[c],
-                    (places[w0], places[w1], places[w2], places[w3]),
-                )
-            elif len(place) == 3:
-                operation(places[place[0]], places[place[1]], places[place[2]])
-            else:
-                operation(*[places[i] for i in place])
-        for name, e in self.results.items():
-            if e.dtype == "float":
-                # -0.0 becomes 0.0: a zero's sign would tell which path led to it
-                np.add(places[self._index[id(e)]], 0.0, out=results[name])
-            elif name not in self._direct:
-                np.copyto(results[name], places[self._index[id(e)]])
+        for low in range(0, length, tile):
+            high = min(low + tile, length)
+            if not low or high - low < tile:
+                room = np.empty((self.program.places + 4, high - low))
+                for place, scalar in enumerate(self.program.scalars, self.program.moving):
+                    room[place, 0] = fixed[scalar] if isinstance(scalar, str) else scalar
+                steps = self._steps
+            rows = [*(column[low:high] for column in columns)]
+            rows += [result[low:high] for result in results.values()]
+            rows.extend(room[len(rows) :])
+            places = [_view_of(rows[place], *how) for place, *how in self._views]
+            for operation, views in steps:
+                operation(*[places[view] for view in views])
+            steps = self._steps[self.program.once :]
 
 
-def _weight(e: Expression) -> int:
-    """How many passes over the tile an operation makes."""
-    if e.operation == "column" or e.operation in PROJECTIONS:
-        return 0
-    return {"sine_and_cosine": 26, "against": 3, "choose": 2}.get(e.operation, 1)
+def _view_of(row: Array, conditions: bool, single: bool) -> Array:
+    if conditions:
+        row = row.view(np.bool_)[: len(row)]
+    return row[:1] if single else row

@@ -7,17 +7,16 @@ does the same over arrays.
 """
 
 import math
-import operator
 import re
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 from ..doubles import double
 from ..errors import UserError
 from ..names import DEFAULT_M, SCENE
-from ..native.formulas import Expression, ExpressionTable
+from ..native.formulas import ExpressionTable
+from ..native.schedule import Schedule
 from .impact import Impact
-from .sinetable import sine_and_cosine
+from .written import written
 
 _SHARE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*%\s*")
 
@@ -38,9 +37,10 @@ def resolved(texts: Mapping[str, str], source: str) -> tuple[str, str]:
     table = ExpressionTable()
     columns = {name: table.column(name, varies=True) for name in SCENE}
     impact = Impact(table, columns, pivot=True, point=numbers["M"] == 4, infinite=False)
-    known: dict[int, Any] = {}
+    wanted = {"PN": impact.PN, "MUC": impact.MUC, "gt": impact.gt}
+    values = [numbers.get(name, 0.0) for name in SCENE]
     try:
-        pn, critical, slip = (_value(e, numbers, known) for e in (impact.PN, impact.MUC, impact.gt))
+        pn, critical, slip = written(Schedule(wanted, ["RESULT"] * 3))(*values)
     except ArithmeticError:
         pn = critical = slip = math.nan
     mu = share * critical
@@ -50,25 +50,3 @@ def resolved(texts: Mapping[str, str], source: str) -> tuple[str, str]:
         )
     number = repr((-mu if slip > 0 else mu) + 0.0).removesuffix(".0").upper()
     return number, f"MU = {number} is {100 * share:g} % of the critical friction"
-
-
-_OPERATIONS: dict[str, Callable[..., Any]] = {
-    **{"add": operator.add, "subtract": operator.sub, "multiply": operator.mul},
-    **{"divide": operator.truediv, "negative": operator.neg, "absolute": abs, "sqrt": math.sqrt},
-    "sine_and_cosine": lambda angle: sine_and_cosine(math.fmod(angle, 360.0)),
-    **{"sine": operator.itemgetter(0), "cosine": operator.itemgetter(1)},
-}
-
-
-def _value(expression: Expression, columns: Mapping[str, float], known: dict[int, Any]) -> Any:
-    """An expression's value for one scene; ``known``: those worked out before."""
-    if id(expression) not in known:
-        if expression.operation == "column":
-            value: Any = columns[str(expression.value)]
-        elif expression.operation == "constant":
-            value = float(expression.value or 0.0)
-        else:
-            operands = (_value(e, columns, known) for e in expression.operands)
-            value = _OPERATIONS[expression.operation](*operands)
-        known[id(expression)] = value
-    return known[id(expression)]

@@ -381,7 +381,6 @@ class _Worker:
         self.given = given
         self.results = results
         self.buffers = Buffers(self.size)
-        self.workspaces: dict[int, Any] = {}
 
     @np.errstate(all="ignore")
     def solve(self, start: int, stop: int) -> None:
@@ -392,7 +391,7 @@ class _Worker:
         block = self.block_of(start, end)
         results = {name: array[start:end] for name, array in self.results.items()}
         if native.library is None:
-            self.run_plan(block, results, end - start)
+            self.run_plan(block, results)
         else:
             self.run_program(block, results, end - start)
         if block.refused is not None:
@@ -413,21 +412,12 @@ class _Worker:
         columns = addresses(block.varying[name] for name in program.columns)
         program.run(columns, addresses(results.values()), count, CIRCLE, fixed)
 
-    def run_plan(self, block: Block, results: Mapping[str, Array], length: int) -> None:
+    def run_plan(self, block: Block, results: Mapping[str, Array]) -> None:
         """By numpy, a tile at a time."""
         plan = plan_for(block.kinds, tuple(results), self.sign)
-        if id(plan) not in self.workspaces:
-            self.workspaces[id(plan)] = plan.workspace(self.tile)
-        workspace = self.workspaces[id(plan)]
-        fixed = plan.fixed_values(block.fixed)
-        for low in range(0, length, self.tile):
-            high = min(low + self.tile, length)
-            plan.run(
-                fixed,
-                {name: block.varying[name][low:high] for name in plan.varying},
-                {name: result[low:high] for name, result in results.items()},
-                workspace,
-            )
+        fixed = {name: float(values[0]) for name, values in block.fixed.items()}
+        columns = [block.varying[name] for name in plan.program.columns]
+        plan.run(columns, results, fixed, self.tile)
         for name, result in results.items():
             if name != "STATUS" and not np.isfinite(result.sum()):
                 # NaN by one set of bits; COND alone may be infinite

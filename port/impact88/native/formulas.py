@@ -41,7 +41,7 @@ class Expression:
     ``varies`` is False when the value is the same for every scene of a block.
     """
 
-    __slots__ = ("dtype", "key", "operands", "operation", "table", "value", "varies")
+    __slots__ = ("operands", "operation", "table", "value", "varies")
 
     def __init__(
         self,
@@ -49,14 +49,12 @@ class Expression:
         operation: str,
         operands: tuple[Expression, ...],
         varies: bool,
-        dtype: str,
         value: float | str | None = None,
     ) -> None:
         self.table = table
         self.operation = operation
         self.operands = operands
         self.varies = varies
-        self.dtype = dtype
         self.value = value
 
     def is_constant(self, number: float) -> bool:
@@ -103,7 +101,6 @@ class ExpressionTable:
         self,
         operation: str,
         *operands: Expression,
-        dtype: str = "float",
         value: float | str | None = None,
         varies: bool | None = None,
     ) -> Expression:
@@ -111,7 +108,7 @@ class ExpressionTable:
         if key not in self._kept:
             if varies is None:
                 varies = any(operand.varies for operand in operands)
-            self._kept[key] = Expression(self, operation, operands, varies, dtype, value)
+            self._kept[key] = Expression(self, operation, operands, varies, value)
         return self._kept[key]
 
     def constant(self, number: float) -> Expression:
@@ -219,7 +216,7 @@ class ExpressionTable:
 
     def condition(self, operation: str, *operands: Expression) -> Expression:
         """A comparison, or conditions joined: 1 where it holds, else 0."""
-        return self._keep(operation, *operands, dtype="bool")
+        return self._keep(operation, *operands)
 
     def equals(self, a: Expression, number: float) -> Expression:
         return self.condition("equal", a, self.constant(number))
@@ -232,4 +229,4 @@ class ExpressionTable:
 
     def bits(self, number: Expression) -> Expression:
         """A sum of bits as the whole number it is."""
-        return self._keep("bits", number, dtype="bits")
+        return self._keep("bits", number)

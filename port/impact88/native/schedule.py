@@ -1,0 +1,136 @@
+"""Expressions as steps: in the order of the formulas, each value in a place for as long as needed.
+
+An expression has an ``operation``, ``operands``, and says whether it ``varies`` from scene to
+scene; a column or constant has a ``value``. Each operation becomes a step, with its rounding. A
+product that only one sum needs is taken together with that sum, each still rounded by itself. The
+same steps are run by the compiled machine, by numpy, and as lines of Python.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+PROJECTIONS = ("sine", "cosine")
+"""The two values that sine_and_cosine makes."""
+_APART = ("sine_and_cosine", "real_multiply")
+"""Operations that must not write over an operand."""
+
+
+def in_order(results: Sequence[Any]) -> list[Any]:
+    """All expressions the results depend on, operands before what is made of them."""
+    seen: set[int] = set()
+    order: list[Any] = []
+    stack = [(e, False) for e in reversed(results)]
+    while stack:
+        e, ready = stack.pop()
+        if id(e) in seen:
+            continue
+        if ready:
+            seen.add(id(e))
+            order.append(e)
+        else:
+            stack.append((e, True))
+            stack.extend((operand, False) for operand in reversed(e.operands))
+    return order
+
+
+class Schedule:
+    """The steps that compute ``results`` (name -> expression), each finished by an operation in
+    ``endings``, such as RESULT; BITS makes whole numbers of 16 bits.
+
+    Places: first the varying ``columns``, then the results (up to ``moving``), ``scalars``
+    (constants, and the names of columns that do not vary), then values in between. ``steps``: the
+    operation, and the places of its operands and of what it makes; the ``once`` first ones are of
+    values that do not vary.
+    """
+
+    def __init__(self, results: Mapping[str, Any], endings: Sequence[str]) -> None:
+        order = in_order(list(results.values()))
+        self.results, self.endings = list(results), list(endings)
+        columns = [e for e in order if e.operation == "column" and e.varies]
+        leaves = [e for e in order if e.operation in ("column", "constant") and not e.varies]
+        self.columns = [str(e.value) for e in columns]
+        self.scalars: list[float | str] = [e.value for e in leaves]
+        self.moving = len(columns) + len(results)
+        self._place = {id(e): number for number, e in enumerate(columns)}
+        self._place |= {id(e): number for number, e in enumerate(leaves, self.moving)}
+        self.places = self.moving + len(leaves)
+        self._free: list[int] = []
+        self.steps: list[tuple[str, tuple[int, ...]]] = []
+        work = [e for e in order if e.operation not in ("column", "constant")]
+        often = [e for e in work if e.varies]
+        self._write(
+            [e for e in work if not e.varies],
+            [*results.values(), *(x for e in often for x in e.operands)],
+        )
+        self.once = len(self.steps)
+        self._write(often, list(results.values()))
+        for to, (e, ending) in enumerate(zip(results.values(), endings, strict=True), len(columns)):
+            self.steps.append((ending, (self._place[id(e)], to)))
+
+    def _write(self, work: Sequence[Any], kept: Sequence[Any]) -> None:
+        """Append the steps for ``work``, each value in a place of its own for as long as it is
+        needed; for good if it is one of ``kept``."""
+        fused = _with_products(work, kept)
+        joined = {id(e) for _, products in fused.values() for e in products}
+        steps = [e for e in work if id(e) not in joined and e.operation not in PROJECTIONS]
+        last = {id(operand): id(e) for e in steps for operand in _operands(e, fused)}
+        needed = {id(e) for e in kept}
+        own: dict[int, int] = {}
+
+        def release(values: Iterable[Any], after: Any) -> None:
+            for value in {id(v): v for v in values}:
+                mine = last.get(value) in (None, id(after)) and value in own
+                if mine and value not in needed:
+                    self._free.append(own.pop(value))
+
+        for e in steps:
+            operands = _operands(e, fused)
+            places = [self._place[id(operand)] for operand in operands]
+            made = [e]
+            if e.operation == "sine_and_cosine":
+                made = [e.table.half(e, half) for half in PROJECTIONS]
+            elif e.operation not in _APART:
+                release(operands, e)
+            for value in made:
+                place = self._free.pop() if self._free else self.places
+                self.places = max(self.places, place + 1)
+                self._place[id(value)] = own[id(value)] = place
+                places.append(place)
+            name = fused[id(e)][0] if id(e) in fused else e.operation.upper()
+            self.steps.append((name, tuple(places)))
+            if e.operation in _APART:
+                release([*operands, *(v for v in made if id(v) not in last)], e)
+
+
+Fused = dict[int, tuple[str, tuple[Any, ...]]]
+"""Sums that take products with them: id -> (operation, products)."""
+
+
+def _operands(e: Any, fused: Fused) -> list[Any]:
+    """What a step reads: the factors of the products that are taken with it."""
+    products = fused[id(e)][1] if id(e) in fused else ()
+    factors = [factor for product in products for factor in product.operands]
+    return factors + [operand for operand in e.operands if operand not in products]
+
+
+def _with_products(work: Sequence[Any], kept: Sequence[Any]) -> Fused:
+    uses = Counter(id(operand) for e in work for operand in e.operands)
+    uses.update({id(e): 2 for e in kept})
+    mine = {id(e) for e in work}
+    fused: Fused = {}
+    for e in work:
+        if e.operation not in ("add", "subtract"):
+            continue
+        products = tuple(
+            x
+            for x in e.operands
+            if x.operation == "multiply" and uses[id(x)] == 1 and id(x) in mine
+        )
+        ending = "PLUS" if e.operation == "add" else "MINUS"
+        if len(products) == 2:
+            fused[id(e)] = f"PRODUCTS_{ending}", products
+        elif products:
+            minus = ending == "MINUS" and products[0] is e.operands[1]
+            fused[id(e)] = "MINUS_PRODUCT" if minus else f"PRODUCT_{ending}", products
+    return fused
