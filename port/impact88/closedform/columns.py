@@ -204,11 +204,11 @@ def _examined(name: str, column: Floats, least: float, most: float) -> _Column:
         with np.errstate(invalid="ignore"):
             turned = np.fmod(column, 360.0)
         column = np.where(np.abs(column) > LARGE_ANGLE, turned, column)
-        kind = _alike_kind(name, float(column[0])) if alike else "array"
+        kind = alike_kind(name, float(column[0])) if alike else "array"
         return _Column(column, kind, finite)
     if name == "M":
         usable = alike and least in (4, 6)
-        kind = _alike_kind(name, least) if usable else "6" if alike else "mixed"
+        kind = alike_kind(name, least) if usable else "6" if alike else "mixed"
         return _Column(column, kind, usable)
     if name in INERTIAS:
         if least > 0 and most == np.inf:
@@ -217,7 +217,7 @@ def _examined(name: str, column: Floats, least: float, most: float) -> _Column:
             return _Column(column, "scalar" if alike else "array with infinities", False)
     elif name == "MU" and least <= PIVOT <= most and bool((column == PIVOT).any()):
         return _Column(column, "pivot" if alike else "mixed", finite)
-    return _Column(column, _alike_kind(name, least) if alike else "array", finite)
+    return _Column(column, alike_kind(name, least) if alike else "array", finite)
 
 
 def _ordinary(name: str) -> Limits:
@@ -235,33 +235,7 @@ ORDINARY = {name: _ordinary(name) for name in SCENE}
 looked at."""
 
 
-def ordinary_kinds(
-    extremes: Mapping[str, Limits], fixed: Mapping[str, float]
-) -> tuple[str, ...] | None:
-    """The kinds of a block, as `examine` finds them, from the least and largest number of columns
-    and the values of the others; None where its numbers have to be looked at."""
-
-    def ends(name: str) -> Limits:
-        return extremes[name] if name in extremes else (fixed[name], fixed[name])
-
-    point = ends("M") == (4.0, 4.0)
-    kinds = []
-    for name, (low, high) in ORDINARY.items():
-        least, most = ends(name)
-        if point and name in UNUSED_BY_POINTS:
-            kinds.append("unused")
-        elif low <= least and most <= high:  # NaN is neither
-            kinds.append("array" if least < most else _alike_kind(name, least))
-        elif name == "MU" and least == most == PIVOT:
-            kinds.append("pivot")
-        elif name == "M" and point:
-            kinds.append("4")
-        else:
-            return None
-    return tuple(kinds)
-
-
-def _alike_kind(name: str, value: float) -> str:
+def alike_kind(name: str, value: float) -> str:
     """The kind of an ordinary column that has one value."""
     if name == "M":
         return str(int(value))

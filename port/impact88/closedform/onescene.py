@@ -21,10 +21,10 @@ from ..names import PIVOT, RESULTS
 from ..native import program
 from .columns import INERTIAS, ORDINARY, UNUSED_BY_POINTS
 from .fused import CIRCLE, program_for, varying
-from .written import NAMES, written
+from .plain import NAMES, PLAIN
+from .written import written
 
 ALL = tuple(RESULTS)
-PLAIN = {float, int, np.float64}
 _M, _MU = NAMES.index("M"), NAMES.index("MU")
 _in_order = itemgetter(*NAMES)
 
@@ -69,13 +69,12 @@ class _Call:
         names = made.columns
         self.scene, self.status = np.zeros(len(NAMES)), np.zeros(1, np.uint16)
         self.results = np.zeros(len(ALL))
-        self._room = program.Room(made)
+        self.room = program.Room(made)
         at = self.scene.ctypes.data + 8 * np.array([NAMES.index(name) for name in names], np.int64)
         into = self.results.ctypes.data + 8 * np.arange(len(ALL))
         into[-1] = self.status.ctypes.data  # STATUS
-        self._room.moving[:] = [*at, *into]
-        self._limits = at, np.array([ORDINARY[name] for name in names])
-        self.arguments = self._room.arguments(*self._limits, 1, CIRCLE)
+        self.room.moving[:] = [*at, *into]
+        self.looked_at = at, np.array([ORDINARY[name] for name in names])
 
 
 _calls: dict[tuple[bool, bool], list[_Call]] = defaultdict(list)
@@ -96,8 +95,7 @@ def by_machine(
     free = _calls[point, pivot]
     call = free.pop() if free else _Call(point, pivot)
     call.scene[:] = values
-    assert native.library is not None
-    done = native.library.run(*call.arguments)
+    done = call.room.run(1, CIRCLE, *call.looked_at)
     names, places = _places(wanted)
     found, status = call.results[places], call.status[0]
     free.append(call)

@@ -5,9 +5,7 @@ point masses) with exact pi, by the closed form of `closedform.impact`.
 """
 
 import math
-import sys
-import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -17,14 +15,14 @@ from numpy.typing import NDArray
 from .. import native
 from ..errors import UserError
 from ..mappings import in_base, in_doubles
-from ..names import PIVOT, RESULTS, SCENE
-from ..native.program import addresses, extremes
-from ..processors import processors
+from ..names import PIVOT, RESULTS
+from ..native.program import addresses
 from ..scene import check_mapping
 from ..status import Status
-from .columns import ORDINARY, Block, Buffers, Source, examine, ordinary_kinds, sources
+from .columns import Block, Buffers, Source, examine, sources
 from .fused import CIRCLE, plan_for, program_for
-from .onescene import ALL, PLAIN, in_order, solve_one
+from .onescene import ALL, in_order, solve_one
+from .plain import check_room, rooms, shared_out, solve_plain, workers
 from .share import share_of
 
 Array = NDArray[Any]
@@ -32,7 +30,6 @@ Array = NDArray[Any]
 _CELLS = {str, list, tuple}
 _FLOATS = np.dtype(np.float64)
 """Of a column of texts, in which MU may be a share."""
-_ROWS = 8 * np.arange(len(SCENE))
 TILE = 16384
 """Scenes a pass works on. Two arrays fit the second-level cache and all of them the third; numpy's
 cost of starting an operation (half a microsecond) is spread over enough scenes not to matter.
@@ -41,20 +38,6 @@ SHARED_TILE = 4 * TILE
 """The same for several threads. Each operation hands Python's lock to the other thread and wants it
 back; when operations are short the other has not woken up by then, and the threads take turns.
 Measured on two cores: 1.6 times as fast as one with tiles this long, 1.1 times with `TILE`."""
-FEW = 2048
-"""Scenes up to which copying their columns is cheaper than looking at each; and as many show of
-what kind the next ones are."""
-TOGETHER = 1 << 28
-"""Bytes up to which results are rows of one array, which is had sooner than arrays of their own (6
-instead of 12 ns a scene for the six velocities of a million) but is kept as long as one of them."""
-KEPT = 1 << 26
-"""Bytes up to which the memory of results is used again once nobody holds any of them: paging in
-fresh memory takes 6 of 26 ns a scene for the six velocities of a million, and more for all results.
-Half of it spares that to half as many scenes."""
-WORTH_KEEPING = 1 << 17
-"""Bytes from which fresh memory has to be paged in; less is had from what was freed."""
-WORTH_A_THREAD = 32768
-"""Scenes for each thread from which it pays: half a millisecond of the compiled machine."""
 
 
 def solve(
@@ -143,172 +126,17 @@ def _solved(
 ) -> dict[str, Array]:
     given, shape = sources(columns)
     count = math.prod(shape)
-    whole, _ = _rooms([name for name in wanted if out is None or name not in out], shape)
+    whole, _ = rooms([name for name in wanted if out is None or name not in out], shape)
     if out is not None:
-        _check_room(out, wanted, shape, [source.values for source in given.values()])
+        check_room(out, wanted, shape, [source.values for source in given.values()])
         whole |= {name: out[name] for name in wanted if name in out}
     results: dict[str, Array] = {name: whole[name].reshape(count) for name in wanted}
     if not wanted:
         return {}
-    workers = _workers(count, threads, SHARED_TILE)
-    tile = TILE if workers == 1 else SHARED_TILE
-    _shared_out(lambda *span: _Worker(given, results, tile, sign).solve(*span), count, workers)
+    many = workers(count, threads, SHARED_TILE)
+    tile = TILE if many == 1 else SHARED_TILE
+    shared_out(lambda *span: _Worker(given, results, tile, sign).solve(*span), count, many)
     return {name: whole[name] for name in wanted}
-
-
-def _shared_out(work: Callable[[int, int], None], count: int, workers: int) -> None:
-    """Do ``work(start, stop)`` of all scenes, an equal part by each of some threads."""
-    size = -(-count // workers)
-    failures: list[BaseException] = []
-
-    def part(start: int) -> None:
-        try:
-            work(start, min(start + size, count))
-        except BaseException as error:
-            failures.append(error)
-
-    others = [threading.Thread(target=part, args=(k * size,)) for k in range(1, workers)]
-    for thread in others:
-        thread.start()
-    part(0)
-    for thread in others:
-        thread.join()
-    if failures:
-        raise failures[0]
-
-
-_kept: list[Array] = []
-
-
-def _memory(count: int) -> Array:
-    """So many float64, those of an earlier call where no array refers to them any more."""
-    block = _kept.pop() if _kept else None
-    if block is None or block.size != count or sys.getrefcount(block) > 2:  # here, and the argument
-        block = np.empty(count)
-    if WORTH_KEEPING <= block.nbytes <= KEPT:
-        _kept[:] = [block]
-    return block
-
-
-def _rooms(
-    names: Sequence[str], shape: tuple[int, ...]
-) -> tuple[dict[str, Array], NDArray[np.int64]]:
-    """Arrays for results, and where they begin."""
-    count = math.prod(shape)
-    many = max(1, TOGETHER // max(1, 8 * count))
-    rooms: dict[str, Array] = {}
-    where = np.empty(len(names), np.int64)
-    for at in range(0, len(names), many):
-        some = names[at : at + many]
-        together = _memory(len(some) * count).reshape(len(some), *shape)
-        rows = together if shape else [together[i, ...] for i in range(len(some))]
-        rooms.update(zip(some, rows, strict=True))
-        where[at : at + many] = together.ctypes.data + 8 * count * np.arange(len(some))
-    if "STATUS" in rooms:
-        rooms["STATUS"] = np.empty(shape, np.uint16)
-        where[names.index("STATUS")] = rooms["STATUS"].ctypes.data
-    return rooms, where
-
-
-def _check_room(
-    out: Mapping[str, Array],
-    wanted: Sequence[str],
-    shape: tuple[int, ...],
-    columns: Sequence[Array],
-) -> None:
-    """Raises UserError for arrays that cannot take the results."""
-    for name, array in out.items():
-        where = f"out, {name}"
-        if name not in wanted:
-            raise UserError(
-                f"is not a result asked for; expected some of {' '.join(wanted)}", where
-            )
-        dtype = np.dtype(np.uint16 if name == "STATUS" else np.float64)
-        if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
-            got = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array)
-            raise UserError(f"is {got}; expected an array of {dtype} {shape}", where)
-        if not (array.flags.c_contiguous and array.flags.writeable):
-            raise UserError("is not contiguous or not writable", where)
-        others = [*columns, *(other for key, other in out.items() if key != name)]
-        if any(np.may_share_memory(array, other) for other in others):
-            raise UserError("shares memory with a column or another result", where)
-
-
-def solve_plain(
-    values: tuple[Any, ...],
-    wanted: tuple[str, ...],
-    threads: int | None,
-    out: Mapping[str, Array] | None,
-) -> dict[str, Array] | None:
-    """The results of plain columns, all of one kind, by one call of the compiled machine a thread,
-    so that hardly anything is done column by column: `bounds` and root finders make many short
-    calls. None where the columns have to be looked at."""
-    arrays: dict[str, Array] = {}
-    fixed: dict[str, float] = {}
-    shape: tuple[int, ...] = ()
-    for name, value in zip(SCENE, values, strict=True):
-        if type(value) is np.ndarray:
-            if value.shape != shape and arrays:
-                return None
-            shape, arrays[name] = value.shape, value
-        elif type(value) in PLAIN:
-            fixed[name] = value
-        else:
-            return None
-    count = math.prod(shape)
-    if count < 2:
-        return None
-    if count <= FEW:
-        try:
-            flat = [array.reshape(-1) for array in arrays.values()]
-            together = np.concatenate(flat, dtype=np.float64, casting="same_kind")
-        except TypeError:  # no numbers
-            return None
-        where = together.ctypes.data + count * _ROWS[: len(arrays)]
-    elif all(x.dtype == np.float64 and x.flags.c_contiguous for x in arrays.values()):
-        where = addresses(arrays.values())
-    else:
-        return None
-    least, most = extremes(where, min(count, FEW))
-    kinds = ordinary_kinds(dict(zip(arrays, zip(least, most, strict=True), strict=True)), fixed)
-    if kinds is None:
-        return None
-    fixed.update(zip(arrays, least, strict=True))
-    program = program_for(kinds, wanted)
-    place = dict(zip(arrays, where.tolist(), strict=True))
-    read = np.array([place[name] for name in program.columns], np.int64)
-    if out is None:
-        by_name, into = _rooms(wanted, shape)
-    else:
-        by_name, into = _rooms([name for name in wanted if name not in out], shape)
-        _check_room(out, wanted, shape, list(arrays.values()))
-        by_name |= out
-        into = addresses(by_name[name] for name in wanted)
-        by_name = {name: by_name[name] for name in wanted}
-    if count <= FEW:  # all have been looked at
-        program.run(read, into, count, CIRCLE, fixed)
-        return by_name
-    kind = dict(zip(SCENE, kinds, strict=True))
-    looked_at = [i for i, name in enumerate(arrays) if kind[name] != "unused"]
-    checked = where[looked_at]
-    limits = np.array(
-        [
-            ORDINARY[name] if kind[name] == "array" else (least[i], most[i])
-            for i, name in enumerate(arrays)
-            if i in looked_at
-        ]
-    )
-    widths = program.width[len(read) :]
-    short: list[int] = []
-
-    def part(start: int, stop: int) -> None:
-        at, to = read + 8 * start, into + widths * start
-        done = program.run(at, to, stop - start, CIRCLE, fixed, checked + 8 * start, limits)
-        if done < stop - start:
-            short.append(start)
-
-    _shared_out(part, count, _workers(count, threads, WORTH_A_THREAD))
-    return None if short else by_name
 
 
 def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
@@ -357,11 +185,6 @@ def _known(names: tuple[str, ...]) -> tuple[str, ...]:
         if name not in RESULTS:
             raise UserError(f"{name!r} is not a result name; expected some of {' '.join(RESULTS)}")
     return tuple(dict.fromkeys(names))
-
-
-def _workers(count: int, threads: int | None, share: int) -> int:
-    """How many threads, each with at least ``share`` scenes to do."""
-    return max(1, min(threads or processors(), count // share))
 
 
 class _Worker:

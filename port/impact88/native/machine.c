@@ -192,8 +192,7 @@ EXPORT kernel kernel_of(uint64_t digest)
     return 0;
 }
 
-/* Runs a program over ``count`` scenes and returns how many were done: fewer where a column left
-   the limits that the program relies on (nothing is written of the strip where it does).
+/* A program, working memory for it, and scenes.
 
    Values have places. The first ``read`` are columns in memory, those up to ``moving`` results in
    memory of ``width`` bytes a scene, ``given`` says where. All others are strips of ``room`` that
@@ -203,69 +202,88 @@ EXPORT kernel kernel_of(uint64_t digest)
    whole: what does the same as all steps, or 0.
 
    checked: columns of which every number must lie between limits[2k] and limits[2k + 1]. */
-EXPORT CLONES int64_t run(
-    const step *steps, int64_t once, int64_t length,
-    char *const *given, const int64_t *width, int64_t read, int64_t moving,
-    const double *scalars, int64_t scalar_count,
-    const double *const *checked, const double *limits, int64_t checks,
-    int64_t count, const circle *circle, double *room, int64_t places, kernel whole)
+typedef struct {
+    const step *steps;
+    int64_t once, length;
+    char *const *given;
+    const int64_t *width;
+    int64_t read, moving;
+    const double *scalars;
+    int64_t scalar_count;
+    double *room;
+    int64_t places;
+    kernel whole;
+    const double *const *checked;
+    const double *limits;
+    int64_t checks, count;
+    const circle *circle;
+} call;
+
+/* Runs a program over ``count`` scenes and returns how many were done: fewer where a column left
+   the limits that the program relies on (nothing is written of the strip where it does). */
+EXPORT CLONES int64_t run(const call *its)
 {
+    const call c = *its;
     double *place[PLACES];
     int64_t odd[STRIP] = {0};
-    for (int64_t p = 0; p < places; p++) place[p] = room + p * STRIP;
+    for (int64_t p = 0; p < c.places; p++) place[p] = c.room + p * STRIP;
     const int lanes = STRIP;
-    if (!whole) {
-        for (int64_t k = 0; k < scalar_count; k++)
-            LOOP place[moving + k][i] = scalars[k];
-        perform(steps, once, place, circle, odd, STRIP);
+    if (!c.whole) {
+        for (int64_t k = 0; k < c.scalar_count; k++)
+            LOOP place[c.moving + k][i] = c.scalars[k];
+        perform(c.steps, c.once, place, c.circle, odd, STRIP);
     }
     int64_t always[STRIP]; /* what the scenes share makes all of them odd */
     memcpy(always, odd, sizeof odd);
     int64_t looked = 0;
-    for (int64_t start = 0; start < count; start += STRIP) {
-        int64_t many = count - start < STRIP ? count - start : STRIP;
-        int64_t full = many == STRIP, eights = (many + 7) / 8, padded = whole ? 8 * eights : STRIP;
+    for (int64_t start = 0; start < c.count; start += STRIP) {
+        int64_t many = c.count - start < STRIP ? c.count - start : STRIP;
+        int64_t full = many == STRIP, eights = (many + 7) / 8, padded = c.whole ? 8 * eights : STRIP;
         if (start >= looked) {
-            looked = count - start < AT_ONCE * STRIP ? count : start + AT_ONCE * STRIP;
-            for (int64_t k = 0; k < checks; k++) {
-                const double *x = checked[k], least = limits[2 * k], most = limits[2 * k + 1];
+            looked = c.count - start < AT_ONCE * STRIP ? c.count : start + AT_ONCE * STRIP;
+            for (int64_t k = 0; k < c.checks; k++) {
+                const double *x = c.checked[k], least = c.limits[2 * k], most = c.limits[2 * k + 1];
                 int64_t outside = 0;
                 for (int64_t i = start; i < looked; i++) outside |= !((x[i] >= least) & (x[i] <= most));
                 if (outside) return start;
             }
         }
         memcpy(odd, always, sizeof odd);
-        for (int64_t p = 0; p < moving; p++) {
-            char *here = given[p] + start * width[p];
-            place[p] = full ? (double *)here : room + p * STRIP;
-            if (!full && p < read)
+        for (int64_t p = 0; p < c.moving; p++) {
+            char *here = c.given[p] + start * c.width[p];
+            place[p] = full ? (double *)here : c.room + p * STRIP;
+            if (!full && p < c.read)
                 for (int i = 0; i < padded; i++) place[p][i] = ((double *)here)[i < many ? i : 0];
         }
-        if (whole) whole(place, circle, eights);
-        else perform(steps + once, length - once, place, circle, odd, STRIP);
-        for (int64_t p = read; p < moving && !full; p++)
-            memcpy(given[p] + start * width[p], place[p], (size_t)(many * width[p]));
+        if (c.whole) c.whole(place, c.circle, eights);
+        else perform(c.steps + c.once, c.length - c.once, place, c.circle, odd, STRIP);
+        for (int64_t p = c.read; p < c.moving && !full; p++)
+            memcpy(c.given[p] + start * c.width[p], place[p], (size_t)(many * c.width[p]));
     }
-    return count;
+    return c.count;
 }
 
-/* The least and the largest of each column, both NaN where one is. */
-EXPORT CLONES void survey(const double *const *columns, int64_t many, int64_t count, double *found)
+/* The least and the largest of each column, both NaN where one is; of ``count`` numbers of the first
+   ``many`` columns, one of the others. What kind each is, where there are limits: a(rray), 0, 1 or
+   s(calar) within its limits, the one value (4 or -10) beyond them, ? else. */
+EXPORT CLONES void survey(
+    const double *const *columns, int64_t many, int64_t all, int64_t count, double *found,
+    const double *limits, char *kinds)
 {
     enum { lanes = 32 }; /* enough for every instruction set to keep several comparisons going */
-    for (int64_t k = 0; k < many; k++) {
+    for (int64_t k = 0; k < all; k++) {
         const double *x = columns[k];
         double least[lanes], most[lanes];
-        int64_t odd[lanes] = {0}, at = 0;
+        int64_t odd[lanes] = {0}, at = 0, length = k < many ? count : 1;
         LOOP least[i] = most[i] = x[0];
-        for (; at + lanes <= count; at += lanes)
+        for (; at + lanes <= length; at += lanes)
             EACH {
                 double y = x[at + i];
                 least[i] = y < least[i] ? y : least[i];
                 most[i] = y > most[i] ? y : most[i];
                 odd[i] |= y != y;
             }
-        for (; at < count; at++) {
+        for (; at < length; at++) {
             least[0] = x[at] < least[0] ? x[at] : least[0];
             most[0] = x[at] > most[0] ? x[at] : most[0];
             odd[0] |= x[at] != x[at];
@@ -275,8 +293,15 @@ EXPORT CLONES void survey(const double *const *columns, int64_t many, int64_t co
             most[0] = most[i] > most[0] ? most[i] : most[0];
             odd[0] |= odd[i];
         }
-        found[2 * k] = odd[0] | (x[0] != x[0]) ? NAN : least[0];
-        found[2 * k + 1] = odd[0] | (x[0] != x[0]) ? NAN : most[0];
+        odd[0] |= x[0] != x[0];
+        double low = odd[0] ? NAN : least[0], high = odd[0] ? NAN : most[0];
+        found[2 * k] = low;
+        found[2 * k + 1] = high;
+        if (!limits) continue;
+        if (limits[2 * k] <= low && high <= limits[2 * k + 1])
+            kinds[k] = low < high ? 'a' : low == 0 ? '0' : low == 1 ? '1' : 's';
+        else
+            kinds[k] = low != high ? '?' : low == 4 ? '4' : low == -10 ? 'p' : '?';
     }
 }
 

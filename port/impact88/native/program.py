@@ -72,7 +72,7 @@ class Program(Schedule):
         room.moving[len(columns) :] = results
         if fixed:
             room.values[:] = [fixed[x] if isinstance(x, str) else x for x in self.scalars]
-        done: int = native.library.run(*room.arguments(checked, limits, count, circle))
+        done = room.run(count, circle, checked, limits)
         self._rooms.append(room)
         return done
 
@@ -86,29 +86,35 @@ class Room:
         self.values = np.array([0.0 if isinstance(x, str) else x for x in program.scalars], float)
         self._block = np.empty(program.places * native.STRIP + 8)
         start = self._block.ctypes.data + -self._block.ctypes.data % 64  # of a cache line
-        code, width = program.code, program.width
-        self._program = (
+        self._kept = code, width = program.code, program.width
+        call = (
             *(code.ctypes.data, program.once, len(code)),
             *(self.moving.ctypes.data, width.ctypes.data, len(program.columns), program.moving),
             *(self.values.ctypes.data, len(self.values)),
+            *(start, program.places, program.kernel or 0),
         )
-        self._memory = (start, program.places, program.kernel)
+        self._call = np.array([*call, 0, 0, 0, 0, 0], np.int64)
+        self._at = self._call.ctypes.data
 
-    def arguments(
-        self, checked: Addresses | None, limits: Array | None, count: int, circle: int
-    ) -> tuple[Any, ...]:
-        """What the machine's ``run`` takes."""
+    def run(
+        self, count: int, circle: int, checked: Addresses | None = None, limits: Array | None = None
+    ) -> int:
+        """`Program.run`, of what ``moving`` and ``values`` hold."""
         looked_at = 0, 0, 0
         if checked is not None and limits is not None:
             looked_at = checked.ctypes.data, limits.ctypes.data, len(checked)
-        return (*self._program, *looked_at, count, circle, *self._memory)
+        self._call[-5:] = *looked_at, count, circle
+        assert native.library is not None
+        done: int = native.library.run(self._at)
+        return done
 
 
 def extremes(columns: Addresses, count: int) -> tuple[list[float], list[float]]:
     """The least and the largest of ``count`` numbers of each column; both NaN where one is."""
     assert native.library is not None
     found = np.empty((len(columns), 2))
-    native.library.survey(columns.ctypes.data, len(columns), count, found.ctypes.data)
+    many = len(columns)
+    native.library.survey(columns.ctypes.data, many, many, count, found.ctypes.data, 0, 0)
     least, most = found.T.tolist()
     return least, most
 
