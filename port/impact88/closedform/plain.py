@@ -68,7 +68,7 @@ class _Look:
 
     def kinds(self, count: int) -> bytes:
         assert native.library is not None
-        native.library.survey(*self._many, count, *self._rooms)
+        native.library.survey_kinds(*self._many, count, *self._rooms)
         return self._kinds.tobytes()
 
 

@@ -221,7 +221,7 @@ typedef struct {
 
 /* Runs a program over ``count`` scenes and returns how many were done: fewer where a column left
    the limits that the program relies on (nothing is written of the strip where it does). */
-EXPORT CLONES int64_t run(const call *its)
+EXPORT CLONES int64_t run_program(const call *its)
 {
     const call c = *its;
     double *place[PLACES];
@@ -266,7 +266,7 @@ EXPORT CLONES int64_t run(const call *its)
 /* The least and the largest of each column, both NaN where one is; of ``count`` numbers of the first
    ``many`` columns, one of the others. What kind each is, where there are limits: a(rray), 0, 1 or
    s(calar) within its limits, the one value (4 or -10) beyond them, ? else. */
-EXPORT CLONES void survey(
+EXPORT CLONES void survey_kinds(
     const double *const *columns, int64_t many, int64_t all, int64_t count, double *found,
     const double *limits, char *kinds)
 {

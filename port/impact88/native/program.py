@@ -105,7 +105,7 @@ class Room:
             looked_at = checked.ctypes.data, limits.ctypes.data, len(checked)
         self._call[-5:] = *looked_at, count, circle
         assert native.library is not None
-        done: int = native.library.run(self._at)
+        done: int = native.library.run_program(self._at)
         return done
 
 
@@ -114,7 +114,7 @@ def extremes(columns: Addresses, count: int) -> tuple[list[float], list[float]]:
     assert native.library is not None
     found = np.empty((len(columns), 2))
     many = len(columns)
-    native.library.survey(columns.ctypes.data, many, many, count, found.ctypes.data, 0, 0)
+    native.library.survey_kinds(columns.ctypes.data, many, many, count, found.ctypes.data, 0, 0)
     least, most = found.T.tolist()
     return least, most
 
