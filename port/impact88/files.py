@@ -91,14 +91,12 @@ class Source(io.RawIOBase):
         self._fill = getattr(inner, "readinto1", inner.readinto)
 
     @property
-    def size(self) -> int | None:
-        """Its size in bytes; None where that is not known."""
-        if self._keep:
-            return None
+    def extent(self) -> tuple[int | None, Callable[[], int]]:
+        """Its size in bytes, None where that is not known; and how many have been read."""
         with suppress(OSError):
-            if os.path.isfile(self._inner.name):
-                return os.fstat(self._inner.fileno()).st_size
-        return None
+            if not self._keep and os.path.isfile(self._inner.name):
+                return os.fstat(self._inner.fileno()).st_size, lambda: self.count
+        return None, lambda: 0
 
     def readable(self) -> bool:
         """True."""

@@ -103,15 +103,10 @@ def texts_of(values: NDArray[Any]) -> Any:
     # pyarrow has the same digits, but another idea of when to use an exponent, and writes 1 for 1.0
     other = (size < _POINT_FROM) | (size >= _POINT_TO) | (values == np.rint(values))
     if other.any():
-        different, where = np.unique(values[other], return_inverse=True)
-        # -0.0 equals 0.0 and is written another way
-        signed = pa.array(list(map(repr, different.tolist()))).take(pa.array(where))
-        minus = (values[other] == 0) & np.signbit(values[other])
-        if minus.any():
-            signed = compute.if_else(
-                pa.array(minus), "-0.0", compute.replace_substring_regex(signed, "^-0.0$", "0.0")
-            )
-        texts = compute.replace_with_mask(texts, pa.array(other), signed)
+        # by their bits: 0.0 equals -0.0
+        different, where = np.unique(values[other].view(np.int64), return_inverse=True)
+        written = pa.array(list(map(repr, different.view(np.float64).tolist())))
+        texts = compute.replace_with_mask(texts, pa.array(other), written.take(pa.array(where)))
     return texts
 
 

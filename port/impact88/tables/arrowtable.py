@@ -4,7 +4,7 @@ Needs pyarrow (extra ``arrow``). Numbers are taken as they are stored, texts and
 digits. What was text in a CSV becomes doubles where it is a scene's, and stays text elsewhere.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import IO, Any
 
@@ -15,52 +15,41 @@ from ..errors import UserError
 from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .arrow import ArrowColumn, ArrowTexts, pyarrow
-from .rows import BLOCK_ROWS, Column, Reader, Rows, Writer, typed
+from .rows import BLOCK_ROWS, Column, Reader, Rows, Writer, scene_names, typed
 
 
-class _ArrowReader(Reader):
-    def __init__(self, names: Sequence[str], rows: int, batches: Iterator[Any], where: str) -> None:
-        self.total = rows
-        self._name(names, where)
-        self._batches = batches
-        self._where = where
-        self._given = 0
-
-    def position(self) -> int:
-        return self._given
-
-    def __iter__(self) -> Iterator[Rows]:
-        for batch in self._batches:
-            if not batch.num_rows:
-                continue
-            rows = Rows(self._given + 1, batch.num_rows, {}, {})
-            for name, array in zip(self.names, batch.columns, strict=True):
+def _blocks(names: Sequence[str], batches: Iterable[Any], where: str) -> Iterator[Rows]:
+    first = 1
+    for batch in batches:
+        if batch.num_rows:
+            rows = Rows(first, batch.num_rows, {}, {})
+            for name, array in zip(names, batch.columns, strict=True):
                 if name in SCENE:
-                    rows.columns[name] = self._scene_column(rows, name, array)
+                    rows.columns[name] = _scene_column(rows, name, array, where)
                 else:
                     rows.others[name] = ArrowColumn(array)
-            self._given += batch.num_rows
             yield rows
+            first += batch.num_rows
 
-    def _scene_column(self, rows: Rows, name: str, array: Any) -> Column:
-        pa = pyarrow("this table")
+
+def _scene_column(rows: Rows, name: str, array: Any, where: str) -> Column:
+    pa = pyarrow("this table")
+    kind = array.type
+    if pa.types.is_integer(kind) or pa.types.is_floating(kind):
+        if array.null_count and name != "M":
+            for index in np.flatnonzero(array.is_null().to_numpy(zero_copy_only=False)):
+                rows.bad.append(rows.cell(int(index), name, "is empty; expected a number"))
+        if array.null_count:
+            array = array.cast(pa.float64()).fill_null(6.0 if name == "M" else np.nan)
+        values: NDArray[Any] = array.to_numpy(zero_copy_only=False)
+        return values
+    if pa.types.is_dictionary(kind):
+        array = array.dictionary_decode()
         kind = array.type
-        if pa.types.is_integer(kind) or pa.types.is_floating(kind):
-            if array.null_count and name != "M":
-                for index in np.flatnonzero(array.is_null().to_numpy(zero_copy_only=False)):
-                    rows.bad.append(rows.cell(int(index), name, "is empty; expected a number"))
-            if array.null_count:
-                array = array.cast(pa.float64()).fill_null(6.0 if name == "M" else np.nan)
-            values: NDArray[Any] = array.to_numpy(zero_copy_only=False)
-            return values
-        if pa.types.is_dictionary(kind):
-            array = array.dictionary_decode()
-            kind = array.type
-        if not (
-            pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_decimal(kind)
-        ):
-            raise UserError(f"{name} holds {kind}; expected numbers or their texts", self._where)
-        return ArrowTexts(array.cast(pa.string()).fill_null(""))
+    texts = (pa.types.is_string, pa.types.is_large_string, pa.types.is_decimal)
+    if not any(is_kind(kind) for is_kind in texts):
+        raise UserError(f"{name} holds {kind}; expected numbers or their texts", where)
+    return ArrowTexts(array.cast(pa.string()).fill_null(""))
 
 
 @contextmanager
@@ -73,19 +62,20 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
 
             with parquet.ParquetFile(path, memory_map=True) as file:
                 batches = file.iter_batches(BLOCK_ROWS, use_threads=pa.cpu_count() > 1)
-                count = file.metadata.num_rows
-                yield _ArrowReader(file.schema_arrow.names, count, batches, path)
+                names = scene_names(file.schema_arrow.names, path)
+                yield Reader(names, _blocks(names, batches, path), file.metadata.num_rows)
         else:
             with pa.memory_map(path) as source:
                 file = pa.ipc.open_file(source)
-                numbers = range(file.num_record_batches)
+                names = scene_names(file.schema.names, path)
+                batches = [file.get_batch(at) for at in range(file.num_record_batches)]
                 slices = (
                     batch.slice(first, BLOCK_ROWS)
-                    for batch in map(file.get_batch, numbers)
+                    for batch in batches
                     for first in range(0, batch.num_rows, BLOCK_ROWS)
                 )
-                count = sum(batch.num_rows for batch in map(file.get_batch, numbers))
-                yield _ArrowReader(file.schema.names, count, slices, path)
+                count = sum(batch.num_rows for batch in batches)
+                yield Reader(names, _blocks(names, slices, path), count)
 
 
 @contextmanager

@@ -10,156 +10,125 @@ as the header, and none is empty. From the first block that is not, it is read l
 """
 
 import csv
-import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import chain
-from typing import IO, Any, NamedTuple
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError, quoted
+from ..files import LONGEST_LINE
 from ..names import RESULTS, SCENE
 from . import arrow
 from .jsontext import plain
-from .lines import TextFile, open_text, writing
-from .rows import BLOCK_CHARACTERS, BLOCK_ROWS, BadCell, Column, Reader, Rows, Writer, shortest
+from .lines import Lines, TextFile, open_text, writing
+from .rows import (
+    BLOCK_CHARACTERS,
+    BLOCK_ROWS,
+    BadCell,
+    Column,
+    Reader,
+    Rows,
+    Writer,
+    scene_names,
+    shortest,
+)
 
 BLOCK_BYTES = 1 << 22
 """A pass over a block of 4 MB takes some milliseconds; blocks of 1 and of 16 MB take as long."""
 
 
-class Block(NamedTuple):
-    """Records as a pyarrow table of texts, its columns named 0, 1 ..., and the line of the file
-    in which each ends."""
+def _whole_records(stream: Any, size: int) -> bytes:
+    """At least ``size`` bytes, up to the end of a line outside quotes if that comes soon."""
+    parts: list[bytes] = [stream.read(size)]
+    quotes = parts[0].count(b'"')
+    for _ in range(10_000):
+        parts.append(stream.readline(LONGEST_LINE))
+        quotes += parts[-1].count(b'"')
+        if not parts[-1] or (quotes % 2 == 0 and parts[-1].endswith(b"\n")):
+            break
+    data = b"".join(parts)
+    return data if parts[-1] or not data or data.endswith(b"\n") else data + b"\n"
 
-    table: Any
-    lines: NDArray[np.int64]
 
-
-class PlainBlocks:
-    """Blocks of whole records of a binary stream; ``rest`` is what they leave.
-
-    ``number``: the lines in the blocks given so far, and those ``before`` them.
-    """
-
-    def __init__(self, stream: Any, delimiter: str, width: int, before: int) -> None:
-        self.number = before
-        self._stream = stream
-        self._delimiter = ord(delimiter)
-        self._width = width
-        self._tail = b""
-        self._ended = False
-
-    def next(self) -> Block | None:
-        """The next block; None when there is no plain one."""
-        block = self._tail if self._ended else self._tail + self._stream.read(BLOCK_BYTES)
-        if len(block) < len(self._tail) + BLOCK_BYTES:
-            self._ended = True
-        self._tail = block
-        ends, lines = self._records(block)
-        if not ends.size:
+def _records(
+    data: bytes, delimiter: str, width: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
+    """Where each record ends, and in which line; None if the data are not plain."""
+    if width < 2 or b"\0" in data or data.count(b"\r") != data.count(b"\r\n"):
+        return None
+    if not data.endswith(b"\n"):
+        return None
+    characters = np.frombuffer(data, np.uint8)
+    newlines = ends = np.flatnonzero(characters == ord("\n"))
+    between = np.flatnonzero(characters == ord(delimiter))
+    if b'"' in data:
+        quotes = np.flatnonzero(characters == ord('"'))
+        opening, closing = quotes[::2], quotes[1::2]
+        around = np.array([*delimiter.encode(), *b'\r\n"'], np.uint8)
+        before = characters[np.maximum(opening - 1, 0)][opening > 0]
+        after = characters[np.minimum(closing + 1, characters.size - 1)]
+        if quotes.size % 2 or not (np.isin(before, around).all() and np.isin(after, around).all()):
             return None
-        cut = min(int(ends[-1]) + 1, len(block))
-        table = self._read(block[:cut], b'"' in block)
-        if table is None or table.num_rows != ends.size:
-            return None
-        self._tail = block[cut:]
-        found = Block(table, lines + self.number)
-        self.number = int(found.lines[-1])
-        return found
-
-    def _records(self, data: bytes) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Where each record ends, and how many lines that makes; none if the data are not plain."""
-        none = np.empty(0, np.int64), np.empty(0, np.int64)
-        if b"\0" in data or data.count(b"\r") != data.count(b"\r\n"):
-            return none
-        if self._ended and data and not data.endswith(b"\n"):
-            data += b"\n"
-        characters = np.frombuffer(data, np.uint8)
-        newlines = ends = np.flatnonzero(characters == ord("\n"))
-        between = np.flatnonzero(characters == self._delimiter)
-        if b'"' in data:
-            quotes = np.flatnonzero(characters == ord('"'))
-            opening, closing = quotes[::2], quotes[1::2]
-            around = np.array([self._delimiter, *b'\r\n"'], np.uint8)
-            before = characters[np.maximum(opening - 1, 0)]
-            after = characters[np.minimum(closing + 1, characters.size - 1)]
-            if not (np.isin(before[opening > 0], around).all() and np.isin(after, around).all()):
-                return none
-            # what an odd number of quotes precedes is quoted
-            ends = newlines[np.searchsorted(quotes, newlines) % 2 == 0]
-            between = between[np.searchsorted(quotes, between) % 2 == 0]
-        if self._ended and ends.size and ends[-1] + 1 != len(data):
-            return none  # a quote that nothing closes
-        fields = np.diff(np.searchsorted(between, ends), prepend=0)
-        if self._width < 2 or (fields != self._width - 1).any():
-            return none
-        return ends, np.searchsorted(newlines, ends) + 1
-
-    def rest(self) -> io.BufferedReader:
-        """What no block has given."""
-        return io.BufferedReader(_Joined(self._tail, self._stream))
-
-    def _read(self, data: bytes, quoted: bool) -> Any:
-        import pyarrow as pa
-        from pyarrow import csv
-
-        names = list(map(str, range(self._width)))
-        try:
-            return csv.read_csv(
-                pa.BufferReader(data),
-                csv.ReadOptions(column_names=names, block_size=len(data) + 1),
-                csv.ParseOptions(
-                    delimiter=chr(self._delimiter),
-                    quote_char='"' if quoted else False,
-                    newlines_in_values=quoted,
-                    ignore_empty_lines=False,
-                ),
-                csv.ConvertOptions(column_types=dict.fromkeys(names, pa.string())),
-            ).combine_chunks()
-        except pa.ArrowInvalid:  # bytes that are no UTF-8: the reader of lines says where
-            return None
+        # what an odd number of quotes precedes is quoted
+        ends = newlines[np.searchsorted(quotes, newlines) % 2 == 0]
+        between = between[np.searchsorted(quotes, between) % 2 == 0]
+    fields = np.diff(np.searchsorted(between, ends), prepend=0)
+    if (fields != width - 1).any():
+        return None
+    return ends, np.searchsorted(newlines, ends) + 1
 
 
-class _Joined(io.RawIOBase):
-    """Some bytes, then a stream."""
+def _parsed(data: bytes, delimiter: str, width: int) -> Any:
+    """Plain records as pyarrow's columns of texts; None where it sees others."""
+    import pyarrow as pa
+    from pyarrow import csv
 
-    def __init__(self, first: bytes, stream: Any) -> None:
-        self._first = memoryview(first)
-        self._stream = stream
+    names = list(map(str, range(width)))
+    quotes = b'"' in data
+    try:
+        table = csv.read_csv(
+            pa.BufferReader(data),
+            csv.ReadOptions(column_names=names, block_size=len(data) + 1),
+            csv.ParseOptions(
+                delimiter=delimiter,
+                quote_char='"' if quotes else False,
+                newlines_in_values=quotes,
+                ignore_empty_lines=False,
+            ),
+            csv.ConvertOptions(column_types=dict.fromkeys(names, pa.string())),
+        )
+    except pa.ArrowInvalid:  # bytes that are no UTF-8: the reader of lines says where
+        return None
+    return [column.chunk(0) for column in table.combine_chunks().columns]
 
-    def readable(self) -> bool:
-        return True
 
-    def readinto(self, buffer: Any) -> int:
-        if self._first:
-            count = min(len(buffer), len(self._first))
-            buffer[:count] = self._first[:count]
-            self._first = self._first[count:]
-            return count
-        data = self._stream.read1(len(buffer))
-        buffer[: len(data)] = data
-        return len(data)
-
-
-class _CsvReader(Reader):
+class _CsvReader:
     def __init__(self, file: TextFile) -> None:
-        self.total = file.source.size
         self._file = file
-        self._blocks: PlainBlocks | None = None
-        header = _plain_header(file) if arrow.available() else None
-        head = file if header is None else file._replace(binary=header)
-        self._lines = head.lines()
-        self._start()
-        if header is not None:
-            width = len(self.names) + self._unnamed
-            self._blocks = PlainBlocks(file.binary, self.delimiter, width, self._lines.number)
+        head = b""
+        if arrow.available() and file.encoding.startswith("utf-8"):
+            while len(head) < LONGEST_LINE and (line := file.binary.readline(LONGEST_LINE)):
+                head += line
+                bare = line.strip(b"\xef\xbb\xbf \r\n\t;,").lower()
+                if bare and not bare.startswith(b"sep=") and head.count(b'"') % 2 == 0:
+                    break
+        self._lines = Lines(file, head)
+        names = self._header()
+        self._width = len(names)
+        while names and not names[-1]:
+            del names[-1]
+        if not names:
+            raise UserError("has no names in its first line; expected a header", file.source.name)
+        self.names = scene_names(names, file.source.name)
+        # a header that was taken off whole, with line ends that bytes show
+        plain_ends = head.count(b"\r") == head.count(b"\r\n")
+        self._in_blocks = self._lines.number == head.count(b"\n") > 0 and plain_ends
 
-    def _start(self) -> None:
-        """Read the header."""
+    def _header(self) -> list[str]:
         lines = self._lines
         filled = (line for line in lines if line.strip())
         header = next(filled, "")
@@ -170,84 +139,47 @@ class _CsvReader(Reader):
             raise UserError(
                 "is empty; expected a header with the names of the columns", lines.where
             )
-        self.delimiter = max(",;\t", key=header.count) if header.count(",") == 0 else ","
+        self.delimiter = "," if "," in header else max(",;\t", key=header.count)
         if separator:
-            self.delimiter = separator.group(1)
+            self.delimiter = separator[1]
         # a header may span lines inside quotes: give the reader the line back
-        self._rows = self._reader(chain([header], lines))
-        names = [name.strip() for name in self._next() or ()]
-        named = names
-        while named and not named[-1]:
-            named = named[:-1]
-        self._unnamed = len(names) - len(named)
-        self._name(named, lines.where)
-        if not self.names:
-            raise UserError("has no names in its first line; expected a header", lines.where)
+        self._rows = csv.reader(chain([header], lines), delimiter=self.delimiter, strict=True)
+        return [name.strip() for name in self._next() or ()]
 
-    def _reader(self, lines: Iterator[str]) -> Any:
-        return csv.reader(lines, delimiter=self.delimiter, strict=True)
-
-    def position(self) -> int:
-        return 0 if self.total is None else self._lines.position()
-
-    def __iter__(self) -> Iterator[Rows]:
-        first = 1
-        while self._blocks is not None and (block := self._blocks.next()) is not None:
-            columns = [arrow.ArrowTexts(column.chunk(0)) for column in block.table.columns]
-            yield self._rows_of(first, columns, block.lines.tolist(), [])
-            first += len(block.lines)
-        if self._blocks is not None:
-            rest = self._file._replace(binary=self._blocks.rest(), encoding="utf-8")
-            self._lines = rest.lines(self._blocks.number)
-            self._rows = self._reader(self._lines)
-        yield from self._line_by_line(first)
-
-    def _line_by_line(self, first: int) -> Iterator[Rows]:
-        width = len(self.names) + self._unnamed
-        while True:
-            rows, lines = self._block()
-            if not rows:
-                return
-            bad = []
-            for index, row in enumerate(rows):
-                if len(row) != width:
-                    reason = f"has {len(row)} fields; expected {width}, as in the header"
-                    bad.append(BadCell(first + index, lines[index], "", reason))
-                    rows[index] = (row + [""] * width)[:width]
-            yield self._rows_of(first, list(zip(*rows, strict=True)), lines, bad)
+    def blocks(self) -> Iterator[Rows]:
+        first, number = 1, self._lines.number
+        while self._in_blocks:
+            data = _whole_records(self._file.binary, BLOCK_BYTES)
+            found = _records(data, self.delimiter, self._width)
+            columns = found and _parsed(data, self.delimiter, self._width)
+            if found is None or columns is None or len(columns[0]) != found[0].size:
+                self._lines = Lines(self._file._replace(encoding="utf-8"), data, number)
+                self._rows = csv.reader(self._lines, delimiter=self.delimiter, strict=True)
+                break
+            lines = (found[1] + number).tolist()
+            yield self._rows_of(first, list(map(arrow.ArrowTexts, columns)), lines, [])
+            first, number = first + len(lines), lines[-1]
+        while block := self._block():
+            rows, bad = list(block.values()), []
+            for index, (line, row) in enumerate(block.items()):
+                if len(row) != self._width:
+                    reason = f"has {len(row)} fields; expected {self._width}, as in the header"
+                    bad.append(BadCell(first + index, line, "", reason))
+                    rows[index] = (row + [""] * self._width)[: self._width]
+            yield self._rows_of(first, list(zip(*rows, strict=True)), list(block), bad)
             first += len(rows)
 
-    def _rows_of(
-        self, first: int, fields: list[Any], lines: Sequence[int], bad: list[BadCell]
-    ) -> Rows:
-        columns: dict[str, Column] = {}
-        others: dict[str, Column] = {}
-        for name, column in zip(self.names, fields, strict=False):
-            if self.delimiter != "," and (name in SCENE or name in RESULTS):
-                column = _with_points(column)
-            (columns if name in SCENE else others)[name] = column
-        for column in fields[len(self.names) :]:
-            index = next((i for i, text in enumerate(column) if text), None)
-            if index is not None:
-                raise UserError(
-                    f"line {lines[index]}: {quoted(column[index])} stands in a column that has no "
-                    "name",
-                    self._lines.where,
-                )
-        return Rows(first, len(lines), columns, others, lines, bad)
-
-    def _block(self) -> tuple[list[list[str]], list[int]]:
-        rows: list[list[str]] = []
-        numbers: list[int] = []
+    def _block(self) -> dict[int, list[str]]:
+        """The next rows by the line in which each ends."""
+        rows: dict[int, list[str]] = {}
         self._lines.begin_block()
         while len(rows) < BLOCK_ROWS and self._lines.taken < BLOCK_CHARACTERS:
             row = self._next()
             if row is None:
                 break
             if row:  # an empty line is no row
-                rows.append(row)
-                numbers.append(self._lines.number)
-        return rows, numbers
+                rows[self._lines.number] = row
+        return rows
 
     def _next(self) -> list[str] | None:
         self._lines.begin_record()
@@ -256,23 +188,22 @@ class _CsvReader(Reader):
         except csv.Error as error:
             raise UserError(f"line {self._lines.number}: {error}", self._lines.where) from None
 
-
-def _plain_header(file: TextFile) -> Any:
-    """The bytes up to the end of the header, taken off the file, when that can be seen without
-    reading on, in UTF-8. Else nothing is taken, and there is None."""
-    if not file.encoding.startswith("utf-8"):
-        return None
-    start = file.binary.peek(1)
-    end = 0
-    for line in start.split(b"\n")[:-1]:
-        end += len(line) + 1
-        bare = line.strip(b"\xef\xbb\xbf \r\t;,")
-        if bare and not bare.lower().startswith(b"sep="):
-            if start.count(b'"', 0, end) % 2:  # a name goes on in the next line
-                continue
-            plain = start.count(b"\r", 0, end) == start.count(b"\r\n", 0, end)
-            return io.BufferedReader(io.BytesIO(file.binary.read(end))) if plain else None
-    return None
+    def _rows_of(
+        self, first: int, fields: list[Any], lines: Sequence[int], bad: list[BadCell]
+    ) -> Rows:
+        for column in fields[len(self.names) :]:
+            index = next((i for i, text in enumerate(column) if text), None)
+            if index is not None:
+                raise UserError(
+                    f"line {lines[index]}: {quoted(column[index])} stands in a column that has no "
+                    "name",
+                    self._lines.where,
+                )
+        named = (
+            (n, _with_points(c) if self.delimiter != "," and (n in SCENE or n in RESULTS) else c)
+            for n, c in zip(self.names, fields, strict=False)
+        )
+        return Rows.of(first, len(lines), named, lines, bad)
 
 
 def _with_points(column: Column) -> Column:
@@ -291,7 +222,8 @@ def _with_points(column: Column) -> Column:
 def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a CSV table. Raises UserError if it cannot be read as one."""
     with open_text(path, encoding) as file:
-        yield _CsvReader(file)
+        table = _CsvReader(file)
+        yield Reader(table.names, table.blocks(), *file.source.extent, table.delimiter)
 
 
 class _CsvWriter(Writer):
@@ -303,16 +235,17 @@ class _CsvWriter(Writer):
         super().__init__(*columns)
         self._file = file
         self._delimiter = delimiter
-        self._ends = re.compile(f'[{re.escape(delimiter)}"\\r\\n]')
+        self._ends = f'[{re.escape(delimiter)}"\r\n]'
         self._write([[text] for text in self.headings])
         self._through_arrow = arrow.available() and hasattr(file, "buffer")
 
     def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         columns = [rows.one_per_row(name) for name in self.kept]
-        texts = [column for column in columns if isinstance(column, arrow.ArrowTexts)]
+        texts = [column.array for column in columns if isinstance(column, arrow.ArrowTexts)]
         if self._through_arrow and len(texts) == len(columns):
-            arrays = [column.array for column in texts]
-            self._write_arrays(arrays + [arrow.texts_of(results[name]) for name in self.results])
+            arrays = [*texts, *(arrow.texts_of(results[name]) for name in self.results)]
+            self._file.flush()
+            self._file.buffer.write(self._joined(arrays))  # type: ignore[attr-defined]
         else:
             self._write([*map(_fields, columns), *(shortest(results[n]) for n in self.results)])
 
@@ -320,56 +253,35 @@ class _CsvWriter(Writer):
         rows = zip(*map(self._quoted, columns), strict=True)
         self._file.writelines([f"{row}\n" for row in map(self._delimiter.join, rows)])
 
-    def _write_arrays(self, arrays: Sequence[Any]) -> None:
-        import pyarrow as pa
-        from pyarrow import csv as arrow_csv
-
-        options = arrow_csv.WriteOptions(
-            include_header=False, delimiter=self._delimiter, quoting_style="none"
-        )
-        out = pa.BufferOutputStream()
-        try:
-            arrow_csv.write_csv(pa.table(arrays, list(map(str, range(len(arrays))))), out, options)
-        except pa.ArrowInvalid:  # something has to be quoted
-            out = pa.BufferOutputStream()
-            out.write(_quoted_rows(arrays, self._delimiter))
-        self._file.flush()
-        self._file.buffer.write(out.getvalue())  # type: ignore[attr-defined]
-
     def _quoted(self, column: Sequence[str]) -> Sequence[str]:
         """The texts, those in quotes that hold what ends a field or a line; not every version of
         csv's own writer thinks of a carriage return."""
-        if not self._ends.search("".join(column)):
+        ends = re.compile(self._ends)
+        if not ends.search("".join(column)):
             return column
         return [
-            '"{}"'.format(text.replace('"', '""')) if self._ends.search(text) else text
-            for text in column
+            '"{}"'.format(text.replace('"', '""')) if ends.search(text) else text for text in column
         ]
+
+    def _joined(self, arrays: Sequence[Any]) -> Any:
+        """The same of pyarrow's texts: the bytes of whole rows."""
+        from pyarrow import compute
+
+        join, fields = compute.binary_join_element_wise, []
+        for array in arrays:
+            held = bytes(array.buffers()[2] or b"")  # a search of a regex in every text takes longer
+            if any(mark.encode() in held for mark in (self._delimiter, '"', "\r", "\n")):
+                ends = compute.match_substring_regex(array, self._ends)
+                doubled = join('"', compute.replace_substring(array, '"', '""'), '"', "")
+                array = compute.if_else(ends, doubled, array)
+            fields.append(array)
+        return join(join(*fields, self._delimiter), "\n", "").buffers()[2]
 
 
 def _fields(column: Column) -> Sequence[str]:
     if isinstance(column, np.ndarray):
         return shortest(column)
     return column if set(map(type, column)) == {str} else list(map(plain, column))
-
-
-def _quoted_rows(arrays: Sequence[Any], delimiter: str) -> bytes:
-    """Rows of fields, those in quotes that hold what ends a field or a line."""
-    import pyarrow as pa
-    from pyarrow import compute
-
-    fields = []
-    for array in arrays:
-        ends = compute.match_substring_regex(array, f'[{re.escape(delimiter)}"\r\n]')
-        if compute.any(ends).as_py():
-            inner = compute.replace_substring(array, '"', '""')
-            quoted_ = compute.binary_join_element_wise('"', inner, '"', "")
-            array = compute.if_else(ends, quoted_, array)
-        fields.append(array)
-    rows = compute.binary_join_element_wise(*fields, delimiter)
-    if isinstance(rows, pa.ChunkedArray):
-        rows = rows.combine_chunks()
-    return b"".join(row.encode() + b"\n" for row in rows.to_pylist())
 
 
 @contextmanager

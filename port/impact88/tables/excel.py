@@ -19,51 +19,48 @@ from ..files import replacing
 from ..names import SCENE
 from .jsontext import plain
 from .npztable import check_unpacked
-from .rows import BLOCK_ROWS, Reader, Rows, Writer, typed
+from .rows import BLOCK_ROWS, Reader, Rows, Writer, scene_names, typed
 
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
 MOST_ROWS = 1_048_576
 
 
-class _ExcelReader(Reader):
-    def __init__(self, rows: Iterator[tuple[Any, ...]], where: str) -> None:
-        self._trusted = False
-        self._where = where
-        self._lines = enumerate(rows, 1)
-        filled = (row for _, row in self._lines if any(cell is not None for cell in row))
-        header = [_text(cell).strip() for cell in next(filled, ())]
-        while header and not header[-1]:
-            header.pop()
-        if not header:
-            raise UserError("its first sheet is empty; expected a header of names", where)
-        self._name(header, where)
+def _names(lines: Iterator[tuple[int, tuple[Any, ...]]], where: str) -> list[str]:
+    """The header: the first row that holds anything."""
+    header = [_text(cell).strip() for _, row in islice(lines, 1) for cell in row]
+    while header and not header[-1]:
+        header.pop()
+    if not header:
+        raise UserError("its first sheet is empty; expected a header of names", where)
+    return scene_names(header, where)
 
-    def __iter__(self) -> Iterator[Rows]:
-        first, width = 1, len(self.names)
-        filled = (line for line in self._lines if any(cell is not None for cell in line[1]))
-        while block := list(islice(filled, BLOCK_ROWS)):
-            for number, row in block:
-                if any(cell is not None for cell in row[width:]):
-                    raise UserError(
-                        f"row {number} has a cell in a column that has no name", self._where
-                    )
-            if not self._trusted and any(None in row for _, row in block):
-                _check_computed(self._where, width)
-                self._trusted = True
-            full = ((*row[:width], *[None] * (width - len(row))) for _, row in block)
-            columns, others = self._split(
-                self.names,
-                (
-                    [
-                        _text(c) if not isinstance(c, bool) else c if name in SCENE else plain(c)
-                        for c in column
-                    ]
-                    for name, column in zip(self.names, zip(*full, strict=True), strict=True)
-                ),
+
+def _blocks(
+    names: list[str], lines: Iterator[tuple[int, tuple[Any, ...]]], where: str
+) -> Iterator[Rows]:
+    first, width, trusted = 1, len(names), False
+    while block := list(islice(lines, BLOCK_ROWS)):
+        for number, row in block:
+            if any(cell is not None for cell in row[width:]):
+                raise UserError(f"row {number} has a cell in a column that has no name", where)
+        if not trusted and any(None in row for _, row in block):
+            _check_computed(where, width)
+            trusted = True
+        full = ((*row[:width], *[None] * (width - len(row))) for _, row in block)
+        cells = zip(names, zip(*full, strict=True), strict=True)
+        columns = (
+            (
+                n,
+                [
+                    _text(c) if not isinstance(c, bool) else c if n in SCENE else plain(c)
+                    for c in cs
+                ],
             )
-            yield Rows(first, len(block), columns, others, [number for number, _ in block])
-            first += len(block)
+            for n, cs in cells
+        )
+        yield Rows.of(first, len(block), columns, [number for number, _ in block])
+        first += len(block)
 
 
 def _check_computed(path: str, width: int) -> None:
@@ -103,12 +100,16 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         rows = book.worksheets[0].iter_rows(values_only=True)
 
-    def checked() -> Iterator[tuple[Any, ...]]:
+    def filled() -> Iterator[tuple[int, tuple[Any, ...]]]:
         with _parsing(path):
-            yield from rows
+            for number, row in enumerate(rows, 1):
+                if any(cell is not None for cell in row):
+                    yield number, row
 
+    lines = filled()
     try:
-        yield _ExcelReader(checked(), path)
+        names = _names(lines, path)
+        yield Reader(names, _blocks(names, lines, path))
     finally:
         book.close()
 

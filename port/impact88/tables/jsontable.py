@@ -35,25 +35,20 @@ from .rows import (
 )
 
 
-class _JsonReader(Reader):
+class _JsonReader:
     def __init__(self, lines: Lines) -> None:
-        self.total = lines.size
         self._lines = lines
-        self.names: list[str] = []
         self._known: set[str] = set()
         self._matched: dict[str, str] = {}  # key -> the column's name
         self._first = self._block(1)
-        if self._first is not None:
-            self.names = list(self._first.late)
-            self._known = set(self._matched)
-            self._first.late = {}
+        self._known = set(self._matched)
+        self.names = list(self._first.late) if self._first else []
 
-    def position(self) -> int:
-        return 0 if self.total is None else self._lines.position()
-
-    def __iter__(self) -> Iterator[Rows]:
+    def blocks(self) -> Iterator[Rows]:
         block = self._first
         while block is not None:
+            if block.first == 1:
+                block.late = {}
             yield block
             block = self._block(block.first + block.count)
 
@@ -88,27 +83,25 @@ class _JsonReader(Reader):
             objects.append(value)
         if not lines:
             return None
-        columns: dict[str, Column] = {}
-        others: dict[str, Column] = {}
         new = [key for key in names if key not in self._matched]
         found = scene_names([*self._matched.values(), *new])[len(self._matched) :]
         self._matched |= zip(new, found, strict=True)
-        for key in names:
-            name = self._matched[key]
-            cells = [value.get(key, ABSENT) for value in objects]
-            if name in SCENE:
-                columns[name] = [str(x) if type(x) is jsontext.Numeral else x for x in cells]
-            else:
-                others[name] = cells
         late = {self._matched[n]: line for n, line in names.items() if n not in self._known}
-        return Rows(first, len(objects), columns, others, lines, bad, late)
+        columns = ((self._matched[key], [o.get(key, ABSENT) for o in objects]) for key in names)
+        texts = ((n, list(map(_text, c)) if n in SCENE else c) for n, c in columns)
+        return Rows.of(first, len(objects), texts, lines, bad, late)
+
+
+def _text(cell: Any) -> Any:
+    return str(cell) if type(cell) is jsontext.Numeral else cell
 
 
 @contextmanager
 def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a JSON Lines table. Raises UserError if it cannot be read."""
     with open_text(path, encoding) as file:
-        yield _JsonReader(file.lines())
+        table = _JsonReader(Lines(file))
+        yield Reader(table.names, table.blocks(), *file.source.extent)
 
 
 def _double(cell: Any) -> str:

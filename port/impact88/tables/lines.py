@@ -6,40 +6,49 @@ import sys
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import IO, Any, NamedTuple, cast
 
 from ..errors import UserError, printable, quoted
 from ..files import ESCAPED, LONGEST_LINE, Source, called, encoding_of, replacing
 
-PEEK = 1 << 17
-"""Bytes that can be looked at before they are read. A header that is longer is read line by line;
-half and twice as many take as long."""
+
+class TextFile(NamedTuple):
+    """A text file open for reading: its bytes, unpacked; what they encode; where they come from."""
+
+    binary: Any
+    encoding: str
+    source: Source
 
 
 class Lines:
     """An iterator over lines as they stand, their ends included.
 
+    ``first``: lines already taken off the file; ``before``: how many lines came before those.
     ``number``: of the line last given, from 1; ``taken``: the characters given since `begin_block`.
     Raises UserError, naming file and line, for bytes that are not text, and for a line, or several
     since `begin_record`, longer than `LONGEST_LINE` characters.
     """
 
-    def __init__(self, text: io.TextIOWrapper, source: Source, before: int = 0) -> None:
-        self.where = source.name
-        self.size = source.size
+    def __init__(self, file: TextFile, first: bytes = b"", before: int = 0) -> None:
+        self.where = file.source.name
         self.number = before
         self.taken = 0
         self._record_start = 0
-        self._source = source
-        self._encoding = text.encoding
-        self._readline = text.readline
+        self._encoding = file.encoding
+        self._open = partial(io.TextIOWrapper, encoding=file.encoding, newline="")
+        self._rest = [file.binary]  # closed with what reads it: opened when its turn comes
+        self._text = self._open(io.BytesIO(first))
 
     def __iter__(self) -> Iterator[str]:
         return self
 
     def __next__(self) -> str:
         try:
-            line = self._readline(LONGEST_LINE)
+            line = self._text.readline(LONGEST_LINE)
+            if not line and self._rest:
+                self._text = self._open(self._rest.pop())
+                line = self._text.readline(LONGEST_LINE)
         except UnicodeError:
             what = f"contains bytes that are not {self._encoding.removesuffix('-sig').upper()} text"
             raise UserError(
@@ -69,38 +78,26 @@ class Lines:
         """A UserError about the line after the last one given."""
         return UserError(f"line {self.number + 1} {message}", self.where)
 
-    def position(self) -> int:
-        """The bytes of the file read so far."""
-        return self._source.count
-
-
-class TextFile(NamedTuple):
-    """A text file open for reading: its bytes, unpacked; what they encode; where they come from."""
-
-    binary: Any
-    encoding: str
-    source: Source
-
-    def lines(self, before: int = 0) -> Lines:
-        """The lines of what is left of it, after so many that have been read."""
-        return Lines(
-            io.TextIOWrapper(self.binary, encoding=self.encoding, newline=""), self.source, before
-        )
-
 
 @contextmanager
 def open_text(path: str, encoding: str | None = None) -> Iterator[TextFile]:
     """A text file: UTF-8, or UTF-16 with its mark, or of the ``encoding`` given; unpacked when its
     name ends in ``.gz``; ``-`` is standard input. Raises UserError if it cannot be opened."""
     if encoding is not None:
-        _check_encoding(encoding)
+        try:
+            "".encode(codecs.lookup(encoding).name)
+        except (LookupError, ValueError):
+            raise UserError(
+                f"--encoding: {quoted(encoding)} is not a known text encoding; expected one such "
+                "as cp1252"
+            ) from None
     with Source(path) as source:
-        binary: Any = io.BufferedReader(source, PEEK)
+        binary: Any = io.BufferedReader(source)
         if path.lower().endswith(".gz"):
             import gzip
 
             packed: Any = gzip.GzipFile(fileobj=binary)
-            binary = io.BufferedReader(packed, PEEK)
+            binary = io.BufferedReader(packed)
         try:
             start = binary.peek(3)[:3]
         except (EOFError, zlib.error, OSError) as error:
@@ -132,13 +129,3 @@ def writing(path: str) -> Iterator[IO[str]]:
     else:
         with replacing(path) as file:
             yield file
-
-
-def _check_encoding(name: str) -> None:
-    try:
-        codec = codecs.lookup(name)
-        "".encode(codec.name)
-    except (LookupError, ValueError):
-        raise UserError(
-            f"--encoding: {quoted(name)} is not a known text encoding; expected one such as cp1252"
-        ) from None

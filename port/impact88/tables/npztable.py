@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..errors import UserError, quoted
 from ..files import ESCAPED, replacing
 from ..names import SCENE
-from .rows import Column, Reader, Rows, Writer, typed
+from .rows import Column, Reader, Rows, Writer, scene_names, typed
 
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""
@@ -37,33 +37,29 @@ def read_arrays(path: str) -> dict[str, NDArray[Any]]:
     try:
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()
-            _check(members, os.path.getsize(path), path)
+            if len(members) > MOST_ARRAYS:
+                raise UserError(
+                    f"holds {len(members):,} arrays; at most {MOST_ARRAYS:,} are read", path
+                )
+            seen = set()
+            for member in members:
+                if not member.filename.endswith(".npy"):
+                    raise UserError(
+                        f"holds {quoted(member.filename)}; expected .npy arrays only", path
+                    )
+                if member.flag_bits & 1:
+                    raise UserError("is encrypted; expected a plain .npz file", path)
+                if member.filename in seen:
+                    raise UserError(f"holds {quoted(member.filename)} twice", path)
+                seen.add(member.filename)
+            check_unpacked(members, os.path.getsize(path), path)
             return {m.filename[:-4]: _member(archive, m, path) for m in members}
     except OSError as error:
         raise UserError(f"cannot be read: {error.strerror or error}", path) from None
+    except UserError:
+        raise
     except (zipfile.BadZipFile, ValueError, EOFError, NotImplementedError) as error:
-        raise _refused(path, error) from None
-
-
-def _refused(path: str, error: Exception) -> UserError:
-    if isinstance(error, UserError):
-        return error
-    return UserError(f"is not an .npz file of plain arrays: {error}", path)
-
-
-def _check(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
-    if len(members) > MOST_ARRAYS:
-        raise UserError(f"holds {len(members):,} arrays; at most {MOST_ARRAYS:,} are read", path)
-    seen = set()
-    for member in members:
-        if not member.filename.endswith(".npy"):
-            raise UserError(f"holds {quoted(member.filename)}; expected .npy arrays only", path)
-        if member.flag_bits & 1:
-            raise UserError("is encrypted; expected a plain .npz file", path)
-        if member.filename in seen:
-            raise UserError(f"holds {quoted(member.filename)} twice", path)
-        seen.add(member.filename)
-    check_unpacked(members, size, path)
+        raise UserError(f"is not an .npz file of plain arrays: {error}", path) from None
 
 
 def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
@@ -82,30 +78,17 @@ def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: str) -> NDA
     where = f"{path}, {quoted(member.filename)}"
     try:
         with archive.open(member) as file:
-            data = file.read(member.file_size + 1)
+            data = io.BytesIO(file.read(member.file_size + 1))
     except (OSError, MemoryError):
         raise
     except Exception as error:  # zlib, struct, lzma ... each have their own
         raise UserError(f"cannot be unpacked: {error}", where) from None
-    dtype, shape, start = _header(data, where)
-    expected = start + prod(shape) * dtype.itemsize
-    if dtype.kind not in _KINDS:
-        raise UserError(f"holds {dtype}; expected an array of numbers or of text", where)
-    if len(data) != expected or len(data) != member.file_size:
-        raise UserError(f"has {len(data):,} bytes where its header says {expected:,}", where)
-    return np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
-
-
-def _header(data: bytes, where: str) -> tuple[np.dtype[Any], tuple[int, ...], int]:
-    """Type and shape of the array, and where its numbers begin."""
-    file = io.BytesIO(data)
     try:
-        version = np.lib.format.read_magic(file)
-        read = {
-            (1, 0): np.lib.format.read_array_header_1_0,
-            (2, 0): np.lib.format.read_array_header_2_0,
-        }[version]
-        shape, _, dtype = read(file)
+        version = np.lib.format.read_magic(data)
+        read = np.lib.format.read_array_header_1_0
+        if version != (1, 0):
+            read = {(2, 0): np.lib.format.read_array_header_2_0}[version]
+        shape, _, dtype = read(data)
     except MemoryError:
         raise
     except Exception as error:  # whatever a literal's parser raises on arbitrary bytes
@@ -113,7 +96,13 @@ def _header(data: bytes, where: str) -> tuple[np.dtype[Any], tuple[int, ...], in
         raise UserError(f"is not an array of numbers or text: {reason}", where) from None
     if any(length < 0 for length in shape):
         raise UserError("has a negative length", where)
-    return dtype, shape, file.tell()
+    if dtype.kind not in _KINDS:
+        raise UserError(f"holds {dtype}; expected an array of numbers or of text", where)
+    size, expected = data.getbuffer().nbytes, data.tell() + prod(shape) * dtype.itemsize
+    if size != expected or size != member.file_size:
+        raise UserError(f"has {size:,} bytes where its header says {expected:,}", where)
+    data.seek(0)
+    return np.lib.format.read_array(data, allow_pickle=False)
 
 
 def write_arrays(file: IO[bytes], arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -132,40 +121,28 @@ LARGEST_TEXTS = 256_000_000
 """Bytes of the largest column of texts that is written: numpy gives each the longest one's."""
 
 
-class _NpzReader(Reader):
-    def __init__(self, arrays: dict[str, NDArray[Any]], where: str) -> None:
-        self._name(list(arrays))
-        arrays = dict(zip(self.names, arrays.values(), strict=True))
-        scene = {name: array for name, array in arrays.items() if name in SCENE}
-        for name, array in scene.items():
-            if array.dtype.kind not in _NUMBERS + _TEXT:
-                raise UserError(f"{name} holds {array.dtype}; expected numbers", where)
-            if array.size != 1 and array.ndim != 1:
-                shape = " by ".join(map(str, array.shape))
-                raise UserError(f"{name} is an array of {shape}; expected one dimension", where)
-        lengths = {name: array.size for name, array in scene.items() if array.size != 1}
-        if len(set(lengths.values())) > 1:
-            sizes = ", ".join(f"{name} {length}" for name, length in lengths.items())
-            raise UserError(f"its columns differ in length: {sizes}", where)
-        self._count = next(iter(lengths.values()), 1)
-        self.total: int | None = self._count
-        self._arrays = arrays
-
-    def position(self) -> int:
-        return self._count
-
-    def __iter__(self) -> Iterator[Rows]:
-        columns, others = self._split(self._arrays, self._arrays.values())
-        for name in columns:
-            column = np.broadcast_to(self._arrays[name].reshape(-1), (self._count,))
-            columns[name] = column if column.dtype.kind in _NUMBERS else column.tolist()
-        yield Rows(1, self._count, columns, others)
-
-
 @contextmanager
 def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open an .npz table. Raises UserError if it is not one, or holds Python objects."""
-    yield _NpzReader(read_arrays(path), path)
+    arrays = read_arrays(path)
+    names = scene_names(list(arrays))
+    columns: dict[str, Any] = dict(zip(names, arrays.values(), strict=True))
+    scene = {name: array for name, array in columns.items() if name in SCENE}
+    for name, array in scene.items():
+        if array.dtype.kind not in _NUMBERS + _TEXT:
+            raise UserError(f"{name} holds {array.dtype}; expected numbers", path)
+        if array.size != 1 and array.ndim != 1:
+            shape = " by ".join(map(str, array.shape))
+            raise UserError(f"{name} is an array of {shape}; expected one dimension", path)
+    lengths = {name: array.size for name, array in scene.items() if array.size != 1}
+    if len(set(lengths.values())) > 1:
+        sizes = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        raise UserError(f"its columns differ in length: {sizes}", path)
+    count = next(iter(lengths.values()), 1)
+    for name, array in scene.items():
+        spread = np.broadcast_to(array.reshape(-1), (count,))
+        columns[name] = spread if spread.dtype.kind in _NUMBERS else spread.tolist()
+    yield Reader(names, [Rows.of(1, count, columns.items())], count)
 
 
 class _NpzWriter(Writer):

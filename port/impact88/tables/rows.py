@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
@@ -72,6 +72,14 @@ class Rows:
     bad: list[BadCell] = field(default_factory=list)
     late: dict[str, int] = field(default_factory=dict)
 
+    @classmethod
+    def of(cls, first: int, count: int, named: Iterable[tuple[str, Column]], *more: Any) -> Rows:
+        """Rows of columns of either kind."""
+        rows = cls(first, count, {}, {}, *more)
+        for name, column in named:
+            (rows.columns if name in SCENE else rows.others)[name] = column
+        return rows
+
     def kept(self, name: str) -> Column:
         """A column of either kind."""
         return self.columns[name] if name in self.columns else self.others[name]
@@ -112,31 +120,28 @@ class Units(Protocol):
 class Reader:
     """An open table; iterating it yields `Rows`.
 
-    ``names``: its columns (of JSON Lines, those of the first row); ``delimiter``: between a CSV's
-    fields; ``total``: its size in the units of ``position`` (None: unknown).
+    ``names``: its columns (of JSON Lines, those of the first row); ``total``: its size in the units
+    of ``position``, which are rows unless a format has its own (None: unknown); ``delimiter``:
+    between a CSV's fields.
     """
 
-    names: list[str]
-    delimiter = ","
-    total: int | None = None
+    def __init__(
+        self,
+        names: list[str],
+        blocks: Iterable[Rows],
+        total: int | None = None,
+        position: Callable[[], int] | None = None,
+        delimiter: str = ",",
+    ) -> None:
+        self.names, self.total, self.delimiter = names, total, delimiter
+        self._blocks = blocks
+        self._given = 0
+        self.position = position or (lambda: self._given)
 
     def __iter__(self) -> Iterator[Rows]:
-        raise NotImplementedError
-
-    def position(self) -> int:
-        """How much of the table has been read."""
-        return 0
-
-    def _name(self, names: Sequence[str], where: str | None = None) -> None:
-        """Take the names of the columns, see `scene_names`."""
-        self.names = scene_names(names, where)
-
-    def _split(self, names: Iterable[str], columns: Iterable[Column]) -> list[dict[str, Column]]:
-        """The scene's columns and the others."""
-        both: list[dict[str, Column]] = [{}, {}]
-        for name, column in zip(names, columns, strict=True):
-            both[name not in SCENE][name] = column
-        return both
+        for rows in self._blocks:
+            self._given += rows.count
+            yield rows
 
 
 class Writer:
@@ -269,29 +274,25 @@ def _numbers(
     if values is not None:
         return values if factor == 1 else values * factor
     values = np.full(rows.count, np.nan)
-    if not asked.any():
-        return values
     cells = list(column)
     already = {bad.row for bad in rows.bad}
     for index, text in enumerate(cells):
         if rows.first + index in already or not asked[index]:
             continue
-        reason = _why_no_number(text)
-        if reason is None:
-            values[index] = (_double(text) if isinstance(text, str) else text) * factor
-            if bare_refused and values[index]:
-                reason = f"{text} has no unit, and others have"
-        elif units and isinstance(text, str) and any(map(str.isdigit, text)):
-            try:
-                values[index] = doubles.double(units.cell(name, text))
-                cells[index] = f"{values[index] / factor:.15g}"
+        try:
+            if _why_no_number(text) is None:
+                value = _double(text) * factor
+                if bare_refused and value:
+                    raise UserError(f"{text} has no unit, and others have")
+            elif units and isinstance(text, str) and any(map(str.isdigit, text)):
+                value = doubles.double(units.cell(name, text))
+                cells[index] = f"{value / factor:.15g}"
                 rows.columns[name] = cells
-                continue
-            except (UserError, ValueError) as error:
-                reason = str(error).removeprefix(": ")
-        if reason is not None:
-            values[index] = np.nan
-            rows.bad.append(rows.cell(index, name, reason))
+            else:
+                raise UserError(_why_no_number(text) or "")
+            values[index] = value
+        except (UserError, ValueError) as error:
+            rows.bad.append(rows.cell(index, name, str(error).removeprefix(": ")))
     return values
 
 
@@ -332,9 +333,7 @@ def check_scene_columns(
 ) -> None:
     """Raise UserError unless ``names`` (a file's scene columns) and ``given`` (those given beside
     the file) together are a scene; those ``optional`` may be missing."""
-    missing = [
-        name for name in SCENE if name not in names and name not in given and name not in optional
-    ]
+    missing = [name for name in SCENE if name not in {*names, *given, *optional}]
     if missing:
         raise UserError(
             f"no column {' '.join(missing)}; expected columns named {' '.join(SCENE)} "

@@ -53,24 +53,14 @@ def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str,
     return ranges
 
 
-class _Sweep(Reader):
-    """The reader of a swept scene."""
-
-    def __init__(self, scene: Mapping[str, str], ranges: Mapping[str, Range]) -> None:
-        self.names = list(scene)
-        self.total = prod(r.steps for r in ranges.values())
-        self._scene, self._ranges, self._done = scene, ranges, 0
-
-    def position(self) -> int:
-        return self._done
-
-    def __iter__(self) -> Iterator[Rows]:
-        grid = product(*(_texts(r.values()) for r in self._ranges.values()))
-        while block := list(islice(grid, BLOCK_ROWS)):
-            columns: dict[str, Column] = {n: [t] * len(block) for n, t in self._scene.items()}
-            columns |= dict(zip(self._ranges, zip(*block, strict=True), strict=True))
-            yield Rows(self._done + 1, len(block), columns, {})
-            self._done += len(block)
+def _blocks(scene: Mapping[str, str], ranges: Mapping[str, Range]) -> Iterator[Rows]:
+    grid = product(*(_texts(r.values()) for r in ranges.values()))
+    first = 1
+    while block := list(islice(grid, BLOCK_ROWS)):
+        columns: dict[str, Column] = {n: [t] * len(block) for n, t in scene.items()}
+        columns |= dict(zip(ranges, zip(*block, strict=True), strict=True))
+        yield Rows(first, len(block), columns, {})
+        first += len(block)
 
 
 def _texts(values: Sequence[float]) -> list[str]:
@@ -95,4 +85,5 @@ def read_sweep(
             headed[n]: Range(r.low * factors[n], r.high * factors[n], r.steps)
             for n, r in ranges.items()
         }
-    yield _Sweep(scene, ranges)
+    total = prod(r.steps for r in ranges.values())
+    yield Reader(list(scene), _blocks(scene, ranges), total)
