@@ -22,6 +22,7 @@ from importlib import import_module
 from .commands import CHAPTER, COMMANDS, module_of
 from .errors import UserError, shown
 from .files import ESCAPED
+from .names import did_you_mean
 from .signals import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
 from .stderr import note
 from .version import __version__
@@ -42,18 +43,13 @@ class _Parser(argparse.ArgumentParser):
     """argparse's errors in this project's form: one line, status 2."""
 
     def error(self, message: str) -> None:  # type: ignore[override]
-        raise UserError(f"{message}{self._hint(message)} (see {self.prog} --help)")
-
-    def _hint(self, message: str) -> str:
-        """The option or the choice that a misspelled word comes near to."""
-        from .names import did_you_mean
-
-        if found := re.search(r"unrecognized arguments: (-[^\s=]+)", message):
-            return did_you_mean(found[1], self._option_string_actions)
-        if found := re.search(r"invalid choice: '([^']*)'", message):
-            choices = [c for action in self._actions for c in action.choices or ()]
-            return did_you_mean(found[1], [c for c in choices if isinstance(c, str)])
-        return ""
+        hint, known = "", list(self._option_string_actions)
+        word = re.search(r"unrecognized arguments: (-[^\s=]+)", message)
+        if word is None and (word := re.search(r"invalid choice: '([^']*)'", message)):
+            known = [c for a in self._actions for c in a.choices or () if isinstance(c, str)]
+        if word:
+            hint = did_you_mean(word[1], known)
+        raise UserError(f"{message}{hint} (see {self.prog} --help)")
 
     def _print_message(self, message: str, file: IO[str] | None = None) -> None:  # type: ignore[override]
         """argparse swallows what goes wrong here, and a full disk would look like success."""
@@ -85,8 +81,6 @@ def _dispatch(arguments: Sequence[str]) -> int:
         name, *rest = rest
         known = CHAPTER
     if name not in known:
-        from .names import did_you_mean
-
         hint = did_you_mean(name, known)
         raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(known)})")
     return _run(name, rest)
@@ -116,34 +110,29 @@ def _run(name: str, arguments: Sequence[str]) -> int:
     return status
 
 
-def _open_closed_streams() -> None:
-    """A stream the shell closed (``2>&-``) is None in Python: make it read or write nothing.
+def _prepare_streams() -> None:
+    """Make a stream that the shell closed (``2>&-``, None in Python) read or write nothing. The
+    result is UTF-8 whatever the locale, so that a file made by ``>`` is one this project reads; and
+    no character is an error on a terminal that lacks it.
 
     Raises UserError when standard output is closed: the result would be lost without a word.
     """
-    if sys.stdin is None:
-        sys.stdin = open(os.devnull)  # noqa: SIM115
-    if sys.stderr is None:
-        sys.stderr = open(os.devnull, "w")  # noqa: SIM115
-    if sys.stdout is None:
-        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    closed = sys.stdout is None
+    sys.stdin = sys.stdin or open(os.devnull)  # noqa: SIM115
+    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115
+    if closed:
         raise UserError("standard output is closed; expected somewhere to print the result")
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(encoding="utf-8", errors=ESCAPED)
+    if hasattr(sys.stderr, "reconfigure"):
+        sys.stderr.reconfigure(errors=ESCAPED)
 
 
 def _drop_output() -> None:
     """Let stdout lead nowhere: on its way out the interpreter would flush, and complain, again."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _speak_any_character() -> None:
-    """The result is UTF-8 whatever the locale, so that a file made by ``>`` is one this project
-    reads; and no character of a file's name, an id or a unit is an error on a terminal that lacks
-    it."""
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(encoding="utf-8", errors=ESCAPED)
-    if hasattr(sys.stderr, "reconfigure"):
-        sys.stderr.reconfigure(errors=ESCAPED)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -155,80 +144,64 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not sys.warnoptions and not debug:
             # a library's warnings are not for the user's terminal
             warnings.simplefilter("ignore")
-        status = _status(arguments, called, debug)
-    return status
-
-
-def _status(arguments: Sequence[str], called: str | None, debug: bool) -> int:
-    """Run one command, and make one line and a status of whatever ends it."""
-    try:
         try:
-            _open_closed_streams()
-            _speak_any_character()
-            status = _dispatch(arguments)
-        except UserError as error:
-            note(called, str(error))
-            status = UNUSABLE
-        except ModuleNotFoundError as error:
-            package = (error.name or "").partition(".")[0]
-            if package in ("", "impact88"):
-                raise
-            note(called, f"{package} is not installed; expected: pip install {package}")
-            status = UNUSABLE
-        except RecursionError:
-            note(called, "the input is nested too deeply; expected a simpler one")
-            status = UNUSABLE
+            status = _status(arguments, called)
+            sys.stdout.flush()
+        except KeyboardInterrupt:
+            with suppress(ValueError):
+                if sys.stderr.isatty():
+                    print(file=sys.stderr)  # the shell's prompt comes on a line of its own
+            return INTERRUPTED
+        except Terminated as signal:
+            _drop_output()
+            return signal.status
+        except BrokenPipeError:
+            _drop_output()
+            return BROKEN_PIPE
+        except OSError as error:  # a full disk, most likely
+            place = shown(str(error.filename)) if error.filename else "standard output"
+            note(called, f"{place}: {error.strerror or error}")
+            _drop_output()
+            return UNUSABLE
         except Exception as error:
-            if not _lacks_memory(error):
-                raise
-            note(called, "not enough memory; expected a smaller input, or more memory")
-            status = UNUSABLE
-        sys.stdout.flush()
-    except KeyboardInterrupt:
-        with suppress(ValueError):
-            if sys.stderr.isatty():
-                print(file=sys.stderr)  # the shell's prompt comes on a line of its own
-        return INTERRUPTED
-    except Terminated as signal:
-        _drop_output()
-        return signal.status
-    except BrokenPipeError:
-        _drop_output()
-        return BROKEN_PIPE
-    except OSError as error:  # a full disk, most likely
-        place = shown(str(error.filename)) if error.filename else "standard output"
-        note(called, f"{place}: {error.strerror or error}")
-        _drop_output()
-        return UNUSABLE
-    except Exception as error:
-        _tell_bug(called, error, debug)
-        return BUG
+            _report_bug(called, error, debug)
+            return BUG
     return status
 
 
-def _lacks_memory(error: Exception) -> bool:
-    """Whether a library, or the stack of a thread, did not fit into memory."""
-    return isinstance(error, MemoryError) or any(
-        words in str(error)
-        for words in ("start new thread", "launch worker thread", "failed to map segment")
-    )
+def _status(arguments: Sequence[str], called: str | None) -> int:
+    """Run one command; what is the input's fault, or the machine's, is one line and a status."""
+    try:
+        _prepare_streams()
+        return _dispatch(arguments)
+    except UserError as error:
+        note(called, str(error))
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package in ("", "impact88"):
+            raise
+        note(called, f"{package} is not installed; expected: pip install {package}")
+    except RecursionError:
+        note(called, "the input is nested too deeply; expected a simpler one")
+    except Exception as error:
+        # a library, or the stack of a thread
+        words = ("start new thread", "launch worker thread", "failed to map segment")
+        if not isinstance(error, MemoryError) and not any(text in str(error) for text in words):
+            raise
+        note(called, "not enough memory; expected a smaller input, or more memory")
+    return UNUSABLE
 
 
-def _tell_bug(called: str | None, error: Exception, debug: bool) -> None:
-    """Say that it is ours, and where, in one line; the whole traceback on request."""
+def _report_bug(called: str | None, error: Exception, debug: bool) -> None:
+    """One line on a bug of ours and where it is; the whole traceback on request."""
     if debug:
         import traceback
 
         traceback.print_exception(error)
-    step = error.__traceback__
-    while step is not None and step.tb_next is not None:
-        step = step.tb_next
-    place = ""
-    if step is not None:
+    step, place = error.__traceback__, ""
+    while step is not None:
         place = f" at {os.path.basename(step.tb_frame.f_code.co_filename)}:{step.tb_lineno}"
+        step = step.tb_next
     what = shown(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
-    note(
-        called,
-        f"a bug of impact88, not of your input: {what}{place}"
-        f"{'' if debug else ' (IMPACT88_DEBUG=1 prints the traceback)'}",
-    )
+    advice = "" if debug else " (IMPACT88_DEBUG=1 prints the traceback)"
+    note(called, f"a bug of impact88, not of your input: {what}{place}{advice}")

@@ -73,6 +73,18 @@ def decode(data: bytes, where: str) -> str:
 # --- reading -------------------------------------------------------------------------------------
 
 
+@contextmanager
+def _naming(path: str, done: str) -> Iterator[None]:
+    """Errors of the system within are UserErrors that name the file."""
+    try:
+        yield
+    except (BrokenPipeError, UserError):
+        raise
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise UserError(f"cannot be {done}: {why}", path) from None
+
+
 class Source(io.RawIOBase):
     """The bytes of a file or of standard input; an error in reading them is a UserError that names
     it. ``count``: the bytes read so far."""
@@ -81,14 +93,11 @@ class Source(io.RawIOBase):
         """Raises UserError if there is no such file or it cannot be opened."""
         self.name = called(path)
         self.count = 0
-        self._keep = True  # nothing to close yet
-        try:
-            inner: Any = sys.stdin.buffer if path == "-" else io.FileIO(path)
-        except (OSError, ValueError) as error:
-            raise UserError(f"cannot be read: {_why(error)}", self.name) from None
+        self._inner: Any = None
         self._keep = path == "-"
-        self._inner = inner
-        self._fill = getattr(inner, "readinto1", inner.readinto)
+        with _naming(self.name, "read"):
+            self._inner = sys.stdin.buffer if self._keep else io.FileIO(path)
+        self._fill = getattr(self._inner, "readinto1", self._inner.readinto)
 
     @property
     def extent(self) -> tuple[int | None, Callable[[], int]]:
@@ -104,22 +113,16 @@ class Source(io.RawIOBase):
 
     def readinto(self, buffer: Any) -> int:
         """Read into ``buffer``; how many bytes, 0 at the end. Raises UserError."""
-        try:
-            count = self._fill(buffer) or 0
-        except OSError as error:
-            raise UserError(f"cannot be read: {_why(error)}", self.name) from None
+        with _naming(self.name, "read"):
+            count: int = self._fill(buffer) or 0
         self.count += count
-        return int(count)
+        return count
 
     def close(self) -> None:
         """Close the file; standard input stays open."""
-        if not self._keep and not self.closed:
+        if self._inner and not self._keep:
             self._inner.close()
         super().close()
-
-
-def _why(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error)
 
 
 def open_bytes(path: str) -> io.BufferedReader:
@@ -143,17 +146,15 @@ def read_text(path: str, limit: int = LARGEST) -> str:
 
 
 def typed_line() -> str | None:
-    """The next line of standard input without its end, None when there is none.
-
-    Raises UserError if it is not text or too long.
-    """
+    """The next line of standard input without its end, None when there is none. Raises UserError
+    if it is not text or too long."""
     sys.stdout.flush()
-    try:
-        line = sys.stdin.readline(LONGEST_LINE)
-    except UnicodeDecodeError as error:
-        raise UserError(f"contains bytes that are not {error.encoding} text", called("-")) from None
-    except OSError as error:
-        raise UserError(f"cannot be read: {_why(error)}", called("-")) from None
+    with _naming(called("-"), "read"):
+        try:
+            line = sys.stdin.readline(LONGEST_LINE)
+        except UnicodeDecodeError as error:
+            what = f"contains bytes that are not {error.encoding} text"
+            raise UserError(what, called("-")) from None
     if len(line) == LONGEST_LINE and not line.endswith("\n"):
         raise UserError(f"has a line longer than {LONGEST_LINE:,} characters", called("-"))
     return line.rstrip("\r\n") if line else None
@@ -168,18 +169,15 @@ class _Sink(io.FileIO):
     target = ""
 
     def write(self, data: Any) -> int:
-        try:
+        with _naming(self.target, "written"):
             return super().write(data)
-        except BrokenPipeError:
-            raise
-        except OSError as error:
-            raise UserError(f"cannot be written: {_why(error)}", self.target) from None
 
 
 def _sink(
     file: str, target: str, mode: str, opener: Callable[[str, int], int] | None = None
 ) -> IO[Any]:
-    raw = _Sink(file, "w", opener=opener)
+    with _naming(target, "written"):
+        raw = _Sink(file, "w", opener=opener)
     raw.target = target
     buffered = io.BufferedWriter(raw)
     if "b" in mode:
@@ -197,13 +195,9 @@ def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     directly: there is nothing to rename. Raises UserError when the place cannot be written to, the
     disk is full, or what stands there is read-only.
     """
-    target = _target(path)
+    target, usual = _target(path)
     if os.path.exists(target) and not os.path.isfile(target):
-        try:
-            file = _sink(target, path, mode)
-        except OSError as error:
-            raise UserError(f"cannot be written: {_why(error)}", path) from None
-        with file:
+        with _sink(target, path, mode) as file:
             yield file
         return
     folder, name = os.path.split(target)
@@ -211,24 +205,20 @@ def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     beside = os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
     # its name is known before it is there: a signal at any moment finds what to remove
     try:
-        try:
-            file = _sink(beside, path, mode, _private)
-        except OSError as error:
-            raise UserError(f"cannot be written: {_why(error)}", path) from None
+        file = _sink(beside, path, mode, _private)
         try:
             yield file
             file.flush()
-            _settle(file.fileno(), path)
+            with _naming(path, "written"):
+                _settle(file.fileno())
             file.close()
         except BaseException:
             with suppress(UserError, OSError, ValueError):
                 file.close()
             raise
-        try:
-            _take_usual_mode(beside, target)
+        with _naming(path, "written"):
+            os.chmod(beside, usual)
             os.replace(beside, target)
-        except OSError as error:
-            raise UserError(f"cannot be written: {_why(error)}", path) from None
     except BaseException:
         with suppress(OSError):
             os.unlink(beside)
@@ -240,41 +230,32 @@ def _private(path: str, flags: int) -> int:
     return os.open(path, flags | os.O_EXCL, 0o600)
 
 
-def _target(path: str) -> str:
-    """What ``path`` leads to. Raises UserError for a folder and for what may not be replaced."""
-    try:
-        target = os.path.realpath(path)
-        mode = os.stat(target).st_mode
-    except FileNotFoundError:
-        return target
-    except (OSError, ValueError) as error:
-        raise UserError(f"cannot be written: {_why(error)}", path) from None
+def _target(path: str) -> tuple[str, int]:
+    """What ``path`` leads to, and the mode of a file there. Raises UserError for a folder and for
+    what may not be replaced."""
+    with _naming(path, "written"):
+        try:
+            target = os.path.realpath(path)
+            mode = os.stat(target).st_mode
+        except FileNotFoundError:
+            mask = os.umask(0)
+            os.umask(mask)
+            return target, 0o666 & ~mask
     if os.path.isdir(target):
         raise UserError("is a folder; expected a file to write", path)
     # a superuser may write anything, but a file without a bit for it is meant to stay
     if not mode & 0o222 or not os.access(target, os.W_OK):
         raise UserError("is read-only; expected a name that may be written", path)
-    return target
+    return target, mode & 0o7777
 
 
-def _settle(handle: int, path: str) -> None:
+def _settle(handle: int) -> None:
     """Have the file's bytes on the disk, where the file system knows how."""
     try:
         os.fsync(handle)
     except OSError as error:
         if error.errno not in (errno.EINVAL, errno.ENOTSUP, errno.ENOSYS):
-            raise UserError(f"cannot be written: {_why(error)}", path) from None
-
-
-def _take_usual_mode(beside: str, path: str) -> None:
-    """The temporary file is private; give the new file the mode of the old one or the usual one."""
-    try:
-        mode = os.stat(path).st_mode & 0o7777
-    except FileNotFoundError:
-        mask = os.umask(0)
-        os.umask(mask)
-        mode = 0o666 & ~mask
-    os.chmod(beside, mode)
+            raise
 
 
 def check_apart(inputs: Iterable[str], outputs: Mapping[str, str | None]) -> None:

@@ -21,17 +21,14 @@ class Meter(Protocol):
 
 
 class _Lines:
-    """Progress on stderr: on a terminal a line that is written over, at most ten times a second;
-    elsewhere nothing, or plain lines now and then, for a log."""
+    """Progress on stderr: on a terminal a line that is written over; elsewhere nothing, or plain
+    lines now and then, for a log."""
 
     def __init__(self, total: int | None, what: str, terminal: bool, lines: bool) -> None:
-        self.total = total
-        self.what = what
-        self.done = 0
-        self._terminal = terminal
+        self.total, self.what, self.done = total, what, 0
+        self._terminal, self._width = terminal, 0
         self._wait = 0.1 if terminal else SECONDS_BETWEEN_LINES if lines else math.inf
         self._last = 0.0 if terminal else time.monotonic()
-        self._width = 0
 
     def update(self, n: int) -> None:
         self.done += n
@@ -57,7 +54,7 @@ def progress(total: int | None, what: str, unit: str = "", lines: bool = False) 
     """A meter for work of ``total`` units (None: unknown). Where stderr is not a terminal it is
     silent, or writes plain ``lines``."""
     terminal = sys.stderr.isatty()
-    meter: Any = None
+    meter: Any = _Lines(total, what, terminal, lines)
     if terminal:
         with suppress(ImportError):
             from tqdm import tqdm  # type: ignore[import-untyped]
@@ -65,7 +62,6 @@ def progress(total: int | None, what: str, unit: str = "", lines: bool = False) 
             meter = tqdm(
                 total=total, desc=what, unit=unit, unit_scale=True, leave=False, dynamic_ncols=True
             )
-    meter = _Lines(total, what, terminal, lines) if meter is None else meter
     try:
         yield meter
     finally:

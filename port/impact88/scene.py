@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from . import notebook
 from .doubles import double, is_number
@@ -43,12 +43,13 @@ class Entries:
     entries were understood, for people who see the result; ``given``: the entries as written.
     """
 
-    def __init__(self, values: dict[str, str], given: Mapping[str, str]) -> None:
-        self.values = values
-        self.given = given
-        self.units: str | None = None
-        self.title: str | None = None
-        self.case: str | None = None
+    title: str | None = None
+    case: str | None = None
+
+    def __init__(
+        self, values: dict[str, str], given: Mapping[str, str], units: str | None = None
+    ) -> None:
+        self.values, self.given, self.units = values, given, units
         self.estimated: dict[str, str] = {}
         self.outlines: dict[str, float] = {}
         self.sources: dict[str, str] = {}
@@ -56,9 +57,8 @@ class Entries:
 
     def changed(self, changes: Mapping[str, str]) -> Entries:
         """These entries with some values changed."""
-        result = Entries({**self.values, **changes}, {**self.given, **changes})
-        result.units, result.title, result.case = self.units, self.title, self.case
-        result.outlines = self.outlines
+        result = Entries({**self.values, **changes}, {**self.given, **changes}, self.units)
+        result.title, result.case, result.outlines = self.title, self.case, self.outlines
         for name in ("estimated", "sources", "remarks"):
             kept = {n: text for n, text in getattr(self, name).items() if n not in changes}
             setattr(result, name, kept)
@@ -103,24 +103,21 @@ class Scene(Mapping[str, str]):
             checked = {n: check_value(n, text, source) for n, text in given.items() if n != "MU"}
             given["MU"], entries.remarks["MU"] = resolved({**checked, "MU": given["MU"]}, source)
         self._values = {name: check_value(name, given[name], source) for name in SCENE}
-        self.title = title
-        self.source = source
-        self.units = units
-        self.entries = entries
-        self.estimated = self.entries.estimated
+        self.title, self.source, self.units = title, source, units
+        self.entries, self.estimated = entries, entries.estimated
 
     @classmethod
     def from_mapping(
         cls, values: Mapping[str, str], source: str = "scene", units: str | None = None
     ) -> Scene:
-        """A scene from texts by name, with units where they have any, bare numbers in ``units``
-        where it names none itself; M defaults to 6."""
+        """A scene from texts by name, which may have units; bare numbers are in ``units`` unless an
+        entry says otherwise; M defaults to 6."""
         return cls._of(values, source, units)
 
     @classmethod
     def from_toml(cls, path: str, units: str | None = None) -> Scene:
-        """The scene in a TOML file, bare numbers in ``units`` where it names none itself; of a
-        value known within limits, the middle. Raises UserError naming file, line or key."""
+        """The same from a TOML file; of a value known within limits, the middle. Raises UserError
+        naming file, line or key."""
         return cls._of(toml_file(path), called(path), units)
 
     @classmethod
@@ -160,7 +157,9 @@ class Scene(Mapping[str, str]):
 
     def keyboard(self) -> list[str]:
         """The replies to the INPUTs of lines 210 and 230."""
-        return [",".join(self[name] for name in VELOCITIES[at : at + 3]) for at in (0, 3)]
+        return [
+            ",".join(map(self.__getitem__, names)) for names in (VELOCITIES[:3], VELOCITIES[3:])
+        ]
 
     def typed_lines(self) -> list[str]:
         """The program lines to retype for this scene: 280, 290, 310, and 350 unless M is 6."""
@@ -174,8 +173,7 @@ class Scene(Mapping[str, str]):
         return lines
 
     def numbers(self) -> dict[str, float]:
-        """The values in double precision, for `impact88.solve` and its like. Raises UserError for
-        one past the range of doubles."""
+        """The values in double precision. Raises UserError for one past the range of doubles."""
         return numbers_of(self)
 
     def check_typed(self) -> None:
@@ -204,16 +202,11 @@ class Scene(Mapping[str, str]):
 
 
 def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
-    """The scene's values as doubles, by name: texts as `doubles.double` reads them, or numbers.
-
-    Raises UserError for a missing value or one that is not a finite number.
-    """
+    """The scene's values, texts or numbers, as doubles by name. Raises UserError for a missing
+    value or one that is not a finite number."""
     result = {}
     for name in SCENE:
-        try:
-            text = scene[name]
-        except KeyError:
-            text = DEFAULT_M if name == "M" else None
+        text = scene.get(name, DEFAULT_M if name == "M" else None)
         try:
             value = double(text) if isinstance(text, str) else float(text)  # type: ignore[arg-type]
         except (TypeError, ValueError):
@@ -228,15 +221,14 @@ OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
 
 
 def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
-    """The values with DA PA or DB PB worked out where the contact point is given in a vehicle's own
-    axes: CAF CAL, CBF CBL, forward and to the left of its center of gravity. Within limits they are
-    left as they are, for `reconstruction.contact`."""
+    """The values with DA PA or DB PB worked out from CAF CAL or CBF CBL, forward and to the left of
+    the center of gravity. Within limits they stay, for `reconstruction.contact`."""
     for vehicle, names in OWN_AXES.items():
-        if not set(names) & set(values):
+        absent = [name for name in names if name not in values]
+        if len(absent) == len(names):
             continue
-        for name in names:
-            if name not in values:
-                raise UserError(f"{name} is missing beside {' '.join(names)}", source)
+        if absent:
+            raise UserError(f"{absent[0]} is missing beside {' '.join(names)}", source)
         both = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in values]
         if both:
             raise UserError(f"{both[0]} and {names[0]} are both given; expected one pair", source)
@@ -278,8 +270,7 @@ def entries_of(
         if not isinstance(text, str):
             raise UserError(f"{name} is {text!r}; expected the number's text", source)
     values, system = in_base_units(given, source, units)
-    found = Entries(values, given)
-    found.units = system
+    found = Entries(values, given, system)
     found.sources = {n.removesuffix(SOURCE): t for n, t in texts.items() if n not in given}
     for name in found.sources:
         if name not in given:
@@ -307,12 +298,12 @@ def entries_of(
 
 
 def entries_in(path: str, units: str | None = None, single: bool = False) -> Entries:
-    """The entries of a TOML file (``-`` is standard input), see `entries_of`."""
+    """The entries of a TOML file (``-``: standard input), see `entries_of`."""
     return entries_of(toml_file(path), called(path), units, single)
 
 
 def is_share(text: object) -> bool:
-    """Whether MU is given as a share of the critical friction, such as ``85 %``."""
+    """Whether MU is a share of the critical friction, such as ``85 %``."""
     return isinstance(text, str) and text.endswith("%")
 
 
@@ -334,9 +325,8 @@ def _middle(name: str, text: str, source: str) -> str:
 def in_base_units(
     texts: Mapping[str, str], source: str, units: str | None = None
 ) -> tuple[dict[str, str], str | None]:
-    """The texts with every value in base units (`impact88.amounts`), and the system's name; as they
-    are where neither a value nor the entry ``units`` nor ``units`` says of any. Raises UserError.
-    """
+    """The texts in base units (`impact88.amounts`), and the system's name; as they are where no
+    value, nor the entry ``units``, nor ``units`` names any. Raises UserError."""
     if units is None and all(_BARE.issuperset(texts[n]) for n in texts if n not in _NO_AMOUNTS):
         return dict(texts), None
     from .amounts import in_base
@@ -365,7 +355,7 @@ def check_value(name: str, text: str, source: str | None) -> str:
 
 
 def toml_file(path: str) -> dict[str, str]:
-    """The entries of a flat TOML file (``-`` is standard input), see `toml_texts`."""
+    """The entries of a flat TOML file (``-``: standard input), see `toml_texts`."""
     return toml_texts(read_text(path, TOML_LIMIT), called(path))
 
 
@@ -472,13 +462,13 @@ def shown_texts(texts: Mapping[str, str], units: str | None) -> dict[str, str]:
     return {name: shown_text(name, text, SYSTEMS[units]) for name, text in texts.items()}
 
 
-def _labels(units: str | None) -> Callable[[str], str]:
-    """How the units of a file are called: rules where it names no system."""
+def _unit_of(name: str, units: str | None) -> str:
+    """How a quantity's unit is called in a file: a rule where it names no system."""
     if not units:
-        return str
+        return str(quantity(name).unit)
     from .units import SYSTEMS
 
-    return SYSTEMS[units].label
+    return SYSTEMS[units].label(quantity(name).unit)
 
 
 def template(
@@ -489,7 +479,6 @@ def template(
 ) -> str:
     """A commented scene file; without ``values`` the numbers are left to fill in; ``units``: the
     system of its bare numbers (`impact88.units`); ``estimated``: names marked as estimates."""
-    label = _labels(units)
     lines = [
         "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per",
         '# unit of time. The digits are used as written. Write 0.911 or ".911": TOML takes no .911',
@@ -497,29 +486,26 @@ def template(
         *(f"# {line}".rstrip() for line in SIGNS.splitlines()),
         "",
         f"title = {_quoted(title or '')}",
+        *([f"units = {_quoted(units)}"] if units else []),
     ]
-    if units:
-        lines.append(f"units = {_quoted(units)}")
     heading = None
     for row in SCENE.values():
         if row.line != heading:
             heading = row.line
             lines += ["", f"# line {heading} of the listing"]
         text = values[row.name] if values else (DEFAULT_M if row.name == "M" else "")
-        value = text if _plain_toml(text) else _quoted(text)
-        entry = f"{row.name} = {value}"
+        entry = f"{row.name} = {text if _plain_toml(text) else _quoted(text)}"
         mark = ", estimated" if row.name in estimated else ""
-        lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{label(row.unit)}]{mark}")
+        unit = _unit_of(row.name, units)
+        lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{unit}]{mark}")
     return "\n".join(lines) + "\n"
 
 
 def known_template(
     names: Sequence[str], values: Mapping[str, str] | None = None, units: str | None = None
 ) -> str:
-    """A file to fill in with what is known of ``names``; ``values``: what is known already;
-    ``units``: the system of its bare numbers (`impact88.units`)."""
+    """A file to fill in with what is known of ``names``; ``values``: what is known already."""
     known = {"M": DEFAULT_M} if values is None else values
-    label = _labels(units)
     lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
     if units:
         lines.append(f"units = {_quoted(units)}")
@@ -527,7 +513,7 @@ def known_template(
         row = quantity(name)
         meaning = "signed P_t/P_n, in place of MU" if name == "MUP" else row.meaning
         entry = f"{name} = {_quoted(known.get(name, ''))}"
-        lines.append(f"{entry:<12} # {row.symbol}: {meaning} [{label(row.unit)}]")
+        lines.append(f"{entry:<12} # {row.symbol}: {meaning} [{_unit_of(name, units)}]")
     return "\n".join(lines)
 
 
@@ -552,31 +538,22 @@ def published_data() -> dict[str, str]:
     for line in packaged_text("impact88.legacy", LISTING).splitlines():
         number, _, statements = line.partition(" ")
         if int(number) in (*DATA_LINES, M_LINE):
-            for statement in statements.partition(": REM")[0].split(":"):
-                name, _, text = statement.partition(" = ")
-                data[name] = text
+            given = statements.partition(": REM")[0].split(":")
+            data |= dict(statement.split(" = ") for statement in given)
     return {name: data[name] for name in SCENE if name in data}
 
 
-_APPENDIX_VELOCITIES = ("-29.04", "0", "0", "14.52", "25.15", "0")
-_SAMPLES: dict[int, tuple[str, tuple[str, ...], dict[str, str]]] = {
-    1: ("Appendix, first sample run", _APPENDIX_VELOCITIES, {}),
-    2: (
-        "Appendix, second sample run: point masses",
-        _APPENDIX_VELOCITIES,
-        {"M": "4", "DA": "0", "DB": "0"},
-    ),
+_APPENDIX = "UX=-29.04 UY=0 WA=0 VX=14.52 VY=25.15 WB=0"
+_SAMPLES = {
+    1: ("Appendix, first sample run", _APPENDIX),
+    2: ("Appendix, second sample run: point masses", f"{_APPENDIX} M=4 DA=0 DB=0"),
     3: (
         "Table 3: hypothetical collision for example calculations",
-        ("-36.667", "0", "0", "0", "58.667", "0"),
-        {
-            **{"E": ".25", "MU": ".89", "EM": "-.9", "DA": "4.5", "DB": "4"},
-            **{"GA": "0", "PA": "0", "PB": "-40", "TA": "0", "TB": "90"},
-            **{"MA": "96", "MB": "145", "IA": "1970", "IB": "3770"},
-        },
+        "UX=-36.667 UY=0 WA=0 VX=0 VY=58.667 WB=0 E=.25 MU=.89 EM=-.9 DA=4.5 DB=4 "
+        "GA=0 PA=0 PB=-40 TA=0 TB=90 MA=96 MB=145 IA=1970 IB=3770",
     ),
 }
-"""The published runs: title, the velocities typed, and what differs from the listing's own data."""
+"""The published runs: title, and what is typed beside the listing's own data."""
 
 SAMPLES = tuple(_SAMPLES)
 
@@ -589,6 +566,6 @@ def sample(number: int) -> Scene:
     """
     if number not in _SAMPLES:
         raise UserError(f"there is no sample {number}; expected {', '.join(map(str, SAMPLES))}")
-    title, velocities, changes = _SAMPLES[number]
-    values = published_data() | dict(zip(VELOCITIES, velocities, strict=True)) | changes
+    title, typed = _SAMPLES[number]
+    values = published_data() | dict(entry.split("=") for entry in typed.split())
     return Scene(values, title, f"sample {number}")

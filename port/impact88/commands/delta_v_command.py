@@ -19,7 +19,7 @@ exit status: 0 done; 2 bad input
 import argparse
 from collections.abc import Iterable, Mapping
 from math import hypot, isfinite, nan
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..chapter import deltav
 from ..errors import BEYOND_DOUBLES, UserError
@@ -48,6 +48,14 @@ ARGUMENTS = (
     options.OUTPUT,
 )
 
+
+class _Question(NamedTuple):
+    known: dict[str, float]
+    like: str | None
+    factor: float
+    units: System
+
+
 Answer = tuple[dict[str, Any], list[str]]
 """What ``--json`` prints, and the lines for people."""
 
@@ -55,10 +63,9 @@ Answer = tuple[dict[str, Any], list[str]]
 def main(args: argparse.Namespace) -> int:
     """Print the estimate, or its range."""
     known, named = options.known_values(args, KNOWABLE)
-    units = system_of(named)
     factor = deltav.AS_PRINTED if args.as_printed else deltav.AS_USED
     try:
-        found, lines = _answer(known, args.like, factor, units)
+        found, lines = _answer(_Question(known, args.like, factor, system_of(named)))
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     equation = deltav.described(factor)
@@ -68,28 +75,27 @@ def main(args: argparse.Namespace) -> int:
     return 0
 
 
-def _answer(known: dict[str, float], like: str | None, factor: float, units: System) -> Answer:
+def _answer(asked: _Question) -> Answer:
+    known = asked.known
     for name in ("MA", "MB"):
         if not known.get(name, 0) > 0:
             raise UserError(f"{name} is missing or not positive; expected a mass")
     if set(AFTER) <= set(known) and not {"UX", "VY"} <= set(known):
-        return _speeds_before(known, like, factor, units)
+        return _speeds_before(asked)
     given = {
         **{"MA": known["MA"], "MB": known["MB"]},
         **{"SA": _speed(known, "SA", "UX", "UY"), "SB": _speed(known, "SB", "VX", "VY")},
     }
     if "DVA" in known or "DVB" in known:
-        return _loss(known, given, like, factor, units)
-    return _velocity_changes(known, given, like, factor, units)
+        return _loss(asked, given)
+    return _velocity_changes(asked, given)
 
 
-def _velocity_changes(
-    known: dict[str, float], given: dict[str, float], like: str | None, factor: float, units: System
-) -> Answer:
-    losses, source = _losses({**known, **given}, like)
-    estimates = []
+def _velocity_changes(asked: _Question, given: dict[str, float]) -> Answer:
+    units, estimates = asked.units, []
+    losses, source = _losses({**asked.known, **given}, asked.like)
     for loss in losses:
-        change = deltav.delta_v({**given, "LOSS": loss}, factor)
+        change = deltav.delta_v({**given, "LOSS": loss}, asked.factor)
         estimate = {"LOSS": loss, **{name: float(value) for name, value in change.items()}}
         _check_finite(estimate.values())
         estimates.append(written(estimate, units))
@@ -98,26 +104,20 @@ def _velocity_changes(
     rows = [[number(estimate[n]) for n in ("LOSS", "DVA", "DVB")] for estimate in estimates]
     heading = ["loss [percent]", f"DVA [{label}]", f"DVB [{label}]"]
     lines = [*quantities(speeds, units), "", *table(rows, heading, left=()), "", f"loss: {source}"]
-    return {
-        "factor": factor,
-        "given": speeds,
-        "loss_from": source,
-        "estimates": estimates,
-        "units": _labels((*given, "DVA", "DVB", "LOSS"), units),
-    }, lines
+    whole = {"factor": asked.factor, "given": speeds, "loss_from": source, "estimates": estimates}
+    return {**whole, "units": _labels((*given, "DVA", "DVB", "LOSS"), units)}, lines
 
 
-def _speeds_before(
-    known: dict[str, float], like: str | None, factor: float, units: System
-) -> Answer:
-    """Speeds before from final velocities and the loss, as in Section VII."""
-    losses, source = _losses(known, like)
+def _speeds_before(asked: _Question) -> Answer:
+    """From final velocities and the loss, as in Section VII."""
+    known, units = asked.known, asked.units
+    losses, source = _losses(known, asked.like)
     taken = "SA and SB as given" if {"SA", "SB"} <= set(known) else "those of Equations 13 and 14"
     found: list[dict[str, Any]] = []
     for loss in losses:
         for repeat, speeds in ((False, taken), (True, "those found, until they stay")):
             try:
-                row = deltav.speeds_before(known, loss, factor, repeat)
+                row = deltav.speeds_before(known, loss, asked.factor, repeat)
             except UserError:
                 if not repeat:
                     raise
@@ -131,20 +131,17 @@ def _speeds_before(
     return {"loss_from": source, "estimates": found, "units": labels}, lines
 
 
-def _loss(
-    known: dict[str, float], given: dict[str, float], like: str | None, factor: float, units: System
-) -> Answer:
-    """The loss that velocity changes give."""
-    if like or {"LOSS", "DT", "EL"} & set(known):
+def _loss(asked: _Question, given: dict[str, float]) -> Answer:
+    if asked.like or {"LOSS", "DT", "EL"} & set(asked.known):
         raise UserError("both a loss and a velocity change are given; expected one")
-    changes: dict[str, float] = {n: known[n] for n in ("DVA", "DVB") if n in known}
-    found = {n: deltav.loss_of({**given, n: change}, factor) for n, change in changes.items()}
+    changes: dict[str, float] = {n: asked.known[n] for n in ("DVA", "DVB") if n in asked.known}
+    found = {n: deltav.loss_of({**given, n: x}, asked.factor) for n, x in changes.items()}
     _check_finite(found.values())
-    displayed = written(changes, units)
+    displayed = written(changes, asked.units)
     rows = [[name, number(displayed[name]), number(loss)] for name, loss in found.items()]
-    heading = ["from", f"velocity change [{units.label('length/time')}]", "loss [percent]"]
-    whole = {"given": written(given, units), "LOSS_from": found, "units": _labels(given, units)}
-    return whole, [*table(rows, heading), ""]
+    heading = ["from", f"velocity change [{asked.units.label('length/time')}]", "loss [percent]"]
+    whole = {"given": written(given, asked.units), "LOSS_from": found}
+    return {**whole, "units": _labels(given, asked.units)}, [*table(rows, heading), ""]
 
 
 def _check_finite(numbers: Iterable[float]) -> None:
@@ -166,8 +163,9 @@ def _losses(known: Mapping[str, float], like: str | None) -> tuple[list[float], 
     """The losses to take, in percent, and where they come from."""
     given = [name for name in ("EL", "DT", "LOSS") if name in known]
     if len(given) + bool(like) > 1:
-        words = [*given, *(["--like"] if like else [])]
-        raise UserError(f"{' and '.join(words)} are both given; expected one")
+        raise UserError(
+            f"{' and '.join([*given, *['--like'] * bool(like)])} are both given; expected one"
+        )
     if like:
         from ..chapter.staged import collisions
 
@@ -189,8 +187,7 @@ def _losses(known: Mapping[str, float], like: str | None) -> tuple[list[float], 
         if not 0 <= known["DT"] <= 1:
             raise UserError("DT is outside 0 ... 1; expected a fraction of the kinetic energy")
         return [100 * known["DT"]], "given"
-    loss = known["LOSS"]
-    if not 0 <= loss <= 100:
+    if not 0 <= (loss := known["LOSS"]) <= 100:
         raise UserError("LOSS is outside 0 ... 100; expected percent of the initial kinetic energy")
     if 0 < loss < 1:
         raise UserError(

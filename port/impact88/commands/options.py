@@ -51,15 +51,15 @@ class InputFile(str):
 
 
 class InputFolder(str):
-    """The type of an argument that names a folder whose files are read."""
+    """A folder whose files are read."""
 
 
 class OutputFile(str):
-    """The type of an argument that names a file to write; ``-`` is standard output."""
+    """A file to write; ``-`` is standard output."""
 
 
 class OutputFolder(str):
-    """The type of an argument that names a folder to write into."""
+    """A folder to write into."""
 
 
 # --- declarations --------------------------------------------------------------------------------
@@ -121,7 +121,7 @@ def names_option(name: str, meaning: str, metavar: str = "NAMES") -> Argument:
 
 
 def setting(meaning: str) -> Argument:
-    """The option ``--set NAME=VALUE``; ``meaning`` says what it does for this command."""
+    """The option ``--set NAME=VALUE``."""
     return repeatable("--set", "NAME=VALUE", meaning)
 
 
@@ -149,8 +149,7 @@ def renamed(old: str, new: str) -> Argument:
         def __call__(self, *ignored: object) -> None:
             raise UserError(f"{old} is not an option here; expected {new}")
 
-    hidden = argparse.SUPPRESS
-    return value(old, None, hidden, action=Renamed, dest=hidden)
+    return value(old, None, argparse.SUPPRESS, action=Renamed, dest=argparse.SUPPRESS)
 
 
 def json_option(meaning: str = "one JSON object") -> Argument:
@@ -226,17 +225,20 @@ def declare(
 
 
 def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> None:
-    """Expand the patterns among the files to read, and raise UserError when a file to write is also
-    read or written twice.
-
-    Which arguments name files is what their types say.
-    """
-    inputs = ["-"]
+    """Expand patterns such as ``*.txt`` for shells that do not, and raise UserError when a file to
+    write is also read or written twice. The types say which arguments are files."""
+    inputs: list[str] = ["-"]
     outputs: dict[str, str | None] = {}
     for action in parser._actions:
         value = getattr(args, action.dest, None)
         if action.type is InputFile and isinstance(value, list):
-            value[:] = [path for pattern in value for path in _matching(pattern)]
+            from glob import glob
+
+            value[:] = [
+                path
+                for text in value
+                for path in ((not os.path.exists(text) and sorted(glob(text))) or [text])
+            ]
             inputs += value
         elif action.type in (InputFile, InputFolder) and value is not None:
             inputs.append(value)
@@ -245,22 +247,10 @@ def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> No
     check_apart(inputs, outputs)
 
 
-def _matching(pattern: str) -> list[str]:
-    """The files that a pattern such as ``*.txt`` matches, for shells that leave it as it is; the
-    text itself where it is the name of a file or matches nothing."""
-    if not any(mark in pattern for mark in "*?[") or os.path.exists(pattern):
-        return [pattern]
-    from glob import glob
-
-    return sorted(map(InputFile, glob(pattern))) or [pattern]
-
-
 @contextmanager
 def output_of(args: argparse.Namespace, arguments: Sequence[object]) -> Iterator[None]:
-    """Send what is printed in the block to the file ``-o`` names, whole or not at all.
-
-    For the commands that declare `OUTPUT`. Raises UserError when the place cannot be written to.
-    """
+    """Send what is printed in the block to the file ``-o`` names, whole or not at all, for commands
+    that declare `OUTPUT`. Raises UserError when the place cannot be written to."""
     if OUTPUT not in arguments or args.output in (None, "-"):
         yield
         return
@@ -301,10 +291,8 @@ def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -
 
 
 def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
-    """Name -> text of a repeatable ``option`` that takes NAME=TEXT, names in either case.
-
-    Raises UserError for a text without ``=`` and for a name given twice.
-    """
+    """Name -> text of a repeatable ``option`` that takes NAME=TEXT, names in either case. Raises
+    UserError for a text without ``=`` and for a name given twice."""
     given: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
@@ -346,10 +334,8 @@ def sweeps(texts: Sequence[str]) -> dict[str, str]:
 def names_given(
     texts: Sequence[str], known: Collection[str], option: str, what: str = "result"
 ) -> list[str]:
-    """The names an option lists, in either case, each once; empty where the option is not given.
-
-    Raises UserError for a name that is not ``known`` and for an option without a name.
-    """
+    """The names an option lists, in either case, each once. Raises UserError for a name that is not
+    ``known`` and for an option without a name."""
     in_any_case = {name.lower(): name for name in known}
     words = [word for text in texts for word in text.replace(",", " ").split()]
     names = [in_any_case.get(word.lower(), word) for word in words]
@@ -360,6 +346,8 @@ def names_given(
 
 
 # --- scenes and what is known --------------------------------------------------------------------
+
+ONE_EXPECTED = "expected one scene: a file, or --sample 1, 2 or 3"
 
 
 def source_of(args: argparse.Namespace) -> str | None:
@@ -379,9 +367,9 @@ def entries_given(args: argparse.Namespace, single: bool = False) -> Entries | N
     if args.scene:
         entries = entries_in(args.scene, args.units, single)
         note_remarks(entries)
-        return entries
-    entries = sample(args.sample).entries
-    entries.units = args.units
+    else:
+        entries = sample(args.sample).entries
+        entries.units = args.units
     return entries
 
 
@@ -420,18 +408,17 @@ def known_within_limits(
     source = source_of(args) or ""
     if (entries := entries_given(args, single)) is not None:
         named = entries.units
-        texts = {name: text for name, text in entries.values.items() if text}
         if args.scene:
-            for name in set(sum(OWN_AXES.values(), ())).intersection(texts) - set(allowed):
+            for name in set(sum(OWN_AXES.values(), ())).intersection(entries.values) - {*allowed}:
                 raise UserError(
                     f"{name} is known within limits, which impact88 bounds takes; expected a "
                     f"number, or limits for D{name[1]} and P{name[1]}",
                     source,
                 )
             check_names(entries.values, allowed, "name used here", source)
-        else:
-            texts = {name: text for name, text in texts.items() if name in allowed}
-        values = {n: _within_limits(n, text, source, named) for n, text in texts.items()}
+        for name, text in entries.values.items():
+            if text and name in allowed:
+                values[name] = _within_limits(name, text, source, named)
     given, named = changes_in_base(_set_pairs(args.set, allowed), "--set", named, args.scene)
     for name, text in given.items():
         center = values[name].nominal if name in values else None
@@ -497,19 +484,15 @@ def one_scene(args: argparse.Namespace) -> Scene:
     return scene
 
 
-ONE_EXPECTED = "expected one scene: a file, or --sample 1, 2 or 3"
-
-
 def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
     """The scene that file or sample name, with what ``--set`` and ``--move-contact`` change; None
     where neither is given. How its entries were understood is said on stderr, and what of the
     answer is ``based`` on other units than the scene's. Raises UserError."""
     if source_of(args) is None:
         return None
-    units = getattr(args, "units", None)
-    scene = Scene.from_toml(args.scene, units) if args.scene else sample(args.sample)
-    changes = settings(args.set, units=scene.units)
-    scene = scene.replaced(changes) if changes else scene
+    scene = Scene.from_toml(args.scene, args.units) if args.scene else sample(args.sample)
+    if changes := settings(args.set, units=scene.units):
+        scene = scene.replaced(changes)
     note_remarks(scene.entries, based)
     if (move := getattr(args, "move_contact", None)) is None:
         return scene
@@ -518,10 +501,10 @@ def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
     parts = [part.strip() for part in move.split(",")]
     if len(parts) != 2:
         raise UserError(f"--move-contact {move}: expected DX,DY, such as 1,-0.5")
-    given = dict(zip(("CX", "CY"), parts, strict=True))
+    given = {"CX": parts[0], "CY": parts[1]}
     texts, _ = in_base_units(given, "--move-contact", scene.units)
-    dx, dy = (_double(name, texts[name], "--move-contact") for name in ("CX", "CY"))
-    return scene.replaced(moved_texts(scene, dx, dy))
+    moves = (_double(name, text, "--move-contact") for name, text in texts.items())
+    return scene.replaced(moved_texts(scene, *moves))
 
 
 # --- values within limits, as bounds and figure take them ---------------------------------------
@@ -548,7 +531,7 @@ EXPLORED = (
 
 
 def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
-    """The inputs the options describe, in base units, and the system they were written in. Raises
+    """What the options describe, in base units, and the system it was written in. Raises
     UserError."""
     from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
 
@@ -568,8 +551,7 @@ def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
 
 
 def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = False) -> Bounds:
-    """The bounds the options ask for, in the units the inputs came in; with progress on a terminal.
-    Raises UserError."""
+    """The bounds the options ask for, in the units of the inputs. Raises UserError."""
     from ..progress import progress
     from ..uncertainty.bounds import bounds
     from ..uncertainty.boundsunits import in_units

@@ -269,7 +269,9 @@ class _CsvWriter(Writer):
 
         join, fields = compute.binary_join_element_wise, []
         for array in arrays:
-            held = bytes(array.buffers()[2] or b"")  # a search of a regex in every text takes longer
+            held = bytes(
+                array.buffers()[2] or b""
+            )  # a search of a regex in every text takes longer
             if any(mark.encode() in held for mark in (self._delimiter, '"', "\r", "\n")):
                 ends = compute.match_substring_regex(array, self._ends)
                 doubled = join('"', compute.replace_substring(array, '"', '""'), '"', "")
