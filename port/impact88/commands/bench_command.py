@@ -63,15 +63,13 @@ ARGUMENTS = (
 
 def main(arguments: argparse.Namespace) -> int:
     """Measure, and print tables or JSON."""
-    for picture in (arguments.figure, arguments.errors_figure):
-        if picture:
-            from ..figures.canvas import check_ending
+    from ..figures.canvas import check_ending, save
 
-            check_ending(picture)
+    for picture in filter(None, (arguments.figure, arguments.errors_figure)):
+        check_ending(picture)
     if arguments.paths or arguments.sizes or arguments.files:
         return _skipping(arguments)
     from ..bench import figure, measure, tables
-    from ..figures.canvas import save
     from ..progress import progress
 
     library("mpmath", "bench", "the reference")
@@ -81,14 +79,9 @@ def main(arguments: argparse.Namespace) -> int:
     populations = populations or list(BENCHMARK)
     total = measure.steps(populations, arguments.repeats)
     with progress(total, "bench") as meter:
-        rows = measure.measure(
-            populations,
-            arguments.scenes,
-            arguments.seed,
-            arguments.repeats,
-            meter,
-            QUICK if arguments.quick else 1.0,
-        )
+        share = QUICK if arguments.quick else 1.0
+        sizes = (arguments.scenes, arguments.seed, arguments.repeats)
+        rows = measure.measure(populations, *sizes, meter, share)
     few = min(arguments.scenes, COMPONENT_SCENES)
     by_result = measure.components(populations, few, arguments.seed)
     if arguments.figure:

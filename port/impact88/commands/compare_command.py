@@ -78,11 +78,7 @@ def main(args: argparse.Namespace) -> int:
     options.show(args, "compare", comparison.as_json, lambda: _lines(comparison))
     for line in _talk(comparison):
         note("compare", line)
-    return int(
-        comparison.differing > 0
-        or bool(comparison.bad)
-        or (args.strict and bool(comparison.silent))
-    )
+    return int(bool(comparison.differing or comparison.bad or (args.strict and comparison.silent)))
 
 
 def _talk(comparison: Comparison) -> Iterator[str]:
@@ -91,9 +87,7 @@ def _talk(comparison: Comparison) -> Iterator[str]:
     if len(comparison.bad) > SHOWN:
         yield f"and {len(comparison.bad) - SHOWN} more"
     for name, meant in list(comparison.unknown.items())[:SHOWN]:
-        hint = (
-            f"; did you mean {meant}? (a unit stands in brackets: {meant} [mph])" if meant else ""
-        )
+        hint = f"; did you mean {meant}? (a unit stands in brackets: {meant} [mph])" * bool(meant)
         yield f"column {name} is not recognised{hint}"
     if len(comparison.unknown) > SHOWN:
         yield f"and {len(comparison.unknown) - SHOWN} more columns are not recognised"
@@ -107,8 +101,7 @@ def _talk(comparison: Comparison) -> Iterator[str]:
 
 
 def _lines(comparison: Comparison) -> Iterator[str]:
-    yield comparison.summary.partition("; ")[0]
-    yield ""
+    yield f"{comparison.summary.partition('; ')[0]}\n"
     yield (
         "result  compared  to the double  to digits claimed  as elimination      not  "
         "largest difference"
@@ -121,23 +114,20 @@ def _lines(comparison: Comparison) -> Iterator[str]:
     yield "(difference relative to the scene's largest velocity, spin or energy)"
     loose = comparison.elimination
     if loose.rows:
-        yield ""
         lost = max(0, round(math.log10(max(loose.worst_relative, DOUBLE) / DOUBLE)))
-        yield f"{loose.rows} rows agree only as closely as plain elimination in double can there;"
+        yield f"\n{loose.rows} rows agree only as closely as plain elimination in double can there;"
         yield (
             f"the worst, row {loose.worst_row}, has lost {lost} of 16 digits (the best of programs "
             f"has condition {loose.worst_condition:.2g} there)"
         )
     if comparison.causes:
-        yield ""
-        yield "rows that disagree, by likely cause:"
+        yield "\nrows that disagree, by likely cause:"
         for cause, count in comparison.causes.most_common():
             yield f"  {count:>7}  {cause}"
         yield from _evidence(comparison)
         yield from _equations(comparison)
     if comparison.differing:
-        yield ""
-        yield "worst first:"
+        yield "\nworst first:"
         for cell in comparison.worst:
             place = f"row {cell.row}" + (f" (line {cell.line})" if cell.line else "")
             name = f", id {shown(cell.id, 40)}" if cell.id else ""
@@ -146,16 +136,14 @@ def _lines(comparison: Comparison) -> Iterator[str]:
                 f"off by {cell.relative:.2g}; {cell.cause}"
             )
     for reason, skipped in comparison.not_compared.items():
-        yield ""
-        yield f"{skipped.rows} rows not compared: {reason}"
+        yield f"\n{skipped.rows} rows not compared: {reason}"
 
 
 def _evidence(comparison: Comparison) -> Iterator[str]:
     """How many rows bear out each cause that is a program's, and what would do the same."""
     for cause in comparison.evidence:
-        yield ""
         yield (
-            f"{cause.says}: explains {cause.explains} of {cause.disagreeing} rows that disagree, "
+            f"\n{cause.says}: explains {cause.explains} of {cause.disagreeing} rows that disagree, "
             f"gives {cause.fits} of {cause.agreeing} that agree (of the rows examined)"
         )
         for says, row in cause.parts.items():
@@ -168,10 +156,8 @@ def _equations(comparison: Comparison) -> Iterator[str]:
     """Which of Equations 13 to 18 their own results violate."""
     broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
     if broken:
-        yield ""
-        yield "equations that their final velocities violate:"
+        yield "\nequations that their final velocities violate:"
         for number, (checked, violated) in broken.items():
             yield f"  {number} ({EQUATIONS[number]}): in {violated} of {checked} rows that disagree"
     elif comparison.equations:
-        yield ""
-        yield "their final velocities violate none of Equations 13 to 18"
+        yield "\ntheir final velocities violate none of Equations 13 to 18"

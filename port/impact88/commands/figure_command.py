@@ -119,20 +119,21 @@ def _drawn(args: argparse.Namespace) -> Drawing:
 def _barrier(args: argparse.Namespace) -> Drawing:
     """A vehicle against a barrier, its approach and its rebound."""
     known, units = options.known_values(args, (*VEHICLE, "M"))
-    absent = [name for name in VEHICLE if name not in known]
-    if absent:
+    if absent := [name for name in VEHICLE if name not in known]:
         raise UserError(missing(absent), args.scene)
     found = barrier(known, ("VAX", "VAY", "WAF", "STATUS"))
     result = {name: value.item() for name, value in found.items()}
-    still = {"VBX": 0.0, "VBY": 0.0, "WBF": 0.0}
     # as heavy as a drawing needs it: an infinite mass has no outline
     wall = {"MB": 1e9 * known["MA"], "IB": 1e9 * known["IA"]}
-    scene = {**BARRIER, **known, **wall}
-    outlines = {}
-    if args.scene and args.scene != "-":
-        outlines = entries_in(args.scene, args.units, True).outlines
+    sizes = (
+        entries_in(args.scene, args.units, True).outlines if args.scene not in (None, "-") else {}
+    )
     return scene_drawing(
-        scene, result | still, title="Barrier", units=system_of(units), outlines=outlines
+        {**BARRIER, **known, **wall},
+        {**result, "VBX": 0.0, "VBY": 0.0, "WBF": 0.0},
+        title="Barrier",
+        units=system_of(units),
+        outlines=sizes,
     )
 
 
@@ -145,12 +146,8 @@ def _swept(args: argparse.Namespace) -> Drawing:
     if len(ranges) != 1:
         raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
     ((name, run),) = ranges.items()
-    outputs = options.names_given(args.outputs, tuple(RESULTS), "--outputs") or [
-        "LOSS",
-        "DVA",
-        "DVB",
-    ]
-    return charts.swept(scene, name, run.values(), outputs)
+    outputs = options.names_given(args.outputs, tuple(RESULTS), "--outputs")
+    return charts.swept(scene, name, run.values(), outputs or ["LOSS", "DVA", "DVB"])
 
 
 def solved(scene: Scene) -> dict[str, Any]:

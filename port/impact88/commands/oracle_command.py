@@ -83,17 +83,18 @@ def main(args: argparse.Namespace) -> int:
         sys.stdout.writelines(kit.flat(made))
         return 0
     batches: Iterable[Iterator[dict[str, Any]]]
-    batches = (answer(batch, reference) for batch in _batches(args.scenes, args.units))
     if wanted:
         batches = [vectors.vectors(args.vectors, args.seed, reference, args.only)]
-    answered = refused = 0
+    else:
+        batches = (answer(batch, reference) for batch in _batches(args.scenes, args.units))
+    total = refused = 0
     for found in batches:
         for line in found:
+            total += 1
             refused += "error" in line
-            answered += "error" not in line
             print(json.dumps(line, ensure_ascii=False))
         sys.stdout.flush()
-    if not answered:
+    if refused == total:
         raise UserError(
             f"no line could be used ({refused} refused)"
             if refused
@@ -107,8 +108,7 @@ def _batches(path: str, units: str | None) -> Iterator[list[Request]]:
     is answered line by line, a file in larger batches."""
     from ..checking.oracle import BATCH, LONGEST_LINE
 
-    number = 0
-    rest = ""
+    number, rest = 0, ""
     with open_bytes(path) as source:
         encoding = encoding_of(source.peek(3)[:3])
         name = "utf-8-sig" if encoding == "utf-8" else encoding
@@ -123,11 +123,9 @@ def _batches(path: str, units: str | None) -> Iterator[list[Request]]:
                     "characters; expected one JSON object a line",
                     called(path),
                 )
-            batch = []
-            for line in lines:
-                number += 1
-                if text := line.strip():
-                    batch.append(Request(number, text, units))
+            numbered = enumerate(map(str.strip, lines), number + 1)
+            batch = [Request(at, text, units) for at, text in numbered if text]
+            number += len(lines)
             for at in range(0, len(batch), BATCH):
                 yield batch[at : at + BATCH]
             if not arrived:

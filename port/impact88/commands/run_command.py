@@ -15,8 +15,9 @@ exit status: 0 the program ended, ZERO DETERMINANT included; 1 an Applesoft erro
 
 import argparse
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack
+from itertools import chain, repeat
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
 from ..errors import UserError
@@ -69,16 +70,14 @@ def chosen_scene(args: argparse.Namespace) -> Scene | None:
     if (scene := options.scene_given(args, "the program's page")) is not None:
         return scene
     changes = options.settings(args.set, units=args.units)
-    given = [name for name in VELOCITIES if name in changes]
-    if not given:
-        return None
-    if len(given) < len(VELOCITIES):
-        missing = " ".join(name for name in VELOCITIES if name not in changes)
+    missing = [name for name in VELOCITIES if name not in changes]
+    if missing and len(missing) < len(VELOCITIES):
+        given = " ".join(name for name in VELOCITIES if name in changes)
         raise UserError(
-            f"--set gives {' '.join(given)} but not {missing}; expected all six velocities, "
+            f"--set gives {given} but not {' '.join(missing)}; expected all six velocities, "
             "or none of them to be asked for, or a scene"
         )
-    return Scene(published_data() | changes, source="--set")
+    return None if missing else Scene(published_data() | changes, source="--set")
 
 
 def check_slot(args: argparse.Namespace) -> None:
@@ -96,27 +95,27 @@ def main(args: argparse.Namespace) -> int:
     scene = chosen_scene(args)
     if args.listing:
         return _run_copy(args, scene)
-    data: dict[str, str] | Scene = scene or published_data() | options.settings(
-        args.set, units=args.units
-    )
-    replied = scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")
-    replied.check_typed()
+    data = scene or published_data() | options.settings(args.set, units=args.units)
+    (scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")).check_typed()
     output: list[str] = []
-    show: Callable[[str], object] = output.append if args.json else sys.stdout.write
-    if not (args.json or args.raw):
-        show = lambda text: sys.stdout.write(page(text))  # noqa: E731
-    if args.json and scene is None and sys.stdin.isatty():
-        show = _prompting(output)
+    asking = args.json and scene is None and sys.stdin.isatty()
+
+    def show(text: str) -> None:
+        if args.json:
+            output.append(text)
+            if asking:  # the person at the terminal sees the prompts
+                print(text, end="", file=sys.stderr, flush=True)
+        else:
+            sys.stdout.write(text if args.raw else page(text))
+
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
         if scene is not None:
-            replies = iter(scene.keyboard())
-            console = Console(lambda: next(replies, None), show, printer, dos=not args.no_dos)
+            replies: Iterator[str | None] = chain(scene.keyboard(), repeat(None))
+            echo = True
         else:
-            echo = args.json or not sys.stdin.isatty()
-            console = Console(
-                _typed_lines().__next__, show, printer, dos=not args.no_dos, echo=echo
-            )
+            replies, echo = _typed_lines(), args.json or not sys.stdin.isatty()
+        console = Console(replies.__next__, show, printer, dos=not args.no_dos, echo=echo)
         try:
             run = start(data, console, args.arithmetic, str(args.slot))
         except EndOfInput:
@@ -124,9 +123,7 @@ def main(args: argparse.Namespace) -> int:
                 print(flush=True)
             raise UserError(
                 "the input ended at a prompt; expected two lines of three numbers: "
-                + ",".join(VELOCITIES[:3])
-                + " and "
-                + ",".join(VELOCITIES[3:])
+                f"{','.join(VELOCITIES[:3])} and {','.join(VELOCITIES[3:])}"
             ) from None
     if args.json:
         _print_run(run._replace(printout="".join(output)))
@@ -161,14 +158,3 @@ def _typed_lines() -> Iterator[str | None]:
     for _ in range(MOST_REPLIES):
         yield typed_line()
     raise UserError(f"the program refused {MOST_REPLIES:,} replies; expected numbers")
-
-
-def _prompting(output: list[str]) -> Callable[[str], object]:
-    """Keep the output, and let the person at the terminal see the prompts on stderr."""
-
-    def show(text: str) -> None:
-        output.append(text)
-        sys.stderr.write(text)
-        sys.stderr.flush()
-
-    return show

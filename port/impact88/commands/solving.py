@@ -2,8 +2,8 @@
 
 import argparse
 import csv
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from itertools import chain
 from typing import Any
 
@@ -22,7 +22,7 @@ from ..scene import VALUE_LIMIT, Entries, Scene, entries_in, sample
 from ..status import Status
 from ..stderr import note
 from ..tables.overlap import ahead, behind, may_wait
-from ..tables.rows import BadCell, Reader, Rows, check_scene_columns, filled, numbers, point_masses
+from ..tables.rows import BadCell, Rows, check_scene_columns, filled, numbers, point_masses
 from ..tables.sweep import read_ranges, read_sweep
 from ..tables.table import format_of, open_reader, open_writer
 from ..tables.tableunits import TableUnits
@@ -34,76 +34,66 @@ SHOWN = 20
 """Bad rows listed on stderr when no file takes them all."""
 
 
-def _sweep(
-    arguments: argparse.Namespace, texts: Mapping[str, str]
-) -> AbstractContextManager[Reader]:
-    """The table that a scene makes, swept or as it is, in the file's units."""
-    path = arguments.cases
-    scene = Scene.from_toml(path, arguments.units) if path else sample(arguments.sample)
-    options.note_remarks(scene.entries)
-    return read_sweep(scene, read_ranges(texts, scene.units), scene.units)
-
-
 def solve_table(arguments: argparse.Namespace) -> int:
     """Solve a table. Returns 1 when a row is bad or ended with an Applesoft error."""
-    if bool(arguments.cases) == bool(arguments.sample):
+    path, sweep = arguments.cases, arguments.sweep
+    if bool(path) == bool(arguments.sample):
         raise UserError("expected one table or scene: CASES, or --sample 1, 2 or 3")
-    swept = arguments.cases is None or arguments.cases.lower().endswith(".toml")
-    if arguments.sweep and not swept:
+    one_scene = path is None or path.lower().endswith(".toml")
+    if sweep and not one_scene:
         raise UserError("--sweep is for one scene; expected CASES to be a scene file (.toml)")
-    source_format = "csv" if swept else format_of(arguments.cases, arguments.form)
+    source_format = "csv" if one_scene else format_of(path, arguments.form)
     to = arguments.to or (source_format if arguments.output == "-" else None)
     result_format = format_of(arguments.output, to)
-    kinds: dict[str, type[_Float64] | type[_Applesoft]]
-    kinds = {"float64": _Float64, "applesoft": _Applesoft}
-    arithmetic = kinds[arguments.arithmetic](arguments.outputs)
+    kind: type[_Float64 | _Applesoft]
+    kind = _Float64 if arguments.arithmetic == "float64" else _Applesoft
+    arithmetic = kind(arguments.outputs)
     with ExitStack() as stack:
-        source = stack.enter_context(
-            _sweep(arguments, options.sweeps(arguments.sweep))
-            if swept
-            else open_reader(arguments.cases, source_format, arguments.encoding)
-        )
+        if one_scene:
+            scene = Scene.from_toml(path, arguments.units) if path else sample(arguments.sample)
+            options.note_remarks(scene.entries)
+            ranges = read_ranges(options.sweeps(sweep), scene.units)
+            source = stack.enter_context(read_sweep(scene, ranges, scene.units))
+        else:
+            source = stack.enter_context(open_reader(path, source_format, arguments.encoding))
         blocks = iter(source)
         first = next(blocks, None)
         blocks = chain([] if first is None else [first], blocks)
         filling = _filling(arguments)
         known = arguments.units or (filling.units if filling else None)
-        units = TableUnits(source.names, known, first, where=called(arguments.cases or "--sample"))
+        units = TableUnits(source.names, known, first, where=called(path or "--sample"))
         given = options.settings(arguments.set, others=("inf",), units=units.system.name or None)
         if filling:
             given = {n: t for n, t in filling.values.items() if n not in source.names} | given
         points = given.get("M", "4" if "M" in source.names else "6") == "4"
         optional = ["M", *(UNUSED_BY_POINTS if points else ())]
         check_scene_columns(source.names, list(given), optional)
-        if arguments.sweep:
-            wanted = options.sweeps(arguments.sweep)  # the rest is the same in every row
+        if sweep:
+            wanted = options.sweeps(sweep)  # the rest is the same in every row
             source.names = [name for name in source.names if name in wanted]
         elif units.strict:
             source.names = units.headings(source.names)
-        writer = stack.enter_context(
-            open_writer(
-                arguments.output,
-                result_format,
-                source,
-                units.headings(arithmetic.columns),
-                bool(arguments.sweep) or not arguments.results_only,
-            )
-        )
+        headings = units.headings(arithmetic.columns)
+        scene_too = bool(sweep) or not arguments.results_only
+        writer = open_writer(arguments.output, result_format, source, headings, scene_too)
+        write = stack.enter_context(writer).write
         complain = stack.enter_context(_complaints(arguments.errors))
-        complaints = 0
         meter = stack.enter_context(progress(source.total, "solve", "B"))
-        write = writer.write
         if not may_wait(arguments.output):
-            write = stack.enter_context(behind(writer.write))
-        if not may_wait(arguments.cases or ""):
+            write = stack.enter_context(behind(write))
+        if not may_wait(path or ""):
             blocks = stack.enter_context(ahead(blocks))
-        position = 0
+        complaints = position = 0
         for rows in blocks:
             for name, text in given.items():
                 rows.columns.pop(name, None)  # and with it the heading of another unit
                 rows.columns[name] = [text] * rows.count
                 rows.others.pop(name, None)
-            results = arithmetic(_complete(rows), units.given(given))
+            # a name without a column has empty cells: a complaint where a row looks at them
+            nothing = [None] * rows.count
+            rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
+            rows.columns["M"] = filled(rows.columns["M"], DEFAULT_M)
+            results = arithmetic(rows, units.given(given))
             write(rows, units.shown(results))
             complaints = complain(rows.bad)
             now = source.position()
@@ -176,15 +166,6 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
         ]
 
 
-def _complete(rows: Rows) -> Rows:
-    """Rows with a column for every scene name, of empty cells where there is none: a complaint
-    where a row looks at them. M is 6 where it is empty."""
-    nothing = [None] * rows.count
-    rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
-    rows.columns["M"] = filled(rows.columns["M"], DEFAULT_M)
-    return rows
-
-
 class _Applesoft:
     """The listing's own arithmetic, `impact88.replay`."""
 
@@ -218,7 +199,7 @@ class _Applesoft:
         except (ValueError, TypeError):  # UserError, or cells of several types
             replayed = None
         if replayed is None:
-            unread |= _complain(rows, columns, unread)
+            _complain(rows, columns, unread)
             for column in columns.values():
                 for index in unread:
                     column[index] = "6"
@@ -247,28 +228,22 @@ def _texts(name: str, column: Any, units: TableUnits) -> list[Any]:
     return texts
 
 
-def _complain(rows: Rows, columns: dict[str, list[Any]], unread: set[int]) -> set[int]:
-    """Add what Applesoft cannot read to ``rows.bad``, the first of every row not yet ``unread``;
-    return those rows."""
-    refused: set[int] = set()
+def _complain(rows: Rows, columns: dict[str, list[Any]], unread: set[int]) -> None:
+    """Add what Applesoft cannot read to ``rows.bad``, the first of every row not yet ``unread``."""
     for name, column in columns.items():
         for index, text in enumerate(column):
-            reason = _unreadable(text)
-            if reason is not None and index not in unread and index not in refused:
-                refused.add(index)
-                rows.bad.append(rows.cell(index, name, reason))
-    return refused
-
-
-def _unreadable(text: Any) -> str | None:
-    """Why Applesoft would not take ``text`` for a number, or None."""
-    if text is None or text == "":
-        return "is empty; expected a number"
-    if not (isinstance(text, str) and is_number(text)):
-        return f"{quoted(text)} is not a number that Applesoft reads"
-    if len(text) > VALUE_LIMIT:
-        return f"has more than {VALUE_LIMIT} characters"
-    return None
+            if index in unread:
+                continue
+            if text is None or text == "":
+                reason = "is empty; expected a number"
+            elif not (isinstance(text, str) and is_number(text)):
+                reason = f"{quoted(text)} is not a number that Applesoft reads"
+            elif len(text) > VALUE_LIMIT:
+                reason = f"has more than {VALUE_LIMIT} characters"
+            else:
+                continue
+            unread.add(index)
+            rows.bad.append(rows.cell(index, name, reason))
 
 
 @contextmanager

@@ -98,11 +98,11 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
     changes = options.settings(args.set)
     asked = args.scenes or args.captures is not None or args.random or args.programs
     for number in [args.sample] if args.sample else () if asked else SAMPLES:
+        job: Job = partial(hearing.hear_sample, number=number)
         if changes:
             scene = sample(number).replaced(changes)
-            jobs.append(partial(hearing.hear_scene, name=f"sample {number}", scene=scene))
-        else:
-            jobs.append(partial(hearing.hear_sample, number=number))
+            job = partial(hearing.hear_scene, name=f"sample {number}", scene=scene)
+        jobs.append(job)
     for path in args.scenes:
         given = Scene.from_toml(path, args.units)
         scene = given.replaced(options.settings(args.set, units=given.units))
@@ -130,20 +130,15 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
 def _report(image: Image, heard: list[Heard], whole: dict[str, Any]) -> Iterator[str]:
     wrong = [case for case in heard if case.differences]
     for case in wrong[:SHOWN]:
-        yield f"{case.kind}: {case.name}"
         lines = [line for difference in case.differences for line in difference.lines()]
-        yield from (f"  {line}" for line in lines[:SHOWN_LINES])
-        if len(lines) > SHOWN_LINES:
-            yield f"  and {len(lines) - SHOWN_LINES} lines more"
-        yield ""
+        yield "\n  ".join([f"{case.kind}: {case.name}", *lines[:SHOWN_LINES]])
+        yield f"  and {len(lines) - SHOWN_LINES} lines more\n" if len(lines) > SHOWN_LINES else ""
     if len(wrong) > SHOWN:
-        yield f"and {len(wrong) - SHOWN} cases more with differences"
-        yield ""
+        yield f"and {len(wrong) - SHOWN} cases more with differences\n"
     width = max(map(len, whole["comparisons"]))
     for name, tally in whole["comparisons"].items():
         yield f"{name:<{width}}  {tally['right']:>6} of {tally['total']:>6} without a difference"
-    yield ""
-    yield f"ROM SHA-1         {image.sha1} ({whole['rom']})"
+    yield f"\nROM SHA-1         {image.sha1} ({whole['rom']})"
     for name, text in whole["versions"].items():
         yield f"{name:<17} {text}"
     yield f"time              {whole['seconds']} s"
