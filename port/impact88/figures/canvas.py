@@ -21,11 +21,8 @@ DOTS_PER_INCH = 300
 
 
 def import_matplotlib() -> None:
-    """Import matplotlib without the user's settings, unless it has been imported already.
-
-    On import it reads MPLBACKEND and a ``matplotlibrc``, and fails or prints on stderr over errors
-    in them. Raises UserError naming the extra to install when it is missing.
-    """
+    """Import matplotlib without the user's settings (MPLBACKEND, ``matplotlibrc``), over errors in
+    which it fails or prints on stderr. Raises UserError where it is missing."""
     if sys.modules.get("matplotlib") is not None:
         return
     before = dict(os.environ)
@@ -102,11 +99,8 @@ def check_ending(path: str) -> str:
 
 
 def save(drawing: Drawing, path: str) -> None:
-    """Write a drawing; the format is the ending of ``path``. Title and description go with it in
-    every format. SVG needs no matplotlib.
-
-    Raises UserError for another ending, a place that cannot be written to, missing matplotlib.
-    """
+    """Write a drawing, title and description with it; the format is the ending of ``path``. Raises
+    UserError for another, a place that cannot be written to, or missing matplotlib."""
     ending = check_ending(path)
     if ending == "svg":
         with replacing(path) as file:

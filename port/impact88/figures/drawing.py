@@ -1,10 +1,8 @@
-"""Drawings as lists of paths and texts on paper.
+"""Drawings as lists of paths and texts on paper, which `svg` and `canvas` only copy.
 
 Points are complex numbers, x + iy in millimetres, y upwards; a page reaches from 0 at its top left
-corner down to -height, so that it is laid out from the top. What a drawing shows is decided once,
-here and above; writing it as SVG (`figures.svg`) or with matplotlib (`figures.canvas`) only copies
-it. Texts are measured with the widths of DejaVu Sans, matplotlib's font and as wide as any likely
-to stand in for it, so texts that do not overlap here overlap nowhere.
+corner down to -height. Texts are measured with the widths of DejaVu Sans, matplotlib's font and as
+wide as any likely to stand in for it, so texts that do not overlap here overlap nowhere.
 """
 
 from __future__ import annotations
@@ -115,18 +113,17 @@ class Box(NamedTuple):
     def corners(self) -> tuple[complex, ...]:
         """From the lower left one counterclockwise."""
         left, bottom, right, top = self
-        return tuple(
-            complex(x, y) for x, y in ((left, bottom), (right, bottom), (right, top), (left, top))
+        return (
+            complex(left, bottom),
+            complex(right, bottom),
+            complex(right, top),
+            complex(left, top),
         )
 
     def overlaps(self, other: Box) -> bool:
         """Whether the two share area."""
-        return (
-            self.left < other.right
-            and other.left < self.right
-            and self.bottom < other.top
-            and other.bottom < self.top
-        )
+        beside = self.left >= other.right or other.left >= self.right
+        return not beside and self.bottom < other.top and other.bottom < self.top
 
 
 class View(NamedTuple):
@@ -140,7 +137,7 @@ class View(NamedTuple):
 
     def all(self, points: Iterable[complex]) -> tuple[complex, ...]:
         """Several points on paper."""
-        return tuple(self.origin + self.scale * point for point in points)
+        return tuple(self(point) for point in points)
 
 
 def check_drawable(values: Iterable[float], name: str) -> None:

@@ -1,21 +1,15 @@
 """The scene from above: what is where, worked out once for every way of drawing it.
 
-Axes and signs are the listing's (line 330 and `program.listing`): with D1 = DB sin(TB + PB),
-D2 = DB cos(TB + PB), D3 = DA sin(TA + PA), D4 = DA cos(TA + PA) the contact point lies at
-(-D4, -D3) from A's center of gravity and at (D2, D1) from B's; the normal n = (cos GA, sin GA)
-points to A's side, the tangent is t = (-sin GA, cos GA), and the impulse drawn acts on A, its
-opposite on B. The contact point is the origin.
+The contact point is the origin, axes and signs are the listing's (line 330): it lies at -DA
+(cos, sin)(TA + PA) from A's center of gravity and at DB (cos, sin)(TB + PB) from B's; the normal
+n = (cos GA, sin GA) points to A's side, the tangent is t = (-sin GA, cos GA), and the impulse acts
+on A. So A's front looks along TA + 180 degrees, B's along TB, and on either vehicle the contact
+point stands at the angle PA or PB from the front: all of Table 1 reads so.
 
-So A's front looks along TA + 180 degrees and B's along TB, and on either vehicle the contact point
-stands at the angle PA or PB from the front: all of Table 1 reads so (every A has TA = 0 and drives
-in -x; the struck rears of collisions 3 to 5 have PB = 168 ... 171).
-
-A vehicle is drawn as measured where its length and width are known (LA BA, LB BB), else as the
-rectangle that has its radius of gyration when mass lies evenly on it, L² + W² = 12 I/m, at L/W =
-2.6, a passenger car's; then lengthened or widened where the contact point would lie outside. A
-vehicle 10,000 times as heavy as the other and at rest is drawn as a wall behind the contact plane;
-point masses (both distances 0) are drawn moved apart along n until they touch. What reaches beyond
-the contact plane is drawn as crushed, dashed.
+A vehicle is drawn as measured (LA BA, LB BB), else as the uniform rectangle of its radius of
+gyration, L² + W² = 12 I/m, at L/W = 2.6, a passenger car's, lengthened or widened where the contact
+point would lie outside. One 10,000 times as heavy as the other and at rest is a wall; point masses
+are moved apart along n until they touch. What reaches beyond the contact plane is crushed.
 """
 
 import math
@@ -23,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from ..names import FINAL_VELOCITIES
 from ..scene import numbers_of
 from ..status import sentences
 from .drawing import check_drawable, degrees, unit
@@ -46,12 +41,9 @@ class Motion(NamedTuple):
 
 
 class Vehicle(NamedTuple):
-    """One vehicle in plan, in the scene's units around the contact point; points are x + iy.
-
-    ``center``: center of gravity as drawn; ``front``: unit vector; ``outline``: four corners, the
-    front's two first; ``kept``: the outline on its own side of the contact plane; ``wall``: too
-    heavy to be a vehicle.
-    """
+    """One vehicle in plan, in the scene's units; points are x + iy. ``center``: of gravity;
+    ``front``: unit vector; ``outline``: four corners, the front's two first; ``kept``: the outline
+    on its own side of the contact plane; ``wall``: too heavy to be a vehicle."""
 
     name: str
     center: complex
@@ -104,12 +96,10 @@ class Plan(NamedTuple):
 def plan(
     scene: Any, result: Mapping[str, Any] | None = None, outlines: Mapping[str, float] | None = None
 ) -> Plan:
-    """Where everything is. ``scene`` gives the listing's names as texts or numbers; ``result`` has
-    VAX, VAY, VBX, VBY and, unless the scene has point masses, WAF and WBF; STATUS where known.
-
-    Without a result, or where it is not finite, there is nothing after the impact to show.
-    Raises UserError for a value that is not a finite number, or too large to draw.
-    """
+    """Where everything is. ``scene``: texts or numbers by the listing's names; ``result``: VAX,
+    VAY, VBX, VBY, WAF and WBF unless of point masses, STATUS where known; without it, or where it
+    is not finite, there is nothing after the impact. Raises UserError for a value that is not a
+    finite number, or too large to draw."""
     values, outlines = numbers_of(scene), outlines or {}
     for name, value in values.items():
         check_drawable([value], name)
@@ -119,7 +109,6 @@ def plan(
         "B": Motion(complex(values["VX"], values["VY"]), values["WB"]),
     }
     after = _finals(result or {})
-    # the contact point is at -D4, -D3 from A and at D2, D1 from B
     reach = {
         "A": -values["DA"] * unit(values["TA"] + values["PA"]),
         "B": values["DB"] * unit(values["TB"] + values["PB"]),
@@ -134,49 +123,35 @@ def plan(
         if apart:
             turned = front[name] * normal.conjugate()
             center = inward * (abs(turned.real) * length + abs(turned.imag) * width) / 2
+        corners = ((1, -1), (1, 1), (-1, 1), (-1, -1))
         outline = tuple(
-            center + front[name] * complex(i * length, j * width) / 2
-            for i, j in ((1, -1), (1, 1), (-1, 1), (-1, -1))
+            center + front[name] * complex(i * length, j * width) / 2 for i, j in corners
         )
         cut = _depth(center, inward) > 0.15 * width
+        kept = _clipped(outline, inward) if cut else outline
         heavy, light = (abs(values[f"M{which}"]) for which in (name, "B" if name == "A" else "A"))
-        vehicles.append(
-            Vehicle(
-                name,
-                center,
-                front[name],
-                length,
-                width,
-                outline,
-                _clipped(outline, inward) if cut else outline,
-                heavy >= WALL * light and before[name] == (0, 0),
-                before[name],
-                after.get(name),
-            )
-        )
+        wall = heavy >= WALL * light and before[name] == (0, 0)
+        motions = before[name], after.get(name)
+        size = length, width
+        vehicles.append(Vehicle(name, center, front[name], *size, outline, kept, wall, *motions))
     # momentum of the lighter vehicle: a wall's change of velocity has no digits left
     moved, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
     impulse = None if moved.change is None else sense * values[f"M{moved.name}"] * moved.change
     whole = {**values, **(result or {})}
-    return Plan(
-        (vehicles[0], vehicles[1]),
-        normal,
-        1j * normal,
-        impulse,
-        apart,
-        tuple(sentences(int(whole.get("STATUS") or 0), whole)),
-        values,
-        tuple(name for name in "AB" if f"L{name}" in outlines),
-    )
+    remarks = tuple(sentences(int(whole.get("STATUS") or 0), whole))
+    measured = tuple(name for name in "AB" if f"L{name}" in outlines)
+    both = vehicles[0], vehicles[1]
+    return Plan(both, normal, 1j * normal, impulse, apart, remarks, values, measured)
 
 
 def _finals(result: Mapping[str, Any]) -> dict[str, Motion]:
-    def number(name: str, default: float = math.nan) -> float:
-        value = result.get(name, default)
-        return default if value is None else float(value)
-
+    given = {n: float(result[n]) for n in FINAL_VELOCITIES if result.get(n) is not None}
     finals = {
-        v: Motion(complex(number(f"V{v}X"), number(f"V{v}Y")), number(f"W{v}F", 0.0)) for v in "AB"
+        v: Motion(
+            complex(given.get(f"V{v}X", math.nan), given.get(f"V{v}Y", math.nan)),
+            given.get(f"W{v}F", 0.0),
+        )
+        for v in "AB"
     }
     return finals if all(math.isfinite(motion.speed) for motion in finals.values()) else {}
 
@@ -201,15 +176,11 @@ def _sizes(
             lengths[name] = math.sqrt(square / (1 + PROPORTION**-2))
         elif distance:
             lengths[name] = 2.4 * abs(distance)
-    usual = max(lengths.values(), default=1.0)
     sizes = {}
     for name in "AB":
-        length = lengths.get(name, usual)
-        contact = reach[name] * front[name].conjugate()
-        sizes[name] = (
-            max(length, 2 * abs(contact.real)),
-            max(length / PROPORTION, 2 * abs(contact.imag)),
-        )
+        length = lengths.get(name, max(lengths.values(), default=1.0))
+        contact = 2 * reach[name] * front[name].conjugate()
+        sizes[name] = max(length, abs(contact.real)), max(length / PROPORTION, abs(contact.imag))
         if f"L{name}" in outlines:
             sizes[name] = (outlines[f"L{name}"], outlines[f"B{name}"])
     return sizes

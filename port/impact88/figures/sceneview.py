@@ -1,7 +1,5 @@
 """The scene from above, drawn: vehicles, contact plane, velocities, spins, impulse, key and table.
-
-Where everything is comes from `figures.scenegeometry`; here it is put on paper.
-"""
+Where everything is comes from `scenegeometry`."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -41,19 +39,15 @@ def scene_drawing(
     units: System | None = None,
     outlines: Mapping[str, float] | None = None,
 ) -> Drawing:
-    """The scene from above, with key and table, ``width`` mm wide. Arguments as `plan`.
-
-    Velocities before the impact end at the center of gravity, those after it start there, in one
-    scale; both vehicles' spins turn around their centers.
-    """
+    """The scene from above, with key and table, ``width`` mm wide; arguments as `plan`. Velocities
+    before the impact end at the center of gravity, those after it start there, in one scale."""
     shapes, units = planned(scene, result, units, outlines)
     drawing = Drawing(width, title, description(shapes, units))
-    y = drawing.heading()
-    field = _Field(shapes, width, y)
+    field = _Field(shapes, width, drawing.heading())
     field.draw(drawing)
     y = _key(drawing, field, field.frame.bottom - ROW, units) - 2.4
     drawing.add(Path((2 + 1j * y, width - 2 + 1j * y), d.GREY, 0.2))
-    y = table_and_notes(drawing, shapes, y, units)
+    table_and_notes(drawing, shapes, y, units)
     return drawing
 
 
@@ -94,9 +88,8 @@ class _Field:
         self.speed = max(motion.speed for motion in motions)
         self.size = max(vehicle.length for vehicle in shapes.bodies or shapes.vehicles)
         self.per_speed = 0.95 * self.size / self.speed if self.speed else 0.0
-        self.half = 0.62 * self.size * shapes.tangent
-        """From the contact point to the end of the contact plane."""
-        self.force = None
+        self.half = 0.62 * self.size * shapes.tangent  # to the end of the contact plane
+        self.force = 0j
         if shapes.impulse:
             self.force = 0.5 * self.size * shapes.impulse / abs(shapes.impulse)
         box = d.extent(self._points())
@@ -116,7 +109,7 @@ class _Field:
             else:
                 points += vehicle.outline
                 points += [end for ends in self._arrows(vehicle).values() for end in ends]
-        return [*points, self.force, -self.force] if self.force else points
+        return [*points, self.force, -self.force]
 
     def _face(self, vehicle: Vehicle) -> list[complex]:
         """Four corners of the strip a wall is drawn as."""
@@ -177,9 +170,8 @@ class _Field:
         drawing.add(name_label(vehicle, (third + fourth) / 2, fourth - first))
 
     def _draw_plane(self, drawing: Drawing) -> None:
-        drawing.add(
-            Path(self.at.all([-self.half, self.half]), d.BLACK, 0.3, PLANE, role="contact plane")
-        )
+        ends = self.at.all([-self.half, self.half])
+        drawing.add(Path(ends, d.BLACK, 0.3, PLANE, role="contact plane"))
         corner = 0.72 * self.half
         normal = corner + 0.28 * self.size * self.shapes.normal
         for name, end in (("n", normal), ("t", self.half)):
@@ -202,13 +194,9 @@ class _Field:
         for symbol, motion, radius, dash in turns:
             if motion is None or not abs(motion.spin) > 1e-4 * self.speed / self.size:
                 continue
-            drawing.add(
-                *d.turning_arrow(
-                    *(center, radius, motion.spin > 0, colour, 0.4, dash),
-                    opening=d.degrees(-vehicle.front),
-                    role=f"{vehicle.name} spin",
-                )
-            )
+            look = (colour, 0.4, dash, d.degrees(-vehicle.front))
+            role = f"{vehicle.name} spin"
+            drawing.add(*d.turning_arrow(center, radius, motion.spin > 0, *look, role=role))
             edge, text = center + radius * vehicle.front, f"{symbol}_{name}"
             drawing.add(Label(edge, vehicle.front, text, colour=colour, role=f"{text} label"))
         role = f"{vehicle.name} center"
@@ -216,7 +204,7 @@ class _Field:
 
     def _draw_impulse(self, drawing: Drawing) -> None:
         """The force on each vehicle, and from where on its clock it comes."""
-        if not self.force or not self.shapes.impulse:
+        if not self.shapes.impulse:
             return
         for vehicle in self.shapes.bodies:
             acted = vehicle.name == "A"
@@ -238,11 +226,8 @@ def name_label(vehicle: Vehicle, at: complex, towards: complex, size: float = 10
 def draw_axes(drawing: Drawing, frame: Box) -> None:
     """The x and y axes, in the corner of ``frame`` with the fewest lines."""
     side = 9.0
-    corners = [
-        complex(x, y)
-        for x in (frame.left, frame.right - side)
-        for y in (frame.bottom + 0.5, frame.top - side)
-    ]
+    lefts, bottoms = (frame.left, frame.right - side), (frame.bottom + 0.5, frame.top - side)
+    corners = [complex(x, y) for x in lefts for y in bottoms]
     boxes = [d.extent((corner, corner + side * (1 + 1j))) for corner in corners]
     ends = [path.points for path in drawing.paths() if path.stroke]
     crowd = [sum(box.overlaps(d.extent(points)) for points in ends) for box in boxes]
@@ -259,27 +244,20 @@ def draw_bodies(drawing: Drawing, vehicles: Sequence[Vehicle], at: View) -> None
     for vehicle in vehicles:
         drawing.add(Path(at.all(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
     for vehicle in vehicles:
-        colour, name = COLOURS[vehicle.name], vehicle.name
-
-        def line(
-            points: Sequence[complex],
-            width: float,
-            role: str,
-            dash: tuple[float, ...] = (),
-            colour: str = colour,
-        ) -> None:
-            drawing.add(Path(at.all(points), colour, width, dash, role=role))
-
-        if vehicle.kept != vehicle.outline:
-            line((*vehicle.outline, vehicle.outline[0]), 0.25, f"{name} whole", (0.7, 0.5))
-        line((*vehicle.kept, vehicle.kept[0]), 0.45, f"{name} outline")
+        name, whole, kept = vehicle.name, vehicle.outline, vehicle.kept
+        lines: list[tuple[tuple[complex, ...], float, tuple[float, ...], str]]
+        lines = [((*kept, kept[0]), 0.45, (), f"{name} outline")]
+        if kept != whole:
+            lines.insert(0, ((*whole, whole[0]), 0.25, (0.7, 0.5), f"{name} whole"))
         # the front: windscreen, rear window and an arrowhead, as on a police sketch
         along, across = vehicle.front * vehicle.length, 1j * vehicle.front * vehicle.width
         for place_, half in ((0.22, 0.38), (-0.3, 0.36)):
             middle = vehicle.center + place_ * along
-            line((middle - half * across, middle + half * across), 0.2, "glass")
+            lines.append(((middle - half * across, middle + half * across), 0.2, (), "glass"))
         nose, back = vehicle.center + 0.36 * along, vehicle.center + 0.25 * along
-        line((back + 0.16 * across, nose, back - 0.16 * across), 0.3, "heading")
+        lines.append(((back + 0.16 * across, nose, back - 0.16 * across), 0.3, (), "heading"))
+        for points, width, dash, role in lines:
+            drawing.add(Path(at.all(points), COLOURS[name], width, dash, role=role))
 
 
 def _round_below(value: float) -> float:
@@ -292,15 +270,13 @@ def _round_below(value: float) -> float:
 
 def with_unit(value: float, rule: str, units: System) -> str:
     """An amount in the units shown, named where they have names."""
-    return (
-        f"{short(units.shown(rule, value))} {'' if units is RULES else units.label(rule)}".strip()
-    )
+    label = "" if units is RULES else units.label(rule)
+    return f"{short(units.shown(rule, value))} {label}".strip()
 
 
 def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
     """What the lines mean, and their scales; returns the last line's place."""
     shapes, sample = field.shapes, 8.0
-    left, middle = [], []
 
     def velocity(kind: str) -> list[Path]:
         return d.arrow(0, sample, d.BLACK, *ARROWS[kind][1:])
@@ -315,10 +291,9 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
         unit = f" {units.label(rule)}"
         return bar, f"{word} {short(amount)}" if units is RULES else short(amount) + unit
 
-    left.append((velocity("before"), "velocity before"))
-    left.append((velocity("after"), "velocity after"))
+    left = [(velocity("before"), "velocity before"), (velocity("after"), "velocity after")]
     plane = [Path((0, sample), d.BLACK, 0.3, PLANE)]
-    middle.append((plane, f"contact plane, Γ = {short(shapes.numbers['GA'])}°"))
+    middle = [(plane, f"contact plane, Γ = {short(shapes.numbers['GA'])}°")]
     if field.speed:
         per_speed = field.at.scale * field.per_speed
         middle.append(scale("speed", field.speed, per_speed, _SPEED))
@@ -351,13 +326,11 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
     """Speeds, changes, directions and spins below ``y``, then the notes; ends the page there."""
     y -= ROW - 0.3
     columns = [end * drawing.width / d.COLUMN for end in _COLUMNS.values()]
-    rows = [("", d.BLACK, [head.replace("spin after", "after") for head in _COLUMNS])]
-    for vehicle in shapes.vehicles:
-        cells = _cells(vehicle, shapes, units)
-        rows.append((vehicle.name, COLOURS[vehicle.name], cells))
-    for name, colour, cells in rows:
+    rows = {"": [head.replace("spin after", "after") for head in _COLUMNS]}
+    rows |= {vehicle.name: _cells(vehicle, shapes, units) for vehicle in shapes.vehicles}
+    for name, cells in rows.items():
         if name:
-            drawing.add(Text(complex(2, y), name, colour=colour, bold=True, role="table"))
+            drawing.add(Text(complex(2, y), name, colour=COLOURS[name], bold=True, role="table"))
         drawing.items += [
             Text(complex(x, y), cell, anchor="end", role="table")
             for x, cell in zip(columns, cells, strict=True)

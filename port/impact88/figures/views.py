@@ -6,20 +6,11 @@ from typing import Any
 
 from ..errors import UserError
 from . import drawing as d
+from . import sceneview as view
 from .drawing import ROW, Box, Drawing, Path, Text, View
 from .labels import place
 from .scenegeometry import Motion, Plan, Vehicle, plan
-from .sceneview import (
-    ARROWS,
-    COLOURS,
-    FIELD,
-    IMPULSE,
-    description,
-    draw_bodies,
-    name_label,
-    planned,
-    table_and_notes,
-)
+from .sceneview import ARROWS, COLOURS
 
 _GAP = 6.0
 
@@ -30,7 +21,7 @@ def strip_drawing(
     """Before, impact and after side by side, two columns wide, in one scale. The vehicles move and
     turn as they did for the time in which the faster one goes its own length. Arguments as
     `scene_drawing`; ``result`` must hold the final velocities. Raises UserError without them."""
-    shapes, units = planned(scene, result, None, None)
+    shapes, units = view.planned(scene, result, None, None)
     if not all(vehicle.after for vehicle in shapes.vehicles):
         raise UserError("there are no velocities after the impact to draw")
     bodies = shapes.bodies
@@ -46,32 +37,32 @@ def strip_drawing(
         kind: d.extent(p for v in moved for p in (*v.outline, _tip(v, kind, 0.5 * time)))
         for kind, moved in frames.items()
     }
-    drawing = Drawing(2 * d.COLUMN, title, description(shapes, units))
+    drawing = Drawing(2 * d.COLUMN, title, view.description(shapes, units))
     top = drawing.heading() - 2 * ROW
     room = drawing.width - 4.0 - 2 * _GAP
     wide, high = sum(b.width for b in boxes.values()), max(b.height for b in boxes.values())
-    scale = min(room / wide, FIELD / high)
+    scale = min(room / wide, view.FIELD / high)
     left, bottom = 2.0 + (room - scale * wide) / 2, top - scale * high - 2
     for kind, moved in frames.items():
         box = boxes[kind]
         low = bottom + scale * (high - box.height) / 2
         at = View(complex(left - scale * box.left, low - scale * box.bottom), scale)
-        draw_bodies(drawing, moved, at)
+        view.draw_bodies(drawing, moved, at)
         for vehicle in moved:
             tail, tip = at.all((vehicle.center, _tip(vehicle, kind, 0.5 * time)))
             if abs(tip - tail) > 0.5:
                 look, role = ARROWS[kind][1:], f"{vehicle.name} {kind}"
                 drawing.add(*d.arrow(tail, tip, COLOURS[vehicle.name], *look, role))
-            drawing.add(name_label(vehicle, tail, -vehicle.front))
+            drawing.add(view.name_label(vehicle, tail, -vehicle.front))
         if kind == "impact" and shapes.impulse:
             force = 0.5 * size * shapes.impulse / abs(shapes.impulse)
             for end in (force, -force):
-                drawing.add(*d.arrow(at(0), at(end), IMPULSE, 0.7, head=2.4, role="impulse"))
+                drawing.add(*d.arrow(at(0), at(end), view.IMPULSE, 0.7, head=2.4, role="impulse"))
         middle = complex(left + scale * box.width / 2, top + 0.8 * ROW)
         drawing.add(Text(middle, kind, 7.5, "middle", bold=True, role="caption"))
         place(drawing, Box(0.8, bottom, drawing.width - 0.8, top))
         left += scale * box.width + _GAP
-    table_and_notes(drawing, shapes, bottom, units)
+    view.table_and_notes(drawing, shapes, bottom, units)
     return drawing
 
 
@@ -139,13 +130,13 @@ def _tail(vehicle: Vehicle, shapes: Plan, arrow: float) -> complex:
 
 
 def _panel(drawing: Drawing, shapes: Plan, at: View, arrow: float, frame: Box) -> None:
-    draw_bodies(drawing, shapes.vehicles, at)
+    view.draw_bodies(drawing, shapes.vehicles, at)
     for vehicle in shapes.vehicles:
         colour, center = COLOURS[vehicle.name], at(vehicle.center)
         start, (_, width, dash, _) = at(_tail(vehicle, shapes, arrow)), ARROWS["before"]
         role = f"{vehicle.name} before"
         drawing.add(*d.arrow(start, center, colour, width, dash, 2.0, role))
         drawing.add(Path(d.circle(center, 0.5), colour, 0.3, fill=d.WHITE))
-        drawing.add(name_label(vehicle, center, 0.3 + 1j, 8))
+        drawing.add(view.name_label(vehicle, center, 0.3 + 1j, 8))
     drawing.add(Path(d.circle(at(0), 0.5), d.BLACK, 0.3, fill=d.WHITE))
     place(drawing, frame)
