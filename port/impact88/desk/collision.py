@@ -1,10 +1,8 @@
 """The answers of the Collision view: 1988 printout, exact results, warnings, bounds, figure.
 
-The form sends 21 texts. A text that INPUT takes for a number goes into the program as it stands;
-one that says a range (`uncertainty.uncertain`) is kept for the bounds, and its nominal value goes
-into the program.
-
-What computes is imported on first use: the page is shown before numpy is there.
+A text that INPUT takes for a number goes into the program as it stands; of a range
+(`uncertainty.uncertain`) the nominal value does, and the bounds have the rest. What computes is
+imported on first use: the page is shown before numpy is there.
 """
 
 from collections.abc import Mapping
@@ -32,14 +30,11 @@ from .forms import OUTLINES, entries, outline_lines, units_shown, without_roundi
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
-_NOMINAL_DIGITS = 9
-"""Digits of a range's nominal value, as many as Applesoft prints."""
-_DIGITS = 12
-"""Digits of an exact result, as many as double precision is sure of."""
+_NOMINAL_DIGITS, _DIGITS, _ANSWER_DIGITS = 9, 12, 4
+"""Of a range's nominal value, as many as Applesoft prints; of an exact result, as many as double
+precision is sure of; of the answer, more than the inputs of any collision are known to."""
 _ROUNDING = 1e-14
 """Share of the largest value of its kind below which a result shows as 0: a hundred roundings."""
-_ANSWER_DIGITS = 4
-"""Digits of the answer: more than the inputs of any collision are known to."""
 _ANSWER = (
     ("Velocity change ΔV", "DVA", "DVB"),
     ("forward, along the vehicle", "DVAF", "DVBF"),
@@ -58,9 +53,9 @@ _ANSWER = (
 
 
 class Form(NamedTuple):
-    """The form as read: the ``texts`` for the program and the ``entries`` they were made of, in the
-    base units of the system ``units``; the names given as ``ranges``; what is wrong: ``problems``
-    by name, and the names still ``missing``; how entries were understood: ``remarks``."""
+    """The form as read: ``texts`` for the program, and the ``entries`` they were made of, in base
+    units of the system ``units``; the names given as ``ranges``; ``problems`` by name; the names
+    still ``missing``; how entries were understood (``remarks``)."""
 
     texts: dict[str, str]
     entries: dict[str, str]
@@ -85,13 +80,9 @@ def warm() -> None:
 def read(values: Mapping[str, str], units: str = "") -> Form:
     """The form's texts; ``units``: the system of bare numbers, or nothing."""
     given = entries({name: values.get(name, "") for name in SCENE}, units)
-    form = Form({}, given.texts, given.units, [], given.problems, [], [])
-    for name in SCENE:
-        if name not in given.texts:
-            if name not in given.problems:
-                form.missing.append(name)
-            continue
-        text = given.texts[name]
+    missing = [name for name in SCENE if name not in given.texts.keys() | given.problems.keys()]
+    form = Form({}, given.texts, given.units, [], given.problems, missing, [])
+    for name, text in given.texts.items():
         try:
             form.texts[name] = _number_text(name, text, form.ranges)
         except UserError as error:
@@ -123,24 +114,18 @@ def _number_text(name: str, text: str, ranges: list[str]) -> str:
 
 
 def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
-    """The answer for a form.
-
-    ``problems``, ``missing``, ``ranges``: see `Form`; ``units``: see `units_shown`. For a complete
-    scene also ``answer``, the main results (`_answer`); ``oracle``, what `impact88 oracle` answers;
-    ``page``, its printout; ``screen`` (`_screen`); ``results``, rows of a table; ``warnings``.
+    """The answer for a form: ``problems``, ``missing``, ``ranges``, ``remarks`` as `Form`,
+    ``units`` as `units_shown`; for a complete scene also ``answer`` (`_answer`), ``oracle``, what
+    `impact88 oracle` answers, its ``page``, ``screen`` (`_screen`), ``results`` and ``warnings``.
     """
     from ..checking.oracle import look_up
     from ..judging import beside
     from ..program.run import page
 
     form = read(values, units)
-    whole: dict[str, Any] = {
-        "problems": form.problems,
-        "missing": form.missing,
-        "ranges": form.ranges,
-        "remarks": form.remarks,
-        "units": units_shown(form.units),
-    }
+    parts = ("problems", "missing", "ranges", "remarks")
+    whole: dict[str, Any] = {part: getattr(form, part) for part in parts}
+    whole["units"] = units_shown(form.units)
     if form.whole:
         scene = Scene(form.texts, source="the form")
         known = look_up([scene], reference=False)[0]
@@ -164,8 +149,7 @@ def _answer(
 
     system = system_of(units)
     given = {name: double(text) for name, text in scene.items()}
-    found = {name: one["double"] for name, one in results.items() if one["double"] is not None}
-    values = without_rounding(completed(given | found, None), _ROUNDING)
+    values = without_rounding(completed(given | _doubles(results), None), _ROUNDING)
     rows = []
     for words, *names in _ANSWER:
         if not values.keys() >= set(names):
@@ -180,9 +164,12 @@ def _answer(
     return rows
 
 
+def _doubles(results: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+    return {name: one["double"] for name, one in results.items() if one["double"] is not None}
+
+
 def _screen(scene: Scene) -> list[list[tuple[str, str]]]:
-    """The 24 rows of the Apple's screen after the run, from the emulator's memory: stretches, each
-    with its kind (normal, inverse, flashing) and text."""
+    """The rows of the Apple's screen after the run, from the emulator's memory (`screen_runs`)."""
     from ..program.emulated import finished, loaded
 
     machine = loaded(scene)
@@ -192,23 +179,19 @@ def _screen(scene: Scene) -> list[list[tuple[str, str]]]:
 
 def screen_runs(row: bytes) -> list[tuple[str, str]]:
     """A row of screen memory as stretches of one kind, each with its text."""
-    kinds = groupby(row, lambda code: _KINDS[min(code >> 6, 2)])
+    # what the two high bits of a byte on the screen say
+    kinds = groupby(row, lambda code: ("inverse", "flashing", "normal")[min(code >> 6, 2)])
     return [(kind, "".join(map(shown_character, codes))) for kind, codes in kinds]
 
 
-_KINDS = ("inverse", "flashing", "normal")
-"""What the two high bits of a byte on the screen say."""
-
-
 def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[dict[str, Any]]:
-    """The results as a table's rows, the names and meanings from the one table; ``shown``, and
-    ``value`` with all its digits: in the units of the form, ``label``."""
+    """The results as a table's rows; ``shown``, and ``value`` with all its digits: in the units of
+    the form, ``label``."""
     from ..units import system_of
 
     system = system_of(units)
-    found = {name: one["double"] for name, one in results.items() if one["double"] is not None}
     rows = []
-    for name, exact in without_rounding(found, _ROUNDING).items():
+    for name, exact in without_rounding(_doubles(results), _ROUNDING).items():
         value, label = exact * system.factor(name), system.unit(name)
         if name != "STATUS":
             rows.append(
@@ -238,14 +221,8 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     result = beside.solved(scene, [*FINAL_VELOCITIES, "STATUS"])
     given = {name: values[name] for name in OUTLINES if values.get(name)}
     outlines = {n: double(t) for n, t in in_base_units(given, "", units or None)[0].items()}
-    drawing = scene_drawing(
-        scene,
-        result,
-        title=title or "Scene from above",
-        units=system_of(form.units),
-        outlines=outlines,
-    )
-    return svg(drawing)
+    title, system = title or "Scene from above", system_of(form.units)
+    return svg(scene_drawing(scene, result, title=title, units=system, outlines=outlines))
 
 
 def sign_diagram() -> str:
@@ -257,10 +234,8 @@ def sign_diagram() -> str:
 
 
 def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
-    """What `impact88 bounds --json` prints for the form's ranges, with fewer draws.
-
-    Raises UserError for a form that has no ranges, and as `uncertainty.bounds.bounds` does.
-    """
+    """What `impact88 bounds --json` prints for the form's ranges, with fewer draws. Raises
+    UserError, also for a form without ranges."""
     from ..uncertainty.bounds import bounds
     from ..uncertainty.boundstable import as_json
     from ..uncertainty.boundsunits import in_units
@@ -275,8 +250,7 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
 
 
 def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
-    """The form as the scene file that the commands read, its texts as they were typed. Raises
-    UserError naming what is wrong."""
+    """The form as a scene file, its texts as they were typed. Raises UserError."""
     for problem in read(values, units).problems.values():
         raise UserError(problem)
     texts = {name: values.get(name, "").strip() for name in SCENE}

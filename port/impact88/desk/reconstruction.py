@@ -1,7 +1,5 @@
-"""The answers of the Reconstruction view: what `impact88 reconstruct` finds.
-
-What computes is imported on first use: the page is shown before numpy is there.
-"""
+"""The answers of the Reconstruction view: what `impact88 reconstruct` finds. What computes is
+imported on first use: the page is shown before numpy is there."""
 
 from __future__ import annotations
 
@@ -43,14 +41,10 @@ def warm() -> None:
 
 
 def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
-    """The solutions for what is known.
-
-    ``units``: the system of bare numbers, or nothing; in the answer see `units_shown`.
-    ``problems``: by name, what is wrong with a value; ``waiting``: why there is no solution;
-    ``object``: what `impact88 reconstruct --json` prints; ``solutions``: for each ``printed``, what
-    the command prints as text, and the ``rows`` and ``columns`` of a table, ``adjusted`` values,
-    ``warnings`` and the ``scene`` (texts by name, or None).
-    """
+    """The solutions for what is known: ``problems`` by name; ``waiting``, why there is none;
+    ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
+    ``solutions``, each with the command's text (``printed``), ``rows`` and ``columns`` of a table,
+    ``adjusted`` values, ``warnings`` and the ``scene`` (texts by name, or None)."""
     given = entries(values, units)
     known: dict[str, Uncertain] = {}
     problems = given.problems
@@ -61,14 +55,12 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
             problems[name] = str(error)
     whole: dict[str, Any] = {"problems": problems, "waiting": "", "object": None, "solutions": []}
     whole["units"] = units_shown(given.units)
-    if problems:
-        whole["waiting"] = f"To be corrected: {' '.join(problems)}."
-        return whole
     try:
+        if problems:
+            raise UserError(f"To be corrected: {' '.join(problems)}.")
         solutions = _solved(known, given.units)
     except UserError as error:
-        whole["waiting"] = str(error)
-        return whole
+        return {**whole, "waiting": str(error)}
     whole["object"] = stamped("reconstruct", {"solutions": [numbers for numbers, _ in solutions]})
     whole["solutions"] = [_solution(given, numbers, printed) for numbers, printed in solutions]
     return whole
@@ -118,24 +110,16 @@ def _solution(given: Entries, values: Mapping[str, Any], printed: str) -> dict[s
             "upper": spread.get("upper"),
             "error amplified": values.get("amplification", {}).get(name),
         }
-        known = name in values["known"]
-        rows.append(
-            {
-                **what(name),
-                "text": digits(shown.get(name), _DIGITS),
-                "value": value,
-                "known": known,
-                "solved": name in values.get("solved_for", _SOUGHT) and not known,
-                "columns": {head: digits(x, _COLUMNS[head]) for head, x in numbers.items()},
-                "numbers": numbers,
-            }
-        )
+        row = {**what(name), "value": value, "known": name in values["known"], "numbers": numbers}
+        row["text"] = digits(shown.get(name), _DIGITS)
+        row["solved"] = name in values.get("solved_for", _SOUGHT) and not row["known"]
+        row["columns"] = {head: digits(x, _COLUMNS[head]) for head, x in numbers.items()}
+        rows.append(row)
+    shown_digits = {"measured": _DIGITS, "tolerance": _COLUMNS["±"], "adjusted": _DIGITS}
     adjusted = [
         {
             **what(one["name"]),
-            "measured": digits(one["measured"], _DIGITS),
-            "tolerance": digits(one["tolerance"], _COLUMNS["±"]),
-            "adjusted": digits(one["adjusted"], _DIGITS),
+            **{part: digits(one[part], count) for part, count in shown_digits.items()},
             "moved": f"{one['moved'] + 0.0:.2f}",
         }
         for one in values.get("adjusted", ())

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from .frame import render
 FIGURE_WIDTH = 150.0
 """Of the drawing, in mm: what both papers leave between their margins, less a little."""
 DRIVERS = 3
+"""Inputs named for each result: they fill a line."""
 FORWARD = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF", "DVA", "DVB", "LOSS")
 """Results that a scene's ranges are followed to."""
 INVERSE = (
@@ -29,7 +30,11 @@ INVERSE = (
     *("LOSS", "E", "MUP", "EM"),
 )
 """Results of a reconstruction that the answer shows, where they were not known."""
-_SPREAD = ("value", "sd", "5 %", "95 %", "lower bound", "upper bound")
+_SPREAD: tuple[str, ...] = ("value", "sd", "5 %", "95 %", "lower bound", "upper bound")
+_CAPTION = (
+    "sd: standard deviation; 5 and 95 %: of the draws; bounds: attained within the limits of the "
+    "inputs, not proven to be the farthest"
+)
 _CONSEQUENCES = (
     *("SA", "HA", "SAF", "HAF", "DVA", "DVAF", "DVAR", "PDOFA"),
     *("SB", "HB", "SBF", "HBF", "DVB", "DVBF", "DVBR", "PDOFB"),
@@ -92,11 +97,8 @@ def report(
     title: str = "",
     paper: str = "",
 ) -> Report:
-    """The report of what a file (``source``, its bytes ``data``) says of a collision.
-
-    A file with the whole scene and nothing after the impact is answered forward, any other is
-    reconstructed. Raises UserError for a file that can be used in neither way.
-    """
+    """The report of what a file (``source``, its bytes ``data``) says of a collision: forward for
+    a whole scene with nothing after the impact, else reconstructed. Raises UserError."""
     units = system_of(entries.units)
     given = {n for n, text in entries.values.items() if text.strip()}
     scene = placed(SCENE, given)
@@ -110,9 +112,8 @@ def report(
     title = title or entries.title or "Planar impact of two vehicles"
     drawing = None
     if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
-        drawing = scene_drawing(
-            found.scene, found.values, FIGURE_WIDTH, "Scene from above", units, entries.outlines
-        )
+        look = (FIGURE_WIDTH, "Scene from above", units, entries.outlines)
+        drawing = scene_drawing(found.scene, found.values, *look)
     tables = [_answer(found, units), *_details(found, entries, units)]
     page = render(
         "collision.html",
@@ -152,14 +153,8 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
     remarks = sentences(int(results["STATUS"]), {**nominal, **results})
     settings = ""
     if any(item.varies for item in inputs.values.values()):
-        found = bounds(
-            inputs.values,
-            FORWARD,
-            samples=samples,
-            seed=seed,
-            correlations=inputs.correlations,
-            keep_draws=True,
-        )
+        drawn: dict[str, Any] = {"samples": samples, "seed": seed, "keep_draws": True}
+        found = bounds(inputs.values, FORWARD, correlations=inputs.correlations, **drawn)
         for vehicle in "AB":
             speeds = np.hypot(found.draws[f"V{vehicle}X"], found.draws[f"V{vehicle}Y"])
             speeds = speeds[np.isfinite(speeds)]
@@ -253,11 +248,8 @@ def _sentences(found: Findings, units: System) -> list[str]:
 
     lines = []
     for vehicle in "AB":
-        words = [
-            f"{word} {said(name + vehicle + end)}"
-            for word, name, end in _SAID
-            if said(name + vehicle + end)
-        ]
+        asked = {"speed before": f"S{vehicle}", "after": f"S{vehicle}F", "ΔV": f"DV{vehicle}"}
+        words = [f"{word} {said(name)}" for word, name in asked.items() if said(name)]
         pdof = found.values.get(f"PDOF{vehicle}", math.nan)
         if math.isfinite(pdof):
             words.append(f"force from {pdof:.0f}°, {clock(pdof)}")
@@ -271,33 +263,23 @@ def _unit(name: str, units: System) -> str:
     return {"percent": "%", "1": ""}.get(label, label)
 
 
-_SAID = (("speed before", "S", ""), ("after", "S", "F"), ("ΔV", "DV", ""))
-
-
 def _answer(found: Findings, units: System) -> Table:
+    heads, caption = _SPREAD[:1], ""
+    if found.spreads:
+        heads, caption = _SPREAD, _CAPTION
+        caption += "; none are sought for speeds after" if "SAF" in found.main[:1] else ""
     rows = []
     for name in found.main:
-        if name not in found.values:
-            continue
-        spread = found.spreads.get(name, Spread())
-        like = spread.deviation
-        cells = [_amount(name, x, units, like) for x in (found.values[name], *spread)]
-        rows.append([name, quantity(name).meaning, *cells, _unit(name, units)])
-    caption = (
-        "sd: standard deviation; 5 and 95 %: of the draws; bounds: attained within the limits "
-        "of the inputs, not proven to be the farthest"
-        + ("; none are sought for speeds after" if "SAF" in found.main[:1] else "")
-        if found.spreads
-        else ""
-    )
-    headings = ["", "result", *(_SPREAD if found.spreads else _SPREAD[:1]), "unit"]
-    if not found.spreads:
-        rows = [[*row[:3], row[-1]] for row in rows]
+        if name in found.values:
+            spread = found.spreads.get(name, Spread())
+            shown = (found.values[name], *spread)[: len(heads)]
+            cells = [_amount(name, x, units, spread.deviation) for x in shown]
+            rows.append([name, quantity(name).meaning, *cells, _unit(name, units)])
+    headings = ["", "result", *heads, "unit"]
     return Table("Answer", headings, rows, (0, 1, len(headings) - 1), "answer", caption)
 
 
 def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
-    tables = []
     rows = []
     for name, text in entries.given.items():
         if name in ("title", "case", "units", "correlations") or not text.strip():
@@ -309,25 +291,21 @@ def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
             source = "; ".join(filter(None, [source, "estimate: " + entries.estimated[name]]))
         rows.append([name, quantity(name).meaning, text, unit, source])
     headings = ["", "input", "given", "unit", "source"]
-    tables.append(Table("Inputs as given", headings, rows, (0, 1, 3, 4)))
+    tables = [Table("Inputs as given", headings, rows, (0, 1, 3, 4))]
     if found.drivers:
         rows = [
             [name, quantity(name).meaning, ", ".join(ranked)]
             for name, ranked in found.drivers.items()
             if ranked
         ]
-        caption = (
-            "share of the variance, largest first"
-            if found.inverse
-            else "how far the result goes while one input goes through its limits, largest first"
-        )
+        caption = "how far the result goes while one input goes through its limits"
+        caption = f"{'share of the variance' if found.inverse else caption}, largest first"
         headings = ["", "result", "driven by"]
         tables.append(Table("What drives the result", headings, rows, (0, 1, 2), caption=caption))
     rows = [
-        [name, quantity(name).meaning, _amount(name, found.values[name], units), label]
-        for name in _CONSEQUENCES
-        if name in found.values and math.isfinite(found.values[name])
-        for label in [_unit(name, units)]
+        [n, quantity(n).meaning, _amount(n, found.values[n], units), _unit(n, units)]
+        for n in _CONSEQUENCES
+        if math.isfinite(found.values.get(n, math.nan))
     ]
     tables.append(Table("The impact in full", ["", "quantity", "value", "unit"], rows, (0, 1, 3)))
     return tables

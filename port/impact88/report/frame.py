@@ -27,10 +27,8 @@ def render(
     **content: Any,
 ) -> str:
     """The page that ``template`` of ``package`` makes of ``content``, in the frame (frame.html).
-
-    ``title`` and ``case`` stand on top and on every printed page; ``files``: names and bytes of
-    what was read, to be identified. Raises UserError where jinja2 is not installed.
-    """
+    ``title`` and ``case`` stand on every printed page; ``files``: names and bytes of what was read.
+    Raises UserError where jinja2 is not installed."""
     import numpy
 
     try:
