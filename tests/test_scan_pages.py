@@ -177,7 +177,6 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     monkeypatch.setattr(sheets, "held", lambda *given: [])
     monkeypatch.setattr(sheets, "_mistaken", lambda cells, found: False)
     monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
-    monkeypatch.setattr(sheets, "spelled", lambda grid, found: {})
     monkeypatch.setattr(sheets, "borne_out", lambda one, shown: one)
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=0.9)
     leaves = sheets._leaves(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
@@ -196,8 +195,6 @@ def test_no_scene_is_searched_for_where_columns_are_not_clear(monkeypatch, clari
         lambda grid, found: [Read(one, {"MA": np.zeros((1, 1))}) for one in found],
     )
     monkeypatch.setattr(sheets, "scene_of", lambda read, seeds: asked.append(read))
-    monkeypatch.setattr(sheets, "spelled", lambda grid, found: {})
-    monkeypatch.setattr(sheets, "relaid", lambda sheet, odds, unlike: sheet)
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=clarity)
     leaves = sheets._leaves(grid, [Sheet(gain=900.0), Sheet(gain=1000.0)], [])
     assert len(asked) == searched

@@ -1,8 +1,5 @@
-"""Panels of a chart: two axes with round numbers, what is drawn between them, and a key.
-
-Marks, dashes and lightness differ as well as colours, so a grey copy reads the same. Nothing is
-hatched: some renderers of SVG paint patterns black.
-"""
+"""Panels of a chart: two axes with round numbers, what is drawn between them, and a key. Nothing is
+hatched, which some renderers of SVG paint black; a grey copy reads the same."""
 
 import math
 from collections.abc import Sequence
@@ -94,11 +91,10 @@ class Panel:
         self.drawing, self.box = drawing, box
         self.x = Axis(*x, box.left, box.right, log)
         self.y = Axis(*y, box.bottom, box.top, log)
-        items = drawing.items
-        self._ground = len(items)
-        corner = complex(box.left, box.bottom)
-        ends = (complex(box.right, box.bottom), complex(box.left, box.top))
-        items += [Path((corner, end), BLACK, 0.2, role="axis") for end in ends]
+        self._ground = len(drawing.items)
+        corner, right, _, top = box.corners
+        for end in (right, top):
+            drawing.add(Path((corner, end), BLACK, 0.2, role="axis"))
         across = ticks(*x, x_ticks) if isinstance(x_ticks, int) else x_ticks
         up = ticks(*y, y_ticks) if isinstance(y_ticks, int) else y_ticks
         for value, text in across:
@@ -110,10 +106,10 @@ class Panel:
             self._tick(at, box.width if grid else 0, -0.9)
             drawing.add(Text(at - 1.5 - 0.8j, text, anchor="end", role="y tick"))
         room = box.width + 8
-        middle = complex((box.left + box.right) / 2, box.bottom - BELOW - ROW + 0.2)
-        for row, line in enumerate(d.wrapped(x_label, room) if x_label else []):
-            at = middle - 1j * ROW * row
+        at = complex((box.left + box.right) / 2, box.bottom - BELOW - ROW + 0.2)
+        for line in d.wrapped(x_label, room) if x_label else []:
             drawing.add(Text(at, line, anchor="middle", role="x label"))
+            at -= 1j * ROW
         if y_label:
             drawing.add(Text(complex(box.left - 1, box.top + 1.8), y_label, role="y label"))
 
@@ -185,9 +181,9 @@ def mark(at: complex, shape: str, colour: str, filled: bool = True, role: str = 
 
 
 def key(drawing: Drawing, y: float, *entries: tuple[str, str, Any], note: str = "") -> float:
-    """Samples of what is drawn and what they mean, from left to right in as many rows as it takes,
-    the first at ``y``; returns where what follows goes on. An entry is (text, colour, look): a mark
-    (``o``, or ``o `` for an open one), dashes of a line, or None for an area."""
+    """Samples of what is drawn and what they mean, in rows from ``y`` on; returns where what
+    follows goes on. An entry is (text, colour, look): a mark (``o``, or ``o `` for an open one),
+    dashes of a line, or None for an area."""
     x, sample = 2.0, 6.0
     for text, colour, look in entries:
         width = sample + 1.2 + d.text_width(text, TEXT)

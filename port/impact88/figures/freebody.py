@@ -1,9 +1,5 @@
-"""Free-body diagrams of the chapter: Figure 2 (direct colinear) and Figure 3 (planar impact).
-
-The two vehicles are drawn pulled apart along the normal, so that each shows the impulses on it:
-P_n, P_t and the moment impulse M on A, their opposites on B. Figure 3 may be drawn for any scene;
-without one it takes the Appendix's.
-"""
+"""Free-body diagrams of the chapter: Figure 2 (direct colinear) and Figure 3 (planar impact), the
+vehicles pulled apart along the normal, so that each shows the impulses on it."""
 
 import math
 from typing import Any
@@ -15,10 +11,8 @@ from .scenegeometry import Plan, Vehicle, plan
 from .sceneview import ARROWS, COLOURS, IMPULSE, PLANE, TINTS, draw_axes, name_label
 
 _ANGLE = "#444444"
-_MARGIN = 7.5
-_TALLEST = 95.0
-_MOMENT = 3.4
-"""Radius of a moment's arrow in mm."""
+_MARGIN, _TALLEST, _MOMENT = 7.5, 95.0, 3.4
+"""In mm: beside the drawing, of the drawing, radius of a moment's arrow."""
 
 
 def colinear() -> Drawing:
@@ -40,16 +34,11 @@ def colinear() -> Drawing:
 
 
 def planar(scene: Any = None, velocities: bool = False) -> Drawing:
-    """Figure 3: planar impact; distances, angles and impulses of a scene's two vehicles, with the
-    ``velocities`` before or without.
+    """Figure 3: planar impact; distances, angles and impulses of a scene's vehicles (the
+    Appendix's without one), with the ``velocities`` before or without. Raises UserError."""
+    from ..scene import sample
 
-    Raises UserError when a value of the scene is missing or no number.
-    """
-    if scene is None:
-        from ..scene import sample
-
-        scene = sample(1)
-    shapes = plan(scene)
+    shapes = plan(scene or sample(1))
     drawing = Drawing(
         d.COLUMN,
         "Free bodies, planar impact",
@@ -61,10 +50,10 @@ def planar(scene: Any = None, velocities: bool = False) -> Drawing:
     points = []
     for vehicle in shapes.vehicles:
         shift = apart[vehicle.name]
-        points += [point + shift for point in vehicle.outline]
-        points += [shift + 0.42 * size * 1j**turn * shapes.normal for turn in range(4)]
-        # the arm heading angles are measured from
-        points.append(vehicle.center + shift + 0.45 * size)
+        around = [0.42 * size * 1j**turn * shapes.normal for turn in range(4)]
+        # the last is the arm heading angles are measured from
+        ends = (*vehicle.outline, *around, vehicle.center + 0.45 * size)
+        points += [shift + end for end in ends]
     box = d.extent(points)
     room = (drawing.width - 2 * _MARGIN, _TALLEST - 2 * _MARGIN)
     scale = min(room[0] / box.width, room[1] / box.height)
@@ -110,10 +99,8 @@ def _body(drawing: Drawing, shapes: Plan, vehicle: Vehicle, at: View, size: floa
         drawing.add(Label(end, sense * along, text, 8, IMPULSE, True, role))
     if not point:
         outward = -sense * shapes.normal
-        opening = d.degrees(outward) + 180
-        drawing.add(
-            *d.turning_arrow(contact, _MOMENT, sense > 0, IMPULSE, 0.6, (), opening, 200, "moment")
-        )
+        look = (IMPULSE, 0.6, (), d.degrees(outward) + 180, 200, "moment")
+        drawing.add(*d.turning_arrow(contact, _MOMENT, sense > 0, *look))
         edge = contact + _MOMENT * outward
         drawing.add(Label(edge, outward, f"{minus}M", 8, IMPULSE, True, "moment label"))
     drawing.add(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))
@@ -132,7 +119,7 @@ def _angles(
     for end in (-0.5 * size * vehicle.front, 0.5 * size * vehicle.front, arm):
         _ray(drawing, center, center + end)
     if abs(heading) > 3:
-        drawing.add(_angle(drawing, center, 0.0, heading, 0.28 * size, f"θ_{low}"))
+        _angle(drawing, center, 0.0, heading, 0.28 * size, f"θ_{low}")
     else:
         text = f"θ_{low} = {heading:.3g}°"
         drawing.add(Label(center + arm, 1 + 0.3j, text, 7.5, _ANGLE))
@@ -146,7 +133,7 @@ def _angles(
         if abs(angle) > 3:
             radius = min(0.16 * size, 0.6 * abs(reach))
             front = d.degrees(vehicle.front)
-            drawing.add(_angle(drawing, center, front, angle, radius, f"φ_{low}"))
+            _angle(drawing, center, front, angle, radius, f"φ_{low}")
 
 
 def _plane(drawing: Drawing, shapes: Plan, contact: complex, size: float) -> None:
@@ -160,7 +147,7 @@ def _plane(drawing: Drawing, shapes: Plan, contact: complex, size: float) -> Non
     angle = shapes.numbers["GA"]
     if abs(angle) > 3:
         _ray(drawing, contact, contact + 0.32j * size)
-        drawing.add(_angle(drawing, contact, 90.0, angle, 0.25 * size, "Γ"))
+        _angle(drawing, contact, 90.0, angle, 0.25 * size, "Γ")
 
 
 def _ray(drawing: Drawing, start: complex, end: complex) -> None:
@@ -169,9 +156,9 @@ def _ray(drawing: Drawing, start: complex, end: complex) -> None:
 
 def _angle(
     drawing: Drawing, center: complex, first: float, turn: float, radius: float, text: str
-) -> Label:
-    """An angle of ``turn`` degrees from the direction ``first``, and the label that names it."""
+) -> None:
+    """An angle of ``turn`` degrees from the direction ``first``, with its label."""
     points = d.arc(center, first, math.remainder(turn, 360), radius)
     drawing.add(Path(points, _ANGLE, 0.25, role="angle"))
     middle = points[len(points) // 2]
-    return Label(middle, middle - center, text, 8, _ANGLE, False, "angle label")
+    drawing.add(Label(middle, middle - center, text, 8, _ANGLE, False, "angle label"))

@@ -31,9 +31,8 @@ WEIGHTS = {
 
 
 def place(drawing: Drawing, frame: Box) -> None:
-    """Turn the drawing's labels into texts, in their order, each at the cheapest place inside
-    ``frame``: no overlap with a text (unless there is no room at all), then few lines covered,
-    near, and in the direction wished for."""
+    """Turn the drawing's labels into texts, each at the cheapest place inside ``frame``: off other
+    texts where there is room, few lines covered, near, and in the direction wished for."""
     reach, turn = (
         values.ravel()
         for values in np.meshgrid(REACHES, np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS))
@@ -65,8 +64,8 @@ def place(drawing: Drawing, frame: Box) -> None:
         text = text._replace(at=complex(low[best, 0]) - complex(box.left, box.bottom))
         box = text_box(text)
         if reach[best] > LEADER_FROM:
-            near_x = min(max(label.at.real, box.left), box.right)
-            end = complex(near_x, min(max(label.at.imag, box.bottom), box.top))
+            x, y = label.at.real, label.at.imag
+            end = complex(min(max(x, box.left), box.right), min(max(y, box.bottom), box.top))
             start = label.at + min(0.8 / abs(end - label.at), 1.0) * (end - label.at)
             drawing.add(Path((start, end), label.colour, 0.12, role="leader"))
         drawing.add(text)

@@ -15,8 +15,8 @@ class Svg(str):
 
 
 def svg(drawing: Drawing) -> Svg:
-    """The drawing as one SVG element, in millimetres, with title and description for readers who
-    cannot see it. May stand in a file by itself or inside an HTML page."""
+    """The drawing as one SVG element, in millimetres, with title and description; it may stand in
+    a file or inside an HTML page."""
     width, height = _number(drawing.width), _number(drawing.height)
     across, up = (_number(x * drawing.enlarged) for x in (drawing.width, drawing.height))
     lines = [

@@ -46,11 +46,10 @@ _STARTS = 5
 
 @dataclass
 class Grid:
-    """Cells of a page. ``pictures``: for each line the ink sampled so that cell k begins at pixel
-    SLACK + k CELL_WIDTH, with SLACK rows above and below; ``tops``: each line's place down the page
-    in units of the pitch; ``corners``: for each line the cells' corners in the picture, shape
-    (cells + 1, 2, 2): left edge k, top or bottom, x and y; ``size``: height and width of the
-    picture, after the quarter ``turns`` to the left that it was given first."""
+    """Cells of a page. ``pictures``: of each line, cell k from pixel SLACK + k CELL_WIDTH on, with
+    SLACK rows above and below; ``tops``: each line's place in pitches down the page; ``corners``:
+    each line's cells in the picture, shape (cells + 1, 2, 2): left edge k, top or bottom, x and y;
+    ``size``: height and width of the picture after the quarter ``turns`` to the left."""
 
     pictures: list[Image]
     tops: Floats
@@ -92,21 +91,18 @@ class Grid:
     @staticmethod
     def _odds(cells: Image) -> Floats:
         # a dot, or as much ink along a line: the hair of a thin dash
-        dots = ndimage.uniform_filter(cells, (1, 3, 3))
-        hairs = ndimage.uniform_filter(cells, (1, 1, 9))
         edge = SLACK + 1
         inner = np.s_[:, edge:-edge, edge + 1 : -edge - 1]
         hair = np.s_[:, edge:-edge, edge + 4 : -edge - 4]
-        darkest = np.maximum(dots[inner].max(axis=(1, 2)), hairs[hair].max(axis=(1, 2)))
-        odds: Floats = np.clip(20 * (darkest.astype(float) - _INKED), -6, 6)
+        dots = ndimage.uniform_filter(cells, (1, 3, 3))[inner].max(axis=(1, 2))
+        hairs = ndimage.uniform_filter(cells, (1, 1, 9))[hair].max(axis=(1, 2))
+        odds: Floats = np.clip(20 * (np.maximum(dots, hairs).astype(float) - _INKED), -6, 6)
         return odds
 
 
 def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
-    """Top and bottom of each line of text along ``level``, the height that is constant on it.
-
-    A row belongs to a line where some stretch of it, a character or two, holds ink as densely as
-    type does: a line of one digit counts as much as one of eighty letters."""
+    """Top and bottom of each line of text along ``level``, the height that is constant on it: rows
+    of which a character or two hold ink as densely as type does, were it the only digit."""
     low = level.min()
     rows = (level - low).astype(int)
     stretch = max(8.0, points.span / 80)
@@ -124,8 +120,8 @@ def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
 
 
 def _pitches(xs: list[Floats], height: float, span: float) -> list[float]:
-    """What the pitch may be, the likeliest first: periods of the gaps between characters. Of the
-    ink itself it is none: most digits have a stroke at each side of their cell."""
+    """What the pitch may be, the likeliest first: periods of the gaps between characters. (The ink
+    has others: most digits have a stroke at each side of their cell.)"""
     size, low = 1 << 15, min(float(x.min()) for x in xs)
     gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
     power = sum(np.abs(np.fft.rfft(one, size)) ** 2 / one.sum() for one in gaps)
@@ -160,10 +156,7 @@ def _gaps(x: Floats, pitch: float) -> Floats:
 
 def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tuple[Floats, float]:
     """Coefficients of `_terms` that bring the edges of the cells to whole pitches, and how clear
-    the columns are then.
-
-    Sums over stretches of a dozen cells stand for their gaps: a change of the polynomial only turns
-    their phases."""
+    the columns are then. Sums over stretches of a dozen cells stand for their gaps."""
     sums, places = [], []
     for x, y in zip(xs, ys, strict=True):
         gaps = _gaps(x, pitch)
@@ -192,11 +185,11 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
     def strain(keystone: float, bow: float) -> float:
         return _STRAIN * (abs(keystone) + abs(bow)) / pitch
 
+    curved = [strong * np.exp(turn * (np.array(curve) @ sited[3:5])) for curve in curves]
     clear = np.stack(
         [
-            np.abs((wide * (strong * np.exp(turn * (np.array(c) @ sited[3:5])))) @ narrow) / most
-            - strain(*c)
-            for c in curves
+            np.abs((wide * sums) @ narrow) / most - strain(*curve)
+            for curve, sums in zip(curves, curved, strict=True)
         ]
     )
     found, best = (np.zeros(6), 0.0), -np.inf
@@ -227,8 +220,8 @@ def _bent(
 
 
 def grids_of(ink: Image, turns: int, fold: int) -> list[Grid]:
-    """The grids of a page that stands upright after ``turns`` quarters to the left: one, or those
-    of columns side by side. ``fold``: pixels a side that are taken together to find them."""
+    """The grids of a page turned by quarters to the left: one, or those of columns side by side.
+    ``fold``: pixels a side that are taken together to find them."""
     ink = np.ascontiguousarray(np.rot90(ink, turns))
     points = points_of(ink, fold)
     if points.few:
@@ -312,10 +305,9 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
 
     pictures = [sampled(line) for line in range(len(lines))]
     corners = []
+    edges, ends = left + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
     for line, middle in enumerate(middles):
-        u, v = np.meshgrid(
-            left + np.arange(count + 1) * pitch, middle + np.array([-0.5, 0.5]) * 1.3 * height
-        )
+        u, v = np.meshgrid(edges, middle + ends)
         corners.append(np.stack(place(u, v, line), axis=-1).transpose(1, 0, 2))
     return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns)
 
@@ -328,9 +320,8 @@ def _bows(u: Floats, v: Floats) -> Floats:
 def _risen(
     across: Floats, level: Floats, middles: Floats, height: float, scale: float
 ) -> tuple[Floats, Floats]:
-    """How the lines still rise and fall: coefficients of `_bows`, and for each line those of 1, t
-    and t^2 beyond it, t being stretches of `_STRETCH` pixels; in pixels of the picture. The ink of
-    each stretch is laid on the mean of all."""
+    """How the lines still rise and fall, in pixels: coefficients of `_bows`, and for each line
+    those of 1, t and t^2, t in stretches of `_STRETCH`. Each one's ink is laid on the mean."""
     reach = 9
     half = int(0.85 * height * scale) + reach
     stretches = np.maximum((across * scale / _STRETCH).astype(int), 0)

@@ -2,10 +2,9 @@
 numbers. Blanks and inked cells decide; no character is read."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -30,11 +29,8 @@ LINES = (
     "*****",
 )
 """Listing lines 200 to 770, as a person sees them."""
-VARIANTS = {
-    line: (LINES[line], LINES[line].replace(" :", ": ").replace(",V", ", V").replace(",W", ", W"))
-    for line in (0, 1)
-}
-VARIANTS[4] = (LINES[4], " PA      PB      TA      TB      GA")
+VARIANTS = {k: re.sub(",([VW])", r", \1", LINES[k].replace(" :", ": ")) for k in (0, 1)}
+VARIANTS[4] = " PA      PB      TA      TB      GA"
 """Lines as the chapter has them, too."""
 OPTIONAL = (0, 1, 10, 13, 14)
 """Lines that genuine pages lack: the prompts, the final spins where M = 4, rows of asterisks."""
@@ -49,9 +45,6 @@ _ABSENT, _STRANGE, _WRAPPED = 30.0, 4.0, 2.0
 take two lines of it for one that was broken. A line that is there gains about 3 an inked cell."""
 _FEWEST = 20
 """Numbers of a printout; with fewer lines it is not verified from the picture."""
-_EDGE = 0.85
-"""Lines, of all, in which the edge of the paper is seen, and the cells beside it are blank; no
-column of text is inked in so many beside one that is blank in so many."""
 _GAPS = (1, 14)
 _BLANK_IN_REPLY = -0.3
 
@@ -131,23 +124,15 @@ def parts(line: str) -> tuple[tuple[str, str], ...]:
     return tuple((name, text) for name, text in found)
 
 
-class _Fit(NamedTuple):
-    gain: float
-    text: str
-
-
 def _weights(odds: Floats) -> tuple[Floats, Floats]:
     """What cells gain when they are taken for inked or blank."""
     return np.clip(odds, -6, 6) / 2, -np.clip(odds, 0, 6) / 2
 
 
-def _gains(
-    line: str, inked: Floats, blank: Floats, letters: Mapping[str, Floats] = MappingProxyType({})
-) -> tuple[Floats, list[Floats]]:
+def _gains(line: str, inked: Floats, blank: Floats) -> tuple[Floats, list[Floats]]:
     """How well rows of cells divide into the parts of a line: the best gain of each row, and the
     gains after each part by the cell it ends before, each of shape (rows, cells + 1). ``inked``,
-    ``blank``: what each cell gains when taken for inked or blank, ``letters``: for a label's
-    character, shape (rows, cells)."""
+    ``blank``: what each cell gains when taken for inked or blank."""
     rows, cells = inked.shape
     edge = np.zeros((rows, 1))
     filled, emptied, typed = (
@@ -171,8 +156,7 @@ def _gains(
             size = cells + 1 - len(text)
             value = best[:, :size].copy()
             for offset, char in enumerate(text):
-                weight = blank if char == " " else letters.get(char, inked)
-                value += weight[:, offset : offset + size]
+                value += (blank if char == " " else inked)[:, offset : offset + size]
             new[:, len(text) :] = value
         best = new
         after.append(best)
@@ -190,11 +174,9 @@ def _lengths(name: str, text: str, first: bool) -> tuple[int, int] | None:
     return _GAPS if len(text) > 1 else (0, 1)
 
 
-def _ends(
-    line: str, inked: Floats, blank: Floats, letters: Mapping[str, Floats] = MappingProxyType({})
-) -> list[int]:
+def _ends(line: str, inked: Floats, blank: Floats) -> list[int]:
     """Where the parts of a line end in the best division of one row of cells."""
-    _, after = _gains(line, inked[None], blank[None], letters)
+    _, after = _gains(line, inked[None], blank[None])
     ends = [int(np.argmax(after[-1][0]))]
     cuts = [np.r_[0.0, np.cumsum(v)] for v in (inked, blank, np.maximum(inked, _BLANK_IN_REPLY))]
     for which, (name, text) in reversed(list(enumerate(parts(line)))):
@@ -209,7 +191,6 @@ def _ends(
 def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     """The printouts on a grid. ``odds``: for each line the log odds that each cell is inked;
     ``tops``: where the lines are, in pitches down the page."""
-    odds = _within_edges(odds)
     first = _margin(odds)
     margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
     keys, rows = [], []
@@ -233,14 +214,15 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
             for margin, start, used in keys
         ]
     )
-    fits: dict[int, dict[tuple[int, int, int], _Fit]] = {margin: {} for margin in margins}
+    fits: dict[int, dict[tuple[int, int, int], tuple[float, str]]]
+    fits = {margin: {} for margin in margins}
     for line in range(len(LINES)):
-        texts = VARIANTS.get(line, (LINES[line],))
+        texts = [LINES[line], *([VARIANTS[line]] if line in VARIANTS else [])]
         gains = np.stack([_gains(text, inked, blank)[0] for text in texts])
         which = gains.argmax(axis=0)
         for row, (margin, start, used) in enumerate(keys):
             gain = float(gains[which[row], row] - lost[row])
-            fits[margin][start, used, line] = _Fit(gain, texts[which[row]])
+            fits[margin][start, used, line] = gain, texts[which[row]]
     alone = [float(np.clip(row, 0, 6).sum()) for row in odds]
     aligned = {m: _aligned(fits[m], len(odds), alone) for m in margins}
     margin = max(margins, key=lambda one: aligned[one][0])
@@ -249,44 +231,12 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
         if used == 0:
             sheets.append(Sheet())
             continue
-        fit = fits[margin][start, used, line]
+        gain, text = fits[margin][start, used, line]
         row = keys.index((margin, start, used))
-        sheets[-1].gain += fit.gain
-        ends = _ends(fit.text, inked[row], blank[row])
-        _place(sheets[-1], line, Row(start, used, margin, fit.text), ends)
+        sheets[-1].gain += gain
+        ends = _ends(text, inked[row], blank[row])
+        _place(sheets[-1], line, Row(start, used, margin, text), ends)
     return [sheet for sheet in sheets if len(sheet.numbers) >= _FEWEST]
-
-
-def relaid(sheet: Sheet, odds: Sequence[Floats], unlike: Mapping[str, Sequence[Floats]]) -> Sheet:
-    """A printout's lines divided once more: ``unlike`` says for each label's character what the
-    grid's cells lose when they are taken for it. A blank within a number looks like a new one."""
-    new = Sheet(gain=sheet.gain)
-    odds = _within_edges(odds)
-    wide = 2 * max(map(len, odds))  # a line may end beyond an edge that was cut off
-
-    def cells(row: Row, values: Sequence[Floats]) -> Floats:
-        given = row.cells(values)
-        return np.pad(given, (0, wide - len(given)))
-
-    for line, row in sheet.rows.items():
-        inked, blank = _weights(cells(row, odds))
-        letters = {char: (inked - cells(row, lost))[None] for char, lost in unlike.items()}
-        _place(new, line, row, _ends(row.text, inked, blank, letters))
-    return new
-
-
-def _within_edges(odds: Sequence[Floats]) -> list[Floats]:
-    """The cells without the edges of the paper, which on a photograph are a column of ink."""
-    width = max(map(len, odds))
-    inked = np.mean([np.pad(row > 0, (0, width - len(row))) for row in odds], axis=0)
-    edge, beside = inked > _EDGE, inked < 1 - _EDGE
-    half = width // 2
-    left = np.flatnonzero(edge[:half] & beside[1 : half + 1])
-    right = np.flatnonzero(edge[half:] & beside[half - 1 : -1])
-    start = left[-1] + 1 if len(left) else 0
-    stop = half + right[0] if len(right) else width
-    outside = np.r_[np.ones(start, bool), np.zeros(stop - start, bool), np.ones(width - stop, bool)]
-    return [np.where(outside[: len(row)], -6.0, row) for row in odds]
 
 
 def _margin(odds: Sequence[Floats]) -> int:
@@ -296,11 +246,11 @@ def _margin(odds: Sequence[Floats]) -> int:
 
 
 def _aligned(
-    gains: dict[tuple[int, int, int], _Fit], count: int, alone: Sequence[float]
+    fits: dict[tuple[int, int, int], tuple[float, str]], count: int, alone: Sequence[float]
 ) -> tuple[float, list[tuple[int, int, int]]]:
-    """Lines of paper and lines of print side by side; after the last line of print may come the
-    first of another printout. The total gain, and the lines found: line of the grid, how many of
-    them it takes (0: another printout begins), line of print."""
+    """Lines of paper and lines of print side by side, one printout or several: the total gain, and
+    the lines found: line of the grid, how many of them it takes (0: another printout begins), line
+    of print."""
     last = len(LINES)
     # best[i][j]: i lines of the paper are used, j lines of the print are behind
     best = np.full((count + 1, last + 1), -np.inf)
@@ -320,8 +270,8 @@ def _aligned(
                 lost = alone[i] * 0.5 if 0 < j < last else 0.0
                 steps.append((i + 1, j, now - _STRANGE - lost, 0))
                 for used in (1, 2):
-                    if j < last and (i, used, j) in gains:
-                        steps.append((i + used, j + 1, now + gains[i, used, j].gain, used))
+                    if j < last and (i, used, j) in fits:
+                        steps.append((i + used, j + 1, now + fits[i, used, j][0], used))
             for to_i, to_j, value, used in steps:
                 if value > best[to_i, to_j]:
                     best[to_i, to_j] = value

@@ -1,7 +1,6 @@
 """First names for the characters of numbers: small prototypes of a few styles of type, then the
 page's own means. Labels need no reading: they are known text at known places."""
 
-from collections.abc import Sequence
 from functools import lru_cache
 from importlib import resources
 
@@ -37,9 +36,6 @@ _SPREAD = 1.6
 """How far apart the cells of a group may be, in units of what three quarters of the pairs of one
 letter keep to. The widest pairs of 11 pages had 1.2 to 2.5, two digits mostly 2 to 4 and once 1.5;
 labels laid out wrongly leave the three quarters alone."""
-_OTHER, _UNLIKE = 3.0, 0.3
-"""What a cell loses at most that is taken for another letter, as much as one that is blank, and at
-which distance beyond the nearest letter's, in units of the energy."""
 _AGAIN = 0.1
 """What a character's second group costs a cell, in units of `likeness`."""
 
@@ -131,33 +127,6 @@ def _named(sample: Sample, unlike: Floats, widest: float) -> NDArray[np.intp]:
     names: NDArray[np.intp] = np.zeros(len(members), int)
     names[rows] = columns % len(NUMERIC)
     return np.asarray(names[group])
-
-
-def spelled(grid: Grid, sheets: Sequence[Sheet]) -> dict[str, list[Floats]]:
-    """For each character of the labels how unlike it the cells of each line are: from 0 to
-    `_OTHER`."""
-    pieces = [piece for sheet in sheets for line in sheet.pieces.values() for piece in line]
-    labels = [
-        (place, character)
-        for piece in pieces
-        if not piece.name and piece.text.strip()
-        for place, character in zip(piece.places, piece.text, strict=True)
-    ]
-    typeface = typeface_of(
-        sample_of(grid, [place for place, _ in labels]), [character for _, character in labels]
-    )
-    energy = np.einsum("mp,mp->m", typeface.means, typeface.means) + 1e-6
-    lost = []
-    for line in range(len(grid.pictures)):
-        count = len(grid.corners[line]) - 1
-        apart, _ = distances(
-            sample_of(grid, [Place(line, k) for k in range(count)]), typeface.means
-        )
-        beyond = (apart - apart.min(axis=1, keepdims=True)) / energy
-        lost.append(_OTHER * np.minimum(beyond / _UNLIKE, 1))
-    return {
-        character: [line[:, k] for line in lost] for k, character in enumerate(typeface.characters)
-    }
 
 
 def read_numbers(grid: Grid, sheets: list[Sheet]) -> list[Read]:

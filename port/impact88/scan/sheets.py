@@ -13,8 +13,8 @@ from .evidence import Judged, judged, state
 from .grid import Grid, grids_of
 from .holding import Cell, held
 from .ink import Image, ink_of
-from .layout import OPTIONAL, Sheet, relaid, sheets_of
-from .naming import read_numbers, spelled
+from .layout import OPTIONAL, Sheet, sheets_of
+from .naming import read_numbers
 from .scenes import Candidate, Read, borne_out, scene_of
 from .typeface import BLANK
 
@@ -84,23 +84,13 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
         unread = Judged(Verdict.INCOMPLETE, reason="its type stands in no clear columns")
         return [Leaf(grid, likeliest, Read(likeliest, {}), None, [], unread)]
     leaves = _judged(grid, sheets, seeds)
-    if _open(leaves) and any(leaf.read.costs for leaf in leaves):
-        unlike, odds = spelled(grid, sheets), grid.odds()
-        again = [relaid(sheet, odds, unlike) for sheet in sheets]
-        if again != sheets:
-            leaves = min(leaves, _judged(grid, again, seeds), key=_open)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
-    if _open(leaves):
+    if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
             if leaf.judged.verdict is Verdict.DIFFERS:
                 leaf.judged.verdict = Verdict.INCOMPLETE
                 leaf.judged.reason = "another printout on the page was not read"
     return leaves
-
-
-def _open(leaves: Sequence[Leaf]) -> int:
-    """How many printouts have no verdict."""
-    return sum(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves)
 
 
 def _judged(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:

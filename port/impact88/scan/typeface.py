@@ -19,6 +19,8 @@ READABLE = f"{NUMERIC},E{BLANK}"
 """What may stand in a number's cell: a reply has commas, a large number an exponent."""
 STRENGTHS = (0.4, 1.3)
 """Between these the ink of a cell may be as strong as the page's."""
+_ROUNDS = 2
+"""Times that cells are shifted onto the means they form: the two of the method's description."""
 _SHIFTS = [(y, x) for y in range(2 * SLACK + 1) for x in range(2 * SLACK + 1)]
 
 
@@ -95,7 +97,7 @@ class Typeface:
         return rest
 
 
-def typeface_of(sample: Sample, names: Sequence[str], rounds: int = 2) -> Typeface:
+def typeface_of(sample: Sample, names: Sequence[str]) -> Typeface:
     """The mean glyph of each name; cells named "" belong to none. Cells are shifted onto their
     mean as it forms."""
     characters = sorted(set(names) - {"", BLANK})
@@ -103,8 +105,12 @@ def typeface_of(sample: Sample, names: Sequence[str], rounds: int = 2) -> Typefa
     middle = len(_SHIFTS) // 2
     members = sample.vectors[:, middle]
     means = _means(members, index, len(characters))
-    for _ in range(rounds):
-        members = _shifted(sample, means, index)
+    for _ in range(_ROUNDS):
+        # each cell at the shift that fits the mean of its class
+        own = means[np.maximum(index, 0)]
+        inner = np.matmul(sample.vectors, own[:, :, None])[:, :, 0]
+        best = np.argmin(sample.norms - 2 * inner, axis=1)
+        members = sample.vectors[np.arange(len(sample)), best]
         means = _means(members, index, len(characters))
     counts = np.array([int(np.sum(index == k)) for k in range(len(characters))])
     return Typeface(characters, means, counts, index, members, sample.shape)
@@ -114,12 +120,3 @@ def _means(members: Vectors, index: NDArray[np.intp], count: int) -> Vectors:
     pick = (index[None] == np.arange(count)[:, None]).astype(np.float32)
     means: Vectors = (pick @ members) / np.maximum(pick.sum(axis=1, keepdims=True), 1)
     return means
-
-
-def _shifted(sample: Sample, means: Vectors, index: NDArray[np.intp]) -> Vectors:
-    """Each cell at the shift that fits the mean of its class."""
-    own = means[np.maximum(index, 0)]
-    inner = np.matmul(sample.vectors, own[:, :, None])[:, :, 0]
-    best = np.argmin(sample.norms - 2 * inner, axis=1)
-    shifted: Vectors = sample.vectors[np.arange(len(sample)), best]
-    return shifted
