@@ -55,12 +55,12 @@ def over_ten(x: Number) -> Number:
 Numeral = tuple[str, str, str, str, str, int]
 """The parts of a number's text, blanks taken out: sign, digits before and after the point, sign and
 digits of the exponent; and where it ends."""
-_NUMERAL = re.compile(r" *([+-]?)([0-9 ]*)(?:\.([0-9 ]*))?(?:E *([+-]?)([0-9 ]*))?")
+NUMERAL = re.compile(r" *([+-]?)([0-9 ]*)(?:\.([0-9 ]*))?(?:E *([+-]?)([0-9 ]*))?")
 
 
 def scan(text: str, start: int = 0) -> Numeral:
     """The parts of the number that begins at ``start``; no number at all has empty parts."""
-    match = _NUMERAL.match(text, start)
+    match = NUMERAL.match(text, start)
     assert match is not None  # there may be nothing in it
     sign, *numbers = (part.replace(" ", "") for part in match.groups(""))
     whole, decimals, exponent_sign, exponent = numbers
