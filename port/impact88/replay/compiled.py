@@ -17,7 +17,7 @@ from ..names import SCENE
 from ..native.formulas import Expression, ExpressionTable
 from ..native.program import Program, addresses
 from . import statements
-from .reals import ZERO, Floats, Reals, constant
+from .reals import ZERO, Floats, Reals
 from .unit import Bools, Unit
 
 LARGE = 2.0**100
@@ -63,6 +63,13 @@ class Noting:
         return Noted(chosen, unit, yes.stored and no.stored)
 
 
+def _noted(operation: str, stored: bool | None = None) -> Any:
+    """The method that notes an operation; what it makes is as it was if ``stored`` does not say."""
+    return lambda self, *others: self.made(
+        operation, *others, stored=self.stored if stored is None else stored
+    )
+
+
 class Noted(Reals):
     """A real of which only the operation that makes it is noted."""
 
@@ -78,59 +85,27 @@ class Noted(Reals):
     def v(self) -> Any:  # type: ignore[override]
         return Noting(self.expression)
 
-    def _make(self, operation: str, *operands: Reals | int, stored: bool = False) -> Noted:
+    def made(self, operation: str, *others: Reals, stored: bool = False) -> Noted:
         table = self.expression.table
-        return Noted(
-            table.combine(operation, *(noted(table, x) for x in operands)), self.unit, stored
-        )
+        operands = (noted(table, x) for x in (self, *others))
+        return Noted(table.combine(operation, *operands), self.unit, stored)
 
     def rounded(self) -> Reals:
-        return self if self.stored else self._make("real_rounded", self, stored=True)
+        return self if self.stored else self.made("real_rounded", stored=True)
 
-    def __neg__(self) -> Noted:
-        return self._make("negative", self, stored=self.stored)
-
-    def __abs__(self) -> Noted:
-        return self._make("absolute", self, stored=self.stored)
-
-    def _sum(self, operation: str, left: Reals | int, right: Reals | int) -> Reals:
-        """A known zero is no operand: x + 0 is x rounded, 0 + x is x."""
-        left, right = as_real(left), as_real(right)
-        if right.zero:
+    def combined(self, operation: str, left: Reals, right: Reals) -> Any:
+        """A known zero is no operand: x + 0 is x rounded, 0 + x is x, 0 * x is 0."""
+        if operation in ("add", "subtract") and right.zero:
             return left.rounded()
-        if left.zero:
-            return -right if operation == "real_subtract" else right
-        return self._make(operation, left, right)
-
-    def __add__(self, right: Reals | int) -> Reals:
-        return self._sum("real_add", self, right)
-
-    def __radd__(self, left: Reals | int) -> Reals:
-        return self._sum("real_add", left, self)
-
-    def __sub__(self, right: Reals | int) -> Reals:
-        return self._sum("real_subtract", self, right)
-
-    def __rsub__(self, left: Reals | int) -> Reals:
-        return self._sum("real_subtract", left, self)
-
-    def __mul__(self, right: Reals | int) -> Reals:
-        return ZERO if as_real(right).zero else self._make("real_multiply", self, right)
-
-    def __rmul__(self, left: Reals | int) -> Reals:
-        return ZERO if as_real(left).zero else self._make("real_multiply", left, self)
-
-    def __truediv__(self, right: Reals | int) -> Reals:
-        return self._make("real_divide", self, right)
-
-    def __rtruediv__(self, left: Reals | int) -> Reals:
-        return self._make("real_divide", left, self)
-
-    def __lt__(self, right: Reals | int) -> Any:
-        return Noting(self._make("real_less", self, right).expression)
-
-    def __gt__(self, right: Reals | int) -> Any:
-        return Noting(self._make("real_less", -self, -as_real(right)).expression)
+        if operation in ("add", "subtract") and left.zero:
+            return right if operation == "add" else -right
+        if operation == "multiply" and (left.zero or right.zero):
+            return ZERO
+        if operation == "greater":
+            operation, left, right = "less", -left, -right
+        table = self.expression.table
+        made = table.combine(f"real_{operation}", noted(table, left), noted(table, right))
+        return Noting(made) if operation == "less" else Noted(made, self.unit)
 
     def exceeds(self, limit: float) -> bool:
         return False  # else the scene is marked
@@ -138,36 +113,18 @@ class Noted(Reals):
     def kept_within_powers(self) -> None:
         """What is not is marked."""
 
-    def floor(self) -> Noted:
-        return self._make("real_int", self)
-
-    def fraction(self) -> Noted:
-        return self._make("real_fraction", self, stored=self.stored)
-
-    def exponent(self) -> Noted:
-        return self._make("real_exponent", self, stored=True)
+    __neg__, __abs__ = _noted("negative"), _noted("absolute")
+    floor, scaled = _noted("real_int", False), _noted("real_scaled", False)
+    fraction, exponent = _noted("real_fraction"), _noted("real_exponent", True)
+    whole = _noted("real_whole", True)
 
     def with_extension(self, more: int) -> Noted:
-        bits = float(np.int64(more << 13).view(np.float64))
-        halved = self._make("real_halved", self)
-        table = self.expression.table
-        halved.expression = table.combine("real_halved", self.expression, table.constant(bits))
-        return halved
-
-    def whole(self) -> Noted:
-        return self._make("real_whole", self, stored=True)
-
-    def scaled(self, powers: Reals) -> Noted:
-        return self._make("real_scaled", self, powers)
+        bits = np.int64(more << 13).view(np.float64)
+        return self.made("real_halved", Reals(np.array([bits]), None))
 
 
-def as_real(x: Reals | int) -> Reals:
-    return constant(x) if isinstance(x, int) else x
-
-
-def noted(table: ExpressionTable, x: Reals | int) -> Expression:
+def noted(table: ExpressionTable, x: Reals) -> Expression:
     """The expression of a real, which may be a constant."""
-    x = as_real(x)
     return x.expression if isinstance(x, Noted) else table.constant(float(x.v[0]))
 
 

@@ -21,6 +21,7 @@ The scalar text of these rules is `impact88.applesoft.real`; the same captures d
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
@@ -95,6 +96,20 @@ def _nowhere() -> Unit:
     return Unit(1)
 
 
+def _operator(name: str, reflected: bool = False) -> Callable[[Reals, Reals | int], Reals]:
+    """The method of an operator; ``reflected``: with the operands the other way round."""
+
+    def method(self: Reals, other: Reals | int) -> Reals:
+        operand = other if isinstance(other, Reals) else constant(other)
+        left, right = (operand, self) if reflected else (self, operand)
+        # of two classes the more special one knows what to do
+        special = operand if isinstance(operand, type(self)) else self
+        result: Reals = special.combined(name, left, right)
+        return result
+
+    return method
+
+
 class Reals:
     """An array of reals: float64 values ``v`` and what is known about them.
 
@@ -136,32 +151,16 @@ class Reals:
     def __abs__(self) -> Reals:
         return Reals(np.abs(self.v), self.unit, self.stored, self.zero)
 
-    def __add__(self, right: Reals | int) -> Reals:
-        return _add(self, right if isinstance(right, Reals) else constant(right), False)
+    __add__, __radd__ = _operator("add"), _operator("add", reflected=True)
+    __sub__, __rsub__ = _operator("subtract"), _operator("subtract", reflected=True)
+    __mul__, __rmul__ = _operator("multiply"), _operator("multiply", reflected=True)
+    __truediv__ = _operator("divide")
+    __lt__: Any = _operator("less")
+    __gt__: Any = _operator("greater")
 
-    def __sub__(self, right: Reals | int) -> Reals:
-        return _add(self, right if isinstance(right, Reals) else constant(right), True)
-
-    def __mul__(self, right: Reals | int) -> Reals:
-        return _multiply(self, right if isinstance(right, Reals) else constant(right))
-
-    def __truediv__(self, right: Reals | int) -> Reals:
-        return _divide(self, right if isinstance(right, Reals) else constant(right))
-
-    def __radd__(self, left: int) -> Reals:
-        return _add(constant(left), self, False)
-
-    def __rsub__(self, left: int) -> Reals:
-        return _add(constant(left), self, True)
-
-    def __rmul__(self, left: int) -> Reals:
-        return _multiply(constant(left), self)
-
-    def __lt__(self, right: Reals | int) -> Bools:
-        return compare(self, right if isinstance(right, Reals) else constant(right)) > 0
-
-    def __gt__(self, right: Reals | int) -> Bools:
-        return compare(self, right if isinstance(right, Reals) else constant(right)) < 0
+    def combined(self, operation: str, left: Reals, right: Reals) -> Any:
+        """What an operator makes of two reals, one of which this is."""
+        return _OPERATIONS[operation](left, right)
 
     def exceeds(self, limit: float) -> bool:
         """Whether any magnitude is above ``limit``."""
@@ -475,3 +474,13 @@ def compare(stored: Reals, right: Reals) -> npt.NDArray[np.int8]:
         beyond = full & (stored.v == rounded) & ~same
         order = np.where(beyond, np.where(stored.v > 0, np.int8(-1), np.int8(1)), order)
     return order
+
+
+_OPERATIONS: dict[str, Callable[[Reals, Reals], Any]] = {
+    "add": lambda left, right: _add(left, right, False),
+    "subtract": lambda left, right: _add(left, right, True),
+    "multiply": _multiply,
+    "divide": _divide,
+    "less": lambda left, right: compare(left, right) > 0,
+    "greater": lambda left, right: compare(left, right) < 0,
+}
