@@ -17,7 +17,6 @@ from impact88.accuracy.elimination import ORDER, eliminate, listing_rows
 from impact88.accuracy.reference import (
     DIGITS,
     GUARD,
-    _solve,
     impulse,
     number,
     terms,
@@ -60,6 +59,38 @@ def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Numbe
         if t.point:
             values = [*values[:4], t.g.get("WA", 0), t.g.get("WB", 0)]
         return dict(zip(ORDER, values, strict=True))
+
+
+def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
+    """Gaussian elimination with rows scaled, columns scaled, and complete pivoting."""
+    n = len(A)
+    column = [max(abs(A[i][j]) for i in range(n)) or mpmath.mpf(1) for j in range(n)]
+    rows = [[A[i][j] / column[j] for j in range(n)] + [b[i]] for i in range(n)]
+    for i, row in enumerate(rows):
+        largest = max(abs(x) for x in row[:n])
+        if largest == 0:
+            return None
+        rows[i] = [x / largest for x in row]
+    order = list(range(n))
+    for k in range(n):
+        size, i, j = max((abs(rows[i][j]), i, j) for i in range(k, n) for j in range(k, n))
+        if size < mpmath.mpf(10) ** (GUARD // 2 - mpmath.mp.dps):
+            return None
+        rows[k], rows[i] = rows[i], rows[k]
+        for row in rows:
+            row[k], row[j] = row[j], row[k]
+        order[k], order[j] = order[j], order[k]
+        for i in range(k + 1, n):
+            f = rows[i][k] / rows[k][k]
+            if f:
+                rows[i] = [x - f * y for x, y in zip(rows[i], rows[k], strict=True)]
+    x = [mpmath.mpf(0)] * n
+    for k in reversed(range(n)):
+        x[k] = (rows[k][n] - sum(rows[k][j] * x[j] for j in range(k + 1, n))) / rows[k][k]
+    solution = [mpmath.mpf(0)] * n
+    for k, name in enumerate(order):
+        solution[name] = x[k] / column[name]
+    return solution
 
 
 def listing_elimination(

@@ -5,6 +5,7 @@ tests hold them to the six equations of lines 370 to 560.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import permutations
 from typing import Any, NamedTuple
 
 from ..errors import UserError
@@ -75,36 +76,27 @@ def terms(scene: Mapping[str, Any], pi: Number | None = None) -> Terms:
     return Terms(g, point, g["MU"] == PIVOT, zero, turn, products, against)
 
 
-def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
-    """Gaussian elimination with rows scaled, columns scaled, and complete pivoting."""
-    n = len(A)
-    column = [max(abs(A[i][j]) for i in range(n)) or mpmath.mpf(1) for j in range(n)]
-    rows = [[A[i][j] / column[j] for j in range(n)] + [b[i]] for i in range(n)]
-    for i, row in enumerate(rows):
-        largest = max(abs(x) for x in row[:n])
-        if largest == 0:
-            return None
-        rows[i] = [x / largest for x in row]
-    order = list(range(n))
-    for k in range(n):
-        size, i, j = max((abs(rows[i][j]), i, j) for i in range(k, n) for j in range(k, n))
-        if size < mpmath.mpf(10) ** (GUARD // 2 - mpmath.mp.dps):
-            return None
-        rows[k], rows[i] = rows[i], rows[k]
-        for row in rows:
-            row[k], row[j] = row[j], row[k]
-        order[k], order[j] = order[j], order[k]
-        for i in range(k + 1, n):
-            f = rows[i][k] / rows[k][k]
-            if f:
-                rows[i] = [x - f * y for x, y in zip(rows[i], rows[k], strict=True)]
-    x = [mpmath.mpf(0)] * n
-    for k in reversed(range(n)):
-        x[k] = (rows[k][n] - sum(rows[k][j] * x[j] for j in range(k + 1, n))) / rows[k][k]
-    solution = [mpmath.mpf(0)] * n
-    for k, name in enumerate(order):
-        solution[name] = x[k] / column[name]
-    return solution
+def _determinant(rows: Sequence[Sequence[Number]]) -> Number:
+    """Of two or three rows; 0 where its terms cancel beyond all digits promised."""
+    orders = zip(permutations(range(len(rows))), (1, -1, -1, 1, 1, -1), strict=False)
+    return total(
+        *(
+            sign * mpmath.fprod(row[j] for row, j in zip(rows, places, strict=True))
+            for places, sign in orders
+        )
+    )
+
+
+def _solve(A: Sequence[Sequence[Number]], b: Sequence[Number]) -> list[Number] | None:
+    """By Cramer's rule, which in so many digits is as good as any."""
+    divisor = _determinant(A)
+    if not divisor:
+        return None
+    replaced = (
+        [[*row[:j], right, *row[j + 1 :]] for row, right in zip(A, b, strict=True)]
+        for j in range(len(b))
+    )
+    return [_determinant(rows) / divisor for rows in replaced]
 
 
 class Impulse(NamedTuple):
