@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 from ..accuracy import errorbound
 from ..closedform.solve import solve
 from ..doubles import double
-from ..equations.bounded import running_errors
-from ..equations.evaluation import Run
+from ..equations.evaluation import Run, running_errors
 from ..equations.spelling import A_IMPULSE, IMPULSES, LISTING, spellings
 from ..errors import quoted
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
@@ -157,12 +156,13 @@ def _case(
         largest = np.nanmax(np.abs([ours[name] for name in FINAL_VELOCITIES]), 0, initial=0.0)
         eliminated = _condition(scene) * largest
         shares = [
-            np.fmax(eliminated, np.broadcast_to(spent[name].errors, largest.shape)) / sizes[name]
+            np.fmax(eliminated, np.broadcast_to(spent[name][1], largest.shape)) / sizes[name]
             for name in FINAL_VELOCITIES
         ]
         finite = np.max(np.where(np.isfinite(shares), shares, 0.0), axis=0)
-        sliding = np.abs(spent["gt"].values) / errorbound.DOUBLE
-        undecided = (sliding <= spent["gt"].errors) & (scene["MU"] != PIVOT) & (scene["MU"] != 0)
+        sliding, off = spent["gt"]
+        undecided = np.abs(sliding) <= off * errorbound.DOUBLE
+        undecided &= (scene["MU"] != PIVOT) & (scene["MU"] != 0)
     per_unit = np.fmax(best, finite)
     alike = None if rtol is None else np.full(best.size, rtol)
     columns = np.stack([scene[name] for name in SCENE])

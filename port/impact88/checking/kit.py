@@ -5,7 +5,6 @@ and programs in several languages that read and answer them.
 any machine for the same seed; ``KIT.json`` has seed, version and hashes.
 """
 
-import ast
 import csv
 import hashlib
 import io
@@ -19,7 +18,7 @@ from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from .. import schemas
-from ..equations.spelling import IMPULSES, SHOWN, parts, spellings
+from ..equations.spelling import IMPULSES, NEGATIVE, SHOWN, Expression, spellings
 from ..errors import UserError
 from ..files import replacing
 from ..names import RESULTS, SCENE
@@ -126,24 +125,17 @@ def workbook(found: Sequence[dict[str, Any]]) -> bytes:
     return out.getvalue()
 
 
-def _formula(node: ast.expr, cells: Mapping[str, str]) -> str:
+def _formula(node: Expression, cells: Mapping[str, str]) -> str:
     """An expression in a spreadsheet's language."""
-    if isinstance(node, ast.Name):
-        return "PI()" if node.id == "pi" else cells[node.id]
-    if isinstance(node, ast.Constant):
-        return repr(node.value)
-    if isinstance(node, ast.UnaryOp):
-        return f"(-{_formula(node.operand, cells)})"
-    if isinstance(node, ast.Call):
-        return _FORMULAS[node.func.id].format(*(_formula(one, cells) for one in node.args))  # type: ignore[attr-defined]
-    (_, _, left), (_, _, right) = parts(node)
-    operator = node.op if isinstance(node, ast.BinOp) else node.ops[0]  # type: ignore[attr-defined]
-    return f"({_formula(left, cells)}{_OPERATORS[type(operator)]}{_formula(right, cells)})"
+    if isinstance(node, str):
+        return "PI()" if node == "pi" else cells[node]
+    if not isinstance(node, tuple):
+        return repr(node)
+    return _FORMULAS[node[0]].format(*(_formula(part, cells) for part in node[1:]))
 
 
-_OPERATORS: dict[type, str] = {
-    **{ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "^"},
-    **{ast.Eq: "=", ast.Gt: ">", ast.Lt: "<"},
+_FORMULAS = {
+    **{sign: f"({{}}{sign}{{}})" for sign in "+-*/<>"},
+    **{"**": "({}^{})", "==": "({}={})", NEGATIVE: "(-{})", "where": "IF({},{},{})"},
+    **{"hypot": "SQRT({0}*{0}+{1}*{1})", "sin": "SIN({})", "cos": "COS({})"},
 }
-_FORMULAS = {"where": "IF({},{},{})", "hypot": "SQRT({0}*{0}+{1}*{1})", "sin": "SIN({})"}
-_FORMULAS["cos"] = "COS({})"

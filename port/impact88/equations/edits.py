@@ -2,7 +2,6 @@
 same throughout one equation, columns read or shown otherwise (``readings.txt``), and other models
 (``variants.txt``)."""
 
-import ast
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -12,20 +11,22 @@ from typing import NamedTuple
 from ..names import SCENE
 from .evaluation import BESIDE
 from .spelling import (
+    COMPARISONS,
     IMPULSES,
     LISTING,
+    NEGATIVE,
     SHOWN,
     TYPED,
+    Expression,
     Kin,
     Sides,
     Spelling,
     expression,
     nodes,
-    parts,
+    operands,
     renamed,
     spellings,
     table,
-    with_part,
     written,
 )
 
@@ -39,7 +40,7 @@ _EVERYWHERE = {LIKELY: "-a", LESS: "2*a; a/2"}
 _WHOLE = {LESS: "a**2; abs(a); sqrt(abs(a)); 1 - a; 1/a", RARE: "single(a)"}
 """And for a name, or all of a side."""
 
-_NO_NAMES = (*CONDITIONS, "sin", "cos", "where", "hypot", "pi")
+_NO_NAMES = (*CONDITIONS, "pi")
 
 
 class Edit(NamedTuple):
@@ -83,36 +84,36 @@ def statement_edits(spelling: Spelling, places: Sequence[int]) -> Iterator[Edit]
                 yield Edit(spelling.title, {one.key: sides}, rank)
 
 
-def variations(node: ast.expr, kin: Kin, whole: bool = True) -> Iterator[tuple[int, ast.expr]]:
+def variations(node: Expression, kin: Kin, whole: bool = True) -> Iterator[tuple[int, Expression]]:
     """An expression with one of its nodes edited, and how likely that is; ``whole``: it is all of
     its side."""
     for rank, pattern, alternatives in _rules().get(_kind(node), ()):
-        bound: dict[str, ast.expr] = {}
+        bound: dict[str, Expression] = {}
         if _matches(pattern, node, bound):
             for made in alternatives:
                 yield rank, _filled(made, bound)
-    is_name = isinstance(node, ast.Name)
-    if isinstance(node, ast.Name):
-        if node.id in CONDITIONS:
-            yield LIKELY, ast.Constant(False)
-            yield LIKELY, ast.Constant(True)
+    is_name = isinstance(node, str)
+    if is_name:
+        if node in CONDITIONS:
+            yield LIKELY, False
+            yield LIKELY, True
             return
-        for twin in kin.get(node.id, ()):
-            yield LIKELY, ast.Name(twin)
-        yield LESS, ast.Constant(0)
-    if not isinstance(node, ast.Compare):
+        for twin in kin.get(node, ()):
+            yield LIKELY, twin
+        yield LESS, 0
+    if _kind(node) not in COMPARISONS:
         for rank, made in _always(False) + (_always(True) if whole or is_name else ()):
-            if rank == LIKELY or not isinstance(node, ast.Constant):
+            if rank == LIKELY or isinstance(node, str | tuple):
                 yield rank, _filled(made, {"a": node})
-    for field, place, part in parts(node):
+    for place, part in enumerate(operands(node), 1):
         for rank, other in variations(part, kin, False):
-            yield rank, with_part(node, field, place, other)
+            yield rank, (*node[:place], other, *node[place + 1 :])
 
 
 @cache
-def _rules() -> dict[object, list[tuple[int, ast.expr, list[ast.expr]]]]:
+def _rules() -> dict[object, list[tuple[int, Expression, list[Expression]]]]:
     """The rules of ``rules.txt`` by the kind of node they are for."""
-    rules: dict[object, list[tuple[int, ast.expr, list[ast.expr]]]] = {}
+    rules: dict[object, list[tuple[int, Expression, list[Expression]]]] = {}
     rank = LIKELY
     for line in table("rules.txt"):
         if line in _SECTIONS:
@@ -125,39 +126,31 @@ def _rules() -> dict[object, list[tuple[int, ast.expr, list[ast.expr]]]]:
 
 
 @cache
-def _always(whole: bool) -> tuple[tuple[int, ast.expr], ...]:
+def _always(whole: bool) -> tuple[tuple[int, Expression], ...]:
     several = (_WHOLE if whole else _EVERYWHERE).items()
     return tuple((rank, expression(one)) for rank, made in several for one in made.split(";"))
 
 
-def _kind(node: ast.expr) -> object:
+def _kind(node: Expression) -> object:
     """What a node has in common with the patterns that may match it."""
-    if isinstance(node, ast.BinOp):
-        return type(node.op)
-    if isinstance(node, ast.Compare):
-        return type(node.ops[0])
-    if isinstance(node, ast.Call):
-        return node.func.id  # type: ignore[attr-defined]
-    if isinstance(node, ast.Name):
-        return node.id
-    return node.value if isinstance(node, ast.Constant) else type(node)
+    return node[0] if isinstance(node, tuple) else node
 
 
-def _matches(pattern: ast.expr, node: ast.expr, bound: dict[str, ast.expr]) -> bool:
+def _matches(pattern: Expression, node: Expression, bound: dict[str, Expression]) -> bool:
     """Whether a node is of a pattern; what its letters stand for goes to ``bound``."""
-    if isinstance(pattern, ast.Name) and len(pattern.id) == 1:
-        bound[pattern.id] = node
+    if isinstance(pattern, str) and len(pattern) == 1:
+        bound[pattern] = node
         return True
     return _kind(pattern) == _kind(node) and all(
         _matches(one, other, bound)
-        for (_, _, one), (_, _, other) in zip(parts(pattern), parts(node), strict=True)
+        for one, other in zip(operands(pattern), operands(node), strict=True)
     )
 
 
-def _filled(made: ast.expr, bound: Mapping[str, ast.expr]) -> ast.expr:
+def _filled(made: Expression, bound: Mapping[str, Expression]) -> Expression:
     """A template with its letters replaced; minus minus is nothing."""
-    if isinstance(made, ast.UnaryOp) and isinstance(inner := bound["a"], ast.UnaryOp):
-        return inner.operand
+    if _kind(made) == NEGATIVE and _kind(inner := bound[made[1]]) == NEGATIVE:
+        return inner[1]
     return renamed(made, bound)
 
 
@@ -178,11 +171,11 @@ def equation_edits(spelling: Spelling) -> Iterator[Edit]:
     }
     for subject, places in groups.items():
         names = Counter(
-            node.id
+            node
             for index in places
             for side in spelling.statements[index].sides
             for node in nodes(side)
-            if isinstance(node, ast.Name)
+            if isinstance(node, str)
         )
         kin = spelling.kin_at(places[0])
         for name in [one for one in names if one not in (*_NO_NAMES, *spelling.unknown)]:
@@ -201,21 +194,20 @@ def equation_edits(spelling: Spelling) -> Iterator[Edit]:
 
 def _throughout(
     name: str, kin: Sequence[str], names: Counter[str]
-) -> Iterator[tuple[str, dict[str, ast.expr]]]:
+) -> Iterator[tuple[str, dict[str, Expression]]]:
     """What may be done to a name, or to two of one kind, wherever they stand."""
     for other in kin:
         if other > name and other in names:
-            yield f"{name} and {other} exchanged", {name: ast.Name(other), other: ast.Name(name)}
             both = (name, other)
-            yield f"{name} and {other} left out", dict.fromkeys(both, ast.Constant(0))
-            negative = {one: expression(f"-{one}") for one in both}
-            yield f"{name} and {other} with the wrong sign", negative
+            yield f"{name} and {other} exchanged", {name: other, other: name}
+            yield f"{name} and {other} left out", dict.fromkeys(both, 0)
+            yield f"{name} and {other} with the wrong sign", {n: (NEGATIVE, n) for n in both}
     if names[name] > 1:
-        yield f"{name} with the wrong sign", {name: expression(f"-{name}")}
-        yield f"{name} left out", {name: ast.Constant(0)}
-        yield f"{name} halved", {name: expression(f"{name}/2")}
+        yield f"{name} with the wrong sign", {name: (NEGATIVE, name)}
+        yield f"{name} left out", {name: 0}
+        yield f"{name} halved", {name: ("/", name, 2)}
         for other in kin:
-            yield f"{other} for {name}", {name: ast.Name(other)}
+            yield f"{other} for {name}", {name: other}
 
 
 @cache
@@ -250,9 +242,9 @@ def _count_shown(spelling: Spelling) -> int:
 def measured(name: str, how: str, number: float) -> Edit:
     """A column of the scene, or a result, that a number found by measuring stands in: ``how`` it
     does, an expression in the column x and the number k."""
-    place = {"x": ast.Name(f"{TYPED}{name}" if name in SCENE else name), "k": ast.Constant(number)}
+    place = {"x": f"{TYPED}{name}" if name in SCENE else name, "k": number}
     key = name if name in SCENE else f"{SHOWN}{name}"
-    says = written(name, (renamed(expression(how), {**place, "x": ast.Name(name)}),))
+    says = written(name, (renamed(expression(how), {**place, "x": name}),))
     return Edit("", {key: (renamed(expression(how), place),)}, MEASURED, f"{says} (measured)")
 
 
@@ -295,7 +287,7 @@ def written_out(lines: Iterable[str]) -> Iterator[str]:
             yield filled.replace(word[0], says) if word else filled
 
 
-_AS_TYPED = {name: ast.Name(f"{TYPED}{name}") for name in SCENE}
+_AS_TYPED = {name: f"{TYPED}{name}" for name in SCENE}
 
 
 def _reading(line: str) -> Edit:
@@ -303,15 +295,15 @@ def _reading(line: str) -> Edit:
     scene, _, results = rest.partition(";;")
     sides: dict[str, Sides] = {}
     for name, made in assigned(scene):
-        beside = {row: ast.Name(f"{TYPED}{row}_{name}") for row in BESIDE}
+        beside = {row: f"{TYPED}{row}_{name}" for row in BESIDE}
         sides[name] = (renamed(made, {**_AS_TYPED, **beside, "x": _AS_TYPED[name]}),)
     for name, made in assigned(results):
-        sides[f"{SHOWN}{name}"] = (renamed(made, {"x": ast.Name(name)}),)
+        sides[f"{SHOWN}{name}"] = (renamed(made, {"x": name}),)
     rank = RARE_CONVENTION if says.startswith("~") else CONVENTION
     return Edit("", sides, rank, says.lstrip("~ "))
 
 
-def assigned(text: str) -> Iterator[tuple[str, ast.expr]]:
+def assigned(text: str) -> Iterator[tuple[str, Expression]]:
     """Each column of ``A B = expression; C = expression``, with its expression."""
     for part in filter(str.strip, text.split(";")):
         names, made = part.split("=", 1)
@@ -335,7 +327,7 @@ def variants() -> tuple[Edit, ...]:
 def _variant(line: str, spelling: Spelling) -> Edit:
     says, rest = line.split(" | ", 1)
     sides: dict[str, Sides] = {}
-    new: dict[str, ast.expr] = {}
+    new: dict[str, Expression] = {}
     for part in rest.split(";"):
         text, _, subject = part.partition("@")
         if subject:

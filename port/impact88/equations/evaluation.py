@@ -4,7 +4,6 @@ Arrays have the scenes last, edits before them: (K, n), or (1, n) of what edits 
 All edits run through the program together, statement by statement.
 """
 
-import ast
 from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import MappingProxyType
@@ -13,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .spelling import TYPED, Spelling, nodes
+from .spelling import COMPARISONS, NEGATIVE, TYPED, Expression, Spelling, nodes
 
 Floats = NDArray[np.float64]
 Columns = Mapping[str, Any]
@@ -25,45 +24,63 @@ BESIDE = {"before": 1, "after": -1}
 AT_ONCE = 60_000
 """Scenes times edits that are computed together, to bound the memory."""
 
-_OPERATORS: dict[type, Callable[[Any, Any], Any]] = {
-    ast.Add: np.add,
-    ast.Sub: np.subtract,
-    ast.Mult: np.multiply,
-    ast.Div: np.divide,
-    ast.Pow: lambda x, k: np.square(x) if isinstance(k, int) and k == 2 else x**k,
-    ast.Lt: np.less,
-    ast.LtE: np.less_equal,
-    ast.Gt: np.greater,
-    ast.GtE: np.greater_equal,
-    ast.Eq: np.equal,
-}
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "single": lambda x: np.float64(np.float32(x)),
-    "either": np.logical_or,
+_OPERATIONS: dict[str, Callable[..., Any]] = {
+    **{"+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, NEGATIVE: np.negative},
+    **{"**": lambda x, k: np.square(x) if isinstance(k, int) and k == 2 else x**k},
+    **{"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal},
+    **{"single": lambda x: np.float64(np.float32(x)), "either": np.logical_or},
 }
 
 
-def value(node: Any, names: Columns, known: Mapping[int, Any] = MappingProxyType({})) -> Any:
+def value(node: Expression, names: Columns, known: Mapping[int, Any] = MappingProxyType({})) -> Any:
     """The value of an expression, or what is a value already. ``known``: values of nodes by id."""
-    if id(node) in known:
-        return known[id(node)]
-    if isinstance(node, ast.Name):
-        return np.pi if node.id == "pi" else names[node.id]
-    if isinstance(node, ast.Constant):
-        return node.value
-    if isinstance(node, ast.BinOp):
-        left, right = value(node.left, names, known), value(node.right, names, known)
-        return _OPERATORS[type(node.op)](left, right)
-    if isinstance(node, ast.UnaryOp):
-        return np.negative(value(node.operand, names, known))
-    if isinstance(node, ast.Compare):
-        left, right = value(node.left, names, known), value(node.comparators[0], names, known)
-        return _OPERATORS[type(node.ops[0])](left, right)
-    if isinstance(node, ast.Call):
-        name = node.func.id  # type: ignore[attr-defined]
-        function = _FUNCTIONS.get(name) or getattr(np, name)
-        return function(*(value(one, names, known) for one in node.args))
+    if isinstance(node, tuple):
+        if id(node) in known:
+            return known[id(node)]
+        function = _OPERATIONS.get(node[0]) or getattr(np, node[0])
+        return function(*[value(part, names, known) for part in node[1:]])
+    if isinstance(node, str):
+        return np.pi if node == "pi" else names[node]
     return node
+
+
+_ERRORS: dict[str, Callable[..., Any]] = {
+    "+": lambda v, x, y, dx, dy: dx + dy,
+    "-": lambda v, x, y, dx, dy: dx + dy,
+    "*": lambda v, x, y, dx, dy: np.abs(x) * dy + np.abs(y) * dx,
+    "/": lambda v, x, y, dx, dy: (dx + np.abs(v) * dy) / np.abs(y),
+    "**": lambda v, x, y, dx, dy: 2 * np.abs(x) * dx,
+    "sin": lambda v, x, dx: np.abs(np.cos(x)) * dx,
+    "cos": lambda v, x, dx: np.abs(np.sin(x)) * dx,
+    "hypot": lambda v, x, y, dx, dy: dx + dy,
+    NEGATIVE: lambda v, x, dx: dx - np.abs(v),
+    "where": lambda v, p, x, y, dp, dx, dy: np.where(p, dx, dy) - np.abs(v),
+}
+"""What an operation makes of the errors of its operands, its own rounding aside."""
+
+
+def running_errors(spelling: Spelling, scene: Columns) -> Mapping[str, tuple[Any, Any]]:
+    """All that a spelling without equations computes for scenes (columns of n), and how far
+    rounding may have taken each, in units of roundoff."""
+    names: dict[str, tuple[Any, Any]] = {
+        f"{TYPED}{name}": (column, np.abs(column)) for name, column in scene.items()
+    }
+
+    def bounded(node: Expression) -> tuple[Any, Any]:
+        if isinstance(node, str):
+            return (np.pi, 0.0) if node == "pi" else names[node]
+        if not isinstance(node, tuple):
+            return node, 0.0
+        values, errors = zip(*map(bounded, node[1:]), strict=True)
+        found = value((node[0], *values), {})
+        if node[0] in COMPARISONS:
+            return found, 0.0
+        return found, _ERRORS[node[0]](found, *values, *errors) + np.abs(found)
+
+    with np.errstate(all="ignore"):
+        for one in spelling.statements:
+            names[one.target] = bounded(one.sides[0])
+    return names
 
 
 class Outcome(NamedTuple):
@@ -203,7 +220,7 @@ class Run:
         known: dict[int, Any] = {}
         for side in one.sides:
             for node in reversed(list(nodes(side))):
-                if not isinstance(node, ast.Constant | ast.Name):
+                if isinstance(node, tuple):
                     known[id(node)] = value(node, seen, known)
         values = [[value(side, seen, known) for side in edits[place][key]] for place in places]
         wholes = [sides[0] if one.target else np.subtract(*sides) for sides in (own, *values)]

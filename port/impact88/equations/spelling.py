@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from operator import is_not
 from typing import Any, NamedTuple
 
 from ..files import packaged_text
 from ..names import RESULTS, SCENE
 
 Kin = Mapping[str, tuple[str, ...]]
-Sides = tuple[ast.expr, ...]
+Expression = Any
+"""A name, a number, or an operation and its operands: ``("*", "MA", ("cos", "ga"))``."""
+Sides = tuple[Expression, ...]
+
+NEGATIVE = "minus"
+_SYMBOLS: dict[type, str] = {
+    **{ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**", ast.Eq: "=="},
+    **{ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="},
+}
+COMPARISONS = ("<", "<=", ">", ">=", "==")
 
 FIRST, LAST = "reading", "results"
 LISTING, IMPULSES, A_IMPULSE = "listing", "contact impulses", "equations with A's impulse"
@@ -58,7 +68,10 @@ class Spelling:
     @cached_property
     def reads(self) -> tuple[frozenset[str], ...]:
         """The names that each statement reads."""
-        return tuple(frozenset().union(*map(names_in, one.sides)) for one in self.statements)
+        return tuple(
+            frozenset(node for side in one.sides for node in nodes(side) if isinstance(node, str))
+            for one in self.statements
+        )
 
     @cached_property
     def equations(self) -> tuple[int, ...]:
@@ -80,14 +93,14 @@ class Spelling:
         }
 
     @cached_property
-    def otherwise(self) -> dict[str, ast.expr]:
+    def otherwise(self) -> dict[str, Expression]:
         """What stands for a column as typed, or a result, where it is read or shown otherwise."""
         made = {}
         for one in self.statements:
             if one.target in SCENE or one.target.startswith(SHOWN):
                 name = one.target.removeprefix(SHOWN)
                 usual = name if name != one.target else f"{TYPED}{name}"
-                if written("", one.sides) != usual:
+                if one.sides != (usual,):
                     made[usual] = one.sides[0]
         return made
 
@@ -114,66 +127,60 @@ class Spelling:
         )
 
 
-def parts(node: ast.expr) -> list[tuple[str, int | None, ast.expr]]:
-    """The operands of an expression: field, place in it, and expression."""
-    if isinstance(node, ast.BinOp):
-        return [("left", None, node.left), ("right", None, node.right)]
-    if isinstance(node, ast.UnaryOp):
-        return [("operand", None, node.operand)]
-    if isinstance(node, ast.Compare):
-        return [("left", None, node.left), ("comparators", 0, node.comparators[0])]
-    if isinstance(node, ast.Call):
-        return [("args", place, argument) for place, argument in enumerate(node.args)]
-    return []
+def operands(node: Expression) -> Sides:
+    """What an operation is of; nothing of a name or a number."""
+    return node[1:] if isinstance(node, tuple) else ()
 
 
-def with_part(node: ast.expr, field: str, place: int | None, other: ast.expr) -> ast.expr:
-    """An expression with another operand."""
-    made: Any = other
-    if place is not None:
-        made = [*getattr(node, field)]
-        made[place] = other
-    return type(node)(**{**vars(node), field: made})
-
-
-def rebuilt(node: ast.expr, change: Callable[[ast.expr], ast.expr | None]) -> ast.expr:
-    """An expression with nodes replaced by what ``change`` gives for them."""
-    found = change(node)
-    if found is not None:
-        return found
-    for field, place, part in parts(node):
-        other = rebuilt(part, change)
-        if other is not part:
-            node = with_part(node, field, place, other)
-    return node
-
-
-def renamed(node: ast.expr, names: Mapping[str, ast.expr]) -> ast.expr:
-    """An expression with names replaced by expressions."""
-    return rebuilt(node, lambda one: names.get(one.id) if isinstance(one, ast.Name) else None)
-
-
-def nodes(node: ast.expr) -> Iterator[ast.expr]:
-    """An expression and all in it, names of functions left out."""
+def nodes(node: Expression) -> Iterator[Expression]:
+    """An expression and all in it."""
     yield node
-    for _, _, part in parts(node):
+    for part in operands(node):
         yield from nodes(part)
 
 
-def names_in(node: ast.expr) -> frozenset[str]:
-    """The names of values in an expression."""
-    return frozenset(one.id for one in nodes(node) if isinstance(one, ast.Name))
+def renamed(node: Expression, names: Mapping[str, Expression]) -> Expression:
+    """An expression with names replaced by expressions."""
+    if isinstance(node, str):
+        return names.get(node, node)
+    found = tuple(renamed(part, names) for part in operands(node))
+    return (node[0], *found) if any(map(is_not, found, operands(node))) else node
 
 
 def written(target: str, sides: Sides) -> str:
     """A statement as text: ``target = side``, or ``side = side`` for an equation."""
-    texts = [ast.unparse(side).replace(" * ", "*").replace(" / ", "/") for side in sides]
+    trees = (ast.parse(_in_brackets(side), mode="eval") for side in sides)
+    texts = [ast.unparse(tree).replace(" * ", "*").replace(" / ", "/") for tree in trees]
     return " = ".join([target, *texts] if target else texts).replace(" ** ", "**")
 
 
-def expression(text: str) -> ast.expr:
+def _in_brackets(node: Expression) -> str:
+    if not isinstance(node, tuple):
+        return str(node)
+    name, texts = node[0], list(map(_in_brackets, operands(node)))
+    if name == NEGATIVE:
+        return f"(-{texts[0]})"
+    return f"{name}({','.join(texts)})" if name.isidentifier() else f"({f' {name} '.join(texts)})"
+
+
+def expression(text: str) -> Expression:
     """An expression parsed."""
-    return ast.parse(text.strip(), mode="eval").body
+    return _expression(ast.parse(text.strip(), mode="eval").body)
+
+
+def _expression(tree: ast.expr) -> Expression:
+    match tree:
+        case ast.Name(name):
+            return name
+        case ast.UnaryOp(ast.USub(), operand):
+            return NEGATIVE, _expression(operand)
+        case ast.BinOp(left, operator, right) | ast.Compare(left, [operator], [right]):
+            return _SYMBOLS[type(operator)], _expression(left), _expression(right)
+        case ast.Call(ast.Name(name), arguments):
+            return name, *map(_expression, arguments)
+        case ast.Constant(number):
+            return number
+    raise ValueError(f"{ast.unparse(tree)} is no expression")
 
 
 def statement(line: str, place: str = "") -> Statement:

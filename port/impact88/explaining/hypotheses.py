@@ -5,7 +5,6 @@ in double precision, the nearest replayed. A number shown in another unit was ro
 it may have been computed with several; they are searched for the nearest rows.
 """
 
-import ast
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from itertools import combinations, islice
@@ -17,6 +16,7 @@ import numpy as np
 from ..doubles import double, doubles_of
 from ..equations.edits import assigned, written_out
 from ..equations.evaluation import value
+from ..equations.spelling import NEGATIVE, Expression
 from ..fields import FIELDS, INPUTS, scene_name
 from ..files import packaged_text
 from ..names import PIVOT
@@ -47,8 +47,8 @@ class Row(NamedTuple):
     kind: str
     note: str
     bits: float
-    inputs: Mapping[str, ast.expr]
-    results: Mapping[str, ast.expr]
+    inputs: Mapping[str, Expression]
+    results: Mapping[str, Expression]
 
 
 class Hypothesis(NamedTuple):
@@ -108,7 +108,7 @@ class Tables:
     def exchanges(self) -> Iterator[Hypothesis]:
         """The inputs in each other's place that are printed on the page."""
         for row in table():
-            names = all(isinstance(made, ast.Name) for made in row.inputs.values())
+            names = all(isinstance(made, str) for made in row.inputs.values())
             if row.inputs and names and row.bits < _ANY_TWO:
                 made = self._made(row)
                 if made and {change.field for change in made.changes} <= set(self._printed):
@@ -130,9 +130,9 @@ class Tables:
         within: dict[str, float] = {}
         most = max(_decimals(self._scene[name]) for name in row.inputs)
         for name, made in row.inputs.items():
-            if isinstance(made, ast.Name) and made.id != "x":
-                typed[name] = self._scene[made.id]
-                if (other := _field(made.id)) in self._printed:
+            if isinstance(made, str) and made != "x":
+                typed[name] = self._scene[made]
+                if (other := _field(made)) in self._printed:
                     assumed[_field(name)] = self._printed[other]
                 continue
             x, own = self._values[name], self._scene[name]
@@ -140,8 +140,7 @@ class Tables:
             if not isfinite(found):
                 return None
             slack = 0.0
-            times = isinstance(made, ast.BinOp) and isinstance(made.op, ast.Mult | ast.Div)
-            if x and (times or isinstance(made, ast.Call)):
+            if x and isinstance(made, tuple) and made[0] not in ("+", "-", NEGATIVE):
                 # a conversion; all were rounded to as many decimals, but what fills nine digits
                 half = 0.5 * 10.0 ** -(_decimals(own) if digits_of(own) >= 9 else most)
                 ends = self._value(made, x - half), self._value(made, x + half)
@@ -160,7 +159,7 @@ class Tables:
             return None
         return Hypothesis(row, {**self._scene, **typed}, tuple(changes), assumed, within)
 
-    def _value(self, made: ast.expr, x: float) -> float:
+    def _value(self, made: Expression, x: float) -> float:
         """An expression of a row, ``x`` being the column itself."""
         return float(value(made, {**self._values, "x": x}))
 
@@ -225,7 +224,7 @@ def unexplained(evidence: Evidence, every: Sequence[Hypothesis]) -> Iterator[Cau
         if row.results:
             predicted |= _shown_otherwise(evidence, row, outcome, values(key))
         for name, made in row.results.items():
-            other = fields.get(made.id) if isinstance(made, ast.Name) else None
+            other = fields.get(made) if isinstance(made, str) else None
             if other and name in fields and other != fields[name]:
                 changes.append(Change(row.kind, name, other, fields[name]))
         turned = any(change.field == "MUP" for change in changes)
@@ -241,9 +240,9 @@ def _shown_otherwise(
     ranges: dict[str, Range] = {}
     printed = as_printed(outcome)
     for name, made in row.results.items():
-        if isinstance(made, ast.Name):
-            if made.id in printed:
-                ranges[name] = printed[made.id]
+        if isinstance(made, str):
+            if made in printed:
+                ranges[name] = printed[made]
         elif name in values and name in evidence.texts:
             found = float(value(made, {**values, "x": values[name]}))
             places = evidence.decimals(name)
