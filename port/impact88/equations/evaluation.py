@@ -119,28 +119,27 @@ class Run:
             self._unknown = {name: self.clamped[name] for name in spelling.unknown}
             self.names |= self._unknown
         with np.errstate(all="ignore"):
-            self.names, self.residuals = self.edited([{}], whole=True)
+            made, self.residuals = self.edited([{}])
+        self.names |= made
 
-    def edited(self, several: Sequence[Changes], whole: bool = False) -> Outcome:
-        """What edits of the program change; ``whole``: compute all, not only what they change."""
-        made: dict[str, Any] = dict(self.names) if whole else {}
+    def edited(self, several: Sequence[Changes]) -> Outcome:
+        """What edits of the program change; at first, all that it computes."""
+        made: dict[str, Any] = {}
         names = ChainMap(made, self.names)
-        changed: set[str] = set(made)
+        changed: set[str] = set()
         residuals: dict[str, Any] = {}
         equations: dict[int, Any] = {}
         edits: dict[str, list[tuple[int, Sequence[Any]]]] = {}
         for k, changes in enumerate(several):
             for key, sides in changes.items():
                 edits.setdefault(key, []).append((k, sides))
-        last = self.spelling.equations[-1] if self.spelling.equations else -1
         for index, one in enumerate(self.spelling.statements):
-            here = edits.get(one.key, [])
-            if here or whole or not changed.isdisjoint(self.spelling.reads[index]):
+            here, own = edits.get(one.key, []), self._own[index]
+            fresh = own is None or not changed.isdisjoint(self.spelling.reads[index])
+            if here or fresh:
                 seen = names if one.target else names.new_child(self._unknown)
-                fresh = whole or not changed.isdisjoint(self.spelling.reads[index])
-                found = [value(side, seen) for side in one.sides] if fresh else self._own[index]
-                if whole:
-                    self._own[index] = found
+                found = [value(side, seen) for side in one.sides] if fresh else own
+                self._own[index] = found if own is None else own
                 if here:
                     found = self._rows(found, here, len(several), seen)
                 if not one.target and not self.clamped:
@@ -153,8 +152,10 @@ class Run:
                 else:
                     made[one.target] = np.atleast_2d(found[0])
                     changed.add(one.target)
-            if index == last and equations:
-                made |= self.solved(equations)
+            if equations and index == self.spelling.equations[-1]:
+                matrix, rest = self.system(equations)
+                solved = np.moveaxis(_solutions(matrix, rest), -1, 0)
+                made |= zip(self.spelling.unknown, solved, strict=True)
                 changed.update(self.spelling.unknown)
         return Outcome(made, residuals)
 
@@ -175,12 +176,6 @@ class Run:
                 made = value(side, row)
                 column[..., k, :] = made[..., 0, :] if np.ndim(made) > 1 else made
         return found
-
-    def solved(self, equations: Mapping[int, Any]) -> dict[str, Any]:
-        """The unknowns of equations, NaN where there is no solution."""
-        matrix, rest = self.system(equations)
-        found = _solutions(matrix, rest)
-        return {name: found[..., place] for place, name in enumerate(self.spelling.unknown)}
 
     def system(self, equations: Mapping[int, Any]) -> tuple[Floats, Floats]:
         """Matrices (K, n, m, m) and right-hand sides (K, n, m); those that are not given are the
@@ -206,36 +201,27 @@ class Run:
         for place, changes in enumerate(edits):
             groups.setdefault("" if len(changes) > 1 else next(iter(changes)), []).append(place)
         found: list[tuple[int, Changes]] = [(place, edits[place]) for place in groups.pop("", [])]
-        with np.errstate(all="ignore"):
-            for key, places in groups.items():
-                found += self._distinct(key, places, edits)
+        for key, places in groups.items():
+            index = self.spelling.where[key]
+            one, own = self.spelling.statements[index], self._own[index]
+            seen = self.names if one.target else {**self.names, **self._unknown}
+            known: dict[int, Any] = {}
+            for side in one.sides:
+                for node in reversed(list(nodes(side))):
+                    if isinstance(node, tuple):
+                        known[id(node)] = value(node, seen, known)
+            values = [[value(side, seen, known) for side in edits[place][key]] for place in places]
+            wholes = [sides[0] if one.target else np.subtract(*sides) for sides in (own, *values)]
+            shape = np.broadcast_shapes((1, self.size), *map(np.shape, wholes))
+            met = set[bytes]()
+            for place, sides, whole in zip((-1, *places), (own, *values), wholes, strict=True):
+                numbers = np.array(np.broadcast_to(whole, shape), float) + 0.0
+                # those that differ in their last bits only are alike: the same in another order
+                digits = (numbers.view(np.int64) + (1 << 18) >> 19).tobytes()
+                if digits not in met and place >= 0:
+                    found.append((place, {key: sides}))
+                met.add(digits)
         return found
-
-    def _distinct(
-        self, key: str, places: Sequence[int], edits: Sequence[Changes]
-    ) -> Iterator[tuple[int, Changes]]:
-        index = self.spelling.where[key]
-        one, own = self.spelling.statements[index], self._own[index]
-        seen = self.names if one.target else {**self.names, **self._unknown}
-        known: dict[int, Any] = {}
-        for side in one.sides:
-            for node in reversed(list(nodes(side))):
-                if isinstance(node, tuple):
-                    known[id(node)] = value(node, seen, known)
-        values = [[value(side, seen, known) for side in edits[place][key]] for place in places]
-        wholes = [sides[0] if one.target else np.subtract(*sides) for sides in (own, *values)]
-        shape = np.broadcast_shapes((1, self.size), *map(np.shape, wholes))
-        rows = np.empty((len(wholes), *shape))
-        for row, whole in zip(rows, wholes, strict=True):
-            row[...] = whole
-        # numbers that differ in other digits only are alike: the same in another order
-        bits = ((rows + 0.0).view(np.int64) + (1 << 18)) >> 19
-        digits = [row.tobytes() for row in bits]
-        met = {digits[0]}
-        for place, sides, mine in zip(places, values, digits[1:], strict=True):
-            if mine not in met:
-                met.add(mine)
-                yield place, {key: sides}
 
 
 class _Row(dict[str, Any]):
