@@ -34,12 +34,7 @@ MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE, MEASURED = range(7)
 """How likely an edit is: of those that compute the same, the likeliest is named."""
 CONDITIONS = ("point", "pivot", "stick")
 """Names that are true or false."""
-_SECTIONS = {"[likely]": LIKELY, "[less likely]": LESS}
-_EVERYWHERE = {LIKELY: "-a", LESS: "2*a; a/2"}
-"""What may stand for any node that is a number."""
-_WHOLE = {LESS: "a**2; abs(a); sqrt(abs(a)); 1 - a; 1/a", RARE: "single(a)"}
-"""And for a name, or all of a side."""
-
+_SECTIONS = {"[likely]": LIKELY, "[less likely]": LESS, "[rare]": RARE}
 _NO_NAMES = (*CONDITIONS, "pi")
 
 
@@ -74,14 +69,17 @@ class Edit(NamedTuple):
 # --- one node ------------------------------------------------------------------------------------
 
 
-def statement_edits(spelling: Spelling, places: Sequence[int]) -> Iterator[Edit]:
-    """Every edit of one node of one statement."""
+def _node_edits(spelling: Spelling, places: Iterable[int]) -> Iterator[Edit]:
+    """Every edit of one node of statements, of each statement the likeliest first: of those that
+    compute the same it stays."""
     for index in places:
         one, kin = spelling.statements[index], spelling.kin_at(index)
-        for place, side in enumerate(one.sides):
-            for rank, other in variations(side, kin):
-                sides = (*one.sides[:place], other, *one.sides[place + 1 :])
-                yield Edit(spelling.title, {one.key: sides}, rank)
+        found = [
+            Edit(spelling.title, {one.key: (*one.sides[:at], other, *one.sides[at + 1 :])}, rank)
+            for at, side in enumerate(one.sides)
+            for rank, other in variations(side, kin)
+        ]
+        yield from sorted(found, key=lambda edit: edit.rank)
 
 
 def variations(node: Expression, kin: Kin, whole: bool = True) -> Iterator[tuple[int, Expression]]:
@@ -101,10 +99,10 @@ def variations(node: Expression, kin: Kin, whole: bool = True) -> Iterator[tuple
         for twin in kin.get(node, ()):
             yield LIKELY, twin
         yield LESS, 0
-    if _kind(node) not in COMPARISONS:
-        for rank, made in _always(False) + (_always(True) if whole or is_name else ()):
-            if rank == LIKELY or isinstance(node, str | tuple):
-                yield rank, _filled(made, {"a": node})
+    for pattern in ("any", "whole") if whole or is_name else ("any",):
+        for rank, _, alternatives in _rules()[pattern]:
+            if _kind(node) not in COMPARISONS and (rank == LIKELY or isinstance(node, str | tuple)):
+                yield from ((rank, _filled(made, {pattern: node})) for made in alternatives)
     for place, part in enumerate(operands(node), 1):
         for rank, other in variations(part, kin, False):
             yield rank, (*node[:place], other, *node[place + 1 :])
@@ -123,12 +121,6 @@ def _rules() -> dict[object, list[tuple[int, Expression, list[Expression]]]]:
         node, others = expression(pattern), list(map(expression, made.split(";")))
         rules.setdefault(_kind(node), []).append((rank, node, others))
     return rules
-
-
-@cache
-def _always(whole: bool) -> tuple[tuple[int, Expression], ...]:
-    several = (_WHOLE if whole else _EVERYWHERE).items()
-    return tuple((rank, expression(one)) for rank, made in several for one in made.split(";"))
 
 
 def _kind(node: Expression) -> object:
@@ -170,24 +162,14 @@ def equation_edits(spelling: Spelling) -> Iterator[Edit]:
         subject: places for subject, places in groups.items() if len(places) > 1 or ";" in subject
     }
     for subject, places in groups.items():
-        names = Counter(
-            node
-            for index in places
-            for side in spelling.statements[index].sides
-            for node in nodes(side)
-            if isinstance(node, str)
-        )
+        within = [spelling.statements[index] for index in places]
+        parts = (node for one in within for side in one.sides for node in nodes(side))
+        names = Counter(node for node in parts if isinstance(node, str))
         kin = spelling.kin_at(places[0])
         for name in [one for one in names if one not in (*_NO_NAMES, *spelling.unknown)]:
             for says, changes in _throughout(name, kin.get(name, ()), names):
-                touched = [
-                    spelling.statements[index]
-                    for index in places
-                    if not changes.keys().isdisjoint(spelling.reads[index])
-                ]
-                sides = {
-                    one.key: tuple(renamed(side, changes) for side in one.sides) for one in touched
-                }
+                touched = [one for one in within if not changes.keys().isdisjoint(one.reads)]
+                sides = {one.key: tuple(renamed(x, changes) for x in one.sides) for one in touched}
                 where = dict.fromkeys(one.place for one in touched)
                 yield Edit(spelling.title, sides, LESS, f"{', '.join(where)}: {says} in {subject}")
 
@@ -214,29 +196,16 @@ def _throughout(
 def edits_of(title: str) -> tuple[Edit, ...]:
     """The edits of a spelling as it stands; what all share is edited in the listing's alone."""
     spelling = spellings()[title]
-    places = range(spelling.own, spelling.results)
     if title == LISTING:
-        places = range(len(SCENE), len(spelling.statements) - _count_shown(spelling))
-    return (*_likeliest(spelling, places), *equation_edits(spelling))
+        return (*edits_on(spelling), *equation_edits(spelling))
+    own = _node_edits(spelling, range(spelling.own, spelling.results))
+    return (*own, *equation_edits(spelling))
 
 
 def edits_on(spelling: Spelling) -> tuple[Edit, ...]:
-    """The edits of one node of an edited spelling."""
-    last = len(spelling.statements) - _count_shown(spelling)
-    return tuple(_likeliest(spelling, range(len(SCENE), last)))
-
-
-def _likeliest(spelling: Spelling, places: range) -> list[Edit]:
-    """Edits by statement, the likeliest first: of those that compute the same it stays."""
-    return [
-        edit
-        for place in places
-        for edit in sorted(statement_edits(spelling, [place]), key=lambda edit: edit.rank)
-    ]
-
-
-def _count_shown(spelling: Spelling) -> int:
-    return sum(one.target.startswith(SHOWN) for one in spelling.statements)
+    """The edits of one node of a spelling, edited or not, its input and output apart."""
+    shown = sum(one.target.startswith(SHOWN) for one in spelling.statements)
+    return tuple(_node_edits(spelling, range(len(SCENE), len(spelling.statements) - shown)))
 
 
 def measured(name: str, how: str, number: float) -> Edit:

@@ -46,6 +46,12 @@ class Statement(NamedTuple):
         return self.target or f"== {self.subject}"
 
     @property
+    def reads(self) -> frozenset[str]:
+        """The names that it reads."""
+        whole = (node for side in self.sides for node in nodes(side))
+        return frozenset(node for node in whole if isinstance(node, str))
+
+    @property
     def text(self) -> str:
         """As it is written."""
         return written(self.target, self.sides)
@@ -68,10 +74,7 @@ class Spelling:
     @cached_property
     def reads(self) -> tuple[frozenset[str], ...]:
         """The names that each statement reads."""
-        return tuple(
-            frozenset(node for side in one.sides for node in nodes(side) if isinstance(node, str))
-            for one in self.statements
-        )
+        return tuple(one.reads for one in self.statements)
 
     @cached_property
     def equations(self) -> tuple[int, ...]:
