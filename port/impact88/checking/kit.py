@@ -5,7 +5,6 @@ and programs in several languages that read and answer them.
 any machine for the same seed; ``KIT.json`` has seed, version and hashes.
 """
 
-import csv
 import hashlib
 import io
 import json
@@ -32,13 +31,12 @@ def flat(found: Iterable[dict[str, Any]]) -> Iterator[str]:
     """The scenes as CSV, a line each, the header first; no field needs quotes."""
     yield ",".join([*HEAD, *SCENE, "comment"]) + "\n"
     for one in found:
-        out = io.StringIO()
-        cells = [one["id"], one["class"], one["expect"], " ".join(one["flags"])]
         scene = [one["scene"][name] for name in SCENE]
-        csv.writer(out, lineterminator="\n").writerow(
-            [*cells, *scene, one["comment"].replace(",", " -")]
-        )
-        yield out.getvalue()
+        yield ",".join([*_head(one), *scene, one["comment"].replace(",", " -")]) + "\n"
+
+
+def _head(vector: dict[str, Any]) -> list[str]:
+    return [vector["id"], vector["class"], vector["expect"], " ".join(vector["flags"])]
 
 
 def write_kit(place: str, count: int, seed: int) -> list[str]:
@@ -92,8 +90,11 @@ def workbook(found: Sequence[dict[str, Any]]) -> bytes:
     from openpyxl.utils import get_column_letter
 
     book = Workbook()
-    statements = [one for one in spellings()[IMPULSES].statements if one.target not in SCENE]
-    statements = [one for one in statements if not one.target.startswith(SHOWN)]
+    statements = [
+        one
+        for one in spellings()[IMPULSES].statements
+        if one.target not in SCENE and not one.target.startswith(SHOWN)
+    ]
     results = [one.target for one in statements if one.target in RESULTS]
     between = [one.target for one in statements if one.target not in RESULTS]
     sheets = {"vectors": [*HEAD, *SCENE, *results], "between": between}
@@ -105,8 +106,7 @@ def workbook(found: Sequence[dict[str, Any]]) -> bytes:
     book.remove(book.worksheets[0])
     for row, vector in enumerate(found, 2):
         cells = {name: f"{title}!{letter}{row}" for name, (title, letter) in places.items()}
-        head = [vector["id"], vector["class"], vector["expect"], " ".join(vector["flags"])]
-        book["vectors"].append([*head, *(float(vector["scene"][name]) for name in SCENE)])
+        book["vectors"].append([*_head(vector), *(float(vector["scene"][n]) for n in SCENE)])
         bodies = ",".join(cells[name] for name in ("MA", "MB", "ia", "ib"))
         for one in statements:
             text = _formula(one.sides[0], cells)
