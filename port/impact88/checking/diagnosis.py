@@ -216,12 +216,11 @@ def _explanations(judge: Judge, off: Floats) -> Iterator[list[_Chosen]]:
         groups = judge.of(_telling(judge)).groups()
         first = judge.narrowed(groups[0])
         alone = singles(first, first.wrong)
-        found = [one for one in alone if one.whole(first.wrong)]
+        found = [one for one in alone if one.whole]
         stages = pairs(first, alone) if np.median(off[judge.wrong]) > _LARGE else iter(())
         while not found and (programs := next(stages, None)) is not None:
             meter.update(1)
-            found = ranked([run(program, first) for program in programs], first.wrong)
-            found = [one for one in found if one.whole(first.wrong)]
+            found = [one for one in ranked(programs, first) if one.whole]
         if found:
             yield [_completed(_deepened(found, first), groups, judge)]
         yield _several(alone, first, judge)
@@ -238,9 +237,9 @@ def _completed(found: Sequence[Found], groups: Sequence[list[str]], judge: Judge
     for more in (wrong, *groups[1:3]) if len(groups) > 1 else ():
         part = judge.narrowed([*names, *more])
         one = run(program, part)
-        if not one.whole(part.wrong):
+        if not one.whole:
             one = next(iter(singles(part, part.wrong & ~one.rows, program)), one)
-        if one.whole(part.wrong):
+        if one.whole:
             program, names = one.program, [*names, *more]
         if set(wrong) <= set(names):
             break
@@ -256,9 +255,9 @@ def _deepened(found: Sequence[Found], judge: Judge) -> Sequence[Found]:
         more = [
             one
             for one in singles(judge, left, found[0].program)
-            if one.whole(judge.wrong)
-            and one.explains(left) >= _MOST * left.sum()
-            and (one.explains(left) > 1 or one.program.edits[-1].rank <= RARE_CONVENTION)
+            if one.whole
+            and (explains := (one.rows & left).sum()) >= _MOST * left.sum()
+            and (explains > 1 or one.program.edits[-1].rank <= RARE_CONVENTION)
         ]
         if not more:
             break

@@ -8,7 +8,7 @@ two change of the residuals adds up to what mends them; *by rows*, one explains 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,43 +48,47 @@ _PRECISION = 1e-11
 """Of residuals."""
 
 
-class Judge:
+class Judge(NamedTuple):
     """How near results must come to another program's to be the same: for some rows.
 
     ``limit``: how far each result may be off, row by row; ``wrong``: the rows that disagree."""
 
-    def __init__(self, scene: Columns, theirs: Columns, limit: Columns, wrong: Bools) -> None:
-        self.scene, self.theirs, self.limit, self.wrong = scene, theirs, limit, wrong
+    scene: Columns
+    theirs: Columns
+    limit: Columns
+    wrong: Bools
 
     def part(self, rows: NDArray[np.intp]) -> Judge:
         """Some of the rows."""
         scene, theirs, limit = (
-            {name: column[rows] for name, column in columns.items()}
-            for columns in (self.scene, self.theirs, self.limit)
+            {name: column[rows] for name, column in columns.items()} for columns in self[:3]
         )
         return Judge(scene, theirs, limit, self.wrong[rows])
 
     def of(self, names: Sequence[str]) -> Judge:
         """By some of the results only."""
         theirs = {name: column for name, column in self.theirs.items() if name in names}
-        return Judge(self.scene, theirs, self.limit, self.wrong)
+        return self._replace(theirs=theirs)
 
     def narrowed(self, names: Sequence[str]) -> Judge:
         """By some of the results, of which some are wrong, in fewer rows perhaps."""
         part = self.of(names)
-        return Judge(part.scene, part.theirs, part.limit, ~run(Program(), part).rows & self.wrong)
+        return part._replace(wrong=~run(Program(), part).rows & self.wrong)
 
     def groups(self) -> list[list[str]]:
         """The final velocities, and each other result, of those that are wrong in many rows; all
         where none is."""
-        rest = [[name] for name in self.theirs if name not in FINAL_VELOCITIES]
-        if self.has_velocities:
-            rest.insert(0, list(FINAL_VELOCITIES))
-        else:
-            rest = [list(self.theirs)]
+        every = list(self.theirs)
+        if not self.has_velocities:
+            return [every]
         ours, few = Program().results(self.scene), _SHARE * self.wrong.sum()
-        amiss = [one for one in rest if (self.wrong & ~self.of(one).near(ours)).sum() >= few]
-        return amiss or [list(self.theirs)]
+        rest = [[name] for name in every if name not in FINAL_VELOCITIES]
+        amiss = [
+            one
+            for one in ([*FINAL_VELOCITIES], *rest)
+            if (self.wrong & ~self.of(one).near(ours)).sum() >= few
+        ]
+        return amiss or [every]
 
     def near(self, results: Columns, prefix: str = "") -> Bools:
         """The rows whose every result is near enough: (n,) or (K, n)."""
@@ -115,58 +119,57 @@ class Judge:
 
 def spread(places: NDArray[np.intp], count: int) -> NDArray[np.intp]:
     """At most ``count`` of some places, evenly."""
-    if places.size <= count:
-        return places
-    result: NDArray[np.intp] = places[np.linspace(0, places.size - 1, count).astype(int)]
-    return result
+    chosen = np.linspace(0, places.size - 1, min(count, places.size)).astype(int)
+    return np.asarray(places[chosen])
 
 
 class Found(NamedTuple):
-    """A program, and the rows it fits."""
+    """A program, the rows it fits, and those that disagree."""
 
     program: Program
     rows: Bools
+    wrong: Bools
 
     @property
     def rank(self) -> int:
         """How likely it is; less is likelier."""
         return sum(edit.rank for edit in self.program.edits)
 
-    def explains(self, wrong: Bools) -> int:
+    @property
+    def explains(self) -> int:
         """How many of the rows that disagree it explains."""
-        return int((self.rows & wrong).sum())
+        return int((self.rows & self.wrong).sum())
 
-    def stands(self, wrong: Bools) -> bool:
+    @property
+    def stands(self) -> bool:
         """Whether the rows that agree bear it out."""
-        return bool((self.rows & ~wrong).sum() >= BORNE_OUT * (~wrong).sum())
+        return bool((self.rows & ~self.wrong).sum() >= BORNE_OUT * (~self.wrong).sum())
 
-    def whole(self, wrong: Bools) -> bool:
+    @property
+    def whole(self) -> bool:
         """Whether it explains what there is to explain, and the rows that agree bear it out."""
-        return self.stands(wrong) and self.explains(wrong) >= BORNE_OUT * wrong.sum() > 0
+        return self.stands and self.explains >= BORNE_OUT * self.wrong.sum() > 0
 
 
 def run(program: Program, judge: Judge) -> Found:
     """A program over all rows of a judge."""
-    return Found(program, judge.near(program.results(judge.scene)))
+    return Found(program, judge.near(program.results(judge.scene)), judge.wrong)
 
 
-def ranked(found: Sequence[Found], wrong: Bools) -> list[Found]:
-    """The programs that explain rows, best first; of equals the likeliest."""
+def ranked(programs: Iterable[Program], judge: Judge) -> list[Found]:
+    """Programs run over all rows, best first; of equals the likeliest."""
 
     def worth(one: Found) -> tuple[int, int, int]:
-        explains = one.explains(wrong) * one.stands(wrong)
-        return -explains, -int((one.rows & ~wrong).sum()), one.rank
+        return -one.explains * one.stands, -int((one.rows & ~one.wrong).sum()), one.rank
 
-    return sorted(found, key=worth)
+    return sorted((run(program, judge) for program in programs), key=worth)
 
 
-@np.errstate(all="ignore")
 def singles(judge: Judge, unexplained: Bools, on: Program | None = None) -> list[Found]:
     """Programs with one mistake, or with one more than ``on``, that explain rows, best first."""
-    small = judge.few(unexplained)
-    seen = list(_tried(small, on or Program()))
+    seen = list(_tried(judge.few(unexplained), on or Program()))
     seen.sort(key=lambda one: (-int(one.rows.sum()), one.rank))
-    return ranked([run(one.program, judge) for one in seen[:_KEPT]], judge.wrong)
+    return ranked((one.program for one in seen[:_KEPT]), judge)
 
 
 def _candidates(base: Program) -> Iterator[tuple[Spelling, list[Edit]]]:
@@ -191,20 +194,19 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
             near = judge.near({**start.names, **start.edited(several).names}, SHOWN)
             near = np.broadcast_to(near, (len(several), size))
             for k in np.flatnonzero((near & judge.wrong).any(1)):
-                yield Found(base.with_edit(edits[found[part][k][0]]), near[k])
+                yield Found(base.with_edit(edits[found[part][k][0]]), near[k], judge.wrong)
 
 
 # --- two mistakes --------------------------------------------------------------------------------
 
 
-@np.errstate(all="ignore")
 def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
     """Programs with two mistakes, by stages. ``alone``: what explains rows alone."""
     yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
     if judge.has_velocities:
         yield from _by_equations(judge.with_finals(_FEW), judge)
-    enough = [one for one in alone if one.explains(judge.wrong) >= _SHARE * judge.wrong.sum()]
-    for one in [one for one in enough if one.stands(judge.wrong)][:_FIRSTS]:
+    enough = (one for one in alone if one.explains >= _SHARE * judge.wrong.sum() and one.stands)
+    for one in list(enough)[:_FIRSTS]:
         unexplained = judge.wrong & ~one.rows
         if unexplained.any():
             yield _second(judge, unexplained, one.program)
@@ -291,17 +293,13 @@ def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
         own = [*reading, *(one for one in variants() if one.title == title), *edits_of(title)]
         for how in "A" if title in _WITHOUT_IMPULSES else "AB":
             yield _sums(_Faults(spelling, judge, how), own)
+    # how many residuals each reading leaves that rounding does not in nearly all rows
     faults = _Faults(spellings()[LISTING], judge, "A")
-    several: list[Mapping[str, Any]] = [{}, *(one.sides for one in reading)]
-    violated = (~_hold(faults.left(several), -1)).sum(1)
+    held = np.abs(faults.left([{}, *(one.sides for one in reading)])) <= 2
+    violated = (held.mean(-1) < BORNE_OUT).sum(1)
     for place in np.argsort(violated[1:], kind="stable")[:_FIRSTS]:
         if violated[place + 1] < violated[0]:
             yield _second(whole, whole.wrong, Program((reading[place],)))
-
-
-def _hold(left: Floats, axis: int) -> Bools:
-    """Where what is left of equations is what rounding leaves, in nearly all rows."""
-    return np.asarray((np.abs(left) <= 2).mean(axis) >= BORNE_OUT)
 
 
 def _sums(faults: _Faults, edits: Sequence[Edit]) -> list[Program]:
