@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -63,9 +62,11 @@ _WIDESPREAD = 0.5
 """The share of the rows in which coarser arithmetic can be seen that it spoils."""
 _TYPICAL = 1 / 64
 """Its error there, as a share of the bound."""
-_WIDTHS = {SINGLE: (24, (27.0, 33.5)), APPLESOFT: (32, (34.0, 40.0))}
+_WIDTHS = {SINGLE: (24, 27.0, 33.5), APPLESOFT: (32, 34.0, 40.0)}
 """Cause -> bits of the arithmetic, and the range in which the bits measured against the bound lie:
 rounding spoils a few bits less than the bound allows."""
+_BRANCHES = ("MU's sign rule inverted", "the critical ratio used in place of MU")
+"""Models that take the other branch, of friction's sign or of the pivot, in every row."""
 _EQUIVALENTS = 4
 """Other ways to say a cause that are listed."""
 _REPLAYED = 4000
@@ -86,74 +87,174 @@ class Cause(NamedTuple):
     parts: dict[str, int]
 
 
-@dataclass
 class Diagnosis:
-    """What `diagnose` found: the cause of each row that disagrees, in order; the evidence for each;
-    and for each equation in how many rows that disagree it could be checked, and is violated."""
+    """Why rows disagree: ``causes`` of each that does, in order; the ``evidence`` for each, and the
+    ``programs``; ``equations``: in how many of the rows each could be checked, and is violated."""
 
-    causes: list[str]
-    evidence: list[Cause] = field(default_factory=list)
-    equations: dict[str, tuple[int, int]] = field(default_factory=dict)
-    programs: list[Program] = field(default_factory=list)
+    def __init__(self, case: Case, wrong: Bools) -> None:
+        self._case, self._wrong = case, wrong
+        self._causes = np.where(wrong, UNKNOWN, "").astype(object)
+        self.evidence: list[Cause] = []
+        self.programs: list[Program] = []
+        violations = violated(case)
+        self.equations = {
+            number: (int(wrong.sum()), int((off & wrong).sum()))
+            for number, off in violations.items()
+        }
+        # how far off the results are, and how near a program must come to explain them
+        given, sizes = np.isfinite(case.values - case.ours), case.sizes
+        written = case.units * (0.5 + 1e-9)
+        beyond = np.maximum(np.abs(case.values - case.ours) - written, 0.0)
+        share = np.where(sizes > 0, beyond / sizes, np.where(beyond == 0, 0.0, 1.0))
+        share = np.where(given, share, 0.0)
+        worst = np.argmax(share, axis=0)[None]
+        self._off = np.take_along_axis(share, worst, 0)[0]
+        shown = np.where(given & (sizes > 0), written / sizes, 0.0)
+        self._room = np.fmax(np.take_along_axis(shown, worst, 0)[0], case.loose)
+        near = np.fmin(np.fmax(4 * case.loose, _CLOSE), _EXPLAINED * self._off)
+        self._limits = np.where(wrong, near, np.fmax(case.loose, _CLOSE)) * sizes + written
+        if not self._by_digits():
+            self._by_search()
+            if self._open.sum() > (1 - BORNE_OUT) * wrong.sum():
+                self._by_precision()
+        self._by_residuals(violations)
+
+    @property
+    def causes(self) -> list[str]:
+        """The cause of each row that disagrees."""
+        return list(self._causes[self._wrong])
+
+    @property
+    def _open(self) -> Bools:
+        return np.asarray(self._causes == UNKNOWN)
+
+    def _by_search(self) -> None:
+        """Name programs that give their numbers."""
+        case = self._case
+        searched = [name for name in case.names if name != "MUC"]
+        theirs, limits, ours = (
+            {name: rows[case.of(name)] for name in searched}
+            for rows in (case.values, self._limits, case.ours)
+        )
+        whole = Judge(case.columns, theirs, limits, self._wrong)
+        # rows that the equations as they stand do not give: near-singular, or decided by rounding
+        clear = whole._replace(theirs=ours).near(Program().results(case.columns))
+        # rows that are wrong in what no spelling computes
+        clear &= ~(whole.wrong & run(Program(), whole).rows)
+        rows = _sample(whole, clear)
+        sample = whole.part(rows)
+        if not sample.wrong.any():
+            return
+        bits, choices = self._bits(whole)
+        whole = whole.of(_telling(sample))
+        right = clear & ~whole.wrong
+        coarse = bool(np.median(self._off[rows][sample.wrong]) > _LARGE)
+        for several in _explanations(sample, coarse):
+            for program, others, names in several:
+                part = whole.narrowed(names)
+                fits = run(program, part).rows
+                explained = fits & part.wrong & self._open
+                if _evidence(explained & clear, bits, choices & clear) < _need(program):
+                    continue
+                stands = (fits & right).sum() >= BORNE_OUT * right.sum()
+                says = program.says + ("" if stands else IN_THESE_ROWS)
+                if unexplained := [name for name in whole.theirs if name not in names]:
+                    says += f"; {', '.join(unexplained)} {UNKNOWN}"
+                self._causes[explained] = says
+                same = [other.program.says for other in others[:_EQUIVALENTS]]
+                a, b, c, d = (int(x.sum()) for x in (explained, part.wrong, fits & right, right))
+                parts = _parts(program, part, explained)
+                self.evidence.append(Cause(says, a, b, c, d, same, parts))
+                self.programs.append(program)
+            if self.evidence:
+                return
+
+    def _bits(self, judge: Judge) -> tuple[Floats, Bools]:
+        """What a cause that explains a row has got right by it; and the rows that show nothing but
+        which branch is taken, of friction's sign or of the pivot."""
+        bits = np.clip(np.log2(self._off / np.fmax(self._room, 1e-12)), 0.0, _BITS_A_ROW)
+        others = [Program((edit,)) for edit in variants() if edit.says in _BRANCHES]
+        choices = judge.wrong & np.any([run(other, judge).rows for other in others], axis=0)
+        if choices.any():
+            choices |= ~judge.wrong & (judge.scene["MU"] != 0) & (judge.scene["MU"] != -10)
+        return np.where(judge.wrong, bits, 0.0), choices
+
+    def _by_digits(self) -> bool:
+        """Name the way right numbers are written, as the 1988 program does, floored or cut off,
+        where that is all; whether it is."""
+        case, wrong = self._case, self._wrong
+        fits = {PRINTED: _as_printed(case, wrong)}
+        fits |= {FLOORED: _are_cut(case, np.floor), TRUNCATED: _are_cut(case, np.trunc)}
+        best = max(fits, key=lambda says: int((fits[says] & wrong).sum()))
+        if (fits[best] & wrong).sum() < BORNE_OUT * wrong.sum():
+            return False
+        for says in (best, *fits):
+            self._causes[self._open & fits[says]] = says
+        return True
+
+    def _by_precision(self) -> None:
+        """Name coarser arithmetic where it is the whole table's: most rows in which it could be
+        seen suffer from it, and hardly a row more than it explains."""
+        wrong, condition = self._wrong, self._case.condition
+        best = self._off / errorbound.relative_bounds(condition, 1.0)
+        bits = -math.log2(max(float(np.median(best[wrong])), 1e-300))
+        for says, (width, low, high) in _WIDTHS.items():
+            seen = errorbound.relative_bounds(condition, 2.0**-width) * _TYPICAL > self._room
+            explained = wrong & (self._off / self._case.per_unit <= 2.0**-width)
+            whole = explained.sum() >= BORNE_OUT * wrong.sum()
+            if low <= bits < high and whole and (wrong & seen).sum() >= _WIDESPREAD * seen.sum():
+                self._causes[explained & self._open] = says
+                return
+
+    def _by_residuals(self, violations: Mapping[str, Bools]) -> None:
+        """For rows without a cause: how closely they agree, or which equations they violate."""
+        for row in np.flatnonzero(self._open).tolist():
+            broken = [number for number, off in violations.items() if off[row]]
+            if broken and len(broken) < len(violations):
+                *first, last = broken
+                which = f"Equations {', '.join(first)} and {last} are"
+                which = which if first else f"Equation {last} is"
+                self._causes[row] = f"{UNKNOWN}, but only {which} violated"
+            elif 0 < self._off[row] < 1e-2:
+                digits = int(-math.log10(self._off[row]))
+                self._causes[row] = f"{UNKNOWN}, but agrees to about {digits} digits"
+            elif violations and not broken:
+                self._causes[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
 
 
 @np.errstate(all="ignore")
 def diagnose(case: Case, wrong: Bools) -> Diagnosis:
     """The likely causes of a case's disagreements. ``wrong``: the rows that disagree."""
-    causes = np.where(wrong, UNKNOWN, "").astype(object)
-    result = Diagnosis([])
-    measure = _Measure(case, wrong)
-    if not _by_digits(causes, case, wrong):
-        _by_search(causes, case, measure, result)
-        if (causes == UNKNOWN).sum() > (1 - BORNE_OUT) * wrong.sum():
-            _by_precision(causes, case, measure)
-    violations = violated(case)
-    _by_residuals(causes, measure, violations)
-    rows = int(wrong.sum())
-    result.causes = causes[wrong].tolist()
-    result.equations = {n: (rows, int((off & wrong).sum())) for n, off in violations.items()}
-    return result
+    return Diagnosis(case, wrong)
 
 
-def _by_search(
-    causes: NDArray[np.object_], case: Case, measure: _Measure, result: Diagnosis
-) -> None:
-    """Name programs that give their numbers."""
-    searched = [name for name in case.names if name != "MUC"]
-    theirs = {name: case.values[case.of(name)] for name in searched}
-    limits = {name: measure.limits[case.of(name)] for name in searched}
-    whole = Judge(case.columns, theirs, limits, measure.wrong)
-    # rows that the equations as they stand do not give: near-singular, or decided by rounding
-    ours = {name: case.ours[case.of(name)] for name in searched}
-    clear = Judge(case.columns, ours, limits, whole.wrong).near(Program().results(case.columns))
-    # rows that are wrong in what no spelling computes
-    clear &= ~(whole.wrong & run(Program(), whole).rows)
-    rows = _sample(whole, clear)
-    sample = whole.part(rows)
-    if not sample.wrong.any():
-        return
-    bits, choices = measure.bits(whole)
-    whole = whole.of(_telling(sample))
-    right = clear & ~whole.wrong
-    for several in _explanations(sample, measure.off[rows]):
-        for program, others, names in several:
-            part = whole.narrowed(names)
-            fits = run(program, part).rows
-            explained = fits & part.wrong & (causes == UNKNOWN)
-            if _evidence(explained & clear, bits, choices & clear) < _need(program):
-                continue
-            stands = (fits & right).sum() >= BORNE_OUT * right.sum()
-            says = program.says + ("" if stands else IN_THESE_ROWS)
-            if unexplained := [name for name in whole.theirs if name not in names]:
-                says += f"; {', '.join(unexplained)} {UNKNOWN}"
-            causes[explained] = says
-            same = [other.program.says for other in others[:_EQUIVALENTS]]
-            a, b, c, d = (int(x.sum()) for x in (explained, part.wrong, fits & right, right))
-            parts = _parts(program, part, explained)
-            result.evidence.append(Cause(says, a, b, c, d, same, parts))
-            result.programs.append(program)
-        if result.evidence:
-            return
+def _are_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
+    """Rows whose results are ours cut at the last digit written (a hair of rounding allowed)."""
+    unit = np.where(case.units > 0, case.units, np.nan)
+    steps, near = case.values / unit, case.ours / unit
+    hair = 1e-9 * np.maximum(np.abs(near), 1.0)
+    fits = (np.abs(steps - cut(near - hair)) < 1e-6) | (np.abs(steps - cut(near + hair)) < 1e-6)
+    return np.asarray((fits | ~np.isfinite(case.values)).all(0))
+
+
+def _as_printed(case: Case, wrong: Bools) -> Bools:
+    """Rows that are the 1988 program's own digits; beyond so many, where those are, floored."""
+    rows = np.zeros(wrong.size, bool)
+    places, more = np.split(np.flatnonzero(wrong), [_REPLAYED])
+    if not all(name in FIELDS for name in case.names):
+        return rows
+    columns = zip(SCENE, case.scene[:, places].tolist(), strict=True)
+    try:
+        replayed = replay({name: [f"{x:.15G}" for x in column] for name, column in columns})
+    except UserError:
+        return rows
+    rows[places] = True
+    for name, column in zip(case.names, case.values[:, places], strict=True):
+        printed = replayed.printed(name).tolist()
+        values = np.array([float(text) if text else np.nan for text in printed])
+        rows[places] &= ~np.isfinite(column) | (values == column)
+    rows[more] = (rows[places].mean() >= BORNE_OUT) & _are_cut(case, np.floor)[more]
+    return rows
 
 
 def _parts(program: Program, judge: Judge, explained: Bools) -> dict[str, int]:
@@ -209,15 +310,16 @@ _Chosen = tuple[Program, Sequence[Found], Sequence[str]]
 """A program that explains rows, others that explain the same, and the results that it gives."""
 
 
-def _explanations(judge: Judge, off: Floats) -> Iterator[list[_Chosen]]:
-    """Lists of programs that together explain a table, the simplest first."""
+def _explanations(judge: Judge, coarse: bool) -> Iterator[list[_Chosen]]:
+    """Lists of programs that together explain a table, the simplest first; ``coarse``: the rows are
+    so far off that two mistakes are looked for."""
     with progress(20, "look for the cause") as meter:
         meter.update(0)
         groups = judge.of(_telling(judge)).groups()
         first = judge.narrowed(groups[0])
         alone = singles(first, first.wrong)
         found = [one for one in alone if one.whole]
-        stages = pairs(first, alone) if np.median(off[judge.wrong]) > _LARGE else iter(())
+        stages = pairs(first, alone) if coarse else iter(())
         while not found and (programs := next(stages, None)) is not None:
             meter.update(1)
             found = [one for one in ranked(programs, first) if one.whole]
@@ -297,129 +399,3 @@ def _several(alone: Sequence[Found], part: Judge, judge: Judge) -> list[_Chosen]
         left &= ~best.rows
     explained = part.wrong.sum() - left.sum()
     return chosen if explained >= BORNE_OUT * part.wrong.sum() else []
-
-
-# --- how near ------------------------------------------------------------------------------------
-
-
-class _Measure:
-    """How far a case's results are from ours, and how near a program must come to explain them."""
-
-    def __init__(self, case: Case, wrong: Bools) -> None:
-        self.wrong = wrong
-        given, sizes = np.isfinite(case.values - case.ours), case.sizes
-        written = case.units * (0.5 + 1e-9)
-        beyond = np.maximum(np.abs(case.values - case.ours) - written, 0.0)
-        share = np.where(sizes > 0, beyond / sizes, np.where(beyond == 0, 0.0, 1.0))
-        share = np.where(given, share, 0.0)
-        worst = np.argmax(share, axis=0)[None]
-        self.off = np.take_along_axis(share, worst, 0)[0]
-        shown = np.where(given & (sizes > 0), written / sizes, 0.0)
-        self.room = np.fmax(np.take_along_axis(shown, worst, 0)[0], case.loose)
-        near = np.fmin(np.fmax(4 * case.loose, _CLOSE), _EXPLAINED * self.off)
-        self.limits = np.where(wrong, near, np.fmax(case.loose, _CLOSE)) * sizes + written
-
-    def bits(self, judge: Judge) -> tuple[Floats, Bools]:
-        """What a cause that explains a row has got right by it; and the rows that show nothing but
-        which branch is taken, of friction's sign or of the pivot."""
-        bits = np.clip(np.log2(self.off / np.fmax(self.room, 1e-12)), 0.0, _BITS_A_ROW)
-        choices = np.zeros(bits.size, bool)
-        for edit in variants():
-            if edit.says in _BRANCHES:
-                other = run(Program((edit,)), judge).rows
-                choices |= other & judge.wrong
-        if choices.any():
-            choices |= ~judge.wrong & (judge.scene["MU"] != 0) & (judge.scene["MU"] != -10)
-        return np.where(judge.wrong, bits, 0.0), choices
-
-
-_BRANCHES = (
-    "MU's sign rule inverted",
-    "the critical ratio used in place of MU",
-)
-"""What takes the other branch, of friction's sign or of the pivot, in every row."""
-
-
-# --- digits and rounding -------------------------------------------------------------------------
-
-
-def _by_digits(causes: NDArray[np.object_], case: Case, wrong: Bools) -> bool:
-    """Name the way right numbers are written, as the 1988 program does, floored or cut off, where
-    that is all; whether it is."""
-    fits = {PRINTED: _as_printed(case, wrong)}
-    fits |= {FLOORED: _are_cut(case, np.floor), TRUNCATED: _are_cut(case, np.trunc)}
-    best = max(fits, key=lambda says: int((fits[says] & wrong).sum()))
-    if (fits[best] & wrong).sum() < BORNE_OUT * wrong.sum():
-        return False
-    for says in (best, *fits):
-        causes[(causes == UNKNOWN) & fits[says]] = says
-    return True
-
-
-def _are_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
-    """Rows whose results are ours cut at the last digit written (a hair of rounding allowed)."""
-    unit = np.where(case.units > 0, case.units, np.nan)
-    steps, near = case.values / unit, case.ours / unit
-    hair = 1e-9 * np.maximum(np.abs(near), 1.0)
-    fits = (np.abs(steps - cut(near - hair)) < 1e-6) | (np.abs(steps - cut(near + hair)) < 1e-6)
-    return np.asarray((fits | ~np.isfinite(case.values)).all(0))
-
-
-def _as_printed(case: Case, wrong: Bools) -> Bools:
-    """Rows that are the 1988 program's own digits; beyond so many, where those are, floored."""
-    rows = np.zeros(wrong.size, bool)
-    places, more = np.split(np.flatnonzero(wrong), [_REPLAYED])
-    if not all(name in FIELDS for name in case.names):
-        return rows
-    columns = zip(SCENE, case.scene[:, places].tolist(), strict=True)
-    try:
-        replayed = replay({name: [f"{x:.15G}" for x in column] for name, column in columns})
-    except UserError:
-        return rows
-    rows[places] = True
-    for name, column in zip(case.names, case.values[:, places], strict=True):
-        printed = replayed.printed(name).tolist()
-        values = np.array([float(text) if text else np.nan for text in printed])
-        rows[places] &= ~np.isfinite(column) | (values == column)
-    rows[more] = (rows[places].mean() >= BORNE_OUT) & _are_cut(case, np.floor)[more]
-    return rows
-
-
-def _by_precision(causes: NDArray[np.object_], case: Case, measure: _Measure) -> None:
-    """Name coarser arithmetic where it is the whole table's: most rows in which it could be seen
-    suffer from it, and hardly a row more than it explains."""
-    wrong, share = measure.wrong, measure.off / case.per_unit
-    best = measure.off / errorbound.relative_bounds(case.condition, 1.0)
-    bits = -math.log2(max(float(np.median(best[wrong])), 1e-300))
-    for says, (width, (low, high)) in _WIDTHS.items():
-        visible = errorbound.relative_bounds(case.condition, 2.0**-width) * _TYPICAL
-        seen = visible > measure.room
-        explained = wrong & (share <= 2.0**-width)
-        if (
-            low <= bits < high
-            and explained.sum() >= BORNE_OUT * wrong.sum()
-            and (wrong & seen).sum() >= _WIDESPREAD * seen.sum()
-        ):
-            causes[explained & (causes == UNKNOWN)] = says
-            return
-
-
-def _by_residuals(
-    causes: NDArray[np.object_], measure: _Measure, violations: Mapping[str, Bools]
-) -> None:
-    """For rows without a cause: how closely they agree, or which equations they violate."""
-    worst = measure.off
-    for row in np.flatnonzero(causes == UNKNOWN).tolist():
-        broken = [number for number, off in violations.items() if off[row]]
-        if broken and len(broken) < len(violations):
-            word = "Equation" if len(broken) == 1 else "Equations"
-            causes[row] = f"{UNKNOWN}, but only {word} {_listed(broken)} violated"
-        elif 0 < worst[row] < 1e-2:
-            causes[row] = f"{UNKNOWN}, but agrees to about {int(-math.log10(worst[row]))} digits"
-        elif violations and not broken:
-            causes[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
-
-
-def _listed(words: Sequence[str]) -> str:
-    *first, last = words
-    return f"{', '.join(first)} and {last} are" if first else f"{last} is"
