@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 
+from impact88.checking.compare import Comparison, compare_file
 from impact88.checking.kit import write_kit
 from impact88.checking.vectors import ANSWER, EITHER, REFUSE
 from impact88.names import SCENE
@@ -25,10 +26,19 @@ from installed import impact88
 @pytest.fixture(scope="module")
 def kit(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("kit") / "new"
-    done = impact88("oracle", "--kit", str(folder), "--vectors", "60", "--seed", "3")
-    assert done.returncode == 0, done.stderr
-    assert set(done.stdout.split()) == {path.name for path in folder.iterdir()}
+    assert set(write_kit(str(folder), 60, 3)) == {path.name for path in folder.iterdir()}
     return folder
+
+
+def compared(folder: Path, text: str, causes: bool = False) -> Comparison:
+    """A table of answers, as `compare --strict` judges it."""
+    path = folder / "theirs"
+    path.write_text(text, encoding="utf-8")
+    return compare_file(path, "jsonl" if text.startswith("{") else "csv", causes=causes)
+
+
+def all_agree(done: Comparison) -> bool:
+    return done.agreeing > 0 == done.differing + len(done.bad) + len(done.silent)
 
 
 def test_the_kit_says_what_it_is(kit: Path) -> None:
@@ -55,7 +65,8 @@ def test_both_forms_of_the_vectors_ask_the_same(kit: Path) -> None:
 
 def test_one_archive_holds_the_same_bytes(tmp_path: Path) -> None:
     folder, archive = tmp_path / "kit", tmp_path / "kit.zip"
-    assert write_kit(str(archive), 6, 3) == write_kit(str(folder), 6, 3)
+    done = impact88("oracle", "--kit", str(archive), "--vectors", "6", "--seed", "3")
+    assert done.stdout.split() == write_kit(str(folder), 6, 3)
     with zipfile.ZipFile(archive) as packed:
         for path in folder.iterdir():
             assert packed.read(path.name) == path.read_bytes(), path.name
@@ -119,13 +130,11 @@ def lazily(text: str) -> str:
 def test_the_spreadsheet_answers_all(kit: Path) -> None:
     """Its formulas, calculated here; by LibreOffice, too, where that is installed."""
     lines = "".join(json.dumps(row) + "\n" for row in calculated(kit / "impact.xlsx"))
-    done = impact88("compare", "-", "--from", "jsonl", "--strict", input=lines)
-    assert done.returncode == 0, done.stdout + done.stderr
+    assert all_agree(compared(kit.parent, lines))
     if shutil.which("soffice"):
         order = ["soffice", "--headless", "--convert-to", "csv", "--outdir", str(kit.parent)]
         subprocess.run([*order, str(kit / "impact.xlsx")], check=True, capture_output=True)
-        done = impact88("compare", str(kit.parent / "impact.csv"), "--strict")
-        assert done.returncode == 0, done.stdout + done.stderr
+        assert all_agree(compare_file(kit.parent / "impact.csv", causes=False))
 
 
 def compiled(kit: Path) -> list[str]:
@@ -150,9 +159,7 @@ def test_a_program_of_the_kit_answers_all(kit: Path, language: str) -> None:
     command = RUNNERS[language](kit)
     with (kit / "vectors.csv").open("rb") as file:
         out = subprocess.run(command, cwd=kit, stdin=file, capture_output=True, check=True)
-    done = impact88("compare", "-", "--strict", input=out.stdout.decode())
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert ", 0 disagree" in done.stdout
+    assert all_agree(compared(kit.parent, out.stdout.decode()))
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
@@ -163,9 +170,8 @@ def test_a_mistake_in_a_program_of_the_kit_is_named(kit: Path) -> None:
         out = subprocess.run(
             ["node", "wrong.js"], cwd=kit.parent, stdin=file, capture_output=True, check=True
         )
-    done = impact88("compare", "-", input=out.stdout.decode())
-    assert done.returncode == 1
-    assert "e with its sign lost" in done.stdout
+    done = compared(kit.parent, out.stdout.decode(), causes=True)
+    assert "e with its sign lost" in done.summary
 
 
 @pytest.mark.skipif(importlib.util.find_spec("pycrash") is None, reason="pycrash is not installed")
@@ -174,12 +180,10 @@ def test_pycrash_is_another_model_and_told_so(kit: Path) -> None:
         out = subprocess.run(
             [sys.executable, "pycrash_adapter.py"], cwd=kit, stdin=file, capture_output=True
         )
-    done = impact88("compare", "-", "--json", input=out.stdout.decode())
-    found = json.loads(done.stdout)
-    (evidence,) = found["evidence"]
+    (evidence,) = compared(kit.parent, out.stdout.decode(), causes=True).evidence
     for what in ("friction that sticks", "e_m absent", "point masses not known"):
-        assert sum(what in says for says in evidence["parts"]) == 1, evidence
-    assert evidence["explains"] >= 0.9 * evidence["disagreeing"]
+        assert sum(what in says for says in evidence.parts) == 1, evidence
+    assert evidence.explains >= 0.9 * evidence.disagreeing
 
 
 def test_the_scenes_alone_for_a_pipe(tmp_path: Path) -> None:
