@@ -1,5 +1,7 @@
 """Applesoft's seventeen error messages, with the codes ONERR finds in location 222."""
 
+from functools import partial
+
 CODES: dict[str, int] = {
     "NEXT WITHOUT FOR": 0,
     "SYNTAX": 16,
@@ -49,16 +51,9 @@ class ApplesoftError(Exception):
         return self.message
 
 
-def overflow() -> ApplesoftError:
-    """``?OVERFLOW ERROR``: a result past 1.70141183E+38."""
-    return ApplesoftError("OVERFLOW")
-
-
-def division_by_zero() -> ApplesoftError:
-    """``?DIVISION BY ZERO ERROR``, for 0 / 0 too."""
-    return ApplesoftError("DIVISION BY ZERO")
-
-
-def illegal_quantity() -> ApplesoftError:
-    """``?ILLEGAL QUANTITY ERROR``: an argument outside a function's domain."""
-    return ApplesoftError("ILLEGAL QUANTITY")
+overflow = partial(ApplesoftError, "OVERFLOW")
+"""``?OVERFLOW ERROR``: a result past 1.70141183E+38."""
+division_by_zero = partial(ApplesoftError, "DIVISION BY ZERO")
+"""``?DIVISION BY ZERO ERROR``, for 0 / 0 too."""
+illegal_quantity = partial(ApplesoftError, "ILLEGAL QUANTITY")
+"""``?ILLEGAL QUANTITY ERROR``: an argument outside a function's domain."""

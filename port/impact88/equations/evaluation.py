@@ -215,9 +215,10 @@ class Run:
             shape = np.broadcast_shapes((1, self.size), *map(np.shape, wholes))
             met = set[bytes]()
             for place, sides, whole in zip((-1, *places), (own, *values), wholes, strict=True):
-                numbers = np.array(np.broadcast_to(whole, shape), float) + 0.0
+                numbers = np.empty(shape)
+                numbers[...] = whole
                 # those that differ in their last bits only are alike: the same in another order
-                digits = (numbers.view(np.int64) + (1 << 18) >> 19).tobytes()
+                digits = ((numbers + 0.0).view(np.int64) + (1 << 18) >> 19).tobytes()
                 if digits not in met and place >= 0:
                     found.append((place, {key: sides}))
                 met.add(digits)
