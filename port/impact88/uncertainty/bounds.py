@@ -34,7 +34,7 @@ from ..scene import check_mapping
 from .boundstable import Bound, Bounds
 from .draws import drive_of, ranks, spread_of
 from .extremes import CORNERS_IN_FULL, Extremes, Piece, extremes, merged
-from .uncertain import Uncertain, correlation_root, fixed
+from .uncertain import Uncertain, columns_of, correlation_root, fixed
 
 Array = NDArray[np.float64]
 SPEEDS = {name: CHAPTER[name] for name in ("SA", "SB")}
@@ -223,11 +223,8 @@ class _Box:
         return cls(model, known, inputs, wanted, limits, excluded, share)
 
     def columns(self, point: Array) -> dict[str, Array]:
-        """Points of the unit cube, n x k -> the inputs that vary, n each; exact at the limits."""
-        return {
-            name: np.where(point[:, place] < 1, low + point[:, place] * (high - low), high)
-            for place, (name, (low, high)) in enumerate(self.limits.items())
-        }
+        """Points of the unit cube, n x k -> the inputs that vary, n each."""
+        return columns_of(self.limits, point)
 
     def inputs_at(self, point: Array) -> dict[str, float]:
         """One point of the unit cube -> the inputs there."""

@@ -66,3 +66,9 @@ def drive_of(sweep: Array, input_ranks: Array, output_ranks: Array) -> Drive:
         lowest=float(finite.min()) if len(finite) else float("nan"),
         highest=float(finite.max()) if len(finite) else float("nan"),
     )
+
+
+def spread_out(coordinates: int, count: int, rng: np.random.Generator) -> Array:
+    """A Latin hypercube: each coordinate visits every one of its ``count`` strata once."""
+    strata = rng.permuted(np.tile(np.arange(count), (coordinates, 1)), axis=1).T
+    return (strata + rng.random(strata.shape)) / count

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ascent import OUTSIDE, below_all, extremes_of
+from .draws import spread_out
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -87,7 +88,7 @@ def extremes(
     known: Array | None = None,
 ) -> Extremes:
     """Seek the extremes of a piece's functions. ``known``: further points to start from, n x k."""
-    groups = [_corners(coordinates, rng), interior := _spread_out(coordinates, SCATTERED, rng)]
+    groups = [_corners(coordinates, rng), interior := spread_out(coordinates, SCATTERED, rng)]
     on_faces = rng.random(interior.shape) < 0.5
     groups.append(np.where(on_faces, np.round(rng.random(interior.shape)), interior))
     middle = np.full((1, coordinates), 0.5)
@@ -248,9 +249,3 @@ def _corners(coordinates: int, rng: np.random.Generator) -> Array:
         corners = list(product((0.0, 1.0), repeat=coordinates))
         return np.array(corners).reshape(2**coordinates, coordinates)
     return np.round(rng.random((SCATTERED, coordinates)))
-
-
-def _spread_out(coordinates: int, count: int, rng: np.random.Generator) -> Array:
-    """A Latin hypercube: each coordinate visits every one of its ``count`` strata once."""
-    strata = rng.permuted(np.tile(np.arange(count), (coordinates, 1)), axis=1).T
-    return (strata + rng.random(strata.shape)) / count

@@ -26,51 +26,41 @@ from ..reconstruction.geometry import Geometry
 from ..reconstruction.state import CRUSH, DIRECTIONS, State
 from ..reconstruction.system import PARAMETERS, TINY, System
 from .ascent import OUTSIDE, climb, extremes_of
-from .draws import Spread, spread_of
-from .uncertain import Uncertain
+from .draws import Spread, spread_of, spread_out
+from .uncertain import Uncertain, columns_of, fixed
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Point = tuple[Floats, Floats, Floats, Flags]
+Progress = Callable[[int], object]
 
-SIGMAS = 3.0
-"""Where a normal without limits ends, for draws and bounds alike."""
-FAR = 6.0
-"""Standard deviations beyond which no normal value is looked for."""
+SIGMAS, FAR = 3.0, 6.0
+"""Where a normal without limits ends; and, taken for normal, any value."""
 CHUNK = 1 << 14
-CHORDS = 8
-NEWTONS = 12
-IDLE = 3
-"""Steps without the half of what was left over, and no solution is in reach."""
+"""Draws at a time: bounds the memory."""
+CHORDS, NEWTONS = 8, 12
+"""Steps at most; with twice as many no draw more is solved."""
 SETTLED = 1e-11
 """Scaled conditions below count as met by a draw."""
-SCATTERED = 1024
-"""Points spread over the box, the half of them on faces."""
-SEEKERS = 48
-"""Of these so many seek the way inside all walls."""
+SCATTERED, SEEKERS = 1024, 48
+"""Points spread over the box, half of them on faces; so many seek the way inside all walls."""
 STARTS = 4
 """Climbers of each extreme, each from the best of a part of all points."""
 LEAST_GAIN = 1e-7
 """Of a quantity's range: a gain not worth a step."""
 BUDGET = 150_000
 """Impacts the search for bounds may take: most take a tenth."""
-WALKS = 20
-"""Times each chain's place is a draw, and"""
-LEARNT, UNSEEN = 6, 9
-"""before that, while the walls are learnt, and while it forgets its start."""
-PACES = 40
-"""Of a chain from one of these places to the next."""
-FREE = 4096
-"""Draws as without walls; with four times as many chains start no better."""
-ENOUGH = 100
-"""Of them inside the walls that chains may start from alone."""
-NEAR = 1.5
-"""No farther from the middle between walls are they learnt: a quotient's pole would spoil them."""
-RIDGE = 1e-9
-"""Holds still what the places met do not tell of the walls."""
-_SINGULAR = 1e-12
-"""Singular values of so little of the largest are none."""
-_GROWS = 1e10
-"""A solution so much larger than its right side may be a singular matrix's."""
+LEARNT, UNSEEN, WALKS, PACES = 6, 9, 20, 40
+"""Times each chain's place is met while the walls are learnt, until it has forgotten its start, and
+as a draw; each so many paces apart."""
+FREE, ENOUGH = 4096, 100
+"""Draws as without walls, and how many inside the walls will do for chains to start from."""
+NEAR, RIDGE = 1.5, 1e-9
+"""Walls are learnt no farther from the middle between them, where a quotient's pole would spoil
+them; the ridge holds still what the places met do not tell."""
+_SINGULAR, _GROWS = 1e-12, 1e10
+"""Singular values of so little of the largest are none; so much larger than its right side a
+solution may be a singular matrix's."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +96,7 @@ def draws(
     names: Sequence[str],
     count: int,
     seed: int = 0,
-    progress: Callable[[int], object] = lambda draws: None,
+    progress: Progress = lambda draws: None,
 ) -> Draws:
     """``count`` random draws of what is known, each reconstructed: the quantities ``names``. Where
     no impact lies within all limits the known values are drawn as normal ones, each with its
@@ -119,8 +109,7 @@ def draws(
         if not len(points):
             _, functions = _walked(_Box(solution, names, walls=False), count, rng, progress)
         values = np.full((count, size), np.nan)
-        if len(functions):
-            values[: len(functions)] = functions[:, :size]
+        values[: len(functions)] = functions[:, :size]
     else:
         points, values = np.empty((count, len(box.kept))), np.empty((count, size))
         for first in range(0, count, CHUNK):
@@ -136,14 +125,13 @@ def draws(
 def ranges(
     solution: Reconstruction,
     names: Sequence[str],
-    sigmas: float = SIGMAS,
     seed: int = 0,
     drawn: Draws | None = None,
-    progress: Callable[[int], object] = lambda draws: None,
+    progress: Progress = lambda draws: None,
 ) -> dict[str, Range]:
     """The lowest and highest value of each quantity over the limits of what is known. The search
     begins from ``drawn``, too."""
-    box = _Box(solution, names, sigmas)
+    box = _Box(solution, names)
     rng = np.random.default_rng([seed, 0])
     taken = 0
 
@@ -156,74 +144,51 @@ def ranges(
     points = box.inside(rng, budget)
     if drawn is not None and drawn.points.shape[1] == points.shape[1]:
         points = np.concatenate([points, drawn.points])
-    none = {name: Range(np.nan, np.nan, {}, {}) for name in names}
     if not len(points):
-        return none
+        return {name: Range(np.nan, np.nan, {}, {}) for name in names}
     functions = np.concatenate(
         [box.from_nominal(points[i : i + CHUNK])[1] for i in range(0, len(points), CHUNK)]
     )
     # of each part of the points the best: climbers that stand apart
     parts = [np.arange(i, len(points), STARTS) for i in range(min(STARTS, len(points)))]
-    (lower, upper), (at_lower, at_upper), done = extremes_of(
+    (lower, upper), ends, done = extremes_of(
         *(box, points, functions, parts, 1, LEAST_GAIN),
         *(lambda start: box.from_nominal(start)[0], budget),
     )
-    endless = set(_endless(box.solver, solution.system.known, names))
+    endless = _endless(box.solver, solution.system.known, names)
     # what divides a coefficient takes both signs
-    divided = {name for i, name in enumerate(box.ratios, len(names)) if lower[i] < 0 < upper[i]}
-    return {
-        name: Range(-np.inf, np.inf, {}, {})
-        if name in endless | divided
-        else Range(
-            float(lower[i]),
-            float(upper[i]),
-            box.inputs(at_lower[i]),
-            box.inputs(at_upper[i]),
-            bool(done[:, i].all()),
-        )
-        for i, name in enumerate(names)
-    }
+    endless |= {name for i, name in enumerate(box.ratios, len(names)) if lower[i] < 0 < upper[i]}
+    found = {}
+    for i, name in enumerate(names):
+        low, high = ({n: float(v[0]) for n, v in box.data(at[i, None]).items()} for at in ends)
+        found[name] = Range(float(lower[i]), float(upper[i]), low, high, bool(done[:, i].all()))
+    return found | {name: Range(-np.inf, np.inf, {}, {}) for name in endless if name in found}
 
 
 class _Box:
     """The impacts within limits: functions (the quantities wanted, then what divides coefficients
     among them) and walls (redundant values, 0 to 1 from limit to limit) over k coordinates, 0 to 1
-    each."""
+    each. ``walls``: whether limits are kept, or each value is normal about its nominal one."""
 
-    def __init__(
-        self,
-        solution: Reconstruction,
-        names: Sequence[str],
-        sigmas: float = SIGMAS,
-        walls: bool = True,
-    ) -> None:
-        """``walls``: whether limits are kept, or each value is normal about its nominal one."""
+    def __init__(self, solution: Reconstruction, names: Sequence[str], walls: bool = True) -> None:
         known, self.limited = solution.system.known, walls
         self.kept, self.rest = _independent(solution)
         adjusted = {item.name: item.adjusted for item in solution.adjusted}
-        self.items = {
-            n: _cut(known[n], sigmas) if walls else _normal(known[n], adjusted[n])
-            for n in (*self.kept, *self.rest)
-        }
-        # normal values in standard deviations from their means, 0 for the others
-        self.normals = np.array(
-            [
-                (
-                    (item.low - item.nominal) / item.deviation,
-                    (item.high - item.low) / item.deviation,
-                )
-                if item.kind == "normal"
-                else (0.0, 0.0)
-                for item in self.items.values()
-            ]
-        ).T.reshape(2, -1)
+        self.items: dict[str, Uncertain] = {}
+        for name in (*self.kept, *self.rest):
+            item = known[name]
+            low, high = item.limits(SIGMAS)
+            if not walls:
+                sd, (low, high) = item.standard_deviation, sorted((item.nominal, adjusted[name]))
+                low, high = low - FAR * sd, high + FAR * sd
+                item = replace(item, kind="normal", deviation=sd)
+            self.items[name] = replace(item, low=low, high=high)
         self.solver = _Solving(solution, {n: v for n, v in known.items() if n not in self.rest})
         self.names = names
         self.ratios = [n for n in names if n in COEFFICIENTS and n not in self.solver.system.known]
         self.nominal = solution.values
-        self.middle = np.clip(
-            np.array([[self._share(n, adjusted[n]) for n in self.kept]]), 0.0, 1.0
-        ).reshape(1, len(self.kept))
+        shares = [self._share(n, adjusted[n]) for n in self.kept]
+        self.middle = np.clip(np.array([shares]), 0.0, 1.0).reshape(1, len(shares))
 
     def _share(self, name: str, value: Any) -> Any:
         item = self.items[name]
@@ -231,91 +196,64 @@ class _Box:
 
     def data(self, u: Floats) -> dict[str, Floats]:
         """The known values at points of the box; exact at the limits."""
-        columns = {}
-        for i, name in enumerate(self.kept):
-            item = self.items[name]
-            columns[name] = np.where(
-                u[:, i] < 1, item.low + u[:, i] * (item.high - item.low), item.high
-            )
-        return columns
-
-    def inputs(self, u: Floats) -> dict[str, float]:
-        return {name: float(column[0]) for name, column in self.data(u[None]).items()}
+        return columns_of({n: (self.items[n].low, self.items[n].high) for n in self.kept}, u)
 
     def drawn(self, rng: np.random.Generator, count: int) -> Floats:
         """Points of the box by the coordinates' own distributions."""
-        points = np.empty((count, len(self.kept)))
-        for i, name in enumerate(self.kept):
-            place, width = self.normals[:, i]
-            if width < 1:  # not a normal value, or hardly a part of one
-                points[:, i] = self._share(name, self.items[name].draws(rng, count))
-                continue
-            drawn = rng.standard_normal(count)
-            while (out := (drawn < place) | (drawn > place + width)).any():
-                drawn[out] = rng.standard_normal(out.sum())
-            points[:, i] = (drawn - place) / width
-        return points
+        shares = [self._share(name, self.items[name].draws(rng, count)) for name in self.kept]
+        return np.stack(shares, axis=1) if shares else np.empty((count, 0))
 
     # -- impacts
 
-    def _told(self, state: State, count: int) -> tuple[Floats, Floats]:
-        """Functions and walls of impacts, real or complex."""
+    def _told(self, state: State) -> Any:
+        """Functions, then walls of impacts, real or complex."""
         known = self.solver.system.known
-        columns = []
+        columns = [state.values["PN"]]  # for the shape
         for name in self.names:
             value = state.values[name] if name in known and name in PARAMETERS else state[name]
             columns.append(_near(name, value, self.nominal.get(name)))
         columns += [state.quotient(name)[1] for name in self.ratios]
-        walls = [
-            self._share(name, _near(name, state[name], self.items[name].nominal))
-            for name in self.rest
-        ]
-        stacked = [np.broadcast_to(column, count) for column in (*columns, *walls)]
-        whole = np.stack(stacked, axis=1) if stacked else np.empty((count, 0))
-        return whole[:, : len(columns)], whole[:, len(columns) :]
+        for name in self.rest:
+            columns.append(self._share(name, _near(name, state[name], self.items[name].nominal)))
+        return np.stack(np.broadcast_arrays(*columns))[1:]
 
-    def _found(
-        self, u: Floats, x: Floats, state: State, usable: Flags
-    ) -> tuple[Floats, Floats, Floats, Flags]:
+    def _found(self, x: Floats, state: State, usable: Flags) -> Point:
         with np.errstate(all="ignore"):
-            functions, walls = self._told(state, len(u))
+            columns = self._told(state).T
+        count = len(self.names) + len(self.ratios)
+        functions, walls = columns[:, :count], columns[:, count:]
         usable = usable & np.isfinite(walls).all(axis=1)
         return x, functions, np.where(np.isfinite(walls), walls, -1e9), usable
 
-    def from_nominal(
-        self, u: Floats, guess: Floats | None = None
-    ) -> tuple[Floats, Floats, Floats, Flags]:
+    def from_nominal(self, u: Floats, guess: Floats | None = None) -> Point:
         """As `at`, reached from the nominal impact, or from a ``guess`` of each, s x n."""
-        x, state, usable = self.solver(self.data(u), len(u), guess)
-        return self._found(u, x, state, usable)
+        return self._found(*self.solver(self.data(u), len(u), guess))
 
-    def at(self, u: Floats, guess: Floats) -> tuple[Floats, Floats, Floats, Flags]:
+    def at(self, u: Floats, guess: Floats) -> Point:
         """`ascent.Landscape`."""
         data = self.data(u)
         with np.errstate(all="ignore"):
             x, settled = self.solver.newton(data, guess)
-        return self._found(u, x, self.solver.system.state(x, data), settled)
+        return self._found(x, self.solver.system.state(x, data), settled)
 
     def slopes(self, u: Floats, x: Floats) -> tuple[Floats, Floats, Floats]:
         """`ascent.Landscape`: by the derivatives of the conditions, without error."""
-        system, (n, k) = self.solver.system, u.shape
-        data = self.data(u)
+        system, data = self.solver.system, self.data(u)
+        sides = np.eye(len(self.kept))[:, :, None]
         with np.errstate(all="ignore"):
             jacobian = system.linearized(x, system.left, data, data)[1].transpose(2, 0, 1)
-            moved = {name: np.tile(column.astype(complex), k) for name, column in data.items()}
-            for i, name in enumerate(self.kept):
+            moved: dict[str, Any] = {}
+            for name, side in zip(self.kept, sides, strict=True):
                 item = self.items[name]
-                moved[name][i * n : (i + 1) * n] += 1j * TINY * (item.high - item.low)
-            still = np.tile(x.astype(complex), k)
+                moved[name] = data[name] + 1j * TINY * (item.high - item.low) * side
+            still = x[:, None].astype(complex)
             left = np.imag(system.left(system.state(still, moved), moved)) / TINY
-            right = np.broadcast_to(left, (len(left), k * n)).reshape(len(left), k, n)
+            right = np.broadcast_to(left, (len(left), len(sides), len(u)))
             turns = -_solved(jacobian, right.transpose(2, 0, 1))
-            still += 1j * TINY * turns.transpose(1, 2, 0).reshape(len(x), -1)
-            functions, walls = (
-                (np.imag(part) / TINY).reshape(k, n, part.shape[1]).transpose(1, 2, 0)
-                for part in self._told(system.state(still, moved), k * n)
-            )
-        return np.nan_to_num(functions), np.nan_to_num(walls), turns
+            state = system.state(still + 1j * TINY * turns.transpose(1, 2, 0), moved)
+            told = np.nan_to_num(np.imag(self._told(state)) / TINY).transpose(2, 0, 1)
+        count = len(self.names) + len(self.ratios)
+        return told[:, :count], told[:, count:], turns
 
     def log_volume(self, u: Floats, x: Floats) -> Floats:
         """The logarithm, but for a constant, of how much of the space of velocities before,
@@ -346,23 +284,15 @@ class _Box:
 
     # -- points within all walls
 
-    def scattered(self, rng: np.random.Generator) -> Floats:
-        """Points spread over the box and its faces, the nominal impact first."""
-        k = len(self.kept)
-        strata = rng.permuted(np.tile(np.arange(SCATTERED), (k, 1)), axis=1).T
-        points = (strata + rng.random(strata.shape)) / SCATTERED
-        on_faces = rng.random(points.shape) < rng.choice([0.0, 0.5, 1.0], (SCATTERED, 1))
-        points = np.where(on_faces, np.round(points), points)
-        return np.concatenate([self.middle, points])
-
     def inside(
         self, rng: np.random.Generator, taken: Callable[[int], bool] = lambda points: True
     ) -> Floats:
         """Points of the box that lie within all walls; none where none was found."""
-        points = self.scattered(rng)
+        points = spread_out(len(self.kept), SCATTERED, rng)
+        on_faces = rng.random(points.shape) < rng.choice([0.0, 0.5, 1.0], (SCATTERED, 1))
+        points = np.concatenate([self.middle, np.where(on_faces, np.round(points), points)])
         x, _, walls, usable = self.from_nominal(points)
-        outside = np.maximum(np.maximum(-walls, walls - 1), 0.0).max(axis=1, initial=0.0)
-        outside = np.where(usable, outside, np.inf)
+        outside = np.where(usable, np.abs(walls - 0.5).max(axis=1, initial=0.0) - 0.5, np.inf)
         good = outside <= OUTSIDE
         if not self.rest or good.sum() >= SEEKERS:
             return points[good]
@@ -374,7 +304,7 @@ class _Box:
             *(np.full(len(nearest), OUTSIDE), taken),
         )
         _, _, walls, usable = self.from_nominal(u)
-        reached = usable & ((walls >= -OUTSIDE) & (walls <= 1 + OUTSIDE)).all(axis=1)
+        reached = usable & (np.abs(walls - 0.5) <= 0.5 + OUTSIDE).all(axis=1)
         return np.concatenate([points[good], u[reached]])
 
     def proper_density(self, u: Floats, x: Floats, walls: Floats) -> Floats:
@@ -388,11 +318,10 @@ class _Box:
         walls are set back."""
         inside = (np.abs(u - 0.5) <= 0.5).all(1) & (np.abs(walls - 0.5) <= 0.5 + beyond).all(1)
         shares = np.clip(np.concatenate([u, walls], axis=1), 0.0, 1.0)
-        place, width = self.normals
-        whole = -0.5 * np.square(place + width * shares).sum(axis=1)
-        for i, item in enumerate(self.items.values()):
-            if item.kind == "triangular":
-                whole += _log_triangle(item, shares[:, i])
+        whole = np.zeros(len(u))
+        for item, share in zip(self.items.values(), shares.T, strict=True):
+            if item.kind != "uniform":
+                whole += item.log_density(item.low + share * (item.high - item.low))
         return np.where(inside, whole, -np.inf)
 
 
@@ -403,63 +332,32 @@ def _near(name: str, value: Floats, nominal: float | None) -> Floats:
     return np.asarray(value - 360 * np.round((np.real(value) - nominal) / 360))
 
 
-def _cut(item: Uncertain, sigmas: float) -> Uncertain:
-    """The same within finite limits."""
-    low, high = item.limits(sigmas)
-    return replace(item, low=low, high=high)
-
-
-def _normal(item: Uncertain, adjusted: float) -> Uncertain:
-    """A normal value instead, that reaches well beyond the adjusted one."""
-    deviation = item.standard_deviation
-    low, high = sorted((item.nominal, adjusted))
-    return Uncertain(
-        *("normal", item.nominal, low - FAR * deviation, high + FAR * deviation), deviation
-    )
-
-
-def _log_triangle(item: Uncertain, share: Floats) -> Floats:
-    """The logarithm of a triangular density so far from limit to limit, but for a constant."""
-    value = item.low + share * (item.high - item.low)
-    rise, fall = item.nominal - item.low, item.high - item.nominal
-    with np.errstate(divide="ignore", invalid="ignore"):
-        up = (value - item.low) / rise if rise else np.ones(len(share))
-        down = (item.high - value) / fall if fall else np.ones(len(share))
-        result: Floats = np.log(np.clip(np.minimum(up, down), 0.0, 1.0))
-        return result
-
-
 def _walked(
-    box: _Box, count: int, rng: np.random.Generator, progress: Callable[[int], object]
+    box: _Box, count: int, rng: np.random.Generator, progress: Progress
 ) -> tuple[Floats, Floats]:
     """``count`` points within all walls, by Markov chains, and the functions there; none where
     there is no such point."""
     begin = box.inside(rng)
     if not len(begin):
-        return begin, begin
-    chains = -(-count // WALKS)
+        return begin, np.empty((0, len(box.names)))
+    chains, k = -(-count // WALKS), len(box.kept)
     # draws as without walls, and points between those inside: out of a corner hardly a step leads
-    free = box.drawn(rng, FREE)
     shares = rng.dirichlet(np.ones(4), chains)[:, :, None]
-    free = np.concatenate(
-        [free, (shares * begin[rng.integers(len(begin), size=(chains, 4))]).sum(axis=1)]
-    )
-    x, _, met, usable = box.from_nominal(free)
-    inside = usable & np.isfinite(box.density(free, met))
-    weights = np.zeros(len(free))
-    if inside.any():
-        points, level = free[inside], met[inside]
-        more = box.proper_density(points, x[:, inside], level)
-        more -= box.density(points, np.full_like(level, 0.5))
-        weights[inside] = np.exp(np.nan_to_num(more - more.max(), nan=-np.inf))
-    else:
-        free, (x, _, met, usable) = begin, box.from_nominal(begin)
-        weights = np.ones(len(begin))
+    between = (shares * begin[rng.integers(len(begin), size=(chains, 4))]).sum(axis=1)
+    free = np.concatenate([box.drawn(rng, FREE), between, begin])
+    x, functions, walls, usable = box.from_nominal(free)
+    whole = np.where(usable, box.proper_density(free, x, walls), -np.inf)
+    # the draws' own density is in them already; one heavy weight would hold all chains
+    among, weights = np.isfinite(whole), np.zeros(len(free))
+    more = whole[among] - box.density(free[among], np.full_like(walls[among], 0.5))
+    weights[among] = np.exp(more - more.max(initial=-np.inf))
+    weights = np.minimum(weights, weights.sum() / np.sqrt(among.sum() or 1))
     if (weights[:FREE] > 0).sum() >= ENOUGH:
         weights[FREE:] = 0.0
-    weights /= weights.sum()
-    u = free[rng.choice(len(free), chains, p=weights)]
-    k, r = len(box.kept), len(box.rest)
+    if not weights.any():
+        weights[-len(begin) :] = 1.0
+    start = rng.choice(len(free), chains, p=weights / weights.sum())
+    u, functions, whole = free[start], functions[start], whole[start]
     one, other = np.triu_indices(k)
     center = u[:1]
 
@@ -467,28 +365,19 @@ def _walked(
         off = points - center
         return np.concatenate([np.ones((len(off), 1)), off, off[:, one] * off[:, other]], axis=1)
 
-    def learnt(points: Floats, level: Floats) -> Floats:
-        """Quadratic functions for walls and states, from those met at some points."""
-        matrix = terms(points)
-        square = matrix.T @ matrix
-        square += RIDGE * np.trace(square) / len(square) * np.eye(len(square))
-        return np.asarray(np.linalg.solve(square, matrix.T @ level))
-
-    def near(points: Floats, walls: Floats, x: Floats, usable: Flags) -> tuple[Floats, Floats]:
-        seen = usable & (np.abs(walls - 0.5) < NEAR).all(axis=1)
-        return points[seen], np.hstack([walls, x.T])[seen]
-
-    met_at, met_there = near(free, met, x, usable)
-    x, functions, walls, _ = box.from_nominal(u)
-    met_at, met_there = np.vstack([met_at, u]), np.vstack([met_there, np.hstack([walls, x.T])])
-    model = learnt(met_at, met_there)
-    bends = model[1 : k + 1, :r]
-    root = (
-        np.linalg.cholesky(np.linalg.inv(12 * (np.eye(k) + bends @ bends.T))).T * 2.4 / np.sqrt(k)
-    )
-    whole, drawn = box.proper_density(u, x, walls), []
-    back = 1.1 * np.abs(walls - terms(u) @ model[:, :r]).max(axis=0)
+    seen = usable & (np.abs(walls - 0.5) < NEAR).all(axis=1)
+    met_at, met_there = free[seen], np.hstack([walls, x.T])[seen]
+    walls, drawn, r = walls[start], [], len(box.rest)
     for walk in range(UNSEEN + WALKS):
+        if walk <= LEARNT:
+            # quadratic functions for walls and states, from those met
+            matrix = terms(met_at)
+            square = matrix.T @ matrix
+            square += RIDGE * np.trace(square) / len(square) * np.eye(len(square))
+            model = np.linalg.solve(square, matrix.T @ met_there)
+            back = 1.1 * np.abs(walls - terms(u) @ model[:, :r]).max(axis=0)
+            spread = np.cov(u.T).reshape(k, k) + 1e-6 * np.eye(k)
+            root = np.linalg.cholesky(spread).T * 2.4 / np.sqrt(k)
         height = plain = box.density(u, terms(u) @ model[:, :r], back)
         v = u
         for pace in range(PACES):
@@ -503,19 +392,18 @@ def _walked(
         after = np.where(usable, box.proper_density(v, x, ahead), -np.inf)
         moved = -rng.standard_exponential(chains) < (after - whole) - (height - plain)
         u, walls = np.where(moved[:, None], v, u), np.where(moved[:, None], ahead, walls)
-        functions = np.where(moved[:, None], values, functions)
-        whole = np.where(moved, after, whole)
+        functions, whole = (
+            np.where(moved[:, None], values, functions),
+            np.where(moved, after, whole),
+        )
         if walk < LEARNT:
             # who started where hardly anybody comes follows one who has moved
             if moved.any():
                 of = np.where(moved, np.arange(chains), rng.choice(np.flatnonzero(moved), chains))
                 u, walls, functions, whole = u[of], walls[of], functions[of], whole[of]
-            points, level = near(v, ahead, x, usable)
-            met_at, met_there = np.vstack([met_at, points]), np.vstack([met_there, level])
-            model = learnt(met_at, met_there)
-            back = 1.1 * np.abs(walls - terms(u) @ model[:, :r]).max(axis=0)
-            spread = np.cov(u.T).reshape(k, k) + 1e-6 * np.eye(k)
-            root = np.linalg.cholesky(spread).T * 2.4 / np.sqrt(k)
+            seen = usable & (np.abs(ahead - 0.5) < NEAR).all(axis=1)
+            met_at = np.vstack([met_at, v[seen]])
+            met_there = np.vstack([met_there, np.hstack([ahead, x.T])[seen]])
         elif walk >= UNSEEN:
             drawn.append((u, functions))
             progress(chains)
@@ -556,7 +444,7 @@ class _Solving:
                 # what is left over shrinks each time by the same factor
                 if not ((left > SETTLED) & (left * (left / before) ** more <= SETTLED)).any():
                     break
-            settled = np.broadcast_to(left <= SETTLED, (count,)).copy()
+            settled = left <= SETTLED
             if not settled.all():
                 wild = ~settled
                 part = {n: column[wild] for n, column in data.items()}
@@ -570,7 +458,7 @@ class _Solving:
 
     def newton(self, data: Mapping[str, Floats], x: Floats) -> tuple[Floats, Flags]:
         """The same by Newton's method, from the impacts ``x``. A point that comes no nearer a
-        solution for a while has none in reach."""
+        solution in three steps has none in reach."""
         x, count = x.copy(), x.shape[1]
         least, idle = np.full(count, np.inf), np.zeros(count, int)
         going = np.arange(count)
@@ -580,15 +468,14 @@ class _Solving:
             left = np.abs(residual).max(axis=0, initial=0.0)
             idle = np.where(left < 0.5 * least, 0, idle + 1)
             least = np.fmin(least, left)
-            more = (left > SETTLED) & (idle <= IDLE)
+            more = (left > SETTLED) & (idle <= 3)
             going, least, idle = going[more], least[more], idle[more]
             if not len(going):
                 break
             right = residual[:, more].T[:, :, None]
             step = _solved(jacobian[:, :, more].transpose(2, 0, 1), right)[:, :, 0]
             x[:, going] = here[:, more] - np.nan_to_num(step.T)
-        over = np.abs(self.left(x, data)).max(axis=0, initial=0.0)
-        return x, np.broadcast_to(over <= 100 * SETTLED, (count,))
+        return x, np.abs(self.left(x, data)).max(axis=0, initial=0.0) <= 100 * SETTLED
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats:
@@ -615,50 +502,38 @@ def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
     first, so that few impacts fall outside the others' limits."""
     system = solution.system
     jacobian = system.slopes(solution.x)
-    count = len(system.conditions)
+    count, names = len(system.conditions), system.observations
+    inputs = (*GEOMETRY, *CRUSH)  # what is no quantity cannot be redundant
+
+    def tightness(i: int) -> tuple[bool, float]:
+        name = names[i]
+        return name not in inputs, system.known[name].tolerance / system.scale(name)
+
     basis = jacobian[:count]
-    order = sorted(
-        range(len(system.observations)),
-        key=lambda i: (
-            system.observations[i] not in (*GEOMETRY, *CRUSH),
-            system.known[system.observations[i]].tolerance / system.scale(system.observations[i]),
-        ),
-    )
-    rank = _rank(basis)
-    kept, rest = [], []
-    for i in order:
+    rank, kept = _rank(basis), []
+    for i in sorted(range(len(names)), key=tightness):
         row = jacobian[count + i]
         tried = np.vstack([basis, row / np.linalg.norm(row)])
-        if system.observations[i] in (*GEOMETRY, *CRUSH):  # what is no quantity cannot be redundant
-            kept.append(i)
+        if names[i] in inputs or _rank(tried) > rank:
             basis, rank = tried, _rank(tried)
-        elif _rank(tried) > rank:
-            basis, rank = tried, rank + 1
-            kept.append(i)
-        else:
-            rest.append(i)
-    names = system.observations
-    return [names[i] for i in sorted(kept)], [names[i] for i in sorted(rest)]
+            kept.append(names[i])
+    return [n for n in names if n in kept], [n for n in names if n not in kept]
 
 
 def _rank(rows: Floats) -> int:
     return int(rows.shape[1] - pseudo_inverse(rows)[1].shape[1])
 
 
-def _endless(
-    solver: _Solving, known: Mapping[str, Uncertain], names: Sequence[str]
-) -> tuple[str, ...]:
+def _endless(solver: _Solving, known: Mapping[str, Uncertain], names: Sequence[str]) -> set[str]:
     """The quantities that nothing determines when E is 0, where it may be."""
     system = solver.system
     if "E" not in system.laws or not known["E"].low <= 0 <= known["E"].high:
-        return ()
-    nothing = System({**system.known, "E": Uncertain("fixed", 0.0, 0.0, 0.0)}, adjusted=False)
+        return set()
+    nothing = System({**system.known, "E": fixed(0.0)}, adjusted=False)
     _, null = pseudo_inverse(nothing.slopes(solver.x))
-    if not null.shape[1]:
-        return ()
-    gradients = {name: nothing.gradient(solver.x, name) for name in names}
-    return tuple(
+    slopes = {name: nothing.gradient(solver.x, name) for name in names}
+    return {
         name
-        for name, slope in gradients.items()
-        if np.abs(slope @ null).max() > 1e-7 * np.abs(slope).max(initial=0.0)
-    )
+        for name, slope in slopes.items()
+        if np.abs(slope @ null).max(initial=0.0) > 1e-7 * np.abs(slope).max(initial=0.0)
+    }

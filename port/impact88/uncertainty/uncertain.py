@@ -126,6 +126,17 @@ class Uncertain:
             return rng.triangular(self.low, self.nominal, self.high, count)
         return self.from_normal(rng.standard_normal(count))
 
+    def log_density(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The logarithm of a triangular or normal density within the limits, but for a constant."""
+        import numpy as np
+
+        off = values - self.nominal
+        if self.kind == "normal":
+            return -0.5 * np.square(off / self.deviation)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            side = np.where(off > 0, self.high - self.nominal, self.nominal - self.low)
+            return np.asarray(np.log(np.clip(1 - np.abs(off) / np.where(off == 0, 1, side), 0, 1)))
+
     def from_normal(self, variates: NDArray[np.float64]) -> NDArray[np.float64]:
         """The value at the quantile each standard normal variate stands at.
 
@@ -147,6 +158,18 @@ def _quantile_table(item: Uncertain) -> tuple[NDArray[np.float64], NDArray[np.fl
     places = np.linspace(-TABLE_REACH, TABLE_REACH, TABLE_STEPS + 1)
     standard = NormalDist()
     return places, np.array([item.quantile(standard.cdf(place)) for place in places.tolist()])
+
+
+def columns_of(
+    limits: Mapping[str, tuple[float, float]], u: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]:
+    """Points of the unit cube, n x k -> the k values, n each; exact at the limits."""
+    import numpy as np
+
+    return {
+        name: np.where(share < 1, low + share * (high - low), high)
+        for share, (name, (low, high)) in zip(u.T, limits.items(), strict=True)
+    }
 
 
 def fixed(value: float) -> Uncertain:
