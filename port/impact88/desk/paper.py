@@ -11,7 +11,7 @@ from ..errors import UserError
 from ..files import packaged_bytes
 from ..reading import plaintext as pasted
 from ..reading.printout import LARGEST_FILE
-from ..reporting import verification, wording
+from ..reporting import verification
 from ..reporting.casefile import report as report_page
 from ..reporting.examination import examine_bytes
 from ..reporting.verification import Examined, Verification
@@ -72,12 +72,12 @@ def _text(examined: Examined, data: bytes) -> str | None:
 
 def _words(result: Verification) -> dict[str, Any]:
     """A verdict in words: its title, what it says, what it rests on, and what stands under it."""
-    says = wording.MEANINGS[result.verdict]
+    says = verification.MEANINGS[result.verdict]
     contradicted = [check for check in [*result.fields, *result.replies] if check.same is False]
-    look = [line for check in contradicted for line in wording.look(check)]
+    look = [line for check in contradicted for line in verification.look(check)]
     parts = [verification.Section("where to look", look), *verification.sections(result)]
     return {
-        "title": wording.TITLES[result.verdict],
+        "title": verification.TITLES[result.verdict],
         "says": says,
         "summary": [line for line in verification.summary(result) if line != says],
         "parts": [

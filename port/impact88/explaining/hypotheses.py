@@ -1,11 +1,11 @@
 """Named causes (``hypotheses.txt``): pages whose inputs or results stand there otherwise.
 
-Each row means a scene that was computed with, or results that are shown otherwise. All are ranked
-in double precision, the nearest replayed. A number shown in another unit was rounded there, so that
+Each row means a scene that was computed with, or results that are shown otherwise. Those that fit
+the page in double precision are replayed. A number shown in another unit was rounded there, so that
 it may have been computed with several; they are searched for the nearest rows.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import combinations, islice
 from math import isfinite
@@ -19,16 +19,21 @@ from ..equations.evaluation import value
 from ..equations.spelling import NEGATIVE, Expression
 from ..fields import FIELDS, INPUTS, scene_name
 from ..files import packaged_text
-from ..names import PIVOT
 from ..reading import numerals
 from ..recovery import replays
 from ..recovery.search import Column, in_doubles
 from ..recovery.slips import Change
 from ..recovery.typedtext import with_opposite_mu
-from .predictions import Cause, Evidence, Range, around, as_printed, digits_of
+from .causes import (
+    Cause,
+    PageEvidence,
+    Range,
+    around,
+    as_printed,
+    decimals_of,
+    digits_of,
+)
 
-_REPLAYED = 40
-"""Rows that are replayed, the nearest of some 700."""
 _NEAR = 0.03
 """How far a unit may be off on average to be searched: 88 for 88.4 is off by 0.005."""
 _ANY_TWO = 20.0
@@ -37,8 +42,8 @@ _SEARCHED, _LAST = 3, 24
 """Units that are searched, and combinations of each that are replayed."""
 _CANDIDATES, _COMBINATIONS = 40, 60_000
 """Numbers that may have been computed with: of one input, and of all together."""
-_FACTOR = 1e-6
-"""Relative error of a factor that is known to seven digits."""
+_ROUGH = 1e-6
+"""Relative error of the Apple's arithmetic, and of a factor that is known to seven digits."""
 
 
 class Row(NamedTuple):
@@ -52,15 +57,12 @@ class Row(NamedTuple):
 
 
 class Hypothesis(NamedTuple):
-    """A row, the scene it means for a page, the printed inputs it puts right, the texts it takes
-    to have been printed in their place, and how far what was typed may be from what the scene
+    """A row, the scene it means for a page, and how far what was typed may be from what the scene
     has."""
 
     row: Row
     scene: dict[str, str]
-    changes: tuple[Change, ...]
-    assumed: Mapping[str, str]
-    within: Mapping[str, float]
+    within: Mapping[str, float] = {}
 
 
 @cache
@@ -86,33 +88,57 @@ def table() -> tuple[Row, ...]:
     return tuple(rows.values())
 
 
-class Tables:
-    """The rows as one page has them. ``nearest``: those to be replayed."""
+class Rows:
+    """The rows as one page has them."""
 
-    def __init__(self, evidence: Evidence) -> None:
-        self._evidence = evidence
-        self._scene, self._printed = evidence.recovered.scene, evidence.recovered.assumed
+    def __init__(self, page: PageEvidence) -> None:
+        self._page = page
+        self._scene, self._printed = page.recovered.scene, page.recovered.assumed
         self._values = doubles_of({name: text or "0" for name, text in self._scene.items()})
-        every = [one for row in table() if row.inputs for one in self._either_sign(row)]
-        far = self._far(every)
-        # double precision does not follow line 510 where MU is past the pivot's -10
-        past = abs(self._values["MU"]) >= -PIVOT != -self._values["MU"]
-        order = np.lexsort(np.array([[one.row.bits for one in every], far]))
-        order = order[: len(every) if past else _REPLAYED]
-        scenes = self._scene, *with_opposite_mu(self._scene)
-        results = [row for row in table() if not row.inputs]
-        self.nearest = [every[index] for index in order]
-        self.nearest += [Hypothesis(row, one, (), {}, {}) for row in results for one in scenes]
-        self._close = [every[index] for index in order if far[index] <= _NEAR]
+        self._places = {name: decimals_of(text.strip()) for name, text in self._scene.items()}
+        rows = (row for row in table() if row.inputs)
+        self._every = [one for row in rows for one in self._either_sign(row)]
+        self._found = self._in_doubles([one.scene for one in self._every], page.results)
+        for index, one in enumerate(self._every):
+            names = {name: self._found[name][index] for name in self._found if one.row.results}
+            for name, made in one.row.results.items():
+                if name in names:
+                    self._found[name][index] = value(made, {**names, "x": names[name]})
 
-    def exchanges(self) -> Iterator[Hypothesis]:
+    def causes(self) -> Iterator[Cause]:
+        """The rows of inputs that fit the page, and all rows of results."""
+        fits = self._page.fits(self._found, len(self._every), 1.05, _ROUGH)
+        own = (one for one, fit in zip(self._every, fits, strict=True) if fit)
+        results = (Hypothesis(row, self._scene) for row in table() if not row.inputs)
+        return self._tested([*own, *results])
+
+    def exchanges(self) -> Iterator[tuple[Row, list[Change]]]:
         """The inputs in each other's place that are printed on the page."""
         for row in table():
             names = all(isinstance(made, str) for made in row.inputs.values())
-            if row.inputs and names and row.bits < _ANY_TWO:
-                made = self._made(row)
-                if made and {change.field for change in made.changes} <= set(self._printed):
-                    yield made
+            if row.inputs and names and row.bits < _ANY_TWO and (made := self._made(row)):
+                changes = self._changes(made)
+                if {change.field for change in changes} <= set(self._printed):
+                    yield row, changes
+
+    def searched(self) -> Iterator[Cause]:
+        """The units that nearly explain the page, with the numbers that explain it best."""
+        units: dict[tuple[str, str], Hypothesis] = {}
+        far = self._page.far(self._found, len(self._every))
+        for index in np.argsort(far, kind="stable") if self._scene["M"] == "6" else ():
+            one = self._every[index]
+            if one.within and not one.row.results and far[index] <= _NEAR:
+                units.setdefault((one.row.note, " ".join(one.row.inputs)), one)
+        search = self._page.recovered.search
+        found = []
+        for unit in islice(units.values(), _SEARCHED):
+            columns = list(self._columns(unit))
+            picks = search.promising(columns, _COMBINATIONS, _LAST)
+            best = min(search.replayed(columns, picks), key=lambda one: one.cost)
+            found.append(unit._replace(scene=best.scene))
+        return self._tested(found)
+
+    # --- the scene that a row means ---
 
     def _either_sign(self, row: Row) -> Iterator[Hypothesis]:
         made = [self._made(row)]
@@ -126,76 +152,56 @@ class Tables:
     def _made(self, row: Row, in_full: bool = False) -> Hypothesis | None:
         """A row's scene; numbers converted are the shortest that round so, or ``in_full``."""
         typed: dict[str, str] = {}
-        assumed = dict(self._printed)
         within: dict[str, float] = {}
-        most = max(_decimals(self._scene[name]) for name in row.inputs)
+        most = max(self._places[name] for name in row.inputs)
         for name, made in row.inputs.items():
             if isinstance(made, str) and made != "x":
                 typed[name] = self._scene[made]
-                if (other := _field(made)) in self._printed:
-                    assumed[_field(name)] = self._printed[other]
                 continue
-            x, own = self._values[name], self._scene[name]
+            x = self._values[name]
             found = self._value(made, x)
             if not isfinite(found):
                 return None
             slack = 0.0
             if x and isinstance(made, tuple) and made[0] not in ("+", "-", NEGATIVE):
                 # a conversion; all were rounded to as many decimals, but what fills nine digits
-                half = 0.5 * 10.0 ** -(_decimals(own) if digits_of(own) >= 9 else most)
+                full = digits_of(self._scene[name]) >= 9
+                half = 0.5 * 10.0 ** -(self._places[name] if full else most)
                 ends = self._value(made, x - half), self._value(made, x + half)
                 slack = within[name] = abs(ends[1] - ends[0]) / 2
             typed[name] = _shortest(found, 0.0 if in_full else slack)
+        scene = {**self._scene, **typed}
+        return None if scene == self._scene else Hypothesis(row, scene, within)
+
+    def _changes(self, one: Hypothesis) -> list[Change]:
+        """The inputs that it puts right, as they would be printed."""
         changes = []
         for name in INPUTS:
-            own, text = self._scene[scene_name(name)], typed.get(scene_name(name))
-            if text and text != own:
+            own, text = self._scene[scene_name(name)], one.scene[scene_name(name)]
+            made = one.row.inputs.get(scene_name(name))
+            if made and text != own:
                 printed = self._printed.get(name, own)
-                right = assumed.get(name, printed)
-                if right == self._printed.get(name, right):
-                    right = numerals.as_printed(text) or text
-                changes.append(Change(row.kind, name, printed, right))
-        if not changes and typed.get("M", self._scene["M"]) == self._scene["M"]:
-            return None
-        return Hypothesis(row, {**self._scene, **typed}, tuple(changes), assumed, within)
+                other = self._printed.get(_field(made)) if isinstance(made, str) else None
+                right = numerals.as_printed(text) or text
+                if other not in (None, printed):
+                    right = other or ""
+                changes.append(Change(one.row.kind, name, printed, right))
+        return changes
 
     def _value(self, made: Expression, x: float) -> float:
         """An expression of a row, ``x`` being the column itself."""
         return float(value(made, {**self._values, "x": x}))
 
-    def _far(self, every: Sequence[Hypothesis]) -> Any:
-        """How far off the results are, relatively and on average, by double precision."""
-        columns = {
-            name: np.array([double(one.scene[name] or "0") for one in every])
-            for name in self._scene
-        }
-        found = in_doubles(columns, self._evidence.named(FIELDS))
-        for index, one in enumerate(every):
-            names = {name: found[name][index] for name in found if one.row.results}
-            for name, made in one.row.results.items():
-                if name in names:
-                    found[name][index] = value(made, {**names, "x": names[name]})
-        return self._evidence.far(found, len(every))
-
-    # --- a unit's rounding undone ---
-
-    def searched(self) -> Iterator[Hypothesis]:
-        """The units that nearly explain the page, with the numbers that explain it best."""
-        units: dict[tuple[str, str], Hypothesis] = {}
-        for one in self._close if self._scene["M"] == "6" else ():
-            if one.within and not one.row.results:
-                units.setdefault((one.row.note, " ".join(one.row.inputs)), one)
-        search = self._evidence.recovered.search
-        for unit in islice(units.values(), _SEARCHED):
-            columns = list(self._columns(unit))
-            picks = search.promising(columns, _COMBINATIONS, _LAST)
-            best = min(search.replayed(columns, picks), key=lambda one: one.cost).scene
-            changes = tuple(
-                change._replace(would_be=numerals.as_printed(text) or text)
-                for change in unit.changes
-                if (text := best[scene_name(change.field)])
-            )
-            yield unit._replace(changes=changes, scene=best, within={})
+    def _in_doubles(
+        self, scenes: Sequence[Mapping[str, str]], names: Iterable[str]
+    ) -> dict[str, Any]:
+        """Results of all scenes by double precision."""
+        columns = {name: np.full(len(scenes), one) for name, one in self._values.items()}
+        for index, scene in enumerate(scenes):
+            for name, text in scene.items():
+                if text is not self._scene[name]:
+                    columns[name][index] = double(text)
+        return in_doubles(columns, list(names))
 
     def _columns(self, unit: Hypothesis) -> Iterator[Column]:
         """For the converted inputs every number that may have been computed with."""
@@ -210,56 +216,48 @@ class Tables:
             yield Column((name,), [((text,), 0.0) for text in texts], not same)
         yield Column(("M",), [((unit.scene["M"],), 0.0)], True)
 
+    # --- what it leaves unexplained ---
 
-def unexplained(evidence: Evidence, every: Sequence[Hypothesis]) -> Iterator[Cause]:
-    """Each replayed, with what it leaves unexplained."""
-    keys = [tuple(one.scene.values()) for one in every]
-    scenes = dict(zip(keys, (one.scene for one in every), strict=True))
-    outcomes = dict(zip(scenes, replays.run_all(list(scenes.values())), strict=True))
-    values = cache(lambda key: replays.run_whole(scenes[key])[1])
-    for one, key in zip(every, keys, strict=True):
-        outcome = outcomes[key]
-        row, changes, fields = one.row, list(one.changes), outcome.fields
-        predicted = as_printed(outcome)
-        if row.results:
-            predicted |= _shown_otherwise(evidence, row, outcome, values(key))
+    def _tested(self, every: Sequence[Hypothesis]) -> Iterator[Cause]:
+        """Each replayed."""
+        scenes = list({tuple(one.scene.values()): one.scene for one in every}.values())
+        names = [name for name in self._page.texts if name not in INPUTS]
+        columns = self._in_doubles(scenes, names) if scenes else {}
+        runs = {}
+        for index, (scene, outcome) in enumerate(zip(scenes, replays.run_all(scenes), strict=True)):
+            values = {n: float(column[index]) for n, column in columns.items()}
+            runs[tuple(scene.values())] = outcome, as_printed(outcome), values
+        for one in every:
+            outcome, printed, values = runs[tuple(one.scene.values())]
+            row, fields, changes = one.row, outcome.fields, self._changes(one)
+            predicted = printed | dict(self._shown_otherwise(row, printed, values))
+            for name, made in row.results.items():
+                other = fields.get(made) if isinstance(made, str) else None
+                if other and name in fields and other != fields[name]:
+                    changes.append(Change(row.kind, name, other, fields[name]))
+            turned = any(change.field == "MUP" for change in changes)
+            inputs = {} if turned or "MUP" not in fields else {"MUP": fields["MUP"]}
+            wrong = self._page.unexplained(predicted, outcome.ending, inputs)
+            left = self._page.left(wrong, one.scene, changes)
+            yield Cause(row.kind, row.note, row.bits, left, tuple(changes))
+
+    def _shown_otherwise(
+        self, row: Row, printed: Mapping[str, Range], values: Mapping[str, float]
+    ) -> Iterator[tuple[str, Range]]:
+        """The results that a row shows otherwise: another number's, or to the page's decimals."""
         for name, made in row.results.items():
-            other = fields.get(made) if isinstance(made, str) else None
-            if other and name in fields and other != fields[name]:
-                changes.append(Change(row.kind, name, other, fields[name]))
-        turned = any(change.field == "MUP" for change in changes)
-        inputs = {} if turned or "MUP" not in fields else {"MUP": fields["MUP"]}
-        wrong = evidence.differing(predicted, outcome.ending, inputs)
-        yield Cause(row.kind, row.note, row.bits, one.scene, wrong, tuple(changes))
-
-
-def _shown_otherwise(
-    evidence: Evidence, row: Row, outcome: replays.Outcome, values: Mapping[str, float]
-) -> dict[str, Range]:
-    """The results that a row shows otherwise: another number's, or to the page's decimals."""
-    ranges: dict[str, Range] = {}
-    printed = as_printed(outcome)
-    for name, made in row.results.items():
-        if isinstance(made, str):
-            if made in printed:
-                ranges[name] = printed[made]
-        elif name in values and name in evidence.texts:
-            found = float(value(made, {**values, "x": values[name]}))
-            places = evidence.decimals(name)
-            unit = 10.0 ** -max(places, FIELDS[name].places or places)
-            near = around(found, 1.001 * unit + _FACTOR * abs(found))
-            if near:
-                ranges[name] = near
-    return ranges
+            if isinstance(made, str):
+                if made in printed:
+                    yield name, printed[made]
+            elif name in printed and name in values:
+                found = float(value(made, {**values, "x": values[name]}))
+                places = self._page.decimals(name)
+                unit = 10.0 ** -max(places, FIELDS[name].places or places)
+                yield name, around(found, 1.001 * unit + _ROUGH * abs(found))
 
 
 def _field(name: str) -> str:
     return "MUP" if name == "MU" else name
-
-
-def _decimals(text: str) -> int:
-    number = numerals.value_of(text.replace(" ", "").upper())
-    return 0 if number is None else max(0, -int(number.as_tuple().exponent))
 
 
 def _short(number: float) -> str:

@@ -3,35 +3,32 @@
 The listing is run in another arithmetic, and its results are floored, rounded or cut. Single
 precision leaves the last digits open: how a machine rounds, takes a sine or squares shows in them.
 So it is run several times, each time with every stored number moved within its last bit, and a
-number counts as explained within the range of these runs, which must be narrow.
+number counts as explained within the range of these runs, which must be narrow. What double
+precision shows to be far from the page is not run.
 """
 
 import math
 import random
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
-from decimal import Decimal
 from typing import Any
 
 import numpy as np
 
+from ..doubles import double
 from ..fields import ANGLES, FIELDS, INPUTS
 from ..program.arithmetics import APPLESOFT, FLOAT64, Arithmetic
-from ..reading import numerals
 from ..recovery import replays
-from ..recovery.typedtext import with_opposite_mu
-from .predictions import (
-    CUTS,
+from ..recovery.search import in_doubles
+from .causes import (
     NOT_APPLESOFT,
     Cause,
-    Evidence,
+    PageEvidence,
     Range,
     around,
     as_printed,
-    cut,
     digits_of,
     places_of,
-    within,
 )
 
 _SOME_LINES = 14.2
@@ -52,109 +49,121 @@ within this part of it; where it is more, the page is no evidence."""
 _LONG = 7
 """Angles of so many digits came back from radians a little off: 59.99999 was 60."""
 _APPLESOFT_DIGITS, _SINGLE_DIGITS = 9, 7
+_PI = 3.14159265
+"""That of line 300."""
+_TIE = 2.0**-31
+"""Part of a value by which the Apple's 32 bits may make a tie of it."""
+CUTS: dict[str, Callable[[float], int]] = {
+    "floored": math.floor,
+    "rounded": lambda units: math.floor(units + 0.5),
+    "truncated": math.trunc,
+}
+"""How programs bring a number to so many decimals; the listing floors."""
 
 
 def _with_pi(arithmetic: Arithmetic, pi: Any) -> Arithmetic:
     made = copy(arithmetic)
-    made._constants = {"3.14159265": pi}
+    made._constants = {f"{_PI}": pi}
     return made
 
 
-_DOUBLES: tuple[tuple[str, float, Arithmetic], ...] = (
-    ("", 14.0, FLOAT64),
-    (" with exact pi", 14.5, _with_pi(FLOAT64, math.pi)),
-    (" with pi = 3.1416", 15.0, _with_pi(FLOAT64, 3.1416)),
-)
+_DOUBLES = (("", 14.0, _PI), (" with exact pi", 14.5, math.pi), (" with pi = 3.1416", 15.0, 3.1416))
 _OTHER_PI = 14.3
 _PIS = ("3.1416", "3.14159", "3.1415927", "3.141592654", "3.14")
 
 
-def causes(evidence: Evidence) -> Iterator[Cause]:
+def causes(page: PageEvidence) -> Iterator[Cause]:
     """Every other machine and way to print, tried; of those of one kind the best."""
-    known = all(reading.clean for reading in evidence.shown.fields.values())
+    known = all(reading.clean for reading in page.shown.fields.values())
     best: dict[str, Cause] = {}
-    for one in _causes(evidence):
+    for one in _causes(page):
         kind = f"{one.kind} {one.note}" if one.bits == _SOME_LINES else one.kind
-        if kind not in best or len(one.wrong) < len(best[kind].wrong):
+        if kind not in best or len(one.left) < len(best[kind].left):
             best[kind] = one
     for one in best.values():
         accused = NOT_APPLESOFT if known else ""
         yield one._replace(note="; ".join(filter(None, [one.note, accused])))
 
 
-def _causes(evidence: Evidence) -> Iterator[Cause]:
-    found = evidence.recovered.scene
-    for scene in (found, *with_opposite_mu(found)):
-        page = _Page(evidence, scene, APPLESOFT)
+def _causes(page: PageEvidence) -> Iterator[Cause]:
+    scene = page.recovered.scene
+    typed, spared = _as_typed(page)
+    numbers = (_PI, *(pi for _, _, pi in _DOUBLES), *map(float, _PIS))
+    near = dict(zip(numbers, _near(page, typed, numbers), strict=True))
+    if near[_PI]:
+        run = _Run(page, scene, APPLESOFT)
         for how in ("rounded", "truncated"):
-            yield page.cause(f"{how}, not floored", "", _CUT, page.cut(how))
-            if lines := page.lines(how):
+            yield run.cause(f"{how}, not floored", "", _CUT, run.cut(how))
+            if lines := run.lines(how):
                 where = f"on line{'s' * (len(lines) > 1)} {', '.join(map(str, lines))}"
-                yield page.cause(f"{how}, not floored", where, _SOME_LINES, page.cut(how, lines))
-        yield from _other_decimals(page)
-    typed, spared = _as_typed(evidence)
-    single = all(evidence.digits(name) <= _SINGLE_DIGITS for name in (*INPUTS, "KI"))
-    for scene in (typed, *with_opposite_mu(typed)):
-        for variant, bits, machine in _DOUBLES:
-            page = _Page(evidence, scene, machine, spared)
-            yield page.cause(f"IEEE double arithmetic{variant}", "", bits, {})
+                yield run.cause(f"{how}, not floored", where, _SOME_LINES, run.cut(how, lines))
+        yield from _other_decimals(run)
+        if all(digits_of(page.texts.get(name)) <= _SINGLE_DIGITS for name in (*INPUTS, "KI")):
+            yield from _single_precision(page, typed, spared)
+    for variant, bits, pi in _DOUBLES:
+        if near[pi]:
+            run = _Run(page, typed, FLOAT64 if pi == _PI else _with_pi(FLOAT64, pi), spared)
+            yield run.cause(f"IEEE double arithmetic{variant}", "", bits, {})
             for how in ("rounded", "truncated"):
                 kind = f"IEEE double arithmetic, {how}, not floored"
-                yield page.cause(kind, variant.strip(), bits + 1, page.cut(how))
-        for pi in _PIS:
-            page = _Page(evidence, scene, _with_pi(APPLESOFT, APPLESOFT.number(pi)), spared)
-            yield page.cause("another pi in line 300", pi, _OTHER_PI, {})
-        if single:
-            yield from _single_precision(evidence, scene, spared)
+                yield run.cause(kind, variant.strip(), bits + 1, run.cut(how))
+    for text in _PIS:
+        if near[float(text)]:
+            run = _Run(page, typed, _with_pi(APPLESOFT, APPLESOFT.number(text)), spared)
+            yield run.cause("another pi in line 300", text, _OTHER_PI, {})
 
 
-class _Page:
+def _near(page: PageEvidence, scene: Mapping[str, str], pis: Iterable[float]) -> list[bool]:
+    """Whether the page is near enough to the results with each pi, by double precision, that
+    another arithmetic may explain it."""
+    turned = np.array([*pis]) / math.pi
+    columns = {n: np.full(len(turned), double(text or "0")) for n, text in scene.items()}
+    columns |= {name: columns[name] * turned for name in ANGLES}
+    found = in_doubles(columns, list(page.results))
+    return list(page.fits(found, len(turned), _OPEN_UNITS, _OPEN))
+
+
+class _Run:
     """What one run of the listing prints: its fields, and its values before they are floored."""
 
     def __init__(
         self,
-        evidence: Evidence,
-        scene: dict[str, str],
+        page: PageEvidence,
+        scene: Mapping[str, str],
         machine: Arithmetic,
         spared: frozenset[str] = frozenset(),
     ) -> None:
-        self.evidence, self.scene = evidence, scene
+        self.page, self.scene = page, scene
         self.outcome, values = replays.run_whole(scene, machine)
+        self.energy = values.pop("KI", 0.0) if "KI" in page.texts else 0.0
         self.values = {name: one for name, one in values.items() if name != "KI"}
-        self.energy = values.get("KI", 0.0) if "KI" in evidence.texts else 0.0
-        self._own = as_printed(self.outcome) | self._energy()
+        self._own = as_printed(self.outcome)
         self._inputs = {n: text for n, text in self.outcome.fields.items() if n not in spared}
-
-    def _energy(self) -> dict[str, Range]:
-        """The kinetic energy as the page may have it: to nine digits, halves either way, or to
-        more, rounded or cut."""
-        if not self.energy or not math.isfinite(self.energy):
-            return {}
-        if self.evidence.digits("KI") > _APPLESOFT_DIGITS:
-            slack = Decimal("1.001").scaleb(-self.evidence.decimals("KI"))
-        else:
-            last = Decimal(self.energy).adjusted() - _APPLESOFT_DIGITS + 1
-            slack = Decimal("0.5001").scaleb(last)
-        near = around(self.energy, slack)
-        return {"KI": near} if near else {}
+        if self.energy and math.isfinite(self.energy):
+            # to nine digits, halves either way, or to more, rounded or cut
+            last, slack = -page.decimals("KI"), 1.001
+            if digits_of(page.texts["KI"]) <= _APPLESOFT_DIGITS:
+                last = math.floor(math.log10(abs(self.energy))) - _APPLESOFT_DIGITS + 1
+                slack = 0.5001
+            self._own["KI"] = around(self.energy, slack * 10.0**last)
 
     def cause(self, kind: str, note: str, bits: float, other: Mapping[str, Range]) -> Cause:
         """What it leaves unexplained, some of its results otherwise."""
-        wrong = self.evidence.differing({**self._own, **other}, self.outcome.ending, self._inputs)
-        return Cause(kind, note, bits, self.scene, wrong)
+        predicted = {**self._own, **other}
+        wrong = self.page.unexplained(predicted, self.outcome.ending, self._inputs)
+        return Cause(kind, note, bits, self.page.left(wrong, self.scene, ()))
 
     def cut(self, how: str, lines: Iterable[int] | None = None) -> dict[str, Range]:
         """The results, or those of some lines, cut to the listing's decimals."""
         return {
-            name: made
+            name: cut(one, places_of(name), how)
             for name, one in self.values.items()
-            if (lines is None or FIELDS[name].line in lines)
-            and (made := cut(one, places_of(name), how))
+            if lines is None or FIELDS[name].line in lines
         }
 
     def lines(self, how: str) -> list[int]:
         """The lines whose results the page has so and not floored; none if all are or none is."""
-        made, read = self.cut(how), self.evidence.texts
+        made, read = self.cut(how), self.page.texts
         every = {FIELDS[name].line for name in self.values}
         some = []
         for line in sorted(every):
@@ -165,78 +174,84 @@ class _Page:
 
     def prints(self, name: str, ranges: Mapping[str, Range] | None = None) -> bool:
         """Whether the page has just the number that is predicted."""
-        return within(Decimal(self.evidence.texts[name]), (ranges or self._own).get(name))
+        low, high = (ranges or self._own).get(name, (math.nan, math.nan))
+        return low <= float(self.page.texts[name]) <= high
 
 
-def _other_decimals(page: _Page) -> Iterator[Cause]:
+def _other_decimals(run: _Run) -> Iterator[Cause]:
     """To the decimals that the page has, where those are not the listing's: floored or rounded, or
     of seven digits."""
-    evidence = page.evidence
+    page = run.page
     own: dict[str, Range] = {}
     decimals, others = set(), 0
-    for name in [*page.values, "KI"]:
-        value = page.energy if name == "KI" else page.values[name]
-        if name not in evidence.texts or page.prints(name):
+    for name, value in {**run.values, "KI": run.energy}.items():
+        if name not in page.texts or run.prints(name):
             continue
-        number = Decimal(evidence.texts[name])
-        unit = Decimal(1).scaleb(int(number.as_tuple().exponent))
-        single = len(number.as_tuple().digits) == _SINGLE_DIGITS
-        slack = max(unit * Decimal("1.001"), abs(number) * Decimal("3E-6" if single else "2E-9"))
+        text = page.texts[name]
+        number, places = float(text), page.decimals(name)
+        single = digits_of(text) == _SINGLE_DIGITS
+        slack = max(1.001 * 10.0**-places, abs(number) * (3e-6 if single else 2e-9))
         near = around(value, slack)
-        cuts = [cut(value, evidence.decimals(name), how) for how in ("rounded", "floored")]
-        if near and (unit < (abs(number) or 1) or any(within(number, made) for made in cuts)):
+        ranges = {how: cut(value, places, how) for how in ("rounded", "floored")}
+        if 10.0**-places < (abs(number) or 1) or any(a <= number <= b for a, b in ranges.values()):
             own[name] = near
             if name != "KI":
-                decimals.add(evidence.decimals(name))
-                others += evidence.decimals(name) != places_of(name) or "E" in evidence.texts[name]
+                decimals.add(places)
+                others += places != places_of(name) or "E" in text
     if others >= 2:
         said = " to ".join(map(str, sorted({min(decimals), max(decimals)}))) + " decimals"
-        yield page.cause("printed with other decimals", said, _DECIMALS, own)
+        yield run.cause("printed with other decimals", said, _DECIMALS, own)
+
+
+def cut(value: float, places: int, how: str) -> Range:
+    """A value brought to so many decimals, either way where the Apple's 32 bits may make a tie of
+    it; nothing where no program prints it."""
+    units = value * 10.0**places
+    if not math.isfinite(units):
+        return math.nan, math.nan
+    slack = abs(units) * _TIE
+    return CUTS[how](units - slack) / 10**places, CUTS[how](units + slack) / 10**places
 
 
 # --- single precision ---
 
 
 def _single_precision(
-    evidence: Evidence, scene: dict[str, str], spared: frozenset[str]
+    page: PageEvidence, scene: dict[str, str], spared: frozenset[str]
 ) -> Iterator[Cause]:
     outcomes = [replays.run_once(scene, single(seed)) for seed in range(_SHAKEN + 1)]
     exact, values = replays.run_whole(scene, FLOAT64)
     if exact.ending or any(outcome.ending for outcome in outcomes):
         return
-    page = _Page(evidence, scene, single(0), spared)
     ranges = {
         name: near
         for name in outcomes[0].fields
         if name not in INPUTS
-        and (near := _left_open(name, [outcome.fields.get(name) for outcome in outcomes]))
-        and name in evidence.texts
-        and (name == "KI" or evidence.decimals(name) <= places_of(name))
+        and name in page.texts
+        and (name == "KI" or page.decimals(name) <= places_of(name))
+        and (near := _left_open(name, [float(one.fields[name]) for one in outcomes]))
     }
-    fits = {
-        how: sum(
-            within(Decimal(text), cut(values[name], places_of(name), how))
-            for name, text in evidence.texts.items()
-            if name in values and name != "KI"
-        )
-        for how in CUTS
-    }
+    fits = dict.fromkeys(CUTS, 0)
+    for how in CUTS:
+        for name, text in page.texts.items():
+            if name in values and name != "KI":
+                low, high = cut(values[name], places_of(name), how)
+                fits[how] += low <= float(text) <= high
     how = max(fits, key=fits.__getitem__)
     kind = "single-precision arithmetic" + ("" if how == "floored" else f", {how}, not floored")
-    evident = digits_of(exact.fields.get("KI")) > _SINGLE_DIGITS
-    note = "as in GW-BASIC and similar BASICs"
-    yield page.cause(kind, note, _SINGLE + (0.0 if evident else _NO_EVIDENCE), ranges)
+    bits = _SINGLE + _NO_EVIDENCE * (digits_of(exact.fields.get("KI")) <= _SINGLE_DIGITS)
+    run = _Run(page, scene, single(0), spared)
+    yield run.cause(kind, "as in GW-BASIC and similar BASICs", bits, ranges)
 
 
-def _left_open(name: str, every: list[str | None]) -> Range | None:
+def _left_open(name: str, numbers: list[float]) -> Range | None:
     """What the runs leave open of a result, if that is little."""
-    numbers = [number for text in every if (number := numerals.value_of(text or "")) is not None]
-    if len(numbers) < len(every):
-        return None
     size, spread = max(map(abs, numbers)), max(numbers) - min(numbers)
     places = FIELDS[name].places
-    unit = Decimal(1).scaleb(size.adjusted() - _SINGLE_DIGITS + 1 if places is None else -places)
-    if spread > max(_OPEN_UNITS * unit, Decimal(_OPEN) * size):
+    if places is None:
+        places = _SINGLE_DIGITS - 1 - math.floor(math.log10(size)) if size else 0
+    unit = 10.0**-places
+    if spread > max(_OPEN_UNITS * unit, _OPEN * size):
         return None
     return min(numbers) - spread - unit, max(numbers) + spread + unit
 
@@ -263,15 +278,13 @@ def single(seed: int) -> Arithmetic:
     return made
 
 
-# --- the scene as another machine was given it ---
-
-
-def _as_typed(evidence: Evidence) -> tuple[dict[str, str], frozenset[str]]:
-    """The printed numbers, and the names of angles that came back from radians a little off."""
-    scene = dict(evidence.recovered.scene)
+def _as_typed(page: PageEvidence) -> tuple[dict[str, str], frozenset[str]]:
+    """The scene as another machine was given it: the printed numbers, and the names of angles that
+    came back from radians a little off."""
+    scene = dict(page.recovered.scene)
     scene |= {
         name: text
-        for name, text in {**evidence.recovered.assumed, **evidence.texts}.items()
+        for name, text in {**page.recovered.assumed, **page.texts}.items()
         if name in INPUTS and name != "MUP"
     }
     return scene, frozenset(name for name in ANGLES if digits_of(scene[name]) >= _LONG)

@@ -6,7 +6,7 @@ reader's. Of 110 readings of genuine pages 6 are settled so.
 """
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import islice
 
@@ -14,7 +14,7 @@ from ..reading.numerals import Doubt
 from ..reading.printout import Printout
 from ..recovery.recovered import Recovered
 from ..recovery.search import Scored
-from ..recovery.slips import Reread
+from ..recovery.slips import Rereading
 from .judgement import FieldCheck, Judged, Status, Verdict, judge
 
 _TRIED = 8
@@ -27,9 +27,7 @@ _LOST_AND_ADDED = 3
 """So many numbers with a glyph lost or added may be put down to a reader."""
 
 
-def looked_past(
-    shown: Printout, recovered: Recovered, rereads: Callable[[], Sequence[Reread]]
-) -> Judged | None:
+def looked_past(shown: Printout, recovered: Recovered, rereading: Rereading) -> Judged | None:
     """The printout judged with its reader's slips put right; None where they are not its alone.
 
     The scene that explains most decides, and every other that explains the page as well must
@@ -40,7 +38,7 @@ def looked_past(
     scenes: list[Scored] = []
     if not recovered.missing:
         apart = set(recovered.apart)
-        own = (r for r in rereads() if apart.isdisjoint(one.field for one in r.changes))
+        own = (r for r in rereading.best() if apart.isdisjoint(one.field for one in r.changes))
         scenes = [one.scored for one in islice(own, _TRIED)]
         scenes.append(recovered.search.replayed_scene(recovered.scene, recovered.assumed))
     best: Judged | None = None

@@ -8,6 +8,7 @@ inputs cost to believe plus what every printed result then costs.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -56,13 +57,27 @@ _ROUGH = 4e-7
 RESULTS = tuple(name for name in FIELDS if name not in INPUTS)
 
 
-class Column(NamedTuple):
+@dataclass
+class Column:
     """What an input, or the row of angles, may be: the fields, and the texts that may be printed
     for them (``typed``: that may have been typed), each with what it costs, cheapest first."""
 
     names: tuple[str, ...]
     options: list[tuple[tuple[str, ...], float]]
     typed: bool = False
+
+    @cached_property
+    def costs(self) -> Floats:
+        """What each option costs."""
+        return np.array([cost for _, cost in self.options])
+
+    @cached_property
+    def numbers(self) -> dict[str, Floats]:
+        """The options as doubles, by the scene's names."""
+        return {
+            scene_name(name): np.array([_number(texts[at]) for texts, _ in self.options])
+            for at, name in enumerate(self.names)
+        }
 
 
 class Scored(NamedTuple):
@@ -146,8 +161,8 @@ class Search:
         wrong: frozenset[str] = frozenset(),
     ) -> Picks:
         """The most promising combinations: those whose kinetic energy is the printed one first, the
-        better they are with the more of the rest, ``room`` for the best. ``limit``: what masses and
-        velocities, or the rest, may cost to believe; ``wrong``: results that tell most."""
+        better they are with the more of the rest, ``room`` for the best. ``limit``: what all inputs
+        may cost to believe, and the energy; ``wrong``: results that tell most."""
         still = _without_spin(columns)
         kinetic = [
             place
@@ -155,36 +170,46 @@ class Search:
             if KINETIC & set(column.names) and not still & set(column.names)
         ]
         others = [place for place in range(len(columns)) if place not in kinetic]
-        first = self._by_energy(columns, kinetic, room, limit)
-        second = combinations([columns[place] for place in others], room, limit)
+        first, beliefs = self._by_energy(columns, kinetic, room, limit)
+        left = limit - beliefs.min()
+        second = combinations([columns[place] for place in others], room, left)
+        spent = _believing([columns[place] for place in others], second)
+        counts = np.searchsorted(spent, limit - beliefs, side="right")
         parts = []
-        for rank, one in enumerate(first, 1):
-            count = min(len(second), max(2, room // rank**2))
-            picks = np.zeros((count, len(columns)), np.intp)
+        for rank, (one, most_of) in enumerate(zip(first, counts, strict=True), 1):
+            count = min(most_of, max(2, room // rank**2))
+            picks = np.zeros((count, len(columns)), np.intp, "F")
             picks[:, kinetic] = one
             picks[:, others] = second[:count]
             parts.append(picks)
-        return self._screened(columns, np.concatenate(parts), most, wrong)
+        return self.screened(columns, np.concatenate(parts), most, wrong)
 
     def _by_energy(
         self, columns: Sequence[Column], kinetic: Sequence[int], most: int, limit: float
-    ) -> Picks:
+    ) -> tuple[Picks, Floats]:
         """The cheapest combination of masses and velocities, and those that give the printed
-        energy."""
+        energy; what each costs with the energy."""
         some = combinations([columns[place] for place in kinetic], most, limit)
-        picks = np.zeros((len(some), len(columns)), np.intp)
+        picks = np.zeros((len(some), len(columns)), np.intp, "F")
         picks[:, kinetic] = some
-        costs = _BELIEF * _believing(columns, picks)
+        beliefs = _believing(columns, picks)
+        costs = _BELIEF * beliefs
         expected = next((one for one in self.expected if one.name == "KI"), None)
         if expected is not None:
-            costs = costs + expected.mismatch(kinetic_energy(_values(columns, picks)))
+            wrong = expected.mismatch(kinetic_energy(_values(columns, picks)))
+            costs, beliefs = costs + wrong, beliefs + wrong
         costs[0] = -1.0
-        return some[np.argsort(costs, kind="stable")[:_ENERGIES]]
+        order = np.argsort(costs, kind="stable")[:_ENERGIES]
+        return some[order], beliefs[order]
 
-    def _screened(
-        self, columns: Sequence[Column], picks: Picks, most: int, wrong: frozenset[str]
+    def screened(
+        self,
+        columns: Sequence[Column],
+        picks: Picks,
+        most: int,
+        wrong: frozenset[str] = frozenset(),
     ) -> Picks:
-        """The combinations that explain most, by double precision."""
+        """The ``most`` combinations that explain most, by double precision."""
         telling = sorted(_TELLING, key=lambda name: name not in wrong)[:4]
         few = [one for one in self.expected if one.default == MISMATCH and one.name in telling]
         for count, enough, expected in ((_CLOSELY, 4 * _CLOSELY, few), (most, most, self.expected)):
@@ -313,7 +338,7 @@ def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) ->
     picks = np.zeros((1, 0), np.intp)
     costs: Floats = np.zeros(1)
     for column in columns:
-        options = np.array([cost for _, cost in column.options])
+        options = column.costs
         # both are sorted: with option j none but the first most / (j + 1) are among the cheapest
         counts = np.minimum(
             most // np.arange(1, len(options) + 1),
@@ -329,6 +354,17 @@ def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) ->
             kept = np.argsort(every, kind="stable")
         costs = every[kept]
         picks = np.column_stack([picks[before[kept]], option[kept]])
+    return picks
+
+
+def one_each(columns: Sequence[Column]) -> Picks:
+    """The cheapest combination, and every one that departs from it in one column."""
+    counts = [len(column.options) - 1 for column in columns]
+    picks = np.zeros((1 + sum(counts), len(columns)), np.intp, "F")
+    at = 1
+    for place, count in enumerate(counts):
+        picks[at : at + count, place] = np.arange(1, count + 1)
+        at += count
     return picks
 
 
@@ -350,18 +386,17 @@ def _believing(columns: Sequence[Column], picks: Picks) -> Floats:
     """What the options themselves cost."""
     costs: Floats = np.zeros(len(picks))
     for place, column in enumerate(columns):
-        costs += np.array([cost for _, cost in column.options])[picks[:, place]]
+        costs += column.costs[picks[:, place]]
     return costs
 
 
 def _values(columns: Sequence[Column], picks: Picks) -> dict[str, Floats]:
     """The values of combinations as columns of doubles; of MU the printed one."""
-    values: dict[str, Floats] = {}
-    for place, column in enumerate(columns):
-        for at, name in enumerate(column.names):
-            numbers = np.array([_number(texts[at]) for texts, _ in column.options])
-            values[scene_name(name)] = numbers[picks[:, place]]
-    return values
+    return {
+        name: numbers[picks[:, place]]
+        for place, column in enumerate(columns)
+        for name, numbers in column.numbers.items()
+    }
 
 
 def _typed_mu(value: Mapping[str, Floats]) -> tuple[Floats, NDArray[np.bool_]]:

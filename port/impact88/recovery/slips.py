@@ -7,16 +7,17 @@ names what is found, and `judging` says when a reader's slips may be looked past
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import combinations
+from operator import ne
 from typing import NamedTuple
 
 from ..doubles import double
 from ..fields import ANGLES, INPUTS, scene_name
 from ..reading.numerals import is_number, printable
 from .recovered import Recovered
-from .search import Column, Scored
+from .search import Column, Scored, one_each
 from .typedtext import opposite
 
 DIGIT = "digit misread"
@@ -34,11 +35,11 @@ _UNLIKE = 0.4
 _BITS_A_UNIT, _ALWAYS = 5.0, 0.7
 """Bits of a unit of cost in the search, and the cost of no bits: one slip (2.7) is cheaper than a
 result that differs (3.0), two slips dearer."""
-_TWO_SLIPS, _ONE_SLIP = 5.93, 3.5
-"""What two slips may cost: two neighbors swapped (2.9) and a digit misread (3.02); and one."""
+_TWO_SLIPS = 6.05
+"""What two slips may cost: two digits misread as those least like them (3.02 each)."""
 _FULL_TURN, _TURNED = 360.0, 10.0
 """Beyond it nobody types an angle, and the bits it takes to believe that somebody did."""
-_ROOM, _FEW, _REPLAYED = 100_000, 1_000, 320
+_ROOM, _REPLAYED = 100_000, 60
 _FIGURES = 9
 """Of a number the Apple keeps so many."""
 _ALIKE = {
@@ -60,12 +61,17 @@ class Change(NamedTuple):
     @property
     def bits(self) -> float:
         """What it takes to believe it."""
-        bits = BITS.get(self.kind, 0.0)
-        if self.kind == DIGIT:
-            bits += _UNLIKE * _unlikeness(self.printed, self.would_be)
-        if self.kind in BITS and self.field in ANGLES and abs(double(self.would_be)) > _FULL_TURN:
-            bits += _TURNED
-        return bits
+        return bits_of(*self)
+
+
+def bits_of(kind: str, field: str, printed: str, would_be: str) -> float:
+    """What it takes to believe a slip; nothing for other changes."""
+    bits = BITS.get(kind, 0.0)
+    if kind == DIGIT:
+        bits += _UNLIKE * _unlikeness(printed, would_be)
+    if bits and field in ANGLES and abs(double(would_be)) > _FULL_TURN:
+        bits += _TURNED
+    return bits
 
 
 class Reread(NamedTuple):
@@ -86,53 +92,50 @@ class Rereading:
         for name in recovered.apart if apart else ():
             self._base[name] = recovered.scene[scene_name(name)].replace(" ", "").upper()
 
-    def best(self, exchanged: Mapping[str, str] | None = None) -> list[Reread]:
-        """Scenes with one input put right, or two, those that explain most first. ``exchanged``:
-        texts printed in place of others, by field; then one of the other inputs is put right."""
+    def best(self, most: int = 2, exchanged: Mapping[str, str] | None = None) -> list[Reread]:
+        """Scenes with one input put right, or with up to two, those that explain most first.
+        ``exchanged``: texts printed in place of others, by field, and not to be put right."""
         exchanged = exchanged or {}
-        slips: dict[str, list[Change]] = {}
         columns = []
         for name in INPUTS:
             text = self._base.get(name, self._recovered.scene[scene_name(name)])
-            ways = self._slips.get(name, [])
-            if exchanged:
-                ways = [] if name in exchanged else [way for way in ways if way[1] <= _ONE_SLIP]
-            slips[name] = [change for change, _ in ways]
-            options = [((change.would_be,), cost) for change, cost in ways]
-            apart = name not in self._recovered.assumed
+            ways = [] if name in exchanged else self._ways.get(name, [])
+            options = [((other,), cost) for cost, other, _ in ways]
             first = (exchanged.get(name, text),)
+            apart = name not in self._recovered.assumed
             columns.append(Column((name,), [(first, 0.0), *options], apart))
         columns.append(Column(("M",), [((self._recovered.scene["M"],), 0.0)], True))
         search = self._recovered.search
-        effort = (_FEW, 2, _ONE_SLIP) if exchanged else (_ROOM, _REPLAYED, _TWO_SLIPS)
-        picks = search.promising(columns, *effort, self._recovered.wrong)
+        if most == 1:
+            picks = search.screened(columns, one_each(columns), 2 if exchanged else _REPLAYED)
+        else:
+            wrong = self._recovered.wrong
+            picks = search.promising(columns, _ROOM, _REPLAYED, _TWO_SLIPS, wrong)
         rereads = [
-            Reread(
-                tuple(slips[name][at - 1] for name, at in zip(INPUTS, pick, strict=False) if at),
-                scored,
-            )
+            Reread(tuple(self._changes(pick)), scored)
             for pick, scored in zip(picks.tolist(), search.replayed(columns, picks), strict=True)
         ]
         return sorted(rereads, key=lambda one: one.scored.cost)
 
     @cached_property
-    def _slips(self) -> dict[str, list[tuple[Change, float]]]:
-        """The slips of every input with what each costs, cheapest first."""
-        slips = {}
+    def _ways(self) -> dict[str, list[tuple[float, str, str]]]:
+        """The slips of every input: what each costs, its text and its kind, cheapest first."""
+        ways = {}
         for name, text in self._base.items():
             possible = printable if name in self._recovered.assumed else is_number
-            ways = [
-                (change := Change(kind, name, text, other), _cost(change))
+            ways[name] = sorted(
+                (_ALWAYS + bits_of(kind, name, text, other) / _BITS_A_UNIT, other, kind)
                 for other, kind in misreadings(text).items()
                 if possible(other)
-            ]
-            slips[name] = sorted(ways, key=lambda way: way[1])
-        return slips
+            )
+        return ways
 
-
-def _cost(change: Change) -> float:
-    """What a slip costs in the search."""
-    return _ALWAYS + change.bits / _BITS_A_UNIT
+    def _changes(self, pick: Sequence[int]) -> Iterator[Change]:
+        """The slips that are taken of every input, by their rank."""
+        for name, at in zip(INPUTS, pick, strict=False):
+            if at:
+                _, other, kind = self._ways[name][at - 1]
+                yield Change(kind, name, self._base[name], other)
 
 
 def misreadings(text: str) -> dict[str, str]:
@@ -146,7 +149,12 @@ def misreadings(text: str) -> dict[str, str]:
 
 def slip(text: str, other: str) -> str | None:
     """The kind of slip that makes one text of the other, None when one slip is not enough."""
-    return misreadings(text).get(other) if abs(len(text) - len(other)) <= 1 else None
+    if len(text) == len(other):
+        near = sum(map(ne, text, other)) <= 2 or text.replace(".", "") == other.replace(".", "")
+    else:
+        short, long = sorted((text, other), key=len)
+        near = any(long[:at] + long[at + 1 :] == short for at in range(len(long)))
+    return misreadings(text).get(other) if near else None
 
 
 def _unlikeness(text: str, other: str) -> int:

@@ -15,8 +15,17 @@ from ..judging.judgement import Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
 from ..reading.fieldlabels import LabelState
 from ..report.frame import render
-from . import provenance, verification, wording
-from .verification import Examined, Verification
+from . import provenance
+from .verification import (
+    MEANINGS,
+    STATES,
+    TITLES,
+    Examined,
+    Verification,
+    counts,
+    sections,
+    summary,
+)
 
 _LOOKS = {
     Verdict.IDENTICAL: "good",
@@ -68,8 +77,8 @@ def report(
         where = files.called(one.file)
         read += [[where, "–", "NOT READ", one.error]] if one.error else []
         for result in one.results:
-            what, title = f"{result.number} ({result.where})", wording.TITLES[result.verdict]
-            read.append([where, what, title, wording.counts(result.fields)])
+            what, title = f"{result.number} ({result.where})", TITLES[result.verdict]
+            read.append([where, what, title, counts(result.fields)])
     digests = [(files.called(one.file), one.sha256 or "not read") for one in examined]
     return render(
         "verification.html",
@@ -81,7 +90,7 @@ def report(
         files_read=read,
         printouts=list(map(_printout, results)),
         headings=_HEADINGS,
-        meanings=[(wording.TITLES[one], wording.MEANINGS[one]) for one in Verdict],
+        meanings=[(TITLES[one], MEANINGS[one]) for one in Verdict],
         key=[(n, q.meaning, q.unit) for n in FIELDS for q in [quantity("MU" if n == "MUP" else n)]],
         method=_METHOD,
         limits=_LIMITS,
@@ -104,21 +113,21 @@ def _printout(result: Verification) -> dict[str, Any]:
     return {
         "title": f"{files.called(result.file)}, printout {result.number} ({result.where})",
         "look": _LOOKS[result.verdict],
-        "verdict": wording.TITLES[result.verdict],
-        "says": wording.MEANINGS[result.verdict],
-        "summary": [f"{line[:1].upper()}{line[1:]}." for line in verification.summary(result)],
+        "verdict": TITLES[result.verdict],
+        "says": MEANINGS[result.verdict],
+        "summary": [f"{line[:1].upper()}{line[1:]}." for line in summary(result)],
         "rows": [
             {
-                "look": wording.STATES[check.status],
+                "look": STATES[check.status],
                 "cells": [
                     check.name, check.printed or "–", check.recomputed or "–",
-                    f"{_SIGNS.get(check.status, '–')} {wording.STATES[check.status] or 'exact'}",
+                    f"{_SIGNS.get(check.status, '–')} {STATES[check.status] or 'exact'}",
                     check.exact or "", (check.difference or "").replace("-", "−"),
                 ],
             }
             for check in result.fields
         ],
-        "sections": verification.sections(result),
+        "sections": sections(result),
         "drawing": _drawing(result),
         "inputs": [inputs[at : at + 8] for at in range(0, len(inputs), 8)],
         "guessed": "; † not read exactly on the paper" if result.guessed else "",

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from functools import cache
 from time import process_time
 from typing import TYPE_CHECKING, Any, overload
 
 from .. import files
 from ..errors import UserError, quoted
-from ..fields import INPUTS, scene_name
+from ..fields import scene_name
 from ..judging import beside
 from ..judging.judgement import Judged, Status, Verdict, judge
 from ..judging.lookingpast import looked_past
@@ -26,7 +25,7 @@ from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
 from ..recovery.replays import run_all, run_once
 from ..recovery.slips import Rereading
-from . import provenance, wording
+from . import provenance, verification
 from .verification import Examined, Verification
 
 if TYPE_CHECKING:
@@ -103,12 +102,11 @@ def _printed(
     if len(data) > LARGEST_FILE:
         raise UserError(f"{where}: is larger than {LARGEST_FILE:,} bytes of text")
     text = decoded(data, where)
-    pages = None
     if copy:
         from ..judging.copies import CopyPages
 
         pages = CopyPages(copy)
-    text, lines, besides = pages.prepared(text) if pages else (text, [], {})
+        text, lines, besides = pages.prepared(text)
     every = read_printouts(text, where)
     begun, read = process_time(), 0
     for number, shown in enumerate(every, 1):
@@ -121,10 +119,14 @@ def _printed(
                 remarks=[said], start=shown.start, stop=shown.stop,
             )  # fmt: skip
             return
-        end = shown.place(shown.stop)[0] if number < len(every) else len(lines)
-        own = {line: besides.pop(line) for line in sorted(besides) if line <= end}
-        result = _verified(shown, path, number, given, pages, own)
-        result.renumber(lines)
+        if copy:
+            end = shown.place(shown.stop)[0] if number < len(every) else len(lines)
+            own = {line: besides.pop(line) for line in sorted(besides) if line <= end}
+            result = _against(pages, pages.judged(shown, recover(shown, given), own))
+            result.renumber(lines)
+        else:
+            result = _verified(shown, given)
+        result.file, result.number = path, number
         yield result
 
 
@@ -152,7 +154,7 @@ def verify(
     """
     known = None if given is None else texts(given)
     if isinstance(printout, Printout):
-        return _verified(printout, given=known)
+        return _verified(printout, known)
     if isinstance(printout, str) and "\n" in printout:
         printout = printout.encode("utf-8", files.ESCAPED)
     if isinstance(printout, bytes):
@@ -166,47 +168,33 @@ def verify(
     return found.results
 
 
-def _verified(
-    shown: Printout,
-    file: str = "-",
-    number: int = 1,
-    given: Mapping[str, str] | None = None,
-    pages: CopyPages | None = None,
-    besides: Mapping[int, str] | None = None,
-) -> Verification:
-    """The verdict on one printout, with explanations where it differs. ``pages``: those of a copy
-    of the listing, held against in place of the restored one's; ``besides``: lines that only the
-    copy prints."""
+def _verified(shown: Printout, given: Mapping[str, str] | None) -> Verification:
+    """The verdict on one printout, with explanations where it differs."""
     begun = process_time()
-    recovered = recover(shown, given)
-    if pages is not None:
-        found = pages.judged(shown, recovered, besides or {})
-        return completed(_against(pages, found, file, number), pages.outcomes)
 
     def in_time() -> bool:
         return process_time() - begun < BUDGET
 
-    rereads = cache(Rereading(recovered, apart=True).best)
-    better = None
-    remarks = []
-    if recovered.row_in_doubt:
-        better = None if shown.mislabelled else looked_past(shown, recovered, rereads)
-        recovered = recovered if better else without_angles(recovered)
-        found = judge(shown, recovered)
-    else:
-        found = judge(shown, recovered)
-        if not shown.mislabelled and found.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE):
-            if in_time():
-                better = looked_past(shown, recovered, rereads)
-            elif shown.machine_read:
-                found.verdict = Verdict.INCOMPLETE
-                remarks = [f"what its reader misread was not sought: over {BUDGET:g} s"]
-    result = _result(better or found, file, number)
-    result.remarks += remarks
+    recovered = recover(shown, given)
+    in_doubt = recovered.row_in_doubt
+    rereading = Rereading(recovered, apart=True)
+    found, better, late = judge(shown, recovered), None, []
+    if in_doubt or found.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE):
+        if shown.mislabelled:
+            pass
+        elif in_doubt or in_time():
+            better = looked_past(shown, recovered, rereading)
+        elif shown.machine_read:
+            found.verdict = Verdict.INCOMPLETE
+            late = [f"what its reader misread was not sought: over {BUDGET:g} s"]
+    if in_doubt and not better:
+        found = judge(shown, without_angles(recovered))
+    result = _result(better or found)
+    result.remarks += late
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain
 
-        result.explanations = explain(found, rereads, in_time)
+        result.explanations = explain(found, rereading, in_time)
         altered = any(len(one.changes) <= MOST_ALTERED for one in result.explanations[:1])
         if shown.machine_read and not altered and not shown.mislabelled:
             result.verdict, result.explanations = Verdict.INCOMPLETE, []
@@ -216,54 +204,41 @@ def _verified(
             "the page is read too poorly to separate alterations from misreadings"
         )
     result.findings = [
-        *(wording.looked_past(result.fields, result.replies) if better else ()),
-        *wording.findings(shown, result.fields, recovered),
-        *wording.given_apart(given or {}, result.scene, result.fields),
+        *(verification.put_down(better) if better else ()),
+        *verification.findings(better or found),
+        *verification.given_apart(given or {}, result),
     ]
     return completed(result)
 
 
-def _against(pages: CopyPages, found: Judged, file: str, number: int) -> Verification:
+def _against(pages: CopyPages, found: Judged) -> Verification:
     """The verdict on a printout as a page of an office's copy of the listing."""
-    copy, result = pages.copy, _result(found, file, number)
+    copy, result = pages.copy, _result(found)
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain_copy
 
         result.explanations = explain_copy(found, pages.put_right)
-    result.findings = wording.of_copy(copy, found, run_once(found.recovered.scene).fields)
+    restored = run_once(found.recovered.scene).fields
+    result.findings = verification.of_copy(copy, found, restored)
     changed = [line._asdict() for line in copy.changed_lines()]
     result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed}
-    return result
+    return completed(result, pages.outcomes)
 
 
-def _result(found: Judged, file: str, number: int) -> Verification:
+def _result(found: Judged) -> Verification:
     """What is told of a printout that was judged."""
     shown, scene = found.shown, found.recovered.scene_or_missing()
-    inputs = (check for check in found.fields if check.name in INPUTS)
-    status = {scene_name(check.name): check.status for check in inputs}
+    read = {scene_name(one.name) for one in found.fields if one.status == Status.READ}
     guessed = [
-        name
-        for name, text in scene.items()
-        if text is not None and name != "M" and status.get(name) != Status.READ
+        name for name, text in scene.items() if text is not None and name not in {"M", *read}
     ]
     return Verification(
-        file=file,
-        number=number,
-        line=shown.line,
-        verdict=found.verdict,
-        scene=scene,
-        fields=found.fields,
-        replies=found.replies,
-        ending=found.ending,
-        missing=found.recovered.missing,
-        guessed=guessed,
+        "-", 1, shown.line, found.verdict, scene, found.fields, found.replies, found.ending,
+        missing=found.recovered.missing, guessed=guessed,
         remarks=[*map(str, shown.remarks), *shown.notes, *filter(None, [shown.unread])],
-        left_over=shown.left_over,
-        labels=shown.labels,
-        start=shown.start,
-        stop=shown.stop,
+        left_over=shown.left_over, labels=shown.labels, start=shown.start, stop=shown.stop,
         text=shown.page.text if shown.page else "",
-    )
+    )  # fmt: skip
 
 
 def completed(result: Verification, program: Program = run_all) -> Verification:

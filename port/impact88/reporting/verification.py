@@ -5,24 +5,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import notebook
-from ..errors import shown
+from ..errors import printable, shown
+from ..fields import ANGLES, INPUTS, scene_name
 from ..files import called
-from ..judging.judgement import FieldCheck, Status, Verdict
+from ..judging.judgement import Doubtful, FieldCheck, Judged, Status, Verdict
 from ..plaintable import table
 from ..reading.fieldlabels import LabelCheck, LabelState
+from ..reading.numerals import Doubt
 from ..reading.printout import Piece
+from ..recovery.typedtext import stored_and_printed
 from ..schemas import stamped
-from . import wording
 
 if TYPE_CHECKING:
-    from ..explaining.explanations import Explanation
+    from ..explaining.causes import Explanation
+    from ..program.emulated import ListingCopy
 
 NO_SINGLE_SLIP = "no single slip explains this"
+
+TITLES = {
+    Verdict.IDENTICAL: "IDENTICAL",
+    Verdict.IDENTICAL_AS_READ: "IDENTICAL AS FAR AS READ",
+    Verdict.DIFFERS: "DIFFERS",
+    Verdict.INCOMPLETE: "INCOMPLETE",
+}
+
+MEANINGS = {
+    Verdict.IDENTICAL: "every printed number is what the 1988 program prints, digit for digit",
+    Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; what was not read "
+    "exactly is listed, and is to be looked at on the paper",
+    Verdict.DIFFERS: "something on the paper contradicts every scene that its inputs allow",
+    Verdict.INCOMPLETE: "numbers are missing or could not be read; what could be compared agrees",
+}
+"""What a verdict says."""
+
+STATES = {
+    Status.READ: "",
+    Status.DOUBTFUL: "doubtful",
+    Status.CONTRADICTED: "differs",
+    Status.NOT_READ: "not read",
+    Status.NOT_COMPARED: "not compared",
+}
+"""How a number is marked that was not read exactly."""
 
 
 @dataclass
@@ -174,10 +202,14 @@ class Section(NamedTuple):
     lines: list[str]
 
 
+DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
+EXPLAINED = "possible explanations, best first"
+
+
 def summary(result: Verification) -> list[str]:
     """What a verdict rests on: counts, and by name what is missing."""
     verdict, fields, missing = result.verdict, result.fields, result.missing
-    said = [wording.counts(fields)]
+    said = [counts(fields)]
     if verdict is Verdict.IDENTICAL:
         who = f"the copy {result.copy['file']}" if result.copy else "the program"
         said = [f"all {len(fields)} printed numbers are what {who} prints, digit for digit"]
@@ -187,49 +219,127 @@ def summary(result: Verification) -> list[str]:
         if wrong := len(result.mislabelled):
             said.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
     elif verdict is Verdict.IDENTICAL_AS_READ:
-        said.append(wording.MEANINGS[verdict])
+        said.append(MEANINGS[verdict])
     if missing:
         verb, it = ("is", "it") if len(missing) == 1 else ("are", "them")
         said.append(f"{', '.join(missing)} {verb} missing: what depends on {it} was not compared")
     not_read = [name for name in result.not_read if name not in missing]
     if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
         said.append(f"not read: {', '.join(not_read)}")
-    if verdict is Verdict.INCOMPLETE and not (
-        missing or not_read or result.page or result.differing
-    ):
+    known = missing or not_read or result.page or result.differing
+    if verdict is Verdict.INCOMPLETE and not known:
         said.append("the results are missing, or the page ends before them")
     ending = result.ending
     if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
-        said.append(
-            f"ends with {ending.printed or 'no error'}, "
-            f"recomputed: {ending.recomputed or 'no error'}"
-        )
+        one, other = (text or "no error" for text in (ending.printed, ending.recomputed))
+        said.append(f"ends with {one}, recomputed: {other}")
     return said
 
 
-DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
-EXPLAINED = "possible explanations, best first"
+def counts(fields: Sequence[FieldCheck]) -> str:
+    """How many numbers were read exactly, doubtful, contradicted, not read."""
+    number = {status: sum(check.status == status for check in fields) for status in Status}
+    said = [
+        f"{number.pop(Status.READ)} of {len(fields)} printed numbers read exactly and as the "
+        "program prints them"
+    ]
+    words = {**STATES, Status.DOUBTFUL: "read doubtfully"}
+    if number[Status.CONTRADICTED] > 1:
+        words[Status.CONTRADICTED] = "differ"
+    return ", ".join(
+        said + [f"{count} {words[status]}" for status, count in number.items() if count]
+    )
 
 
 def sections(result: Verification) -> list[Section]:
     """Everything below the verdict and beside the table, in order; no empty ones."""
-    doubtful = wording.labels(result.labels)
-    doubtful += [line for check in result.doubtful for line in wording.doubts(check)]
+    doubtful = _labels(result.labels)
+    for check in result.doubtful:
+        doubtful += _doubts(check)
+        suffix = f" ({check.name}: the program prints {check.recomputed})"
+        doubtful += [where + suffix for where in look(check)]
     notes = [
         f"{check.name}: the reply {check.printed} is not the {check.recomputed} used"
         for check in result.replies
         if check.same is False
     ]
-    notes += [*result.remarks, *wording.left_over(result.left_over)]
     every = (
         Section(DOUBTFUL, doubtful),
         Section(EXPLAINED, _explained(result) if result.verdict is Verdict.DIFFERS else []),
         Section("the page cannot show", result.unseen),
         Section("what the page shows besides", result.findings),
         Section("beside the verdict", result.warnings),
-        Section(NOTES, notes),
+        Section(NOTES, [*notes, *result.remarks, *_left_over(result.left_over)]),
     )
     return [one for one in every if one.lines]
+
+
+_DOUBTS: dict[str, str] = {
+    Doubt.LOOK_ALIKE: "read {read!r} where the program prints {printed!r} ({program})",
+    Doubt.ILLEGIBLE: "illegible (read {read!r}) where the program prints {printed!r} ({program})",
+    Doubt.BLANK: "a blank or a joint in it; the program prints {program}",
+    Doubt.RETYPED: "read {whole}; the program prints {program}, never this form",
+    Doubt.CUT: "cut off; the program prints {program}",
+    Doubt.LEFT_OVER: "{read!r} left over beside {program}",
+    "picture": "nearly as much like {read!r} as {printed!r} ({program})",
+}
+
+
+def _doubts(check: FieldCheck) -> Iterator[str]:
+    """What stands doubtfully in a number, place by place."""
+    for one in check.doubts:
+        if one.how in _DOUBTS:
+            words = {**one._asdict(), "program": check.recomputed or "", "whole": check.printed}
+            yield f"{_place(one)}: {check.name} {_DOUBTS[one.how].format(**words)}"
+
+
+def look(check: FieldCheck) -> Iterator[str]:
+    """Where to look on the paper for a misread digit."""
+    for one in check.doubts:
+        if one.how == Doubt.CONTRADICTS:
+            printed = f"{'an' if one.printed[:1] == '8' else 'a'} {one.printed}"
+            question = f"is {printed} missing here"
+            if one.read:
+                question = f"is this {one.read} {printed if one.printed else 'part of the number'}"
+            yield f"{_place(one)}: {question}?"
+
+
+def _place(one: Doubtful | Piece) -> str:
+    return f"line {one.line}, column {one.column}"
+
+
+_LABELS = {
+    LabelState.CONTRADICTORY: "labelled {read} where the program prints {printed}",
+    LabelState.DAMAGED: "the label {printed} is read {read}",
+    LabelState.MISSING: "no label before the number where the program prints {printed}",
+}
+
+
+def _labels(checks: Sequence[LabelCheck]) -> list[str]:
+    """The labels that are not the program's, those that contradict first."""
+    return [
+        f"line {one.line}: " + text.format(read=printable(one.read), printed=one.printed)
+        for state, text in _LABELS.items()
+        for one in checks
+        if one.state is state and (state is LabelState.CONTRADICTORY or one.doubt)
+    ]
+
+
+_MOST_LINES = 12
+"""Lines that do not belong to the program's page are shown up to this many."""
+
+
+def _left_over(pieces: Sequence[Piece]) -> Iterator[str]:
+    """What belongs to no number and no label: beside a number, or a whole line."""
+    for piece in pieces:
+        if piece.beside and not piece.whole:
+            text = piece.text if len(piece.text) <= 40 else piece.text[:37] + "..."
+            yield f"{_place(piece)}: {text!r} left over beside a number"
+    lines = sorted((one for one in pieces if one.whole), key=lambda piece: not piece.beside)
+    for piece in sorted(lines[:_MOST_LINES], key=lambda piece: piece.line):
+        yield f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
+    if len(lines) > _MOST_LINES:
+        yield f"and {len(lines) - _MOST_LINES} more lines that do not belong to the program's page"
 
 
 def _explained(result: Verification) -> list[str]:
@@ -237,14 +347,114 @@ def _explained(result: Verification) -> list[str]:
     said: list[str] = []
     before = 0
     for one in result.explanations:
-        cause = wording.cause(one)
         if one.rank != before:
-            said.append(f"{one.rank}. {cause}; explains {one.explains} of {result.disagreements}")
+            said.append(f"{one.rank}. {one}; explains {one.explains} of {result.disagreements}")
         else:
-            said.append(f"   or, equally well on this page: {cause}")
+            said.append(f"   or, equally well on this page: {one}")
         before = one.rank
         said += [f"   look at {where}" for where in one.look[:4]]
     return said or [NO_SINGLE_SLIP]
+
+
+# --- what a page shows besides its numbers -------------------------------------------------------
+
+
+def findings(found: Judged) -> Iterator[str]:
+    """Forms the program never prints, and which M a page without final spins is read as."""
+    recovered = found.recovered
+    retyped = [
+        check.name
+        for check in found.fields
+        if any(one.how == Doubt.RETYPED for one in check.doubts)
+    ]
+    if retyped:
+        yield (
+            f"{', '.join(retyped)} in a form Applesoft never prints (a zero before the point or at "
+            "the end, a plus sign): retyped, or made by another program"
+        )
+    regions = [reading.region[:-1] for reading in found.shown.fields.values()]
+    text = "".join(glyph.char for region in regions for glyph in region)
+    if text.count(",") >= 3 and "." not in text:
+        yield "decimal commas throughout: retyped, or made by another program"
+    m = recovered.scene["M"]
+    if recovered.m_unknown and not recovered.missing:
+        yield (
+            f"no line of final spins: read as M = {m}; with M = {'6' if m == '4' else '4'} the "
+            "program prints the same numbers but for that line"
+        )
+    elif m == "4" and "M" not in recovered.missing and not found.shown.has_final_spins:
+        yield "no line of final spins: the results are those of M = 4, not of M = 6"
+
+
+_MISREADINGS = (Doubt.LOOK_ALIKE, Doubt.ILLEGIBLE, Doubt.CONTRADICTS)
+
+
+def put_down(found: Judged) -> Iterator[str]:
+    """That digits which were cleanly read as others are put down to the page's reader."""
+    others = [
+        f"{check.name} ({read} for {printed})"
+        for check in [*found.fields, *found.replies]
+        for printed, read in check.swapped()
+    ]
+    misread = sum(
+        any(one.how in _MISREADINGS and one.read != one.printed for one in check.doubts)
+        for check in found.fields
+    )
+    if others:
+        yield (
+            f"read as another digit than the program prints: {', '.join(others)}; put down to the "
+            f"reader of the page, who misread {misread} of {len(found.fields)} numbers: if the "
+            "paper shows one of these digits as it was read, it differs from the program's page"
+        )
+
+
+def of_copy(copy: ListingCopy, found: Judged, restored: Mapping[str, str]) -> list[str]:
+    """What an office's copy of the listing prints, and in which lines it is another program;
+    ``restored``: what the restored listing prints for the scene."""
+    agrees = found.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+    others = ", ".join(
+        f"{check.name} {restored.get(check.name, 'nothing')}"
+        for check in found.fields
+        if check.recomputed != restored.get(check.name)
+    )
+    return [
+        f"this page is {'' if agrees else 'not '}what the copy {copy.file} prints; the restored "
+        f"listing prints {others or 'the same numbers'}",
+        *(
+            f"line {line.line}: the copy has {line.copy or 'nothing'} | "
+            f"the restored listing {line.restored or 'nothing'}"
+            for line in copy.changed_lines()
+        ),
+    ]
+
+
+def given_apart(given: Mapping[str, str], result: Verification) -> Iterator[str]:
+    """Of inputs given separately: those that the page lacks, and how its results compare with them;
+    and those that it has otherwise."""
+    absent, otherwise = [], []
+    for check in result.fields:
+        name = scene_name(check.name)
+        text, by_page = given.get(name), result.scene.get(name)
+        if check.name not in INPUTS or text is None or by_page is None:
+            continue
+        if check.printed is None:
+            absent.append(name)
+            continue
+        one, other = (stored_and_printed(each, name in ANGLES) for each in (text, by_page))
+        if one is None or other is None or one[1] != other[1]:
+            otherwise.append(f"{name} {text} (by the page {by_page})")
+    if absent:
+        compared = [check.same for check in result.fields if check.same is not None]
+        agree = f"all {len(compared)} numbers read are what the program prints for them"
+        if not compared:
+            agree = "no number was read to be compared"
+        elif wrong := compared.count(False):
+            agree = f"{wrong} of {len(compared)} numbers read are not what it prints for them"
+        names = ", ".join(absent)
+        yield f"not on the page; taken from the scene given separately: {names}; {agree}"
+    if otherwise:
+        names = "; ".join(otherwise)
+        yield f"given separately and different from the page, which is used: {names}"
 
 
 # --- as text --------------------------------------------------------------------------------------
@@ -253,18 +463,16 @@ def _explained(result: Verification) -> list[str]:
 def lines(result: Verification, brief: bool = False) -> Iterator[str]:
     """What `impact88 verify` prints of one printout; ``brief``: only verdict and what differs."""
     where = f"{shown(called(result.file))}, printout {result.number} ({result.where})"
-    yield f"{where}: {wording.TITLES[result.verdict]}"
+    yield f"{where}: {TITLES[result.verdict]}"
     parts = {one.heading: one.lines for one in sections(result)}
     doubtful, notes = parts.pop(DOUBTFUL, []), parts.pop(NOTES, [])
     yield from (f"  {line}" for line in [*summary(result), *_some(doubtful, brief)])
-    checks = result.differing if brief else result.fields
-    if checks:
+    if checks := result.differing if brief else result.fields:
         yield ""
         yield from (f"  {line}" for line in _table(checks, exact=not brief))
     for heading, said in parts.items():
         if not brief or said is not result.warnings:
-            yield ""
-            yield f"  {heading}:"
+            yield from ("", f"  {heading}:")
             mark = "" if heading == EXPLAINED else "- "
             yield from (f"  {mark}{line}" for line in said)
     yield from (f"  note: {line}" for line in _some(notes, brief))
@@ -284,6 +492,6 @@ def _table(checks: Sequence[FieldCheck], exact: bool) -> list[str]:
     rows = [["", "printed", "recomputed", *["exact", "printed-exact"] * exact, ""]]
     for check in checks:
         beside = [check.exact or "", check.difference or ""] * exact
-        mark = wording.STATES[check.status]
+        mark = STATES[check.status]
         rows.append([check.name, check.printed or "-", check.recomputed or "-", *beside, mark])
     return table(rows, left=(0, len(rows[0]) - 1))

@@ -1,0 +1,240 @@
+"""A page as evidence: the numbers on it, and which of them a cause leaves unexplained.
+
+A cause predicts a range for each number, of one value where it says what is printed.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from dataclasses import field as default
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..doubles import double
+from ..fields import FIELDS, INPUTS
+from ..judging.judgement import Judged, Status, same_value
+from ..names import PIVOT
+from ..reading.numerals import value_of
+from ..recovery.replays import Outcome
+from ..recovery.search import AGREES
+from ..recovery.slips import Change
+
+Range = tuple[float, float]
+
+LABELS_EXCHANGED, LABEL_WRONG = "labels exchanged", "another label"
+NOT_APPLESOFT = "then this program on an Apple II did not print it"
+_ALL_BUT = 0.15
+"""A cause that leaves more than this part of what differs is none."""
+_FAR = 0.1
+"""What a result counts at most that is far off, relatively."""
+_ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
+"""The kinetic energy is printed to so many digits; other arithmetics end within so many units of
+the last of them."""
+
+
+class Cause(NamedTuple):
+    """A cause that was tried: its kind, what is added, its bits, the names it leaves unexplained,
+    and the numbers it puts right."""
+
+    kind: str
+    note: str
+    bits: float
+    left: frozenset[str]
+    changes: tuple[Change, ...] = ()
+
+
+@dataclass
+class Explanation:
+    """A cause that would make printed and recomputed agree in ``explains`` of the differing numbers
+    and leaves ``unexplained`` ones. ``changes``: every printed number it puts right, and where it
+    stands; ``field``, ``printed``, ``would_be``: the first of them. ``look``: where to look on the
+    paper. ``rank``: from 1; explanations that the page cannot tell apart share it. ``weight``: the
+    bits it asks for."""
+
+    kind: str
+    note: str
+    weight: float
+    explains: int
+    unexplained: frozenset[str]
+    changes: list[dict[str, Any]] = default(default_factory=list)
+    rank: int = 1
+
+    def __post_init__(self) -> None:
+        first = self.changes[0] if self.changes else {}
+        self.field, self.printed, self.would_be = map(first.get, ("field", "printed", "would_be"))
+        self.look = [change["look"] for change in self.changes if change["look"]]
+
+    def __str__(self) -> str:
+        what = self.kind
+        if self.kind == LABELS_EXCHANGED:
+            pairs = (" and ".join(sorted((c["printed"], c["would_be"]))) for c in self.changes)
+            what = f"labels {', '.join(dict.fromkeys(pairs))} exchanged"
+        elif self.kind == LABEL_WRONG:
+            what = "; ".join(f"{c['would_be']} labelled {c['printed']}" for c in self.changes)
+        elif self.changes:
+            what += ": " + "; ".join(
+                f"{c['field']} {c['printed']}, would be {c['would_be']}" for c in self.changes[:6]
+            )
+        return what + (f" ({self.note})" if self.note else "")
+
+    @property
+    def remaining(self) -> int:
+        """How many numbers differ still."""
+        return len(self.unexplained)
+
+    def as_json(self) -> dict[str, Any]:
+        """The object `impact88 verify --json` prints."""
+        names = ("kind", "field", "printed", "would_be", "explains", "remaining", "note", "changes")
+        return {name: getattr(self, name) for name in (*names, "look", "rank")}
+
+
+class PageEvidence:
+    """A judged page. ``base``: the names of what differs, ``reply UX`` and ``label UX`` for those;
+    ``results``: by name what a result may read, the likeliest first; ``texts``: the numbers that
+    are read clean; ``most_left``: how many numbers a cause may leave unexplained."""
+
+    def __init__(self, found: Judged) -> None:
+        self.found, self.shown, self.recovered = found, found.shown, found.recovered
+        self.checks = {check.name: check for check in found.fields}
+        self.checks |= {f"reply {check.name}": check for check in found.replies}
+        self.base = differing(found)
+        self.most_left = int(_ALL_BUT * len(self.base))
+        self.results = {
+            one.name: [
+                float(text)
+                for text in sorted(one.texts, key=one.texts.__getitem__)
+                if one.texts[text] < AGREES and value_of(text) is not None
+            ]
+            for one in self.recovered.search.expected
+            if one.default >= AGREES
+        }
+        self.texts = {
+            name: reading.text
+            for name, reading in self.shown.fields.items()
+            if reading.clean and value_of(reading.text) is not None
+        }
+        printed = as_printed(self.recovered.outcome)
+        self._contradicted = {name: one for name, one in printed.items() if name in self.base}
+
+    def decimals(self, name: str) -> int:
+        """How many decimals a number has on the page."""
+        return decimals_of(self.texts.get(name, ""))
+
+    def far(self, found: Mapping[str, Any], count: int) -> Any:
+        """How far off results are, arrays of ``count`` by name: relatively and on average."""
+        rows = [
+            np.nan_to_num(np.abs(column - number) / (abs(number) + 0.1), nan=1.0)
+            for name, column in found.items()
+            for number in self.results.get(name, [])[:1]
+        ]
+        return np.minimum(rows, _FAR).mean(axis=0) if rows else np.zeros(count)
+
+    def fits(self, found: Mapping[str, Any], count: int, units: float, part: float) -> Any:
+        """Where so few results, arrays of ``count`` by name in double precision, are off by more
+        than so many units of their last place and such a part of them that a cause may explain
+        the page."""
+        misfits = np.zeros(count, int)
+        mu = double(self.recovered.scene["MU"])
+        if abs(mu) >= -PIVOT != -mu:  # double precision does not follow line 510 past the pivot's
+            found = {}
+        for name, column in found.items():
+            unit = 10.0 ** -min(FIELDS[name].places or 9, self.decimals(name))
+            numbers = self.results.get(name, [])
+            near = [np.abs(column - one) <= units * unit + part * abs(one) for one in numbers]
+            misfits += ~np.any(near, axis=0) if near else 0
+        return misfits <= self.most_left
+
+    def unexplained(
+        self, predicted: Mapping[str, Range], ending: str | None, inputs: Mapping[str, str]
+    ) -> frozenset[str]:
+        """The names in which the page is not what is predicted; ``inputs``: texts of those that are
+        to be compared, too."""
+        wrong = set()
+        for name, numbers in self.results.items():
+            low, high = predicted.get(name, (math.nan, math.nan))
+            if not any(low <= one <= high for one in numbers):
+                wrong.add(name)
+        # what contradicts the program's number contradicts a cause that predicts the same
+        wrong |= {n for n, one in self._contradicted.items() if predicted.get(n, one) == one}
+        for name in INPUTS:
+            text, own = inputs.get(name), self.texts.get(name)
+            if text is not None and own is not None and float(text) != float(own):
+                wrong.add(name)
+        if self.shown.ending is not None and ending != self.shown.ending:
+            wrong.add("ENDING")
+        return frozenset(wrong)
+
+    def left(
+        self, wrong: frozenset[str], scene: Mapping[str, str], changes: Iterable[Change]
+    ) -> frozenset[str]:
+        """What a scene leaves unexplained: ``wrong``, replies that are not its values, and printed
+        inputs that differ and that no change puts right."""
+        replies = {
+            f"reply {check.name}"
+            for check in self.found.replies
+            if check.printed is not None
+            and check.status in (Status.READ, Status.CONTRADICTED)
+            and not same_value(check.printed, scene.get(check.name, ""))
+        }
+        inputs = self.base & frozenset(INPUTS) - {"MUP"} - {change.field for change in changes}
+        return wrong | replies | inputs
+
+    @cached_property
+    def only_last_places(self) -> bool:
+        """Whether nothing differs but results, in their last places."""
+        return all(
+            name in self.checks
+            and name not in INPUTS
+            and in_last_places(name, self.checks[name].printed, self.checks[name].recomputed)
+            for name in self.base
+        )
+
+
+def differing(found: Judged) -> frozenset[str]:
+    """The names of what differs; replies and labels are marked as such."""
+    replies = set(map(id, found.replies))
+    return frozenset(
+        [f"{'reply ' * (id(one) in replies)}{one.name}" for one in found.contradicted]
+        + [f"label {one.name}" for one in found.shown.mislabelled]
+    )
+
+
+def as_printed(outcome: Outcome) -> dict[str, Range]:
+    """What a run prints, as ranges of one number."""
+    return {name: (float(text), float(text)) for name, text in outcome.fields.items()}
+
+
+def around(value: float, slack: float) -> Range:
+    """A value and what is that near to it."""
+    return value - slack, value + slack
+
+
+def places_of(name: str) -> int:
+    """The decimals that the listing brings a result to."""
+    return FIELDS[name].places or 0
+
+
+def decimals_of(text: str) -> int:
+    """The decimals of a number; 0 of none."""
+    value = value_of(text)
+    return 0 if value is None else max(0, -int(value.as_tuple().exponent))
+
+
+def digits_of(text: str | None) -> int:
+    """The digits of a number; 0 of none."""
+    value = value_of(text or "")
+    return 0 if value is None else len(value.normalize().as_tuple().digits)
+
+
+def in_last_places(name: str, printed: str | None, other: str | None) -> bool:
+    """Whether a result is another by no more than other arithmetics leave open: one in the last
+    place it is floored to, or the last of the digits of the kinetic energy."""
+    one, two = value_of(printed or ""), value_of(other or "")
+    if one is None or two is None or name not in FIELDS:
+        return False
+    places = FIELDS[name].places
+    units = 1 if places is not None else _ENERGY_UNITS
+    last = two.adjusted() - _ENERGY_DIGITS + 1 if places is None else -places
+    return abs(one - two).scaleb(-last) <= units
