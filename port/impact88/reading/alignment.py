@@ -1,11 +1,9 @@
 """Aligning a text with the program's page, by dynamic programming.
 
-The page is a template seen through noise: every glyph of a label is a state, every number is one
-state that holds any number of glyphs, and before every line stands a state for what may lie between
-lines. A text is read as the cheapest way through them: a glyph opens the next state or stays in
-one, states and whole lines may be missing, and text outside costs little. Costs are in units of one
-wrong letter. One forward pass over the text (numpy rows over the states), one trace back; long
-texts are read in windows, so time grows as the text does.
+The page is a row of states seen through noise: a glyph of a label, a number (any glyphs), what lies
+between lines (any), and first what lies outside of pages. A glyph belongs to the state of the one
+before it, or to another at the cost of all that is passed over. Costs are whole hundredths of one
+wrong letter; of equal ways the one through the earlier states is taken.
 """
 
 import re
@@ -18,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..fields import ANGLES
-from .glyphs import NUMERIC, UNSEEN, Glyph, label_cost, letters, printed_for
+from .glyphs import COSTS, GAP_COSTS, NUMERIC, Gap, Glyph, label_cost, letters, printed_for
 
-Floats = NDArray[np.float64]
+Costs = NDArray[np.int16]
 
 REPLY_A, REPLY_B = "REPLY_A", "REPLY_B"
 """Slots of the replies to the two prompts."""
@@ -44,215 +42,168 @@ LINES = (
     "*****",
 )
 """What lines 200 to 770 print, fields in braces; angles also as some people retype them."""
-_ABSENT = tuple(0.3 if at in (0, 1, 4, 6, 11, 14, 15) else 2.0 for at in range(len(LINES)))
-"""What it costs to miss a line whole: prompts, heading, retyped angles, asterisks and spins may be
-missing. Doubled, none of 60 texts is read otherwise; all alike, 1 to 3 are."""
 PROMPTS, HEADING, ANGLE_ROW, LABELLED_ANGLES, SPINS = 2, 4, 5, 6, 14
 """Places in `LINES`; the prompts are those before the first."""
 STARS = (11, 15)
+OPTIONAL = (0, 1, HEADING, LABELLED_ANGLES, STARS[0], SPINS, STARS[1])
+"""Lines that may be missing: prompts, heading, retyped angles, asterisks, spins."""
 _LOOSE_WORDS = {"INITIALKE=": 7, "KELOSS=": 2}
 """Letters of labels that retyped pages leave out, as they do prompts."""
+_MOST: int = np.iinfo(np.int16).max // 3
 
-_RETYPED = 1.5
-"""What it costs to begin it: the row of angles is what the program prints. Two columns of
-names and numbers are read with up to 2.0, no longer with 2.5."""
 
-_SIGN_LOST = 0.45
-"""What it costs to miss an equals sign."""
-_MARK_LOST = 0.25
-"""Brackets and other marks, and words that retyped pages leave out (INITIAL, KE, prompts)."""
-LETTER_LOST = 0.65
-"""Of letters that nobody leaves out."""
-_FIGURE = 0.4
-"""What a figure costs more where a letter of a label is wrong, and between lines."""
-_INSERTED = 1.0
-_SLOT_ALIKE, _SLOT_LETTER, _SLOT_OTHER, _SLOT_EQUALS = 0.3, 0.55, 0.9, 1.6
-"""What a glyph costs in a number that is no figure: one of its shape, a letter (more than between
-lines, or prose is read into replies), any other, an equals sign."""
-_BETWEEN, _OUTSIDE = 0.5, 0.45
-"""What a glyph costs between lines, and outside of pages: as much as half a wrong letter."""
-_BIG = 1e6
-_NO_NUMBER = 0.9
-_LOOSE_SIGN = 0.15
-"""What an equals sign costs before which no letter of its label was read."""
-_TORN = 1.6
-"""What it costs to take a figure right after a figure for a letter of a label."""
-_UNLABELLED = (0.1, 0.1, 0.0, 0.0, 1.6)
-"""What a number costs before which no equals sign was read, by the gap before it: a number is not
-to be taken to pieces."""
+class State(NamedTuple):
+    """A state: ``kind`` (outside, between, letter, loose, number), a letter of a label or a
+    number's field, and its place in `LINES`."""
 
-WITHIN = 4
-"""The gap before a figure that stands right after a figure; below it the gaps of `glyphs.Gap`."""
-GAPS = 5
-KINDS, NOTE = 128, 0
-"""Glyphs are told apart by this many codes; the last is for all others, and `NOTE` for those known
-to be none of the program's."""
+    kind: str
+    name: str
+    line: int
 
 
 class Label(NamedTuple):
     """What names a number on the page: the field (of a prompt, its reply's slot), the label's
-    letters, and the template's states of these letters."""
+    letters, and the states of these letters."""
 
     name: str
     text: str
     states: tuple[int, ...]
 
 
-def code(char: str) -> int:
-    """The code of a glyph."""
-    number = ord(char)
-    if number < KINDS - 1:
-        return number
-    return ord("O") if char in "©®°Ø" else ord("Y") if char == "¥" else KINDS - 1
+def _page() -> tuple[list[State], list[Label]]:
+    states = [State("outside", "", -1)]
+    labels = []
+    for number, line in enumerate(LINES):
+        states.append(State("between", "", number))
+        for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", line):
+            loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
+            named = ANGLES if number == HEADING and text else [name] if text and name else []
+            at = len(states)
+            for one in named:
+                label = one if number == HEADING else text
+                own = [at + place for place, letter in enumerate(label) if letter.isalpha()]
+                labels.append(Label(one, "".join(filter(str.isalpha, label)), tuple(own)))
+                at += len(label)
+            for place, letter in enumerate(text):
+                states.append(State("loose" if place < loose else "letter", letter, number))
+            if name:
+                states.append(State("number", name, number))
+    return states, labels
 
 
-class Template(NamedTuple):
-    """The states as arrays.
-
-    By state: ``enter`` and ``stay`` (code by state): cost of a glyph that opens it, and of one more
-    glyph in it; ``gap_enter``, ``gap_stay`` (gap by state): of the gap before the glyph;
-    ``unlabelled`` (gap by state): of a number without its label's last glyph; ``miss``: of passing
-    without a glyph. ``between``: the states before the lines; ``closes``: whether text may end
-    after a state; ``line``: where a state belongs; ``slots``: state -> field name; ``letters``:
-    state -> a label's letter; ``labels``: what names each number.
-    """
-
-    enter: Floats
-    stay: Floats
-    gap_enter: Floats
-    gap_stay: Floats
-    unlabelled: Floats
-    miss: Floats
-    between: NDArray[np.intp]
-    closes: NDArray[np.bool_]
-    line: list[int]
-    slots: dict[int, str]
-    letters: dict[int, str]
-    labels: tuple[Label, ...]
+STATES, LABELS = _page()
+"""The states, the first of which is the text outside any printout; what names each number."""
 
 
-_NOT_PRINTED = ("outside", "between")
+def letter_of(state: int) -> str:
+    """The letter of a label that a state is, "" for any other."""
+    one = STATES[state]
+    return one.name if one.kind in ("letter", "loose") else ""
 
 
 @lru_cache(maxsize=1)
-def template() -> Template:
-    """The template's states, the first of which is the text outside any printout."""
-    kinds = [("outside", "", -1)]
-    labels = []
-    for number, line in enumerate(LINES):
-        kinds.append(("between", "", number))
-        for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", line):
-            loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
-            parts = [(text, name)] if name else []
-            if number == HEADING:
-                parts = [(angle, angle) for angle in ANGLES] if text else []
-            for label, named in parts:
-                at = len(kinds) + "".join(ANGLES).find(label) * (number == HEADING)
-                states = [at + place for place, one in enumerate(label) if one.isalpha()]
-                if states:
-                    labels.append(Label(named, "".join(filter(str.isalpha, label)), tuple(states)))
-            for place, letter in enumerate(text):
-                kinds.append(("loose" if place < loose else "letter", letter, number))
-            if name:
-                kinds.append(("slot", name, number))
-    size = len(kinds)
-    enter, stay = np.zeros((KINDS, size)), np.zeros((KINDS, size))
-    gap_enter, gap_stay, unlabelled = (np.zeros((GAPS, size)) for _ in range(3))
-    miss = np.zeros(size)
-    glyphs = [chr(number) for number in range(KINDS)]
-    for state, (kind, name, number) in enumerate(kinds):
-        if kind == "outside":
-            stay[:, state] = enter[:, state] = _OUTSIDE
-        elif kind == "between":
-            enter[:, state] = stay[:, state] = [
-                _BETWEEN + _FIGURE * glyph.isdigit() for glyph in glyphs
-            ]
-            gap_enter[WITHIN, state] = _TORN / 2
-        elif kind == "slot":
-            enter[:, state] = stay[:, state] = [_in_slot(glyph) for glyph in glyphs]
-            gap_stay[:, state] = (0, 0.45, 0.8, 0.6, 0)
-            miss[state] = _NO_NUMBER
-            if kinds[state - 1][1] == "=":
-                unlabelled[:, state] = _UNLABELLED
-            if number < PROMPTS:
-                for part in ",?;":
-                    enter[ord(part), state] = stay[ord(part), state] = 0.05
-                gap_stay[:, state] = (0, 0.02, 0.1, 0.5, 0)
-                miss[state] = 0.2
-            elif number == ANGLE_ROW:
-                gap_stay[:, state] = (0, 0.9, 1.8, 0.8, 0)
-                if name != ANGLES[0]:
-                    gap_enter[[0, WITHIN], state] = 2.2
+def _jumps() -> tuple[Costs, Costs]:
+    """What it costs that a glyph belongs to another state than the one before it: ``(gap, from,
+    to)``; and that the text ends after a state."""
+    missed = np.cumsum([_missing(one) for one in STATES])
+    size = len(STATES)
+    between = [place for place, one in enumerate(STATES) if one.kind == "between"]
+    passed = np.triu(missed[None] - missed[:, None]) + np.tril(np.full((size, size), _MOST), -1)
+    absent = [COSTS["line may be missing" if n in OPTIONAL else "line"] for n in range(len(LINES))]
+    skipped = np.where(np.eye(size), 0, _MOST)
+    for number, start in enumerate(between):
+        within = COSTS["begins with angles"] * (number in (HEADING, ANGLE_ROW))
+        skipped[0, start] = COSTS["begins"] + within
+        for stop in range(number, len(between)):
+            skipped[start, between[stop]] = sum(absent[number:stop])
+    ends = np.array([COSTS["ends"] if _closes(one) else _MOST for one in STATES])
+    ways = _then(_then(passed, skipped), passed)
+    ways = np.minimum(ways, ends[:, None] + ways[0])
+    ways[:, 0] = np.minimum(ways[:, 0], ends)
+    closing = [place for place, one in enumerate(STATES) if _closes(one) or not place]
+    into = np.roll(ways, 1, axis=1)
+    into[:, [0, *between]] = ways[:, [0, *between]]
+    jumps = np.array([into] * len(Gap))
+    for place, one in enumerate(STATES):
+        if place and STATES[place - 1].name == "=" and one.kind == "number":
+            others = np.arange(size) != place - 1
+            jumps[:, others, place] += np.array(GAP_COSTS["before a number without label"])[:, None]
+        if one.line == ANGLE_ROW and one.kind == "number" and one.name != ANGLES[0]:
+            jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
+    return np.minimum(jumps, _MOST).astype(np.int16), ways[:, closing].min(axis=1).astype(np.int16)
+
+
+def _then(first: NDArray[np.int_], second: NDArray[np.int_]) -> NDArray[np.int_]:
+    """What one step and another cost, from state to state."""
+    least = [(row[:, None] + second).min(axis=0) for row in first]
+    return np.array(np.minimum(least, _MOST))
+
+
+def _missing(state: State) -> int:
+    """What it costs to pass over a state without a glyph."""
+    if state.kind == "letter":
+        lost = "letter" if state.name.isalpha() else "=" if state.name == "=" else "mark"
+        return COSTS[f"{lost} lost"]
+    if state.kind == "number":
+        return COSTS["reply lost" if state.line < PROMPTS else "number lost"]
+    return {"outside": _MOST, "loose": COSTS["mark lost"]}.get(state.kind, 0)
+
+
+def _closes(state: State) -> bool:
+    """Whether a text may end here."""
+    return state.kind in ("number", "between") or state.name in (")", "%", "*")
+
+
+@lru_cache(maxsize=2000)
+def _emitted(char: str) -> tuple[Costs, Costs]:
+    """What a glyph costs by state: that opens it, and one more of it; "" is none of the page's."""
+    enter, stay = [], []
+    for state in STATES:
+        if state.kind in ("outside", "between"):
+            figure = COSTS["figure between"] * char.isdigit() * (state.kind == "between")
+            opens = more = (COSTS[state.kind] + figure) * bool(char)
+        elif not char:
+            opens = more = _MOST
+        elif state.kind == "number":
+            opens = more = _in_number(char, state.line < PROMPTS)
         else:
-            enter[:, state] = [as_letter(name, glyph) for glyph in glyphs]
-            gap_enter[WITHIN, state] = _TORN
-            if name == "=":
-                unlabelled[:, state] = _LOOSE_SIGN
-            stay[:, state] = _INSERTED
-            stay[ord("0") : ord("9") + 1, state] = _INSERTED + 0.5
-            if number < PROMPTS:
-                for part in "_{}":
-                    stay[ord(part), state] = 0.05
-            letter_lost = _MARK_LOST if kind == "loose" or not name.isalpha() else LETTER_LOST
-            miss[state] = _SIGN_LOST if name == "=" and kind == "letter" else letter_lost
-    retyped = kinds.index(("between", "", LABELLED_ANGLES)) + 1
-    enter[:, retyped] += _RETYPED
-    miss[retyped] += _RETYPED
-    enter[NOTE] = stay[NOTE] = [0.0 if kind in _NOT_PRINTED else _BIG for kind, _, _ in kinds]
-    miss[1] = 1000.0  # a printout begins at a price, not by missing what is outside
-    closes = [kind in ("slot", "between") or name in (")", "%", "*") for kind, name, _ in kinds]
-    return Template(
-        enter,
-        stay,
-        gap_enter,
-        gap_stay,
-        unlabelled,
-        miss,
-        between=np.array([state for state, kind in enumerate(kinds) if kind[0] == "between"]),
-        closes=np.array(closes),
-        line=[number for _, _, number in kinds],
-        slots={at: name for at, (kind, name, _) in enumerate(kinds) if kind == "slot"},
-        letters={
-            at: name for at, (kind, name, _) in enumerate(kinds) if kind in ("letter", "loose")
-        },
-        labels=tuple(labels),
-    )
+            opens = label_cost(state.name, char)
+            more = COSTS["inserted figure" if char.isdigit() else "inserted"]
+        enter.append(opens)
+        stay.append(more)
+    return np.array(enter, np.int16), np.array(stay, np.int16)
 
 
-def _in_slot(char: str) -> float:
+def _in_number(char: str, reply: bool) -> int:
     """The cost of a glyph where a number stands."""
     if char.isdigit():
-        return 0.0
-    if char in NUMERIC or char == "?":
-        return 0.2 if char == "E" else 0.08
+        return 0
+    if char in NUMERIC or char == "?" or (reply and char in ",;"):
+        return COSTS["E in number" if char == "E" else "mark in number"]
     if char == "=":
-        return _SLOT_EQUALS
-    if printed_for(char):
-        return _SLOT_LETTER if char.isalpha() and char not in "OQLISBZ" else _SLOT_ALIKE
-    return _SLOT_OTHER
+        return COSTS["= in number"]
+    if not printed_for(char):
+        return COSTS["other in number"]
+    letter = char.isalpha() and char not in "OQLISBZ"
+    return COSTS["letter in number" if letter else "look-alike in number"]
 
 
-def as_letter(letter: str, char: str) -> float:
-    """The cost of reading a letter of a label as a glyph."""
-    if letter == "=" and char in "-~_":
-        return _SIGN_LOST + 0.2  # rather the number's sign, the label's own glyph missing
-    cost = label_cost(letter, char)
-    if letter == "*" and not char.isdigit():
-        return min(cost, 0.5)
-    if not char.isdigit():
-        return cost
-    return cost + (1.25 if letter == "=" and cost < UNSEEN else _FIGURE * (cost == UNSEEN))
+@lru_cache(maxsize=1)
+def _gaps() -> Costs:
+    """What the gap before one more glyph of a number costs, by gap and state."""
+    costs = np.zeros((len(Gap), len(STATES)), np.int16)
+    for place, one in enumerate(STATES):
+        if one.kind == "number":
+            reply, angle = one.line < PROMPTS, one.line == ANGLE_ROW
+            kind = "reply" if reply else "angle" if angle else "number"
+            costs[:, place] = GAP_COSTS[kind]
+    return costs
 
 
 # --- texts ---------------------------------------------------------------------------------------
 
 WINDOW = 9000
 """Glyphs aligned at a time: a dozen printouts."""
-_BEGIN, _END = 2.2, 0.8
-"""What it costs that a printout begins or ends."""
-_WITHIN = 6.0
-"""What it costs more that one begins with the angles, which numbers in a note look like."""
-_FIGURES = frozenset("0123456789.")
 
 
 @dataclass
@@ -285,7 +236,7 @@ _FEW_LABELS = 4
 @dataclass
 class Aligned:
     """One printout's part of the text: ``slots``, field -> glyphs ``(start, stop)`` in its place;
-    ``states``, the template's state of every glyph from ``start`` on."""
+    ``states``, the state of every glyph from ``start`` on."""
 
     start: int
     stop: int
@@ -308,184 +259,70 @@ def align(
         if budget.left <= 0:
             budget.stopped = start
             return
-        parts = _merged(
-            _parts(_states(window, [place in notes for place in range(start, start + len(window))]))
-        )
+        chars = ["" if at in notes else glyph.char for at, glyph in enumerate(window, start)]
+        parts = _parts(_states(chars, [glyph.gap for glyph in window]))
         taken = parts if last else parts[:-1] or parts[:1]
-        found = [_described(*part, start) for part in taken]
+        found = [_described(start + at, states) for at, states in taken]
         budget.spend(len(window), any(len(one.slots) >= _WHOLE for one in found))
         yield from found
         if last:
             return
-        if not parts:
-            start += len(window)
-        elif len(parts) == 1:
-            start += max(parts[0][1], 1)
-        else:
+        if len(parts) > 1:
             start += parts[-1][0]
+        else:
+            start += max(parts[0][0] + len(parts[0][1]), 1) if parts else len(window)
 
 
-def _described(start: int, stop: int, states: list[int], offset: int) -> Aligned:
-    """A part of the states as one printout's."""
-    page = template()
-    slots: dict[str, tuple[int, int]] = {}
-    for index, state in enumerate(states, offset + start):
-        if (name := page.slots.get(state)) is not None:
-            slots[name] = (slots.get(name, (index, 0))[0], index + 1)
-    return Aligned(offset + start, offset + stop, states, slots)
-
-
-def _parts(states: Sequence[int]) -> list[tuple[int, int, list[int]]]:
-    """The stretches of glyphs inside printouts: start, stop, states. The template only goes
-    forward, so a state below the one before it begins another printout."""
-    parts: list[tuple[int, int, list[int]]] = []
-    start = -1
-    for index, state in enumerate([*states, 0]):
-        inside = state > 0
-        if start >= 0 and (not inside or state < states[index - 1]):
-            parts.append((start, index, list(states[start:index])))
-            start = -1
-        if inside and start < 0:
-            start = index
-    return parts
-
-
-def _merged(parts: list[tuple[int, int, list[int]]]) -> list[tuple[int, int, list[int]]]:
-    """Parts that go on where the one before left off are one printout, with something between."""
-    line = template().line
-    merged: list[tuple[int, int, list[int]]] = []
-    for start, stop, states in parts:
-        if merged:
-            first, end, before = merged[-1]
-            if line[before[-1]] < line[states[0]] and start - end < _ASIDE:
-                merged[-1] = first, stop, [*before, *[0] * (start - end), *states]
-                continue
-        merged.append((start, stop, states))
-    return merged
-
-
-def _gaps(glyphs: Sequence[Glyph]) -> list[int]:
-    """The gap before every glyph, and whether it stands within figures."""
-    gaps = []
-    before = ""
-    for place, glyph in enumerate(glyphs):
-        gap = int(glyph.gap)
-        figures = glyph.char in _FIGURES or _exponent(glyphs[place : place + 3])
-        gaps.append(WITHIN if figures and before in _FIGURES and not gap else gap)
-        before = glyph.char
-    return gaps
-
-
-def _exponent(glyphs: Sequence[Glyph]) -> bool:
-    """Whether glyphs are the E of an exponent, its sign and a digit, in one piece."""
-    mark, *rest = glyphs
-    if mark.char != "E" or len(rest) < 2 or any(glyph.gap for glyph in rest):
-        return False
-    return rest[0].char in "+-" and rest[1].char.isdigit()
-
-
-def _states(glyphs: Sequence[Glyph], noted: Sequence[bool]) -> list[int]:
+def _states(chars: Sequence[str], gaps: Sequence[int]) -> list[int]:
     """The state of every glyph on the cheapest way."""
-    page = template()
-    size = page.miss.size
-    count = len(glyphs)
-    codes = [NOTE if note else code(one.char) for one, note in zip(glyphs, noted, strict=True)]
-    gaps = _gaps(glyphs)
-    enter = {
-        key: page.enter[key[0]] + page.gap_enter[key[1]]
-        for key in set(zip(codes, gaps, strict=True))
-    }
-    stay = {key: page.stay[key[0]] + page.gap_stay[key[1]] for key in enter}
-    missed = np.cumsum(page.miss)
-    missed_line = np.concatenate([[0], np.cumsum(_ABSENT[:-1])])
-    between = page.between
-    index = np.arange(size, dtype=np.int16)
-    lines = np.arange(between.size, dtype=np.int16)
-    exits = np.flatnonzero(page.closes)
-    labelled = page.unlabelled[0, 1:] > 0
-    numbered = np.zeros(size, bool)
-    numbered[list(page.slots)] = True
-    begin = np.full(between.size, _BEGIN)
-    begin[ANGLE_ROW - 1 : ANGLE_ROW + 1] += _WITHIN
-    # what is needed to find the way back
-    moved = np.empty((count, size), bool)
-    straight = np.zeros((count, size), bool)
-    first = np.empty((count, size), np.int16)
-    second = np.empty((count, size), np.int16)
-    ended = np.empty(count, np.int16)
-    begun = np.empty((count, between.size), bool)
-    skipped = np.empty((count, between.size), np.int16)
+    jumps, ending = _jumps()
+    staying = _gaps()
+    costs = np.empty((len(chars) + 1, len(STATES)), np.int16)
+    costs[0] = np.where(np.arange(len(STATES)), _MOST, 0)
+    stays = np.empty(costs.shape, bool)
+    for row, (char, gap) in enumerate(zip(chars, gaps, strict=True)):
+        enter, more = _emitted(char)
+        move = (costs[row][:, None] + jumps[gap]).min(axis=0) + enter
+        stay = costs[row] + more + staying[gap]
+        stays[row] = stay <= move
+        best = np.minimum(stay, move)
+        np.minimum(best - best.min(), _MOST, out=costs[row + 1])
+    states = [int((costs[-1] + ending).argmin())]
+    for row in range(len(chars) - 1, 0, -1):
+        state = states[-1]
+        before = costs[row] + jumps[gaps[row], :, state]
+        states.append(state if stays[row, state] else int(before.argmin()))
+    return states[::-1]
 
-    def passed(costs: np.ndarray, sources: np.ndarray) -> np.ndarray:
-        """States may be missed: the least cost to be after each, and from which state."""
-        relative = costs - missed
-        least = np.minimum.accumulate(relative)
-        np.maximum.accumulate(np.where(relative == least, index, 0), out=sources)
-        return least + missed
 
-    def opened(costs: np.ndarray, row: int | None) -> np.ndarray:
-        """A printout may begin before any line, and lines may be missing."""
-        waiting = costs[between]
-        start = costs[0] + begin
-        begins = start < waiting
-        waiting = np.where(begins, start, waiting)
-        relative = waiting - missed_line
-        least = np.minimum.accumulate(relative)
-        if row is not None:
-            begun[row] = begins
-            np.maximum.accumulate(np.where(relative == least, lines, 0), out=skipped[row])
-        costs = costs.copy()
-        costs[between] = least + missed_line
-        return costs
+def _described(start: int, states: list[int]) -> Aligned:
+    """A part of the states as one printout's."""
+    slots: dict[str, tuple[int, int]] = {}
+    for index, state in enumerate(states, start):
+        if STATES[state].kind == "number":
+            name = STATES[state].name
+            slots[name] = (slots.get(name, (index, 0))[0], index + 1)
+    return Aligned(start, start + len(states), states, slots)
 
-    costs = np.full(size, _BIG)
-    costs[0] = 0
-    scratch = np.empty(size, np.int16)
-    emitted = np.full(size, _BIG)
-    origin = passed(opened(costs, None), scratch)
-    for row in range(count):
-        key = codes[row], gaps[row]
-        advance = np.empty_like(origin)
-        advance[0] = _BIG
-        advance[1:] = origin[:-1]
-        advance += page.unlabelled[gaps[row]]
-        # a number right after the glyph of its label costs nothing more
-        advance[1:][labelled] = np.minimum(advance[1:], emitted[:-1])[labelled]
-        straight[row, 1:] = labelled & (advance[1:] == emitted[:-1])
-        advance[1] = _BIG  # a printout begins at a price: `opened`
-        advance += enter[key]
-        remain = np.where(numbered, emitted, origin) + stay[key]
-        np.less(advance, remain, out=moved[row])
-        costs = np.where(moved[row], advance, remain)
-        emitted = costs.copy()
-        closing = exits[np.argmin(costs[exits])]
-        end = costs[closing] + _END
-        ended[row] = closing if end < costs[0] else 0
-        if end < costs[0]:
-            costs[0] = end
-        costs = passed(costs, first[row])
-        costs = opened(costs, row)
-        origin = passed(costs, second[row])
-        least = origin.min()
-        origin -= least
-        emitted -= least
-    states = [0] * count
-    line_of = {int(state): number for number, state in enumerate(between)}
-    state = int(np.argmin(np.where(page.closes | (index == 0), origin, _BIG)))
-    direct = False
-    for row in range(count - 1, -1, -1):
-        if not direct:
-            state = int(second[row, state])
-            number = line_of.get(state)
-            if number is not None:
-                number = int(skipped[row, number])
-                state = 0 if begun[row, number] else int(between[number])
-            state = int(first[row, state]) if state else 0
-            if state == 0 and ended[row]:
-                state = int(ended[row])
-        states[row] = state
-        # one more glyph of a number follows a glyph of it, not a place passed over
-        direct = bool(straight[row, state]) if moved[row, state] else bool(numbered[state])
-        if moved[row, state]:
-            state -= 1
-    return states
+
+def _parts(states: Sequence[int]) -> list[tuple[int, list[int]]]:
+    """The stretches of glyphs inside printouts: start, states. States only go forward, so one below
+    the one before it begins another printout; a stretch that goes on where the one before left off
+    is of the same, with something between."""
+    parts: list[tuple[int, list[int]]] = []
+    before = 0
+    for index, state in enumerate(states):
+        if state and (not before or state < before):
+            parts.append((index, []))
+        if state:
+            parts[-1][1].append(state)
+        before = state
+    merged = parts[:1]
+    for start, own in parts[1:]:
+        first, all_before = merged[-1]
+        aside = start - first - len(all_before)
+        if STATES[all_before[-1]].line < STATES[own[0]].line and aside < _ASIDE:
+            all_before += [*[0] * aside, *own]
+        else:
+            merged.append((start, own))
+    return merged

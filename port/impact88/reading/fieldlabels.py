@@ -10,20 +10,14 @@ from enum import StrEnum
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ..fields import ANGLES
-from .alignment import LETTER_LOST, REPLY_A, REPLY_B, as_letter, template
-from .glyphs import UNSEEN, Gap, Page
+from ..fields import ANGLES, FIELDS
+from .glyphs import COSTS, UNSEEN, Gap, Page, label_cost
 
-PROMPTS = (REPLY_A, REPLY_B)
-_LETTERS = 2
-"""One letter for one (E) is no word: on clean scans E is read L."""
-_REACH = 0.7
-"""From this cost on, for two letters, a label is none that a reader made of its own: one letter
-read so less than once in 600."""
-_CLEARER = 0.25
-"""How much less another label costs that is read there; U for V, the likeliest, costs 0.29."""
-_EXTRA = 0.68
-"""What a letter too many costs."""
+_REACH = 35
+"""From this cost a letter on, a label is none that a reader made of its own: one letter of two read
+so less than once in 600."""
+_CLEARER = 25
+"""How much less another label costs that is read there; U for V, the likeliest, costs 29."""
 READERS = 3
 """So many other marks of an optical reader, and a label that contradicts is the reader's doing: of
 15,300 labels of given scans 373 read as other words, 7 of them on pages of fewer marks. No two of
@@ -59,6 +53,11 @@ class LabelCheck(NamedTuple):
         return {**self._asdict(), "state": str(self.state)}
 
 
+Found = Sequence[tuple[str, str, Sequence[int]]]
+"""Of each label the field it names (of a prompt, its reply), its letters, the glyphs taken for
+them."""
+
+
 def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, tuple[int, int]]:
     """The word that an equals sign joins to each number: where its letters stand, as glyphs; for
     numbers that have such a sign before them."""
@@ -80,13 +79,18 @@ def _in_word(char: str) -> bool:
 
 
 def label_checks(
-    page: Page, start: int, states: Sequence[int], slots: Mapping[str, tuple[int, int]], marks: int
+    page: Page, found: Found, slots: Mapping[str, tuple[int, int]], marks: int
 ) -> list[LabelCheck]:
     """The labels of one printout, in the order of the page.
 
-    ``states``: the template's state of each glyph from ``start`` on; ``slots``: the glyphs of every
-    number, by field; ``marks``: how many an optical reader left in the numbers."""
-    checks = list(_checks(page, start, states, slots))
+    ``slots``: the glyphs of every number, by field; ``marks``: how many an optical reader left in
+    the numbers."""
+    checks = []
+    for name, printed, start, stop, read in _seen(page, found, slots):
+        others = {text for one, text, _ in found if _kind(one) == _kind(name)} - {printed}
+        state, doubt = _state(_kind(name), printed, read, others)
+        place = page.place(start)
+        checks.append(LabelCheck(name, printed, read, state, doubt, *place, start, stop))
     marks += sum(one.state is LabelState.DAMAGED for one in checks)
     pairs = {(one.printed, one.read) for one in checks}
     return [
@@ -99,52 +103,44 @@ def label_checks(
     ]
 
 
-def _check(page: Page, name: str, printed: str, read: str, start: int, stop: int) -> LabelCheck:
-    """A label by itself, whoever read it; what was read stands between two offsets."""
-    state = _state(name, printed, read)
-    doubt = state is not LabelState.EXACT and _doubtful(name, printed, read)
-    return LabelCheck(name, printed, read, state, doubt, *page.place(start), start, stop)
+def _kind(name: str) -> str:
+    """What a label may be taken for: prompts, angles, and all others."""
+    return "prompt" if name not in FIELDS else "angle" if name in ANGLES else "number"
 
 
-def _checks(
-    page: Page, start: int, states: Sequence[int], slots: Mapping[str, tuple[int, int]]
-) -> Iterator[LabelCheck]:
-    """What stands in the place of each label whose number was read, or of which letters were."""
+def _seen(
+    page: Page, found: Found, slots: Mapping[str, tuple[int, int]]
+) -> Iterator[tuple[str, str, int, int, str]]:
+    """What stands in the place of each label whose number was read, or of which letters were: the
+    field, what is printed, the offsets, what is read."""
     words = words_before(page, slots)
-    places: dict[int, list[int]] = {}
-    for index, state in enumerate(states, start):
-        places.setdefault(state, []).append(index)
-    found = {
-        one: sorted(index for state in one.states for index in places.get(state, ()))
-        for one in template().labels
-    }
-    of_angles = [one for one in found if one.name in ANGLES]
+    of_angles = [one for one in found if one[0] in ANGLES]
     heading, row = of_angles[: len(ANGLES)], of_angles[len(ANGLES) :]
-    angled = any(places.get(one.states[0]) for one in row)
-    headed = [index for one in heading for index in found[one]]
+    angled = any(at for _, _, at in row)
+    headed = [index for _, _, at in heading for index in at]
     if headed:
         yield from _heading(page, min(headed), max(headed))
-    for one, at in found.items():
-        if one in heading and (headed or angled or one.name not in slots):
+    for one in found:
+        name, printed, at = one
+        if one in heading and (headed or angled or name not in slots):
             continue
-        if one in row and (not angled or not at):
+        if one in row and not at:
             continue
-        word = words.get(one.name) if one.name not in PROMPTS else None
+        word = words.get(name)
         if word and _letters(page, at)[word[0] - word[1] :] != _letters(page, range(*word)):
-            at = [*range(*word)]
+            at = range(*word)
         if at:
-            span = page.span(at[0], at[-1] + 1)
-            yield _check(page, one.name, one.text, _letters(page, at), *span)
-        elif one.name in slots and one.name not in PROMPTS:
-            begin = page.span(*slots[one.name])[0]
-            yield _check(page, one.name, one.text, "", begin, begin)
+            yield name, printed, *page.span(at[0], at[-1] + 1), _letters(page, at)
+        elif name in slots:
+            begin = page.span(*slots[name])[0]
+            yield name, printed, begin, begin, ""
 
 
 def _letters(page: Page, run: Sequence[int]) -> str:
     return "".join(page.glyphs[index].char for index in run)
 
 
-def _heading(page: Page, first: int, last: int) -> Iterator[LabelCheck]:
+def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int, int, str]]:
     """The five of the heading: the words around what was taken for it, or its letters in pairs."""
     glyphs = page.glyphs
     while first and glyphs[first].gap is not Gap.LINE and glyphs[first - 1].char.isalpha():
@@ -155,57 +151,39 @@ def _heading(page: Page, first: int, last: int) -> Iterator[LabelCheck]:
     starts = [at for at in range(first, end) if at == first or glyphs[at].gap]
     if len(starts) != len(ANGLES):
         starts = [*range(first, end, 2)]
-    whole = len(starts) != len(ANGLES)
-    exact = "".join(ANGLES) in _letters(page, range(first, end))
-    parts = [(first, end)] * len(ANGLES) if whole else zip(starts, [*starts[1:], end], strict=True)
-    for name, part in zip(ANGLES, parts, strict=True):
-        read = (name if exact else "") if whole else _letters(page, range(*part))
-        yield _check(page, name, name, read, *page.span(*part))
+    if len(starts) == len(ANGLES):
+        for name, start, stop in zip(ANGLES, starts, [*starts[1:], end], strict=True):
+            yield name, name, *page.span(start, stop), _letters(page, range(start, stop))
+    else:
+        exact = "".join(ANGLES) in _letters(page, range(first, end))
+        for name in ANGLES:
+            yield name, name, *page.span(first, end), name if exact else ""
 
 
-def _state(name: str, printed: str, read: str) -> LabelState:
-    """How a label stands by itself, whoever read it."""
+def _state(kind: str, printed: str, read: str, others: set[str]) -> tuple[LabelState, bool]:
+    """How a label stands by itself, whoever read it, and whether it leaves a doubt: that is where
+    the letters which were read as they are printed are those of another, too."""
     if read == printed:
-        return LabelState.EXACT
-    if not any(map(str.isalnum, read)):
-        return LabelState.MISSING
+        return LabelState.EXACT, False
     own = _distance(printed, read)
-    others = _others(name)
-    other = min(_distance(text, read) for text in others if text != printed)
-    if name in PROMPTS:
-        return LabelState.CONTRADICTORY if other < own - UNSEEN else LabelState.DAMAGED
-    if len(read + printed) <= _LETTERS or (_only_lost(printed, read) and read not in others):
-        return LabelState.DAMAGED
-    word = read.isascii() and read.isalpha()
-    if other < own - _CLEARER or (word and own >= _REACH * len(printed) / 2):
-        return LabelState.CONTRADICTORY
-    return LabelState.DAMAGED
-
-
-def _doubtful(name: str, printed: str, read: str) -> bool:
-    """Whether the letters that were read as they are printed are those of another label, too."""
-    if name in PROMPTS:
-        return False
-    kept = [own if own == char else None for own, char in zip(printed, read, strict=False)]
-    if len(read) != len(printed) or not any(kept):
-        return True
-    return any(
-        len(text) == len(kept)
-        and all(letter in (None, own) for letter, own in zip(kept, text, strict=True))
-        for text in _others(name) - {printed}
-    )
-
-
-@lru_cache(maxsize=64)
-def _others(name: str) -> frozenset[str]:
-    """The labels that one of a kind may be taken for: prompts, angles, and all others."""
-    kinds = (PROMPTS, ANGLES)
-    kind = next((some for some in kinds if name in some), None)
-    return frozenset(
-        one.text
-        for one in template().labels
-        if (one.name in kind if kind else not any(one.name in some for some in kinds))
-    )
+    other = min(_distance(text, read) for text in others)
+    kept = [own == char for own, char in zip(printed, read, strict=False)]
+    doubt = len(read) != len(printed) or not any(kept)
+    for text in others:
+        same = [own == char for own, char in zip(text, read, strict=False)]
+        doubt |= len(text) == len(printed) and all(s for s, k in zip(same, kept, strict=False) if k)
+    state = LabelState.DAMAGED
+    if not any(map(str.isalnum, read)):
+        state = LabelState.MISSING
+    elif kind == "prompt":
+        doubt = False
+        if other < own - UNSEEN:
+            state = LabelState.CONTRADICTORY
+    elif len(read + printed) > len("EL") and (read in others or not _only_lost(printed, read)):
+        word = read.isascii() and read.isalpha()
+        if other < own - _CLEARER or (word and own >= _REACH * len(printed)):
+            state = LabelState.CONTRADICTORY
+    return state, doubt
 
 
 def _only_lost(printed: str, read: str) -> bool:
@@ -215,17 +193,13 @@ def _only_lost(printed: str, read: str) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _distance(printed: str, read: str) -> float:
+def _distance(printed: str, read: str) -> int:
     """What it costs that a label was read so, letter by letter."""
-    row = [_EXTRA * count for count in range(len(read) + 1)]
+    lost = COSTS["letter lost"]
+    row = [lost * count for count in range(len(read) + 1)]
     for letter in printed:
-        before, row = row, [row[0] + LETTER_LOST]
+        before, row = row, [row[0] + lost]
         for place, char in enumerate(read):
-            row.append(
-                min(
-                    before[place] + as_letter(letter, char),
-                    before[place + 1] + LETTER_LOST,
-                    row[place] + _EXTRA,
-                )
-            )
+            read_so = before[place] + label_cost(letter, char)
+            row.append(min(read_so, before[place + 1] + lost, row[place] + lost))
     return row[-1]

@@ -195,8 +195,38 @@ _LABEL_SHAPES = "=: %#$&984 IL1|! EF"
 """Glyphs that people type for others, or that have their shape: `_TYPED` readings each."""
 _TYPED = 8
 _DECADES = 4.0
-UNSEEN = 1.1
+UNSEEN = 110
 """What a confusion costs that was never seen."""
+COSTS = {
+    "outside": 45,
+    "between": 50,
+    "figure between": 40,
+    "inserted": 100,
+    "inserted figure": 150,
+    "letter lost": 65,
+    "= lost": 45,
+    "mark lost": 25,
+    "number lost": 90,
+    "reply lost": 20,
+    "line": 200,
+    "line may be missing": 30,
+    "begins": 220,
+    "begins with angles": 600,
+    "ends": 80,
+    "angle without gap": 220,
+    "E in number": 20,
+    "mark in number": 8,
+    "look-alike in number": 30,
+    "letter in number": 55,
+    "other in number": 90,
+    "= in number": 160,
+}
+GAP_COSTS = {
+    "number": (0, 45, 80, 60),
+    "reply": (0, 2, 10, 50),
+    "angle": (0, 90, 180, 80),
+    "before a number without label": (10, 10, 0, 0),
+}
 LOOK_ALIKE = 0.3
 """What the likeliest figure costs for a glyph that is none: less than that the glyph is a speck."""
 _AS_OFTEN = 0.2
@@ -217,12 +247,19 @@ _OF_NUMBERS, _OF_LABELS = _counted(_NUMBERS, _SHAPES), _counted(_LABELS, _LABEL_
 
 
 @lru_cache(maxsize=8192)
-def label_cost(printed: str, read: str) -> float:
+def label_cost(printed: str, read: str) -> int:
     """The cost of reading a glyph of a label, an asterisk or a prompt as another."""
     if printed == read:
-        return 0.0
+        return 0
     total, seen = _OF_LABELS.get(printed, (1, {}))
-    return -log10(seen[read] / total) / _DECADES if read in seen else UNSEEN
+    cost = round(-100 * log10(seen[read] / total) / _DECADES) if read in seen else UNSEEN
+    if printed == "=" and read in "-~_":
+        return 65  # rather the number's sign, the label's own glyph missing
+    if printed == "*" and not read.isdigit():
+        return min(cost, 50)
+    if not read.isdigit():
+        return cost
+    return cost + (125 if printed == "=" and cost < UNSEEN else 40 * (cost == UNSEEN))
 
 
 @lru_cache(maxsize=1024)

@@ -29,8 +29,6 @@ _NO_TEXT = {
 }
 """First bytes of files that are not text, and what makes text of them."""
 
-_BINARY = 0.02
-"""More control characters than this, and a file is not text."""
 _MARKS = ("MA=", "MB=", "KE=", "VAX", "UX=", "ENTER", "LOSS", "PA PB", "ZERO DET", "MA ")
 
 
@@ -39,45 +37,28 @@ def decoded(data: bytes, where: str) -> str:
     for start, message in _NO_TEXT.items():
         if data.startswith(start):
             raise UserError(message, where)
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return _lines(data.decode("utf-16", "replace"))
-    if len(data) > 8:
-        # UTF-16 whose byte-order mark was lost: every other byte of such a text is zero
-        for encoding, zeros in (("utf-16-le", data[1::2]), ("utf-16-be", data[0::2])):
-            if zeros.count(0) > 0.9 * len(zeros):
-                return _lines(data[: len(data) // 2 * 2].decode(encoding, "replace"))
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = _of_other_machines(data, where)
-    if _looks_binary(text):
+    text = _decoded(data)
+    odd = sum(char < " " and char not in "\t\n\r\f\a\b\0\x04\x1b" for char in text)
+    if odd > 4 + len(text) / 50:
         raise UserError("is not UTF-8 text, nor any other this reads; expected plain text", where)
-    return _lines(text)
-
-
-def _lines(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _looks_binary(text: str) -> bool:
-    odd = sum(c < " " and c not in "\t\n\r\f\a\b\0\x04\x1b" for c in text)
-    return odd > 4 + _BINARY * len(text)
-
-
-def _of_other_machines(data: bytes, where: str) -> str:
-    """Text of an Apple II (high bits set), a mainframe, Windows or a Macintosh."""
-    high = sum(byte >= 0x80 for byte in data)
-    if high > 0.7 * len(data):
-        text = bytes(byte & 0x7F for byte in data).decode("ascii")
-        if _marks(text):
-            return text
-    text = data.decode("cp037", "replace")
-    if high > 0.3 * len(data) and _marks(text) >= 3:
-        return text.replace("\x85", "\n")
-    if high > 0.2 * len(data):
-        raise UserError("is not UTF-8 text, nor any other this reads; expected plain text", where)
-    ways = [data.decode(encoding, "replace") for encoding in ("cp1252", "mac_roman", "latin-1")]
-    return max(ways, key=_minus_signs)
+def _decoded(data: bytes) -> str:
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16", "replace")
+    # UTF-16 whose byte-order mark was lost: every other byte of such a text is zero
+    for encoding, zeros in (("utf-16-le", data[1::2]), ("utf-16-be", data[0::2])):
+        if len(data) > 8 and zeros.count(0) > 0.9 * len(zeros):
+            return data.decode(encoding, "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        ways = [data.decode(name, "replace") for name in ("cp1252", "mac_roman", "latin-1")]
+        # a mainframe's, and an Apple II's with its high bits set
+        ways.append(data.decode("cp037").replace("\x85", "\n"))
+        ways.append(bytes(byte & 0x7F for byte in data).decode("ascii"))
+        return max(ways, key=lambda text: (_marks(text), _minus_signs(text)))
 
 
 def _marks(text: str) -> int:
@@ -103,11 +84,37 @@ _MARKUP = re.compile(
 _RTF = re.compile(r"\\[a-z]+-?[0-9]* ?|[{}]")
 _ENTITY = re.compile(r"&(?:#[0-9]{1,6}|#[xX][0-9a-fA-F]{1,6}|[a-zA-Z]{2,8});")
 _ROW_OF_TABLE = re.compile(r"(?m)^\s*\|.*\|\s*$")
+_NUMBERED = re.compile(r"(?m)^[ \t]*[\[(]?([0-9]{1,5})[\])]?[:.|]?(?=[ \t]|$)")
+_SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−–", "0123456789---")
+_POWER = re.compile(
+    r"(?<=[0-9])[ ]?[×xX·*][ ]?10(?:\^[{(]?([-−–]?[0-9])[)}]?|([-⁻−–][0-9]|[⁻−–]?[⁰¹²³⁴⁵⁶⁷⁸⁹]))"
+    r"(?![0-9⁰¹²³⁴⁵⁶⁷⁸⁹.])"
+)
+"""A power of ten written out."""
+_ROW = re.compile(
+    r"""(?mx) ^[ \t]* (?P<quote>["']?) (?P<name>[A-Za-z]{1,9}(?:[ ][A-Za-z]{2,4})?)
+    (?P=quote) [ \t]* [,;\t] [ \t]*
+    (?P<other>["']?) (?P<number>[-+−–.,0-9Ee]+) (?P=other) [ \t]*$"""
+)
+"""A row of a table of two columns: a name, a comma, semicolon or tabulator, and a number."""
+_HEADING = re.compile(
+    r"""(?m)^[ \t]*["']?[A-Za-z]+["']?[ \t]*[,;\t][ \t]*["']?[A-Za-z]+["']?[ \t]*$"""
+)
+_GROUPED = re.compile(r"(?<![0-9.,])[0-9]{1,3}(?:[.][0-9]{3})+(?=,[0-9]|(?![0-9.,]))")
+_LINES = 6
+"""So many lines, and all of them, numbered upward: an editor or a listing did it; so many rows of
+names and numbers are a table."""
 
 
 def unwrapped(text: str) -> str:
-    """A text with markup blanked out: e-mail quotes, HTML, RTF, TeX, Markdown. Of equal length."""
-    text = _unnumbered(text.replace("\r\n", " \n").replace("\r", "\n"))
+    """A text with markup blanked out: e-mail quotes, HTML, RTF, TeX, Markdown, line numbers, the
+    separators of tables. Of equal length."""
+    text = text.replace("\r\n", " \n").replace("\r", "\n")
+    lines = [line for line in text.split("\n") if line.strip()]
+    if len(lines) >= _LINES and all(map(_NUMBERED.match, lines)):
+        numbers = [int(number) for number in _NUMBERED.findall(text)]
+        if all(before < after for before, after in pairwise(numbers)):
+            text = _NUMBERED.sub(_blank, text)
     if text.lstrip().startswith("{\\rtf"):
         text = _RTF.sub(_blank, text)
     text = _ENTITY.sub(_entity, _MARKUP.sub(_blank, text))
@@ -115,7 +122,9 @@ def unwrapped(text: str) -> str:
     if len(_ROW_OF_TABLE.findall(text)) >= 3:
         text = re.sub(r"(?m)^\s*\|[-:| \t]+\|\s*$", _blank, text)
         text = _ROW_OF_TABLE.sub(lambda row: row.group().replace("|", " "), text)
-    return _POWER.sub(_exponent, _groups_joined(_table_parted(text)))
+    if len(_ROW.findall(text)) >= _LINES:
+        text = _ROW.sub(_row_parted, _HEADING.sub(_blank, text))
+    return _POWER.sub(_exponent, _groups_joined(text))
 
 
 def _blank(match: re.Match[str]) -> str:
@@ -127,61 +136,15 @@ def _entity(match: re.Match[str]) -> str:
     return character.rjust(len(match.group())) if len(character) == 1 else match.group()
 
 
-_NUMBERED = re.compile(r"(?m)^[ \t]*[\[(]?([0-9]{1,5})[\])]?[:.|]?(?=[ \t]|$)")
-_NUMBERED_LINES = 6
-"""So many lines, and all of them, numbered upward: an editor or a listing did it."""
-
-
-def _unnumbered(text: str) -> str:
-    """A text whose every line begins with its number, those blanked out."""
-    lines = [line for line in text.split("\n") if line.strip()]
-    if len(lines) < _NUMBERED_LINES or not all(map(_NUMBERED.match, lines)):
-        return text
-    numbers = [int(number) for number in _NUMBERED.findall(text)]
-    upward = all(before < after for before, after in pairwise(numbers))
-    return _NUMBERED.sub(_blank, text) if upward else text
-
-
-_SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−–", "0123456789---")
-_POWER = re.compile(
-    r"(?<=[0-9])[ ]?[×xX·*][ ]?10(?:\^[{(]?([-−–]?[0-9])[)}]?|([-⁻−–][0-9]|[⁻−–]?[⁰¹²³⁴⁵⁶⁷⁸⁹]))"
-    r"(?![0-9⁰¹²³⁴⁵⁶⁷⁸⁹.])"
-)
-"""A power of ten written out."""
-
-
-def _exponent(match: re.Match[str]) -> str:
-    """It as an exponent, of one digit: so the program never prints it, and the verdict tells."""
-    power = (match.group(1) or match.group(2)).translate(_SMALL)
-    return f"E{power if power.startswith('-') else '+' + power}".ljust(len(match.group()))
-
-
-_ROW = re.compile(
-    r"""(?mx) ^[ \t]* (?P<quote>["']?) (?P<name>[A-Za-z]{1,9}(?:[ ][A-Za-z]{2,4})?)
-    (?P=quote) [ \t]* [,;\t] [ \t]*
-    (?P<other>["']?) (?P<number>[-+−–.,0-9Ee]+) (?P=other) [ \t]*$"""
-)
-"""A row of a table of two columns: a name, a comma, semicolon or tabulator, and a number."""
-_HEADING = re.compile(
-    r"""(?m)^[ \t]*["']?[A-Za-z]+["']?[ \t]*[,;\t][ \t]*["']?[A-Za-z]+["']?[ \t]*$"""
-)
-_ROWS = 10
-"""So many rows make a table."""
-
-
-def _table_parted(text: str) -> str:
-    """A table of names and numbers with its quotes and separators blanked out."""
-    if len(_ROW.findall(text)) < _ROWS:
-        return text
-    return _ROW.sub(_row_parted, _HEADING.sub(_blank, text))
-
-
 def _row_parted(row: re.Match[str]) -> str:
     name = row.group()[: row.start("number") - row.start()]
     return re.sub(r"""["';,\t]""", " ", name) + row["number"].ljust(len(row.group()) - len(name))
 
 
-_GROUPED = re.compile(r"(?<![0-9.,])[0-9]{1,3}(?:[.][0-9]{3})+(?=,[0-9]|(?![0-9.,]))")
+def _exponent(match: re.Match[str]) -> str:
+    """An exponent of one digit: so the program never prints it, and the verdict tells."""
+    power = (match.group(1) or match.group(2)).translate(_SMALL)
+    return f"E{power if power.startswith('-') else '+' + power}".ljust(len(match.group()))
 
 
 def _groups_joined(text: str) -> str:
@@ -198,11 +161,10 @@ def _groups_joined(text: str) -> str:
 # --- words with places ---------------------------------------------------------------------------
 
 _BOX = re.compile(r"\bbbox +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+)")
-_LEVEL = 0.5
-"""Words are on one line while their middles differ by less than this part of their height; lines
-of the given scans stand 1.6 heights apart and lean by .1."""
-_WIDEST = 60
-"""Blanks for a gap at most: a printer's line has 80 columns."""
+_TSV_PLACE = ("left", "top", "width", "height")
+_ALTO_PLACE = ("hpos", "vpos", "width", "height")
+_PRINTER = 80
+"""Columns of a printer's line: no gap is wider."""
 
 
 class _Word(NamedTuple):
@@ -211,8 +173,8 @@ class _Word(NamedTuple):
     text: str
     left: float
     top: float
-    right: float
-    bottom: float
+    width: float
+    height: float
 
 
 def laid_out(text: str, where: str) -> str:
@@ -226,19 +188,14 @@ def laid_out(text: str, where: str) -> str:
     try:
         if table:
             for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
-                document.turn_to(row["page_num"])
-                document.put(row["text"] or "", *(float(row[name]) for name in _TSV_PLACE))
+                document.put(row["page_num"], row["text"] or "", [row[name] for name in _TSV_PLACE])
         else:
             document.feed(text)
     except (KeyError, TypeError, ValueError):
         raise UserError("is damaged: the place of a word is not a number", where) from None
-    if not any(document.pages.values()):
+    if not document.pages:
         raise UserError("holds no words with places; expected hOCR, ALTO or TSV of a page", where)
-    return "\n\n".join(_lines_of(words) for words in document.pages.values() if words)
-
-
-_TSV_PLACE = ("left", "top", "width", "height")
-_ALTO_PLACE = ("hpos", "vpos", "width", "height")
+    return "\n\n".join(map(_lines_of, document.pages.values()))
 
 
 class _Document(HTMLParser):
@@ -246,18 +203,15 @@ class _Document(HTMLParser):
 
     def __init__(self) -> None:
         super().__init__()
-        self.pages: dict[str, list[_Word]] = {"": []}
-        self._box: tuple[str, ...] = ()
+        self.pages: dict[str, list[_Word]] = {}
+        self._page = 0
+        self._box: list[int] = []
 
-    def turn_to(self, page: str) -> None:
-        """What follows is on this page."""
-        self.pages[page] = self.pages.pop(page, [])
-
-    def put(self, text: str, left: float, top: float, width: float, height: float) -> None:
+    def put(self, page: str, text: str, place: Sequence[str | int]) -> None:
         """A word and its place."""
         if text.strip():
-            word = _Word(text.strip(), left, top, left + width, top + height)
-            next(reversed(self.pages.values())).append(word)
+            word = _Word(text.strip(), *map(float, place))
+            self.pages.setdefault(page, []).append(word)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """A page begins, or a word."""
@@ -265,37 +219,38 @@ class _Document(HTMLParser):
         kind = given.get("class", "")
         element = tag.rpartition(":")[2]
         if kind == "ocr_page" or element == "page":
-            self.turn_to(str(len(self.pages)))
+            self._page += 1
         elif kind in ("ocrx_word", "ocr_word"):
             box = _BOX.search(given.get("title", ""))
-            self._box = box.groups() if box else ()
+            self._box = [*map(int, box.groups())] if box else []
         elif element == "string" and "content" in given:
-            self.put(given["content"], *(float(given.get(name, "0")) for name in _ALTO_PLACE))
+            place = [given.get(name, "0") for name in _ALTO_PLACE]
+            self.put(str(self._page), given["content"], place)
 
     def handle_data(self, data: str) -> None:
         """What a word says."""
         if self._box and data.strip():
-            left, top, right, bottom = map(float, self._box)
-            self.put(data, left, top, right - left, bottom - top)
-            self._box = ()
+            left, top, right, bottom = self._box
+            self.put(str(self._page), data, (left, top, right - left, bottom - top))
+            self._box = []
 
 
 def _lines_of(words: Sequence[_Word]) -> str:
-    """A page's words in lines."""
+    """A page's words in lines: those whose middles are less than half a height apart are level."""
     lines: list[list[_Word]] = []
-    for word in sorted(words, key=lambda word: word.top + word.bottom):
-        last = lines[-1][-1] if lines else None
-        height = word.bottom - word.top
-        if last and abs(word.top + word.bottom - last.top - last.bottom) < 2 * _LEVEL * height:
-            lines[-1].append(word)
-        else:
-            lines.append([word])
-    width = median((word.right - word.left) / len(word.text) for word in words) or 1.0
-    return "\n".join(_line(sorted(line, key=lambda word: word.left), width) for line in lines)
-
-
-def _line(words: Sequence[_Word], width: float) -> str:
-    text = words[0].text
-    for before, word in pairwise(words):
-        text += " " * min(max(1, round((word.left - before.right) / width)), _WIDEST) + word.text
+    middle = 0.0
+    for word in sorted(words, key=lambda word: word.top + word.height / 2):
+        before, middle = middle, word.top + word.height / 2
+        if not lines or middle - before >= word.height / 2:
+            lines.append([])
+        lines[-1].append(word)
+    letter = median(word.width / len(word.text) for word in words) or 1.0
+    text = ""
+    for line in lines:
+        line.sort(key=lambda word: word.left)
+        text += line[0].text
+        for one, word in pairwise(line):
+            gap = round((word.left - one.left - one.width) / letter)
+            text += " " * min(max(1, gap), _PRINTER) + word.text
+        text += "\n"
     return text

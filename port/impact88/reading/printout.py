@@ -1,11 +1,8 @@
 """Reading a printout: text that was typed in or came from a scanner, into named fields.
 
-The text is aligned with the program's page (`alignment`), which says what every glyph belongs to:
-a number, a label, or neither. Here each printout's numbers get their names and places, the replies
-at the prompts are parted, the row of angles is cut, and what belongs nowhere is kept as left over.
-One file may hold several printouts, with anything between them.
-
-Nothing here computes: what the numbers should be is for `recovery` and `judging` to say.
+The text is aligned with the program's page (`alignment`), which says what every glyph belongs to.
+Here each printout's numbers get their names and places, the replies at the prompts are parted, the
+row of angles is cut, and what belongs nowhere is kept as left over.
 """
 
 import re
@@ -13,6 +10,7 @@ import unicodedata
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import groupby
 from typing import NamedTuple
 
 from ..applesoft.errorcodes import CODES
@@ -21,20 +19,20 @@ from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT, lab
 from . import numerals
 from . import plaintext as pasted
 from .alignment import (
-    LABELLED_ANGLES,
+    LABELS,
     PROMPTS,
     REPLY_A,
     REPLY_B,
     SPINS,
     STARS,
+    STATES,
     Aligned,
     Budget,
     align,
-    template,
+    letter_of,
 )
 from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
-from .glyphs import ILLEGIBLE, NUMERIC, Gap, Page, letters, plain_glyphs, printed_for
-from .numerals import Region, cut_in_five
+from .glyphs import ILLEGIBLE, NUMERIC, Gap, Page, Region, letters, plain_glyphs, printed_for
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -43,24 +41,18 @@ FRAGMENT = 6
 BADLY_READ = 17
 """So many letters and numbers misread, asterisks included: of the given scans that differ 58 of 88
 readings of genuine pages have as many, and 2 of 84 of pages with an altered digit."""
-_PART = 15
-"""A piece with fewer numbers is part of a page: its labels do not tell which numbers it holds."""
 MACHINE_READ = 3
 """So many letters of labels misread, and a machine read the page: people do not type PE for PB."""
-_TYPED = frozenset("0123456789.,-+EOILQ?")
-_SHOWN = 100
-_SLOT_COMMAND = re.compile(r"PR#[0-9]")
-"""What line 610 prints where no DOS takes it for a command."""
-_PROMPT_LETTERS, _MOST_ANGLES = 25, 4
-_NEXT_TO_NUMBERS = ("%", "(", ")", "=")
-_OF_PROMPT = 4
-"""Glyphs of ``Wa ?`` that are read into the reply at most."""
-_MOST_STARS = 7
-"""Glyphs that a row of five asterisks is read as at most."""
+_PART = 15
+"""A piece with fewer numbers is part of a page: its labels do not tell which numbers it holds."""
 _NOTE = 5
 """So many letters that are none of a label's, four a number, make a line a note: ``BREAK IN 640``.
 The program's labels have three letters a number at most but on the line of the energies."""
-_RESULTS = ("VAX", "VAY", "VBX", "VBY")
+_PROMPT_LETTERS = 25
+"""So many letters of a prompt, half of them, are a prompt."""
+_TYPED = frozenset("0123456789.,-+EOILQ?")
+_SLOT_COMMAND = re.compile(r"PR#[0-9]")
+"""What line 610 prints where no DOS takes it for a command."""
 
 
 @dataclass(frozen=True)
@@ -86,12 +78,6 @@ class Reading:
         """Whether it is a number beyond doubt, character for character."""
         return numerals.clean(self.region) is not None
 
-    @property
-    def typed(self) -> bool:
-        """Whether a person may have typed it so: in one piece, with O for 0 and l for 1 at worst"""
-        joined = not any(glyph.gap for glyph in self.region[1:])
-        return joined and all(glyph.char in _TYPED for glyph in self.region)
-
 
 class Piece(NamedTuple):
     """Text that belongs to no field and no label: where it is (line and column from 1, offsets),
@@ -107,55 +93,42 @@ class Piece(NamedTuple):
     whole: bool = False
 
 
-class Remark(NamedTuple):
-    """Something about the text worth telling: a field's name or "", what, and where."""
-
-    name: str
-    message: str
-    line: int
-    column: int
-
-    def __str__(self) -> str:
-        subject = f"{self.name}: " if self.name else ""
-        return f"line {self.line}, column {self.column}: {subject}{self.message}"
-
-
 @dataclass
 class Printout:
     """One printout as read.
 
-    ``line``, ``column``, ``start``, ``stop``: where it stands in the text. ``fields``: name ->
-    reading, for every number found; ``replies``: the velocities typed at the prompts, where the
-    transcript shows them; ``angles``: ways to cut the row of five angles with what each costs, the
-    likeliest first, where blanks alone do not tell, and ``angle_row`` its glyphs then; ``ending``:
-    ``ZERO DETERMINANT`` or an Applesoft error as printed, with its line; ``ended``: whether
-    anything of the last row of asterisks is there; ``spin_line``: whether anything of the final
-    spins is; ``left_over``: text that belongs nowhere; ``remarks``: what could not be read, and
-    where; ``labels``: how each number is named; ``notes``: what was normalised or passed over;
-    ``unread``: why the text was not read to its end; ``misread_letters``: how many letters of
-    labels and asterisks were read as others; ``taken``: the
-    lines that are its own; ``page``: the whole text as glyphs.
+    ``line``, ``column``, ``start``, ``stop``: where it stands in the text; ``page``: that text as
+    glyphs. ``fields``: name -> reading, for every number found; ``replies``: the velocities typed
+    at the prompts, where the transcript shows them; ``angles``: ways to cut the row of five angles
+    with what each costs, the likeliest first, where blanks alone do not tell, and ``angle_row`` its
+    glyphs then; ``ending``: ``ZERO DETERMINANT`` or an Applesoft error as printed, with its line;
+    ``ended``: whether anything of the last row of asterisks is there; ``has_final_spins``: whether
+    the final WA, WB line is, read or not: then M = N; ``left_over``: text that belongs nowhere;
+    ``remarks``: what could not be read, and where; ``labels``: how each number is named; ``notes``:
+    what was normalised or passed over; ``unread``: why the text was not read to its end;
+    ``misread_letters``: how many letters of labels and asterisks were read as others; ``taken``:
+    the lines that are its own.
     """
 
     line: int
     column: int
-    start: int = 0
-    stop: int = 0
+    start: int
+    stop: int
+    page: Page = field(repr=False)
     fields: dict[str, Reading] = field(default_factory=dict)
     replies: dict[str, Reading] = field(default_factory=dict)
     angles: list[tuple[tuple[str, ...], float]] = field(default_factory=list)
     angle_row: Region = ()
     ending: str | None = None
     ended: bool = False
-    spin_line: bool = False
+    has_final_spins: bool = False
     left_over: list[Piece] = field(default_factory=list)
-    remarks: list[Remark] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
     labels: list[LabelCheck] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     unread: str = ""
-    taken: frozenset[int] = field(default=frozenset(), repr=False)
     misread_letters: int = 0
-    page: Page | None = field(default=None, repr=False)
+    taken: set[int] = field(default_factory=set, repr=False)
 
     @property
     def mislabelled(self) -> list[LabelCheck]:
@@ -167,7 +140,7 @@ class Printout:
         """How many marks of an optical reader its numbers bear: foreign glyphs and blanks within
         them, specks beside them."""
         specks = (one.beside and not one.whole and len(one.text) <= 3 for one in self.left_over)
-        return sum(not reading.typed for reading in self.fields.values()) + sum(specks)
+        return sum(map(_damaged, self.fields.values())) + sum(specks)
 
     @property
     def machine_read(self) -> bool:
@@ -182,11 +155,6 @@ class Printout:
         return self.misread_letters + self.marks >= BADLY_READ
 
     @property
-    def has_final_spins(self) -> bool:
-        """Whether any of the final WA, WB line is there, read or not: then M = N."""
-        return self.spin_line or any(name in self.fields for name in FINAL_SPINS)
-
-    @property
     def fragment(self) -> bool:
         """Whether it holds too few numbers to be called a printout."""
         return len(self.fields) < FRAGMENT
@@ -194,20 +162,26 @@ class Printout:
     @property
     def fragment_of_run(self) -> bool:
         """Whether nothing of the results is there, and no message that says why."""
-        return self.ending is None and not any(name in self.fields for name in _RESULTS)
+        return self.ending is None and self.fields.keys().isdisjoint(("VAX", "VAY", "VBX", "VBY"))
 
     def place(self, offset: int) -> tuple[int, int]:
         """Line and column, counted from 1, of an offset in the text."""
-        return self.page.place(offset) if self.page else (self.line, self.column)
+        return self.page.place(offset)
 
     def reading(self, region: Region) -> Reading | None:
         """A part of the row of angles as a number; None when it is none."""
-        return _reading(self.page, region) if self.page else None
+        return _reading(self.page, region)
 
     def text(self, name: str) -> str | None:
         """The text of a field, None when it was not read."""
         reading = self.fields.get(name)
         return reading.text if reading else None
+
+
+def _damaged(reading: Reading) -> bool:
+    """Whether nobody types a number so: in pieces, or with more than O for 0 and l for 1."""
+    parted = any(glyph.gap for glyph in reading.region[1:])
+    return parted or not all(glyph.char in _TYPED for glyph in reading.region)
 
 
 def read_bytes(data: bytes, where: str) -> list[Printout]:
@@ -231,14 +205,9 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
         reason = f"what follows line {line}, column {column} was not read: there is too much of it"
-        if not shown:
-            raise UserError(f"no printout of the program in what was read of it; {reason}", where)
     if not shown:
-        raise UserError(
-            "no printout of the program in it; expected text with labels such as "
-            "MA= ... MB= ... VAX= ... VAY= ...",
-            where,
-        )
+        expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
+        raise UserError(f"no printout of the program in it; {reason or expected}", where)
     shown[-1].unread = reason
     _keep_other_lines(page, shown)
     shown[0].notes += _left_out(text, page.text)
@@ -285,7 +254,7 @@ def _keep_text(
 ) -> None:
     """A stretch of text as left over, unless nothing shows there."""
     text = page.text[start:stop] if start < stop else ""
-    printed = "".join(map(plain_glyphs, "".join(text.split())[:_SHOWN]))
+    printed = "".join(map(plain_glyphs, "".join(text.split())))
     if printed and not _SLOT_COMMAND.fullmatch(printed):
         begin = start + len(text) - len(text.lstrip())
         place = page.place(begin)
@@ -316,42 +285,21 @@ def _left_out(text: str, unwrapped: str) -> list[str]:
     return [f"{what}{lines[0]}"] if lines else []
 
 
-# --- where a run ended ---------------------------------------------------------------------------
-
-_ALIKE = {"I": "[IL1|!]", "L": "[IL1|!]", "O": "[O0Q]", "S": "[S5]", "B": "[B8]", "Z": "[Z2]"}
-_DIGITS = str.maketrans("OQIL|!", "001111")
-
-
-def _loosely(words: str) -> str:
-    """A pattern for printed words without their blanks, letters that look like digits either way"""
-    alike = {**_ALIKE, "'": "['’`]?", " ": ""}
-    return "".join(alike.get(letter, re.escape(letter)) for letter in words)
-
-
-_MESSAGES = {f"?{message} ERROR": _loosely(message) for message in CODES}
-_ENDING = re.compile(
-    rf"\??(?P<message>{'|'.join(_MESSAGES.values())})"
-    r"ERR[O0Q]R(?:[IL1|!]N(?P<at>[0-9OQIL|!]{1,5}))?"
-    rf"|(?P<zero>{_loosely(ZERO_DETERMINANT)})"
-)
-
-
-def _ending(match: re.Match[str]) -> str:
-    """An error message as Applesoft prints it, or ZERO DETERMINANT."""
-    if match["zero"]:
-        return ZERO_DETERMINANT
-    message = next(one for one, way in _MESSAGES.items() if re.fullmatch(way, match["message"]))
-    return message + (f" IN {match['at'].translate(_DIGITS)}" if match["at"] else "")
-
-
 # --- printouts -----------------------------------------------------------------------------------
+
+_ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
+_DIGITS = str.maketrans("OQIL|!", "001111")
+_MESSAGES = {f"{one}ERROR": f"?{one} ERROR" for one in CODES} | {ZERO_DETERMINANT: ZERO_DETERMINANT}
+_ENDINGS = {re.sub("[ ']", "", said).translate(_ALIKE): shown for said, shown in _MESSAGES.items()}
+_ENDING = re.compile(r"\??(" + "|".join(map("'?".join, _ENDINGS)) + ")")
+_IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
 
 
 def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
     """The printouts of each stretch of text up to where a run ended early."""
     text = letters(page.glyphs)
     start = 0
-    for match in [*_ENDING.finditer(text), None]:
+    for match in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
         if budget.spent:
             return
         stop = match.start() if match else len(text)
@@ -364,14 +312,16 @@ def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
         if budget.stopped is not None:
             budget.stopped += start
         shown = [printout for one in aligned if (printout := _Reader(page, start, one).read())]
-        if match:
-            if not shown:
-                continue
-            shown[-1].ending = _ending(match)
-            begin, shown[-1].stop = page.span(match.start(), match.end())
-            shown[-1].taken |= {page.place(begin)[0], page.place(shown[-1].stop - 1)[0]}
-            start = match.end()
-        yield shown
+        if match and shown:
+            last, start = shown[-1], match.end()
+            last.ending = _ENDINGS[match[1].replace("'", "")]
+            if last.ending != ZERO_DETERMINANT and (line := _IN_LINE.match(text, start)):
+                last.ending += f" IN {line[1].translate(_DIGITS)}"
+                start = line.end()
+            begin, last.stop = page.span(match.start(), start)
+            last.taken |= {page.place(begin)[0], page.place(last.stop - 1)[0]}
+        if shown or not match:
+            yield shown
 
 
 def _notes(glyphs: Region, found: Sequence[Aligned]) -> set[int]:
@@ -381,7 +331,7 @@ def _notes(glyphs: Region, found: Sequence[Aligned]) -> set[int]:
     numbers: set[int] = set()
     for one in found:
         for place, state in enumerate(one.states, one.start):
-            if template().letters.get(state) == glyphs[place].char:
+            if letter_of(state) == glyphs[place].char:
                 own.add(place)
         for name, span in one.slots.items():
             numbers.update(range(*span) if name in FIELDS else ())
@@ -403,128 +353,100 @@ class _Reader:
     """Reads one printout from what its glyphs are taken for."""
 
     def __init__(self, page: Page, base: int, aligned: Aligned) -> None:
-        self._page = page
-        self._glyphs = page.glyphs
-        self._start = base + aligned.start
-        self._states = aligned.states
+        self._page, self._glyphs = page, page.glyphs
+        self._states = dict(enumerate(aligned.states, base + aligned.start))
         self._slots = {name: (base + i, base + j) for name, (i, j) in aligned.slots.items()}
-        self._worded: set[int] = set()
-        self._part_labels()
-        self._part_row()
-        start, stop = page.span(self._start, base + aligned.stop)
-        self._printout = Printout(*page.place(start), start, stop, page=page)
-        if self._cropped():
-            first = [name for name, (at, _) in self._slots.items() if self._begins_line(at)]
-            for name in first:
-                self._remark(name, "begins where the margin is cut off", self._slots.pop(name)[0])
-
-    def _state(self, index: int) -> int:
-        """The state of a glyph; that outside for one which is none of the printout's."""
-        at = index - self._start
-        return self._states[at] if 0 <= at < len(self._states) else 0
-
-    def _letter(self, index: int) -> str:
-        """The letter of a label that a glyph is taken for, "" where it is taken for none."""
-        return template().letters.get(self._state(index), "")
-
-    def _line(self, index: int) -> int:
-        """The line of the program's page that a glyph belongs to."""
-        return template().line[self._state(index)]
-
-    def _begins_line(self, index: int) -> bool:
-        return self._glyphs[index].gap is Gap.LINE
-
-    def _indices(self) -> range:
-        return range(self._start, self._start + len(self._states))
-
-    def _part_labels(self) -> None:
-        """A word that stands apart from the number before it, and is joined to the next by its
-        equals sign, is no part of either."""
-        for first, sign in words_before(self._page, self._slots).values():
-            self._worded.update(range(first, sign))
+        self._words: set[int] = set()
+        # a word that stands apart from the number before it, and is joined to the next by its
+        # equals sign, is no part of either
+        for first, sign in words_before(page, self._slots).values():
+            self._words.update(range(first, sign))
             for name, (start, stop) in self._slots.items():
                 if start < first < stop and self._glyphs[first].gap:
                     self._slots[name] = (start, first)
                 elif first <= start <= sign < stop - 1:
                     self._slots[name] = (sign + 1, stop)
+        start, stop = page.span(base + aligned.start, base + aligned.stop)
+        self._shown = Printout(*page.place(start), start, stop, page)
 
-    def _cropped(self) -> bool:
-        """Whether most lines that begin with a label lack its first letter, three at least."""
-        letters_of = template().letters
-        lost = [
-            (before := self._state(index) - 1) in letters_of and before not in self._states
-            for index in self._indices()
-            if self._begins_line(index) and self._letter(index) not in ("", "*")
-        ]
-        return sum(lost) > max(2, len(lost) / 2)
+    def _letter(self, index: int) -> str:
+        """The letter of a label that a glyph is taken for, "" where it is taken for none."""
+        return letter_of(self._states.get(index, 0))
 
-    def _part_row(self) -> None:
-        """A line of five clean numbers is the row of angles; what stands below it is none of it."""
-        spans = [self._slots[name] for name in ANGLES if name in self._slots]
-        if not spans:
-            return
-        start, stop = min(spans)[0], max(spans)[1]
-        stop = next((at for at in range(start + 1, stop) if self._begins_line(at)), stop)
-        starts = [start, *(at for at in range(start + 1, stop) if self._glyphs[at].gap)]
-        parts = list(zip(starts, [*starts[1:], stop], strict=True))
-        if len(parts) == len(ANGLES) and all(numerals.clean(self._glyphs[i:j]) for i, j in parts):
-            self._slots.update(zip(ANGLES, parts, strict=True))
-            for index in range(stop, self._indices().stop):
-                if self._line(index) == LABELLED_ANGLES:
-                    self._states[index - self._start] = int(template().between[LABELLED_ANGLES])
+    def _line(self, index: int) -> int:
+        """The line of the program's page that a glyph belongs to."""
+        return STATES[self._states.get(index, 0)].line
 
     def read(self) -> Printout | None:
         """The printout; None when there is nothing of one."""
-        shown = self._printout
+        shown = self._shown
+        self._crop()
         for name, (start, stop) in self._slots.items():
             if name not in (REPLY_A, REPLY_B):
                 self._read_number(name, start, stop)
         if not self._worth_telling():
             return None
-        shown.spin_line = self._letters_read((SPINS,)) >= 2
-        for name in () if shown.spin_line else FINAL_SPINS:  # a footer, a page number
+        shown.has_final_spins = self._letters_read((SPINS,)) >= 2
+        for name in () if shown.has_final_spins else FINAL_SPINS:  # a footer, a page number
             shown.fields.pop(name, None)
             self._slots.pop(name, None)
-        for name in (REPLY_A, REPLY_B):
+        for side, name in (("A", REPLY_A), ("B", REPLY_B)):
             if name in self._slots:
-                self._read_reply(name, self._slots[name][0])
-        if any(name in self._slots for name in ANGLES):
-            self._read_angles()
-        shown.ended = any(self._line(index) == STARS[1] for index in self._indices())
+                self._read_reply(REPLIES[side], self._slots[name][0])
+        self._read_angles()
+        shown.ended = any(self._line(index) == STARS[1] for index in self._states)
         self._keep_left_over()
         read = {name: self._slots[name] for name in shown.fields if name in self._slots}
         marks = shown.marks + self._misread("*") if len(shown.fields) >= _PART else READERS
-        shown.labels = label_checks(self._page, self._start, self._states, read, marks)
+        found = [
+            (name, text, [at for at, state in self._states.items() if state in own])
+            for name, text, own in LABELS
+        ]
+        shown.labels = label_checks(self._page, found, read, marks)
         wrong = {one.name for one in shown.mislabelled}
         shown.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
         return shown
+
+    def _crop(self) -> None:
+        """Where most lines that begin with a label lack its first letter, three at least, the
+        margin is cut off, and what a line begins with is not to be relied on."""
+        seen = set(self._states.values())
+        first = [index for index in self._states if self._glyphs[index].gap is Gap.LINE]
+        labels = [index for index in first if self._letter(index) not in ("", "*")]
+        before = [self._states[index] - 1 for index in labels]
+        lost = sum(bool(letter_of(state)) and state not in seen for state in before)
+        if lost > max(2, len(labels) / 2):
+            for name, (start, _) in [*self._slots.items()]:
+                if start in first:
+                    self._remark(name, "begins where the margin is cut off", start)
+                    del self._slots[name]
 
     def _letters_read(self, lines: Sequence[int] = ()) -> int:
         """How many letters of labels were read as they are printed, in some lines or all."""
         return sum(
             self._glyphs[index].char == self._letter(index)
-            for index in self._indices()
+            for index in self._states
             if not lines or self._line(index) in lines
         )
 
     def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
         """How many of some letters of labels, but of wrong ones, and asterisks were read as other
         letters or figures."""
-        others = {state for one in template().labels if one.name in wrong for state in one.states}
+        others = {state for one in LABELS if one.name in wrong for state in one.states}
         return sum(
             self._glyphs[index].char != letter and self._glyphs[index].char.isalnum()
-            for index in self._indices()
-            if self._state(index) not in (*others, self._state(index - 1))
-            and (letter := self._letter(index)) and letter in letters_of
+            for index, state in self._states.items()
+            if state not in others and state != self._states.get(index - 1)
+            and (letter := letter_of(state)) and letter in letters_of
         )  # fmt: skip
 
     def _worth_telling(self) -> bool:
         """Whether a label and its number, or a prompt, was read."""
         if self._letters_read((0, 1)) >= _PROMPT_LETTERS:
             return True
-        shown = self._printout.fields
+        shown = self._shown.fields
         numbers = {name for name, one in shown.items() if any(map(str.isdigit, one.text))}
-        if len(numbers & set(ANGLES)) < _MOST_ANGLES:
+        if not numbers.issuperset(ANGLES[:-1]):
             numbers -= set(ANGLES)
         labelled = sum(map(self._labelled, numbers))
         read = self._letters_read()
@@ -540,87 +462,80 @@ class _Reader:
         return name in ANGLES
 
     def _remark(self, name: str, message: str, index: int) -> None:
-        place = self._page.place(self._page.span(index, index + 1)[0])
-        self._printout.remarks.append(Remark(name, message, *place))
+        line, column = self._page.place(self._glyphs[index].offset)
+        self._shown.remarks.append(f"line {line}, column {column}: {name}: {message}")
 
     def _read_number(self, name: str, start: int, stop: int) -> None:
         signed = self._letter(start - 1) == "=" == self._glyphs[start - 1].char
         region = self._glyphs[start:stop]
         reading = _reading(self._page, region, not signed and name not in ANGLES)
         if reading is None:
-            shown = self._page.shown(start, stop)
-            self._remark(name, f"{_quoted(shown)}: expected a number", start)
+            shown = _quoted(self._page.shown(start, stop))
+            self._remark(name, f"{shown}: expected a number", start)
         else:
-            self._printout.fields[name] = reading
+            self._shown.fields[name] = reading
 
     def _read_angles(self) -> None:
-        names = [name for name in ANGLES if name in self._slots]
-        shown = self._printout
+        shown = self._shown
+        places = [self._slots[name] for name in ANGLES if name in self._slots]
         clean = all(name in shown.fields and shown.fields[name].clean for name in ANGLES)
-        if clean and all(self._glyphs[self._slots[name][0]].gap for name in ANGLES[1:]):
+        if not places or (clean and all(self._glyphs[start].gap for start, _ in places[1:])):
             return
-        start = min(self._slots[name][0] for name in names)
-        stop = max(self._slots[name][1] for name in names)
+        start, stop = min(places)[0], max(stop for _, stop in places)
         shown.angle_row = self._glyphs[start:stop]
-        shown.angles = cut_in_five(shown.angle_row)
-        if not shown.angles and len(names) < len(ANGLES):
+        shown.angles = numerals.cut_in_five(shown.angle_row)
+        if not shown.angles and len(places) < len(ANGLES):
             what = _quoted(self._page.shown(start, stop))
             self._remark("PA", f"{what}: expected five angles, PA PB TA TB GA", start)
 
-    def _read_reply(self, name: str, start: int) -> None:
+    def _read_reply(self, names: Sequence[str], start: int) -> None:
         """The three numbers typed at a prompt, after any that INPUT refused."""
         stop, line = start, self._line(start)
-        while self._state(stop) and (not self._letter(stop) or self._line(stop) == line):
+        while self._states.get(stop) and (not self._letter(stop) or self._line(stop) == line):
             stop += 1
-        names = REPLIES["A" if name == REPLY_A else "B"]
         parts = _reply_parts(self._glyphs[start:stop])
-        printed = self._printout.text(names[0])
-        before = self._glyphs[start - 1].char != "?" and _before_reply(parts[0], printed)
-        if before:
+        before = _before_reply(parts[0], self._shown.text(names[0]))
+        if before and self._glyphs[start - 1].char != "?":
             what = _quoted(letters(parts[0][:before]))
-            self._remark("", f"reply: {what} before the first number", start)
-            parts = [parts[0][before:], *parts[1:]]
+            self._remark("reply", f"{what} before the first number", start)
+            parts[0] = parts[0][before:]
         if len(parts) > len(names) and all(map(numerals.clean, parts[:3])):
-            extra = "".join(map(letters, parts[3:]))
-            self._remark("", f"reply: {_quoted(extra)} after the third number", start)
-            parts = parts[: len(names)]
-        if len(parts) != len(names):
-            if parts != [()]:
-                shown = _quoted(self._page.shown(start, stop))
-                self._remark("", f"reply {shown} is not three numbers", start)
-            return
-        for field_name, region in zip(names, parts, strict=True):
-            reading = _reading(self._page, region)
-            if reading is not None and ILLEGIBLE not in reading.text:
-                self._printout.replies[field_name] = reading
+            extra = _quoted("".join(map(letters, parts[3:])))
+            self._remark("reply", f"{extra} after the third number", start)
+            parts = parts[:3]
+        if len(parts) == len(names):
+            for name, region in zip(names, parts, strict=True):
+                reading = _reading(self._page, region)
+                if reading is not None and ILLEGIBLE not in reading.text:
+                    self._shown.replies[name] = reading
+        elif parts != [()]:
+            what = _quoted(self._page.shown(start, stop))
+            self._remark("reply", f"{what} is not three numbers", start)
 
     def _keep_left_over(self) -> None:
         """Runs of glyphs between lines or put into labels, on the lines of the page; and which
         lines those are (`_keep_other_lines` keeps the others)."""
         lines: dict[int, list[int]] = {}
-        for index in self._indices():
+        for index in self._states:
             lines.setdefault(self._page.place(self._glyphs[index].offset)[0], []).append(index)
         numbers = {index for span in self._slots.values() for index in range(*span)}
-        taken = set()
         for number, line in lines.items():
             numbered = not numbers.isdisjoint(line)
             if numbered or self._is_of_the_page(number, line):
-                taken.add(number)
-                loose = [at for at in line if at not in self._worded | numbers and self._loose(at)]
-                for first, last in _runs(loose):
-                    span = self._page.span(first, last + 1)
-                    _keep_text(self._page, self._printout, *span, numbered)
-        self._printout.taken = frozenset(taken)
+                self._shown.taken.add(number)
+                loose = [at for at in line if at not in self._words | numbers and self._loose(at)]
+                for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
+                    run = [index for _, index in pairs]
+                    span = self._page.span(run[0], run[-1] + 1)
+                    _keep_text(self._page, self._shown, *span, numbered)
 
     def _loose(self, index: int) -> bool:
         """Whether a glyph that is part of no number belongs to no label."""
-        state, char = self._state(index), self._glyphs[index].char
-        of_prompt = self._line(index) < PROMPTS
-        letter = self._letter(index)
+        state, char = self._states[index], self._glyphs[index].char
+        letter = letter_of(state)
         if not letter:
-            return not (of_prompt and state in template().slots)
-        again = state == self._state(index - 1) and not (of_prompt and char in "_{}")
-        return again or (letter in _NEXT_TO_NUMBERS and char.isdigit())
+            return STATES[state].line >= PROMPTS or STATES[state].kind != "number"
+        return state == self._states.get(index - 1) or (letter in "%()=" and char.isdigit())
 
     def _is_of_the_page(self, number: int, line: Sequence[int]) -> bool:
         """Whether a line on which no number stands is one of the program's: half of it are letters
@@ -628,17 +543,7 @@ class _Reader:
         exact = sum(self._letter(index) == self._glyphs[index].char for index in line)
         stars = all(self._line(index) in STARS for index in line)
         count = len(Page(self._page.text.split("\n")[number - 1]).glyphs)
-        return 2 * exact >= count or (stars and count <= _MOST_STARS)
-
-
-def _runs(indices: Sequence[int]) -> Iterator[tuple[int, int]]:
-    """The first and last of each run of numbers that follow one another."""
-    first = None
-    for at, index in enumerate(indices):
-        first = index if first is None else first
-        if indices[at + 1 : at + 2] != [index + 1]:
-            yield first, index
-            first = None
+        return 2 * exact >= count or (stars and count <= len("*****") + 2)
 
 
 def _reading(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
@@ -648,7 +553,7 @@ def _reading(page: Page, region: Region, sign_free: bool = False) -> Reading | N
     begin, end = region[0].offset, region[-1].offset + 1
     text = numerals.clean(region)
     if text is None:
-        ways = numerals.candidates(region, 6, sign_free)
+        ways = numerals.candidates(region, 1, sign_free)
         text = _illegibly(region) if not ways or _foreign_inside(region) else ways[0][0]
     if text is None:
         return None
@@ -701,7 +606,7 @@ def _before_reply(first: Region, printed: str | None) -> int:
     if value is None:
         return 0
     text = letters(first)
-    places = range(1, min(_OF_PROMPT, len(first) - 1) + 1)
+    places = range(1, min(len("Wa ?"), len(first)))
     return next((at for at in places if numerals.value_of(text[at:]) == value), 0)
 
 
