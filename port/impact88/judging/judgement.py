@@ -11,7 +11,8 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from ..fields import ANGLES, FIELDS, FINAL_SPINS
-from ..reading.numerals import Doubt, Match, Region, Spot, compare, cut_as
+from ..reading.glyphs import Region
+from ..reading.numerals import Doubt, Match, Spot, compare, cut_as
 from ..reading.printout import Printout, Reading
 from ..recovery.recovered import Recovered, reply_ways, without_mark
 from ..recovery.typedtext import stored_and_printed

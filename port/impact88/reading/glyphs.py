@@ -210,7 +210,7 @@ COSTS = {
     "reply lost": 20,
     "line": 200,
     "line may be missing": 30,
-    "begins": 220,
+    "begins": 300,
     "begins with angles": 600,
     "ends": 80,
     "angle without gap": 220,

@@ -4,7 +4,7 @@
 digit that is another digit contradicts, whatever it looks like; a glyph that stands in no number
 (a letter, a speck, a blank) is doubt. `candidates` are the texts that glyphs may have been, those
 that need least believing first. `cut_in_five` and `cut_as` do the same for the row of angles, which
-only blanks part. All price a glyph by the same channel.
+only blanks part.
 """
 
 import re
@@ -12,13 +12,11 @@ from collections.abc import Callable, Iterable, Iterator
 from decimal import Decimal, InvalidOperation
 from enum import StrEnum
 from functools import cache, lru_cache
+from itertools import product
 from typing import NamedTuple
 
 from ..applesoft.decimaltext import lay_out
 from .glyphs import ILLEGIBLE, NUMERIC, Gap, Region, letters, printed_for
-
-LONGEST = 64
-"""Glyphs of a number's place that are looked at; what follows is left over."""
 
 
 class Doubt(StrEnum):
@@ -57,7 +55,7 @@ class Match(NamedTuple):
         return any(spot.doubt is Doubt.CONTRADICTS for spot in self.spots)
 
 
-_Key = tuple[tuple[str, Gap], ...]
+Glyphs = tuple[tuple[str, Gap], ...]
 """Glyphs and the gaps before them."""
 
 _PRINTABLE = re.compile(r"-?(?:0|[1-9][0-9]*|(?=[.]))(?:[.][0-9]*[1-9])?(?:E[+-][0-9]{2})?")
@@ -67,10 +65,9 @@ _CONTRADICTION, _FOREIGN, _MARK, _SPECK, _SLIGHT = 3.0, 1.0, 0.7, 0.4, 0.25
 """What a glyph costs that is another figure; that no figure was read as; that marks the illegible,
 or stands within a number; a speck beside one; a blank, a zero, a sign nobody prints but people
 write. Only their order matters: each is more than one of the next and less than the one before."""
-_WIDEST = 400
-"""Powers of ten, either way, of the numbers that are taken for some."""
-_DIGITS = 28
-"""Their digits at most; so many the arithmetic of decimals keeps."""
+LONGEST = 64
+"""Glyphs of a number's place that are looked at, or of the row of angles; what follows is left
+over."""
 _SPECKS = frozenset(".,:;'`|_~-\"“”’‘·•!*°^«»<>=/\\")
 _FULL = frozenset("@©®ØOQDCUZSBGRPYAH$&")
 """Look-alikes of digits that are as large as one."""
@@ -87,13 +84,13 @@ def is_number(text: str) -> bool:
 
 
 def value_of(text: str) -> Decimal | None:
-    """The number a text is; None when it is none, or one that no computer of the time could print
-    and no later step could add to another."""
+    """The number a text is; None when it is none, or one so large, small or long that no later step
+    could add it to another."""
     try:
         value = Decimal(text) if len(text) <= LONGEST and is_number(text) else None
     except InvalidOperation:
         return None
-    if value is None or abs(value.adjusted()) > _WIDEST or len(value.as_tuple().digits) > _DIGITS:
+    if value is None or abs(value.adjusted()) > 400 or len(value.as_tuple().digits) > 28:
         return None
     return value
 
@@ -102,14 +99,11 @@ def as_printed(text: str) -> str | None:
     """A number in another form (``0.911``, ``+3.449``, ``143.50``, ``0.005``) as Applesoft writes
     it; None when it needs more digits than Applesoft prints."""
     value = value_of(text)
-    if value is None:
-        return None
     if not value:
-        return "0"
-    value = value.normalize()
-    digits = "".join(map(str, value.as_tuple().digits))
-    sign = "-" if value < 0 else ""
-    return lay_out(sign, digits.ljust(9, "0"), value.adjusted() - 8) if len(digits) <= 9 else None
+        return None if value is None else "0"
+    sign, figures, _ = value.normalize().as_tuple()
+    digits = "".join(map(str, figures)).ljust(9, "0")
+    return lay_out("-" * sign, digits, value.adjusted() - 8) if len(digits) == 9 else None
 
 
 def clean(region: Region) -> str | None:
@@ -118,7 +112,7 @@ def clean(region: Region) -> str | None:
     return text if is_number(text) and not any(glyph.gap for glyph in region[1:]) else None
 
 
-def _key(region: Region) -> _Key:
+def _glyphs(region: Region) -> Glyphs:
     return tuple(glyph[:2] for glyph in region[:LONGEST])
 
 
@@ -138,22 +132,20 @@ def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = F
         return Match(_SPECK, (Spot(0, text, printed, Doubt.LOOK_ALIKE),), 0)
     if other is not None and value_of(other) == value_of(printed):
         return Match(_SLIGHT, (Spot(0, text, printed, Doubt.RETYPED),), len(printed))
-    return _compared(_key(region), printed, cut, sign_free)
+    return _compared(_glyphs(region), printed, cut, sign_free)
 
 
 @lru_cache(maxsize=20000)
-def _compared(region: _Key, printed: str, cut: bool, sign_free: bool) -> Match:
+def _compared(region: Glyphs, printed: str, cut: bool, sign_free: bool) -> Match:
     """The cheapest explanation, by dynamic programming over glyphs and printed characters."""
     rows, columns = len(region), len(printed)
-    best: dict[tuple[int, int], float] = {(0, 0): 0.0}
+    least: dict[tuple[int, int], float] = {(0, 0): 0.0}
     back: dict[tuple[int, int], tuple[int, int, Doubt | None]] = {}
-    for i in range(rows + 1):
-        for j in range(columns + 1):
-            least = best[i, j]
-            for di, dj, cost, doubt in _steps(region, i, printed, j, cut, sign_free):
-                place = i + di, j + dj
-                if place not in best or least + cost < best[place]:
-                    best[place], back[place] = least + cost, (di, dj, doubt)
+    for i, j in product(range(rows + 1), range(columns + 1)):
+        for di, dj, cost, doubt in _steps(region, i, printed, j, cut, sign_free):
+            place = i + di, j + dj
+            if place not in least or least[i, j] + cost < least[place]:
+                least[place], back[place] = least[i, j] + cost, (di, dj, doubt)
     spots = []
     exact = 0
     i, j = rows, columns
@@ -164,11 +156,11 @@ def _compared(region: _Key, printed: str, cut: bool, sign_free: bool) -> Match:
         exact += read == there
         if doubt is not None:
             spots.append(Spot(i, read, there, doubt))
-    return Match(best[rows, columns], tuple(reversed(spots)), exact)
+    return Match(least[rows, columns], tuple(reversed(spots)), exact)
 
 
 def _steps(
-    region: _Key, i: int, printed: str, j: int, cut: bool, sign_free: bool
+    region: Glyphs, i: int, printed: str, j: int, cut: bool, sign_free: bool
 ) -> Iterator[tuple[int, int, float, Doubt | None]]:
     """The ways on from a place: a glyph for a character, a glyph too many, a character lost."""
     if i < len(region):
@@ -182,23 +174,19 @@ def _steps(
         yield 0, 1, *_lost(region, i, printed, j, cut)
 
 
-def _substitution(region: _Key, i: int, printed: str) -> tuple[float, Doubt | None]:
+def _substitution(region: Glyphs, i: int, printed: str) -> tuple[float, Doubt | None]:
     """Reading one printed character as a glyph."""
     char = region[i][0]
     if char == printed:
         return 0.0, None
     if char == ILLEGIBLE:
         return _MARK, Doubt.ILLEGIBLE
-    if char == "E":
-        return _FOREIGN, Doubt.ILLEGIBLE
-    if (char == "+" and printed == "-") or (
-        char == "-" and printed == "." and _between_digits(region, i)
-    ):
+    if char + printed == "+-" or (char + printed == "-." and _between_digits(region, i)):
         return _MARK, Doubt.LOOK_ALIKE
-    if char in NUMERIC:
+    if char in NUMERIC and char != "E":
         return _CONTRADICTION, Doubt.CONTRADICTS
     likely = printed_for(char)
-    if printed in likely:
+    if printed in likely and char != "E":
         return likely[printed], Doubt.LOOK_ALIKE
     if printed in "-." and char in _SPECKS:
         return _MARK, Doubt.LOOK_ALIKE
@@ -207,58 +195,55 @@ def _substitution(region: _Key, i: int, printed: str) -> tuple[float, Doubt | No
     return _FOREIGN, Doubt.ILLEGIBLE
 
 
-def _extra(region: _Key, i: int, printed: str, j: int, sign_free: bool) -> tuple[float, Doubt]:
+def _extra(region: Glyphs, i: int, printed: str, j: int, sign_free: bool) -> tuple[float, Doubt]:
     """A glyph for which the program prints nothing."""
     char, gap = region[i]
     after, gap_after = region[i + 1] if i + 1 < len(region) else ("", Gap.NONE)
-    parted = (i and gap) or gap_after
-    if char == "0" and j < 2 and printed[j : j + 1] == "." == after and not gap_after:
-        return _SLIGHT, Doubt.RETYPED
-    if char == "+" and after and j == 0:
+    if (char == "+" and after and j == 0) or (
+        char == "0" and j < 2 and printed[j : j + 1] == "." == after and not gap_after
+    ):
         return _SLIGHT, Doubt.RETYPED
     if char.isdigit():
         if j == len(printed) and _in_a_note(region, i):
             return _SPECK, Doubt.LEFT_OVER
         return _CONTRADICTION, Doubt.CONTRADICTS
+    inside = 0 < j < len(printed)
     if char == "-":
-        if j == 0 and sign_free and i == 0:
+        twice = "-" in (after, region[i - 1][0] if i else "")
+        if i == j == 0 and sign_free:
             return _SLIGHT, Doubt.LEFT_OVER
-        twice = (after and after in "-~") or (i and region[i - 1][0] in "-~")
         if twice or j == len(printed):
             return _SPECK, Doubt.LEFT_OVER
-        if parted:
+        if (i and gap) or gap_after:
             return _FOREIGN, Doubt.LEFT_OVER
-        return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
-    inside = 0 < j < len(printed)
-    if (char == "." and _between_digits(region, i)) or (
-        char in _FULL and inside and not gap and after and not gap_after
-    ):
-        return _CONTRADICTION - 0.5, Doubt.CONTRADICTS
-    if char == ".":
-        return _SPECK, Doubt.LEFT_OVER
-    return (_MARK if inside or char not in _SPECKS else _SPECK), Doubt.LEFT_OVER
+        return _CONTRADICTION - _FOREIGN / 2, Doubt.CONTRADICTS
+    full = char in _FULL and inside and not gap and after and not gap_after
+    if full or (char == "." and _between_digits(region, i)):
+        return _CONTRADICTION - _FOREIGN / 2, Doubt.CONTRADICTS
+    speck = char == "." or (char in _SPECKS and not inside)
+    return _SPECK if speck else _MARK, Doubt.LEFT_OVER
 
 
-def _lost(region: _Key, i: int, printed: str, j: int, cut: bool) -> tuple[float, Doubt]:
+def _lost(region: Glyphs, i: int, printed: str, j: int, cut: bool) -> tuple[float, Doubt]:
     """A printed character for which there is no glyph."""
     if cut and i == len(region) and j:
         return _SLIGHT, Doubt.CUT
-    if printed[j] == "." and 0 < i < len(region) and region[i][1] is Gap.BLANK:
-        return _FOREIGN, Doubt.ILLEGIBLE
-    if any(part[0] not in NUMERIC or part[0] == "E" for part in region[max(i - 1, 0) : i + 1]):
+    parted = printed[j] == "." and 0 < i < len(region) and region[i][1] is Gap.BLANK
+    beside = region[max(i - 1, 0) : i + 1]
+    if parted or any(char not in NUMERIC or char == "E" for char, _ in beside):
         # a glyph beside it is foreign, and may be more than one character run together
         return _FOREIGN, Doubt.ILLEGIBLE
-    return _CONTRADICTION - (0.0 if printed[j].isdigit() else 0.4), Doubt.CONTRADICTS
+    return _CONTRADICTION - _SPECK * (not printed[j].isdigit()), Doubt.CONTRADICTS
 
 
-def _between_digits(region: _Key, i: int) -> bool:
+def _between_digits(region: Glyphs, i: int) -> bool:
     """Whether a glyph stands within figures, where no sign stands."""
     if not 0 < i < len(region) - 1 or region[i][1] or region[i + 1][1]:
         return False
     return region[i - 1][0].isdigit() and region[i + 1][0].isdigit()
 
 
-def _in_a_note(region: _Key, i: int) -> bool:
+def _in_a_note(region: Glyphs, i: int) -> bool:
     """Whether a digit after the number stands well apart from it: after a wide gap or a line's end,
     or after a word that is not a number."""
     words = [place for place in range(1, i + 1) if region[place][1]]
@@ -279,33 +264,30 @@ def _in_pieces(chars: str) -> bool:
 
 # --- what glyphs may have been -------------------------------------------------------------------
 
-_BEAM, _WILD_BEAM = 48, 480
+_BEAM = 48
+"""Ways to read a number that are followed up; ten times as many where glyphs may be anything."""
 _MOST_ILLEGIBLE = 4
 
 
 def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[tuple[str, float]]:
     """The printable texts that glyphs may have been, with what each costs, cheapest first."""
-    return list(_candidates(_key(region), most, sign_free))
+    return list(_candidates(_glyphs(region), most, sign_free))
 
 
 @lru_cache(maxsize=20000)
-def _candidates(region: _Key, most: int, sign_free: bool) -> tuple[tuple[str, float], ...]:
+def _candidates(region: Glyphs, most: int, sign_free: bool) -> tuple[tuple[str, float], ...]:
     chars = "".join(char for char, _ in region)
     strange = sum(char not in "0123456789OIL.-" for char in chars)
     if 3 < len(chars) < 2 * strange and not any(map(str.isdigit, chars)):
         return ()
     ways: dict[str, float] = {"": 0.0}
-    stopped: dict[str, float] = {}
+    costs: dict[str, float] = {}
     wild = 0
     for index, (char, gap) in enumerate(region):
-        following: dict[str, float] = {}
         foreign = (char not in NUMERIC and not printed_for(char)) or char == ILLEGIBLE
         wild += foreign
         may_be = _may_be(region, index, foreign and wild <= _MOST_ILLEGIBLE)
-        rest = sum(part[0].isdigit() for part in region[index:])
-        apart = 0.25 if gap is Gap.LINE else 0.5 if gap is Gap.WIDE else 1.0
-        stop = _SPECK * (len(region) - index) * 0.5 + apart * rest
-        skip = _MARK if index + 1 < len(region) else _SPECK
+        following: dict[str, float] = {}
         for text, cost in ways.items():
             parted = gap and text
             blank = _SLIGHT if parted else 0.0
@@ -316,47 +298,42 @@ def _candidates(region: _Key, most: int, sign_free: bool) -> tuple[tuple[str, fl
                 free = char == "-" and sign_free and index == 0
                 some.append((text, cost + (_SLIGHT if free else _MARK)))
             elif char not in NUMERIC and char != ILLEGIBLE:
-                some.append((text, cost + (skip if text else _SPECK)))
+                last = index + 1 == len(region) or not text
+                some.append((text, cost + (_SPECK if last else _MARK)))
             for one, price in some:
-                if price < following.get(one, 1e9):
-                    following[one] = price
-            if parted and cost + stop < stopped.get(text, 1e9):
-                stopped[text] = cost + stop
-        width = _WILD_BEAM if wild else _BEAM
-        ways = dict(sorted(following.items(), key=lambda way: way[1])[:width])
-    costs: dict[str, float] = {"0": _SPECK} if _in_pieces(chars) else {}
-    for text, cost in [*ways.items(), *stopped.items()]:
-        if not is_number(text):
-            continue
-        if not printable(text):
-            retyped = as_printed(text)
-            if retyped is None:
-                continue
-            text, cost = retyped, cost + _SLIGHT
-        if cost < costs.get(text, 1e9):
-            costs[text] = cost
-    return tuple(sorted(costs.items(), key=lambda way: way[1])[:most])
+                following[one] = min(price, following.get(one, price))
+            if parted:  # what follows is left over
+                figures = sum(part[0].isdigit() for part in region[index:])
+                apart = {Gap.LINE: _SLIGHT, Gap.WIDE: 2 * _SLIGHT}.get(gap, _FOREIGN)
+                stop = cost + _SPECK * (len(region) - index) / 2 + apart * figures
+                costs[text] = min(stop, costs.get(text, stop))
+        beam = 10 * _BEAM if wild else _BEAM
+        ways = dict(sorted(following.items(), key=lambda way: way[1])[:beam])
+    printed: dict[str, float] = {"0": _SPECK} if _in_pieces(chars) else {}
+    for text, cost in [*ways.items(), *costs.items()]:
+        shown = text if printable(text) else as_printed(text)
+        if shown and is_number(text):
+            price = cost + _SLIGHT * (shown != text)
+            printed[shown] = min(price, printed.get(shown, price))
+    return tuple(sorted(printed.items(), key=lambda way: way[1])[:most])
 
 
-def _may_be(region: _Key, index: int, wild: bool) -> list[tuple[str, float]]:
+def _may_be(region: Glyphs, index: int, wild: bool) -> list[tuple[str, float]]:
     """The characters a glyph may be."""
     char = region[index][0]
     if char in NUMERIC:
-        some = [(char, 0.0)]
-        if char == "+" or (char == "-" and _between_digits(region, index)):
-            some.append(("-" if char == "+" else ".", _MARK))
-        return some
+        other = "-" if char == "+" else "."
+        may = char == "+" or (char == "-" and _between_digits(region, index))
+        return [(char, 0.0), (other, _MARK)][: 1 + may]
     if wild:
         price = _MARK if char == ILLEGIBLE else _FOREIGN
-        return [(one, price) for one in ("-0123456789" if not index else ".0123456789")]
+        return [(one, price) for one in ".0123456789".replace(".", "." if index else "-")]
     return list(printed_for(char).items()) if char != ILLEGIBLE else []
 
 
 # --- the row of angles ---------------------------------------------------------------------------
 
-_LONGEST_ROW = 60
 _CUTS = 400
-_FEW_GAPS, _SHORT = 4, 16
 _SURPLUS = 12
 """Glyphs that a number's part of the row may hold beyond its own."""
 _NOT_THERE = 4.0
@@ -367,19 +344,18 @@ _UNCUT = {Gap.NONE: 0.0, Gap.BLANK: 0.8, Gap.WIDE: 1.6, Gap.LINE: 1.2}
 """What a gap inside a number costs more."""
 
 
-def cut_in_five(region: Region, most: int = _CUTS) -> list[tuple[tuple[str, ...], float]]:
-    """The ways to cut glyphs into five numbers, the likeliest first, with what each costs. Glyphs
-    beyond the `_LONGEST_ROW`th are not looked at."""
+def cut_in_five(region: Region) -> list[tuple[tuple[str, ...], float]]:
+    """The ways to cut glyphs into five numbers, the likeliest first, with what each costs."""
 
     @cache
     def piece(i: int, j: int) -> list[tuple[str, float]]:
         part = region[i:j]
         uncut = sum(_UNCUT[glyph.gap] for glyph in part[1:])
-        if uncut > 4 or not 0 < len(part) <= 24:
+        if uncut > _NOT_THERE or not 0 < len(part) <= 2 * _SURPLUS:
             return []
-        return [(text, cost + uncut) for text, cost in candidates(part, 14) if cost < 4]
+        return [(text, cost + uncut) for text, cost in candidates(part, 14) if cost < _NOT_THERE]
 
-    found = _cut(region[:_LONGEST_ROW], 5, lambda _, i, j: piece(i, j), most)
+    found = _cut(region[:LONGEST], 5, lambda _, i, j: piece(i, j), _CUTS)
     return [(tuple(text for text, _, _ in way), cost) for cost, way in found]
 
 
@@ -393,7 +369,7 @@ def cut_as(region: Region, printed: tuple[str, ...]) -> list[tuple[int, int]]:
             return []
         return [(text, _NOT_THERE if i == j else compare(region[i:j], text).cost)]
 
-    found = _cut(region[:_LONGEST_ROW], len(printed), piece, 1)
+    found = _cut(region[:LONGEST], len(printed), piece, 1)
     return [(i, j) for _, i, j in found[0][1]] if found else []
 
 
@@ -410,7 +386,7 @@ def _cut(
     ``piece``: what the n-th number may be from glyph to glyph, with what each costs."""
     length = len(region)
     places = [at for at in range(1, length) if region[at].gap or region[at].char in "-~"]
-    if len(places) < _FEW_GAPS or length <= _SHORT:
+    if len(places) < count - 1 or length <= 16:  # five numbers of three glyphs
         places = [*range(1, length)]
     ways: dict[int, list[_Way]] = {0: [(0.0, ())]}
     for number in range(count):
@@ -427,6 +403,3 @@ def _cut(
                     )
         ways = {place: sorted(set(some))[:most] for place, some in following.items()}
     return ways.get(length, [])
-
-
-__all__ = ["Doubt", "Match", "Region", "Spot", "candidates", "clean", "compare", "printable"]

@@ -119,6 +119,7 @@ def unwrapped(text: str) -> str:
         text = _RTF.sub(_blank, text)
     text = _ENTITY.sub(_entity, _MARKUP.sub(_blank, text))
     text = re.sub(r"\$(-|−)\$", r"  \1", text)
+    text = re.sub(r"(?<=[VW])_\{?|(?<=[VW]_\{[abxy])\}|(?<=[VW]_\{[ab][xy])\}", _blank, text)
     if len(_ROW_OF_TABLE.findall(text)) >= 3:
         text = re.sub(r"(?m)^\s*\|[-:| \t]+\|\s*$", _blank, text)
         text = _ROW_OF_TABLE.sub(lambda row: row.group().replace("|", " "), text)

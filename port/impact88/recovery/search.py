@@ -20,7 +20,7 @@ from ..doubles import double
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ..names import PIVOT, VELOCITIES
 from ..reading.numerals import candidates
-from ..reading.printout import Printout, Reading
+from ..reading.printout import Printout
 from . import replays
 from .typedtext import mu_turned, opposite, stored_and_printed, texts_that_print
 
@@ -33,25 +33,20 @@ MISMATCH = 3.0
 AGREES = 1.5
 """Below this a result counts as explained."""
 _UNREAD = 0.6
-"""What a result costs of which hardly anything was read."""
-_ABSENT = 0.7
-"""What it costs that the program prints a result the page does not have."""
+"""What a result costs of which hardly anything was read, or that the page does not have."""
 _OTHER_BITS = 0.02
 """What it costs that a number was typed with zeros that do not show, by the rank of that text."""
-_ENERGIES = 60
-"""Combinations of masses and velocities that are tried with the rest."""
-_BELIEF = 0.1
-"""Part of what they cost to believe that counts beside the printed energy."""
 _REPLAYED = 160
 _ROOM = 30_000
-"""Combinations of the rest tried with the likeliest of these."""
+"""Combinations of the rest tried with the likeliest of masses and velocities."""
 _CLOSELY = 5_000
 """Of more combinations, four results are looked at first; these are then looked at closely."""
-_VARIANTS = 3_000
-_FEW_DIFFER = 8
 KINETIC = frozenset(("MA", "MB", "IA", "IB", "UX", "UY", "WA", "VX", "VY", "WB"))
 """The inputs that enter the kinetic energy."""
 _TELLING = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "XAF", "YAF", "XBF", "YBF", "LOSS")
+_SPINS = (("IA", "WA"), ("IB", "WB"))
+_ENERGIES = 60
+"""Combinations of masses and velocities that are tried with the rest."""
 _ROUGH = 4e-7
 """Relative error allowed to the Apple's arithmetic in screening."""
 RESULTS = tuple(name for name in FIELDS if name not in INPUTS)
@@ -110,26 +105,24 @@ class Expected:
         unit = 0.0 if places is None else 10.0**-places
         for text, cost in self.texts.items():
             number = _number(text)
-            slack = _ROUGH * abs(number) + 0.05 * unit
-            if places is None:
-                slack = max(slack, 1e-9)
+            slack = _ROUGH * abs(number) + max(0.05 * unit, 1e-9)
             fits = (values >= number - slack) & (values < number + unit + slack)
-            costs = np.where(fits & (cost < costs), cost, costs)
+            costs = np.where(fits, np.minimum(costs, cost), costs)
         return costs
 
 
 def expected_results(shown: Printout) -> list[Expected]:
     """The results of a printout as read."""
-    return [_expected(name, shown.fields[name]) for name in RESULTS if name in shown.fields]
-
-
-def _expected(name: str, reading: Reading) -> Expected:
-    if reading.clean:
-        texts = {**dict(candidates(reading.region, 1)), reading.text: 0.0}
-        return Expected(name, texts, MISMATCH)
-    texts = dict(candidates(reading.region, 60, reading.sign_free))
-    digits = sum(glyph.char.isdigit() for glyph in reading.region)
-    return Expected(name, texts, MISMATCH if digits >= 2 else _UNREAD)
+    expected = []
+    for name in RESULTS:
+        if reading := shown.fields.get(name):
+            texts = dict(candidates(reading.region, 60, reading.sign_free))
+            digits = sum(glyph.char.isdigit() for glyph in reading.region)
+            if reading.clean:
+                texts = {**dict([*texts.items()][:1]), reading.text: 0.0}
+            legible = reading.clean or digits >= 2
+            expected.append(Expected(name, texts, MISMATCH if legible else _UNREAD))
+    return expected
 
 
 class Search:
@@ -150,7 +143,7 @@ class Search:
         if best.wrong or best.cost >= 0.05:
             tried = self.replayed(columns, self.promising(columns, _ROOM))
             best = min([best, *tried], key=_cost)
-        return self._other_bits(best)
+        return self._other_bits(best) if best.wrong else best
 
     def promising(
         self,
@@ -163,44 +156,32 @@ class Search:
         """The most promising combinations: those whose kinetic energy is the printed one first, the
         better they are with the more of the rest, ``room`` for the best. ``limit``: what all inputs
         may cost to believe, and the energy; ``wrong``: results that tell most."""
-        still = _without_spin(columns)
-        kinetic = [
-            place
-            for place, column in enumerate(columns)
-            if KINETIC & set(column.names) and not still & set(column.names)
-        ]
+        first = dict(
+            pair for one in columns for pair in zip(one.names, one.options[0][0], strict=True)
+        )
+        # the energy says nothing of the inertia of what does not spin
+        moving = KINETIC - {inertia for inertia, spin in _SPINS if not _number(first[spin])}
+        kinetic = [place for place, one in enumerate(columns) if moving & set(one.names)]
         others = [place for place in range(len(columns)) if place not in kinetic]
-        first, beliefs = self._by_energy(columns, kinetic, room, limit)
-        left = limit - beliefs.min()
-        second = combinations([columns[place] for place in others], room, left)
-        spent = _believing([columns[place] for place in others], second)
-        counts = np.searchsorted(spent, limit - beliefs, side="right")
-        parts = []
-        for rank, (one, most_of) in enumerate(zip(first, counts, strict=True), 1):
-            count = min(most_of, max(2, room // rank**2))
-            picks = np.zeros((count, len(columns)), np.intp, "F")
-            picks[:, kinetic] = one
-            picks[:, others] = second[:count]
-            parts.append(picks)
-        return self.screened(columns, np.concatenate(parts), most, wrong)
-
-    def _by_energy(
-        self, columns: Sequence[Column], kinetic: Sequence[int], most: int, limit: float
-    ) -> tuple[Picks, Floats]:
-        """The cheapest combination of masses and velocities, and those that give the printed
-        energy; what each costs with the energy."""
-        some = combinations([columns[place] for place in kinetic], most, limit)
+        some = combinations([columns[place] for place in kinetic], room, limit)
         picks = np.zeros((len(some), len(columns)), np.intp, "F")
         picks[:, kinetic] = some
-        beliefs = _believing(columns, picks)
-        costs = _BELIEF * beliefs
-        expected = next((one for one in self.expected if one.name == "KI"), None)
-        if expected is not None:
-            wrong = expected.mismatch(kinetic_energy(_values(columns, picks)))
-            costs, beliefs = costs + wrong, beliefs + wrong
-        costs[0] = -1.0
-        order = np.argsort(costs, kind="stable")[:_ENERGIES]
-        return some[order], beliefs[order]
+        costs = np.zeros(len(picks))
+        for expected in self.expected:
+            if expected.name == "KI":
+                costs = expected.mismatch(kinetic_energy(_values(columns, picks)))
+        order = np.argsort(np.append(-1.0, costs[1:]), kind="stable")[:_ENERGIES]
+        spent = (_believing(columns, picks) + costs)[order]
+        rest = combinations([columns[place] for place in others], room, limit - spent.min())
+        beliefs = _believing([columns[place] for place in others], rest)
+        parts = []
+        for rank, (one, before) in enumerate(zip(picks[order], spent, strict=True), 1):
+            count = int(np.searchsorted(beliefs, limit - before, side="right"))
+            part = np.zeros((min(count, max(2, room // rank**2)), len(columns)), np.intp, "F")
+            part[:] = one
+            part[:, others] = rest[: len(part)]
+            parts.append(part)
+        return self.screened(columns, np.concatenate(parts), most, wrong)
 
     def screened(
         self,
@@ -214,35 +195,25 @@ class Search:
         few = [one for one in self.expected if one.default == MISMATCH and one.name in telling]
         for count, enough, expected in ((_CLOSELY, 4 * _CLOSELY, few), (most, most, self.expected)):
             if len(picks) > enough:
-                costs = self._rough(columns, picks, expected)
+                value = _values(columns, picks)
+                if "MUP" in self._on_page:
+                    value["MU"] = _typed_mu(value)[0]
+                costs = _believing(columns, picks)
+                results = in_doubles(value, [one.name for one in expected])
+                for one in expected:
+                    cost = one.mismatch(results[one.name])
+                    spun = one.name not in FINAL_SPINS or value["M"] == 6
+                    costs = costs + np.where(spun, cost, MISMATCH)
                 picks = picks[np.argsort(costs, kind="stable")[:count]]
         return picks
 
-    def _rough(
-        self, columns: Sequence[Column], picks: Picks, expected: Sequence[Expected]
-    ) -> Floats:
-        """What each combination costs, some of its results in double precision."""
-        value = _values(columns, picks)
-        if "MUP" in self._on_page:
-            value["MU"] = _typed_mu(value)[0]
-        costs = _believing(columns, picks)
-        results = in_doubles(value, [one.name for one in expected])
-        for one in expected:
-            wrong = one.mismatch(results[one.name])
-            if one.name in FINAL_SPINS:
-                wrong = np.where(value["M"] == 6, wrong, MISMATCH)
-            costs = costs + wrong
-        return costs
-
     def replayed(self, columns: Sequence[Column], picks: Picks) -> list[Scored]:
         """Combinations, replayed in the Apple's arithmetic, in their order."""
-        turned, unsure = np.zeros(len(picks), bool), np.zeros(len(picks), bool)
-        if "MUP" in self._on_page:
-            value = _values(columns, picks)
-            typed, unsure = _typed_mu(value)
-            turned = typed != value["MU"]
+        value = _values(columns, picks)
+        typed, unsure = _typed_mu(value)
+        turned = (typed != value["MU"]) & ("MUP" in self._on_page)
         scenes: list[tuple[dict[str, str], dict[str, str], float]] = []
-        number: list[int] = []
+        rows: list[int] = []
         for row, pick in enumerate(picks.tolist()):
             scene: dict[str, str] = {}
             assumed: dict[str, str] = {}
@@ -254,14 +225,16 @@ class Search:
                     scene[scene_name(name)] = text if column.typed else self._typed_text(name, text)
                     if name in self._on_page and not column.typed:
                         assumed[name] = text
-            other = {**scene, "MU": opposite(scene["MU"])} if turned[row] or unsure[row] else scene
-            for one in [other, scene] if unsure[row] else [other]:
-                scenes.append((one, assumed, cost))
-                number.append(row)
+            if turned[row]:
+                scene["MU"] = opposite(scene["MU"])
+            scenes.append((scene, assumed, cost))
+            rows.append(row)
+            if unsure[row] and "MUP" in self._on_page:
+                scenes.append(({**scene, "MU": opposite(scene["MU"])}, assumed, cost))
+                rows.append(row)
         best: dict[int, Scored] = {}
-        for row, scored in zip(number, self._scored(scenes), strict=True):
-            if row not in best or scored.cost < best[row].cost:
-                best[row] = scored
+        for row, scored in zip(rows, self._scored(scenes), strict=True):
+            best[row] = min(best.get(row, scored), scored, key=_cost)
         return list(best.values())
 
     def _typed_text(self, name: str, text: str) -> str:
@@ -270,15 +243,11 @@ class Search:
 
     def _other_bits(self, best: Scored) -> Scored:
         """The same printed inputs, typed in other ways that enter the equations with other bits."""
-        if not 0 < len(best.wrong) <= _FEW_DIFFER:
-            return best
         columns = [
             Column((name,), [((text,), _OTHER_BITS * rank) for rank, text in enumerate(texts)])
             for name, texts in _texts_of(best)
         ]
-        picks = combinations(columns, _VARIANTS)
-        if len(picks) < 2:
-            return best
+        picks = combinations(columns, _CLOSELY)
         extra = best.cost - self.replayed_scene(best.scene, best.assumed).cost
         scenes = []
         for pick, cost in zip(picks.tolist(), _believing(columns, picks), strict=True):
@@ -307,7 +276,7 @@ class Search:
                 wrong.add("M")
             costs.update(dict.fromkeys(wrong, MISMATCH))
             absent = set(outcome.fields) - set(self.shown.fields) - self._lost_inputs
-            total = cost + sum(costs.values()) + _ABSENT * len(absent)
+            total = cost + sum(costs.values()) + _UNREAD * len(absent)
             differing = frozenset(name for name, one in costs.items() if one >= AGREES)
             yield Scored(total, scene, assumed, outcome, differing)
 
@@ -366,13 +335,6 @@ def one_each(columns: Sequence[Column]) -> Picks:
         picks[at : at + count, place] = np.arange(1, count + 1)
         at += count
     return picks
-
-
-def _without_spin(columns: Sequence[Column]) -> frozenset[str]:
-    """The inertias that do not spin, as first read: the energy says nothing of them."""
-    first = dict(pair for one in columns for pair in zip(one.names, one.options[0][0], strict=True))
-    spins = {"IA": "WA", "IB": "WB"}
-    return frozenset(name for name, spin in spins.items() if not _number(first[spin]))
 
 
 def _number(text: str) -> float:

@@ -7,10 +7,9 @@ change its last bit (72.80 is 7280 divided twice by ten, 72.8 is 728 divided onc
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from decimal import ROUND_HALF_EVEN, Decimal
+from collections.abc import Iterator, Mapping
+from decimal import Decimal
 from functools import lru_cache
-from itertools import islice
 
 from ..applesoft import decimaltext
 from ..applesoft.errorcodes import ApplesoftError
@@ -20,13 +19,8 @@ from ..reading.numerals import value_of
 
 _TYPED_ZEROS = 3
 """How many zeros after the last decimal are thought to have been typed at most."""
-_NEIGHBOURS = 3
-"""How far from the printed text, in units of its last digit, a typed one is looked for."""
-
 _PRINTED_DIGITS = 9
 """Digits a number is printed with at most."""
-
-_DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:[.]([0-9]*))?(?:E([+-]?[0-9]{1,2}))?")
 
 
 @lru_cache(maxsize=1)
@@ -56,22 +50,22 @@ def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
     """Texts which, typed, print as ``printed``: the shortest first, then others that enter the
     equations with other bits. Empty when none is found: then no Apple II printed it."""
     figures = printed.partition("E")[0].replace(".", "").lstrip("-0")
-    if len(figures) > _PRINTED_DIGITS:
-        return ()  # no Apple prints as many
+    value = value_of(printed)
+    if value is None or len(figures) > _PRINTED_DIGITS:
+        return ()
 
-    def printing(some: Iterable[str]) -> Iterator[str]:
-        for text in some:
-            if (seen := stored_and_printed(text, angle)) and seen[1] == printed:
-                yield text
+    def prints(text: str) -> bool:
+        seen = stored_and_printed(text, angle)
+        return seen is not None and seen[1] == printed
 
-    found = [*islice(printing(_shorter(printed)), 1), *printing([printed])]
-    found = found or [*islice(printing(_neighbours(printed)), 1)]
+    near = _neighbours(value, printed)
+    found = [text for text in [*_shorter(value, printed), printed] if prints(text)]
+    found = found or [text for text in near if prints(text)][:1]
     others = [other for text in found for other in _with_zeros(text)]
-    if found and min(map(_digits, found)) >= _PRINTED_DIGITS:
-        # all the digits there are: more may have been typed than are printed
-        others += _neighbours(printed)
+    if len(figures) == _PRINTED_DIGITS and found == [printed]:
+        others += near  # more digits may have been typed than are printed
     texts: dict[bytes, str] = {}
-    for text in [*found, *printing(others)]:
+    for text in [*found, *filter(prints, others)]:
         if seen := stored_and_printed(text, angle):
             texts.setdefault(seen[0], text)
     return tuple(texts.values())
@@ -94,65 +88,31 @@ def with_opposite_mu(scene: Mapping[str, str]) -> Iterator[dict[str, str]]:
         yield {**scene, "MU": opposite(scene["MU"])}
 
 
-def _digits(text: str) -> int:
-    """How many significant digits a text has."""
-    value = value_of(text)
-    return 0 if value is None else len(value.normalize().as_tuple().digits)
-
-
 def _text(value: Decimal, like: str) -> str:
     """A decimal as one would type it: with an exponent only where the printout has one."""
-    if "E" in like:
-        mantissa, _, exponent = f"{value:E}".partition("E")
-        return f"{_trimmed(mantissa)}E{exponent}"
-    return _trimmed(f"{value:f}")
+    value = value.normalize()
+    return re.sub(r"^(-?)0(?=[.])", r"\1", f"{value:E}" if "E" in like else f"{value:f}")
 
 
-def _trimmed(text: str) -> str:
-    if "." in text:
-        text = text.rstrip("0").rstrip(".")
-    sign = "-" if text.startswith("-") else ""
-    size = text.lstrip("-")
-    return sign + (size[1:] if size.startswith("0.") else size)
+def _shorter(value: Decimal, printed: str) -> Iterator[str]:
+    """The printed value with fewer digits, one, two ...; it prints so only if it is very near."""
+    for decimals in range(len(value.as_tuple().digits) - 1):
+        shorter = Decimal(f"{value:.{decimals}E}")
+        if abs(shorter - value) <= abs(value) * Decimal("5e-8"):
+            yield _text(shorter, printed)
 
 
-def _shorter(printed: str) -> list[str]:
-    """The printed value with fewer and fewer digits left out: one digit, two digits ..."""
-    value = value_of(printed)
-    if value is None or not value:
-        return []
-    digits = len(value.as_tuple().digits)
-    # within the printed digits a shorter text prints as shown only if it is very near
-    texts = []
-    for count in range(1, digits):
-        quantum = Decimal(1).scaleb(value.adjusted() - count + 1)
-        rounded = value.quantize(quantum, rounding=ROUND_HALF_EVEN)
-        if abs(rounded - value) <= abs(value) * Decimal("5e-8"):
-            texts.append(_text(rounded, printed))
-    return texts
-
-
-def _neighbours(printed: str) -> list[str]:
-    """Texts of as many digits or one more, near the printed value, nearest first."""
-    value = value_of(printed)
-    if value is None:
-        return []
+def _neighbours(value: Decimal, printed: str) -> list[str]:
+    """Texts of as many digits or one more, three units of the last digit away at most."""
     last = Decimal(1).scaleb(value.adjusted() - _PRINTED_DIGITS + 1)
-    steps = [sign * step for step in range(1, _NEIGHBOURS + 1) for sign in (1, -1)]
-    tenths = [sign * step for step in range(1, 10) for sign in (1, -1)]
-    return [
-        *(_text(value + step * last, printed) for step in steps),
-        *(_text(value + step * last / 10, printed) for step in tenths),
-    ]
+    steps = [*range(1, 4), *(Decimal(step) / 10 for step in range(1, 10))]
+    return [_text(value + sign * step * last, printed) for step in steps for sign in (1, -1)]
 
 
 def _with_zeros(text: str) -> list[str]:
     """The same value typed with more zeros, or without its exponent."""
-    match = _DECIMAL.fullmatch(text)
-    if match is None:
-        return []
-    sign, whole, decimals, exponent = match.groups(default="")
-    if exponent:
-        plain = value_of(text)
-        return [] if plain is None or abs(plain.adjusted()) > 20 else [_trimmed(f"{plain:f}")]
-    return [f"{sign}{whole}.{decimals}{'0' * count}" for count in range(1, _TYPED_ZEROS + 1)]
+    if "E" in text:
+        value = Decimal(text)
+        return [_text(value, "")] if abs(value.adjusted()) <= 20 else []
+    zeros = range(1, _TYPED_ZEROS + 1)
+    return [f"{text}{'' if '.' in text else '.'}{'0' * count}" for count in zeros]
