@@ -276,10 +276,7 @@ def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[
 
 @lru_cache(maxsize=20000)
 def _candidates(region: Glyphs, most: int, sign_free: bool) -> tuple[tuple[str, float], ...]:
-    chars = "".join(char for char, _ in region)
-    strange = sum(char not in "0123456789OIL.-" for char in chars)
-    if 3 < len(chars) < 2 * strange and not any(map(str.isdigit, chars)):
-        return ()
+    pieces = _in_pieces("".join(char for char, _ in region))
     ways: dict[str, float] = {"": 0.0}
     costs: dict[str, float] = {}
     wild = 0
@@ -304,12 +301,11 @@ def _candidates(region: Glyphs, most: int, sign_free: bool) -> tuple[tuple[str, 
                 following[one] = min(price, following.get(one, price))
             if parted:  # what follows is left over
                 figures = sum(part[0].isdigit() for part in region[index:])
-                apart = {Gap.LINE: _SLIGHT, Gap.WIDE: 2 * _SLIGHT}.get(gap, _FOREIGN)
-                stop = cost + _SPECK * (len(region) - index) / 2 + apart * figures
+                stop = cost + _SPECK * (len(region) - index) / 2 + _FOREIGN * figures
                 costs[text] = min(stop, costs.get(text, stop))
         beam = 10 * _BEAM if wild else _BEAM
         ways = dict(sorted(following.items(), key=lambda way: way[1])[:beam])
-    printed: dict[str, float] = {"0": _SPECK} if _in_pieces(chars) else {}
+    printed: dict[str, float] = {"0": _SPECK} if pieces else {}
     for text, cost in [*ways.items(), *costs.items()]:
         shown = text if printable(text) else as_printed(text)
         if shown and is_number(text):
