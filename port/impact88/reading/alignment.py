@@ -227,6 +227,7 @@ class Budget:
 _WHOLE = 20
 """Numbers of a page for which the budget is filled again; labels without end are aligned as 14."""
 _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
+_EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
 _ASIDE = 1000
 """Glyphs that may stand between two parts of a page: half a page of text."""
 _FEW_LABELS = 4
@@ -260,6 +261,8 @@ def align(
             budget.stopped = start
             return
         chars = ["" if at in notes else glyph.char for at, glyph in enumerate(window, start)]
+        for exponent in _EXPONENT.finditer(letters(window)):
+            chars[exponent.start()] = "0"  # as good as a figure, and no label
         parts = _parts(_states(chars, [glyph.gap for glyph in window]))
         taken = parts if last else parts[:-1] or parts[:1]
         found = [_described(start + at, states) for at, states in taken]
