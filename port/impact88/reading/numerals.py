@@ -276,7 +276,10 @@ def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[
 
 @lru_cache(maxsize=20000)
 def _candidates(region: Glyphs, most: int, sign_free: bool) -> tuple[tuple[str, float], ...]:
-    pieces = _in_pieces("".join(char for char, _ in region))
+    chars = "".join(char for char, _ in region)
+    strange = sum(char not in "0123456789OIL.-" for char in chars)
+    if 3 < len(chars) < 2 * strange and not any(map(str.isdigit, chars)):
+        return ()  # a word
     ways: dict[str, float] = {"": 0.0}
     costs: dict[str, float] = {}
     wild = 0
@@ -305,7 +308,7 @@ def _candidates(region: Glyphs, most: int, sign_free: bool) -> tuple[tuple[str, 
                 costs[text] = min(stop, costs.get(text, stop))
         beam = 10 * _BEAM if wild else _BEAM
         ways = dict(sorted(following.items(), key=lambda way: way[1])[:beam])
-    printed: dict[str, float] = {"0": _SPECK} if pieces else {}
+    printed: dict[str, float] = {"0": _SPECK} if _in_pieces(chars) else {}
     for text, cost in [*ways.items(), *costs.items()]:
         shown = text if printable(text) else as_printed(text)
         if shown and is_number(text):
