@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from impact88 import solve
 from impact88.bench.populations import POPULATIONS, scenes
-from impact88.closedform.columns import UNUSED_BY_POINTS, Buffers, examine, sources
+from impact88.closedform.columns import UNUSED_BY_POINTS, examine, part, sources
 from impact88.closedform.fused import plan_for
 from impact88.closedform.solve import SHARED_TILE
 from impact88.errors import UserError
@@ -404,8 +404,7 @@ class TestColumns:
 def passes(columns, outputs=FINAL_VELOCITIES):
     """How many passes over the scenes the plan for these columns makes."""
     given, shape = sources(columns)
-    buffers = Buffers(shape[0])
-    block = examine({name: buffers.block(name, s, 0, shape[0]) for name, s in given.items()})
+    block = examine({name: part(source, 0, shape[0]) for name, source in given.items()})
     return plan_for(block.kinds, tuple(outputs)).passes
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from .. import native
 from ..accuracy.sensitivity import movements, sensitivity
-from ..closedform.columns import Buffers, examine, sources
+from ..closedform.columns import examine, part, sources
 from ..closedform.fused import plan_for
 from ..closedform.solve import TILE, solve
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE
@@ -240,10 +240,9 @@ def moving(count: int) -> Columns:
 
 def passes(columns: Any, outputs: Sequence[str]) -> int:
     """The passes numpy's plan for these columns makes."""
-    buffers = Buffers(TILE)
-    given, (count, *_) = sources(columns)
-    block = {name: buffers.block(name, s, 0, min(TILE, count)) for name, s in given.items()}
-    return plan_for(examine(block).kinds, tuple(outputs)).passes
+    given, _ = sources(columns)
+    block = examine({name: part(source, 0, TILE) for name, source in given.items()})
+    return plan_for(block.kinds, tuple(outputs)).passes
 
 
 def paths(count: int, repeats: int) -> list[Row]:

@@ -38,25 +38,15 @@ _ABOVE_PIVOT = float(np.nextafter(PIVOT, 0.0))
 _ANY = -_LARGEST, _LARGEST
 
 
-class Source(NamedTuple):
-    """A column: ``values`` flat and of full length, or of length 1; or awkward, see `block`."""
+Source = Array | Any
+"""A column: flat and of full length, of length 1, or an iterator over it in the common shape."""
 
-    values: Array
-    shape: tuple[int, ...] | None  # of the broadcast, when ``values`` must be read through it
 
-    @property
-    def is_plain(self) -> bool:
-        """Whether any part of it is float64 numbers side by side."""
-        values = self.values
-        if self.shape is not None or values.dtype != np.float64:
-            return False
-        return values.strides[0] == 8 or len(values) == 1
-
-    def part(self, start: int, stop: int) -> Array:
-        """Scenes ``start`` to ``stop``, or the only value."""
-        if self.shape is None:
-            return self.values[start:stop] if len(self.values) > 1 else self.values
-        return np.broadcast_to(self.values, self.shape).flat[start:stop]
+def part(source: Source, start: int, stop: int) -> Floats:
+    """Scenes ``start`` to ``stop`` of a column, or its only value, as float64 side by side."""
+    if len(source) > 1:
+        source = source[start:stop]
+    return np.ascontiguousarray(source, np.float64)
 
 
 def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int, ...]]:
@@ -92,31 +82,11 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
 
 
 def _source(array: Array, shape: tuple[int, ...]) -> Source:
-    if array.ndim == 1 and array.shape == shape and array.size != 1:
-        return Source(array, None)
     if array.size == 1:
-        return Source(array.reshape(1).astype(np.float64), None)
+        return array.reshape(1)
     if array.shape == shape and (array.ndim == 1 or array.flags.c_contiguous):
-        return Source(array.reshape(-1), None)
-    return Source(array, shape)
-
-
-class Buffers:
-    """Room for the blocks of columns that are not plain float64 arrays (one for each thread)."""
-
-    def __init__(self, size: int) -> None:
-        self.size = size
-        self._kept: dict[str, Floats] = {}
-
-    def block(self, name: str, source: Source, start: int, stop: int) -> Floats:
-        """Scenes ``start`` to ``stop`` of a column, or its only value, as float64."""
-        if source.is_plain:
-            return source.part(start, stop)
-        if name not in self._kept:
-            self._kept[name] = np.empty(self.size)
-        room = self._kept[name][: stop - start]
-        np.copyto(room, source.part(start, stop))
-        return room
+        return array.reshape(-1)
+    return np.broadcast_to(array, shape).flat
 
 
 class Block(NamedTuple):

@@ -46,8 +46,8 @@ def _choose(where: Array, a: Array, b: Array, out: Array, work: Array) -> None:
     np.copyto(out, work)
 
 
-def _sine_and_cosine(angle: Array, sine: Array, cosine: Array, *work: Array) -> None:
-    sine_and_cosine(angle, sine, cosine, (work[0], work[1], work[2], work[3]))
+def _sine_and_cosine(angle: Array, sine: Array, cosine: Array) -> None:
+    sine[...], cosine[...] = sine_and_cosine(angle)
 
 
 def _result(value: Array, out: Array) -> None:
@@ -66,7 +66,7 @@ OPERATIONS: dict[str, tuple[Callable[..., object], int, int]] = {
     "PRODUCTS_PLUS": (_products(np.add), 2, 3),
     "PRODUCTS_MINUS": (_products(np.subtract), 2, 3),
     "CHOOSE": (_choose, 1, 3),
-    "SINE_AND_COSINE": (_sine_and_cosine, 4, 26),
+    "SINE_AND_COSINE": (_sine_and_cosine, 0, 26),
     **{"RESULT": (_result, 0, 0), "RESULT_OR_INFINITE": (_result, 0, 0)},
     "BITS": (lambda number, out: np.copyto(out, number, casting="unsafe"), 0, 0),
 }
@@ -114,7 +114,7 @@ class Plan:
         for low in range(0, length, tile):
             high = min(low + tile, length)
             if not low or high - low < tile:
-                room = np.empty((self.program.places + 4, high - low))
+                room = np.empty((self.program.places + 2, high - low))
                 for place, scalar in enumerate(self.program.scalars, self.program.moving):
                     room[place, 0] = fixed[scalar] if isinstance(scalar, str) else scalar
                 steps = self._steps
@@ -125,6 +125,11 @@ class Plan:
             for operation, views in steps:
                 operation(*[places[view] for view in views])
             steps = self._steps[self.program.once :]
+        for result, ending in zip(results.values(), self.program.endings, strict=True):
+            if ending != "BITS" and not np.isfinite(result.sum()):
+                # NaN by one set of bits
+                bad = ~np.isfinite(result) if ending == "RESULT" else np.isnan(result)
+                result[bad] = np.nan
 
 
 def _view_of(row: Array, conditions: bool, single: bool) -> Array:

@@ -3,8 +3,10 @@
 Python's own numbers alone: a scene is read without numpy.
 """
 
+from collections.abc import Callable
 from decimal import Context, Decimal, localcontext
 from functools import cache
+from typing import Any
 
 STEPS = 2048
 """Table entries in a full turn."""
@@ -65,16 +67,20 @@ def _polynomials() -> tuple[float, float, float, float, float]:
 POLYNOMIALS = _polynomials()
 
 
-def sine_and_cosine(angle: float) -> tuple[float, float]:
-    """Sine and cosine of one angle in degrees, finite and at most 2**40: the operations of
-    `degrees.sine_and_cosine`, one after another."""
-    table = turn()
+def sine_and_cosine(
+    angle: Any, table: Any = None, whole: Callable[[Any], Any] = int
+) -> tuple[Any, Any]:
+    """Sine and cosine of an angle in degrees, finite and at most 2**40; of an array of them with an
+    array for a ``table`` and ``whole`` for making whole numbers. The operations stand in a fixed
+    order, that of ``native/machine.c``."""
+    table = turn() if table is None else table
     s0, s1, s2, c1, c2 = POLYNOMIALS
     steps = angle * (1 / STEP) + INTEGER_IN_LOW_BITS - INTEGER_IN_LOW_BITS
-    index = int(steps) & (STEPS - 1)
+    index = whole(steps) & (STEPS - 1)
     sine, cosine = table[index], table[index + _QUARTER]
     rest = angle - steps * STEP
     square = rest * rest
     small = ((square * s2 + s1) * square + s0) * rest
     less = (square * c2 + c1) * square
+    # sin(k + r) = sin k + (cos k sin r + sin k (cos r - 1)), and the cosine likewise
     return sine + (cosine * small + sine * less), cosine + (cosine * less - sine * small)

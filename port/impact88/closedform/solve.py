@@ -6,7 +6,7 @@ point masses) with exact pi, by the closed form of `closedform.impact`.
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from ..names import PIVOT, RESULTS
 from ..native.program import addresses
 from ..scene import check_mapping
 from ..status import Status
-from .columns import Block, Buffers, Source, examine, sources
+from .columns import Source, examine, part, sources
 from .fused import CIRCLE, plan_for, program_for
 from .onescene import ALL, in_order, solve_one
 from .plain import check_room, rooms, shared_out, solve_plain, workers
@@ -128,14 +128,15 @@ def _solved(
     count = math.prod(shape)
     whole, _ = rooms([name for name in wanted if out is None or name not in out], shape)
     if out is not None:
-        check_room(out, wanted, shape, [source.values for source in given.values()])
+        arrays = [x.base if isinstance(x, np.flatiter) else x for x in given.values()]
+        check_room(out, wanted, shape, arrays)
         whole |= {name: out[name] for name in wanted if name in out}
     results: dict[str, Array] = {name: whole[name].reshape(count) for name in wanted}
     if not wanted:
         return {}
     many = workers(count, threads, SHARED_TILE)
     tile = TILE if many == 1 else SHARED_TILE
-    shared_out(lambda *span: _Worker(given, results, tile, sign).solve(*span), count, many)
+    shared_out(partial(_solve_part, given, results, tile, sign), count, many)
     return {name: whole[name] for name in wanted}
 
 
@@ -187,61 +188,27 @@ def _known(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-class _Worker:
-    """Solves scenes block by block, with working arrays of its own."""
-
-    def __init__(
-        self,
-        given: Mapping[str, Source],
-        results: Mapping[str, Array],
-        tile: int,
-        sign: float | None = None,
-    ) -> None:
-        count = len(next(iter(results.values())))
-        self.tile = min(tile, count)
-        self.size = min(2 * tile, count)
-        self.sign = sign
-        self.given = given
-        self.results = results
-        self.buffers = Buffers(self.size)
-
-    @np.errstate(all="ignore")
-    def solve(self, start: int, stop: int) -> None:
-        for at in range(start, stop, self.size or 1):
-            self.solve_block(at, min(at + self.size, stop))
-
-    def solve_block(self, start: int, end: int) -> None:
-        block = self.block_of(start, end)
-        results = {name: array[start:end] for name, array in self.results.items()}
+@np.errstate(all="ignore")
+def _solve_part(
+    given: Mapping[str, Source],
+    results: Mapping[str, Array],
+    tile: int,
+    sign: float | None,
+    start: int,
+    stop: int,
+) -> None:
+    """Scenes ``start`` to ``stop``, block by block."""
+    for at in range(start, stop, 2 * tile):
+        end = min(at + 2 * tile, stop)
+        block = examine({name: part(source, at, end) for name, source in given.items()})
+        fixed = {name: float(values[0]) for name, values in block.fixed.items()}
+        into = {name: array[at:end] for name, array in results.items()}
+        program = program_for(block.kinds, tuple(results), sign)
+        columns = [block.varying[name] for name in program.columns]
         if native.library is None:
-            self.run_plan(block, results)
+            plan_for(block.kinds, tuple(results), sign).run(columns, into, fixed, tile)
         else:
-            self.run_program(block, results, end - start)
+            program.run(addresses(columns), addresses(into.values()), end - at, CIRCLE, fixed)
         if block.refused is not None:
-            for name, result in results.items():
+            for name, result in into.items():
                 result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan
-
-    def block_of(self, start: int, end: int) -> Block:
-        columns = {
-            name: self.buffers.block(name, source, start, end)
-            for name, source in self.given.items()
-        }
-        return examine(columns)
-
-    def run_program(self, block: Block, results: Mapping[str, Array], count: int) -> None:
-        """By the compiled machine."""
-        program = program_for(block.kinds, tuple(results), self.sign)
-        fixed = {name: float(values[0]) for name, values in block.fixed.items()}
-        columns = addresses(block.varying[name] for name in program.columns)
-        program.run(columns, addresses(results.values()), count, CIRCLE, fixed)
-
-    def run_plan(self, block: Block, results: Mapping[str, Array]) -> None:
-        """By numpy, a tile at a time."""
-        plan = plan_for(block.kinds, tuple(results), self.sign)
-        fixed = {name: float(values[0]) for name, values in block.fixed.items()}
-        columns = [block.varying[name] for name in plan.program.columns]
-        plan.run(columns, results, fixed, self.tile)
-        for name, result in results.items():
-            if name != "STATUS" and not np.isfinite(result.sum()):
-                # NaN by one set of bits; COND alone may be infinite
-                result[np.isnan(result) if name == "COND" else ~np.isfinite(result)] = np.nan

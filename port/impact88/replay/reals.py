@@ -6,7 +6,8 @@ A 40-bit real, extension included, is exactly a float64: 40 bits of 53, and an e
     rounding to 32 bits   is integer arithmetic on its bits (a carry runs into the exponent, as it
                           should),
     a sum                 is exact once the smaller operand is cut off at the larger one's 40th bit,
-    a product, a quotient is the processor's, corrected where that rounded up across a 40th bit.
+    a product             is built of whole numbers, as the ROM does, and
+    a quotient            is the processor's, corrected where that rounded up across a bit.
 
 The values are always exactly the ROM's; float64 only carries them. Zero may be -0.0.
 
@@ -30,7 +31,7 @@ import numpy.typing as npt
 
 from ..applesoft.errorcodes import CODES
 from ..applesoft.real import Number, integer
-from .unit import Bools, Ints, Unit
+from .unit import Bools, Unit
 
 Floats = npt.NDArray[np.float64]
 Packed = npt.NDArray[np.uint64]
@@ -69,14 +70,8 @@ _HALF_UNIT = np.int64(1 << 20)  # the extension's top bit: half of what a stored
 _32_BITS = _mask(21, 63)  # what a stored real keeps: the extension cleared
 _40_BITS = _mask(13, 63)  # what a real keeps: what no register holds cleared
 _UPPER_HALF = _mask(33, 62)  # of a factor: 20 bits, so that its products are exact
-# Bytes of a right factor, the extension being byte 0, in the order multiplying takes them: two
-# that are zero one after the other, and what is then shifted once too often.
-_BYTES_1_2 = _mask(21, 36)
-_BYTES_2_3 = _mask(29, 44)
-_BYTE_0 = _mask(13, 20)
-_BYTES_0_1 = _mask(13, 28)
 
-_LARGEST, _HALF_LARGEST = (np.float64(x).view(np.int64) for x in (LARGEST, LARGEST / 2))
+_LARGEST = np.float64(LARGEST).view(np.int64)
 _SMALLEST = np.float64(SMALLEST).view(np.uint64)
 _BELOW_ONE = np.int64(1022 << 52)  # the exponent of numbers from 1/2 to 1
 _TO_UNITS = _wrapped((1023 + 39 + 1023) << 52)  # less an exponent: the scale that makes it 2^39
@@ -121,7 +116,7 @@ class Reals:
     all rows and scenes.
     """
 
-    __slots__ = ("_defects", "bits", "stored", "unit", "v", "zero")
+    __slots__ = ("bits", "stored", "unit", "v", "zero")
 
     def __init__(
         self, v: Floats, unit: Unit | None, stored: bool = False, zero: bool = False
@@ -131,7 +126,6 @@ class Reals:
         self.unit = unit
         self.stored = stored
         self.zero = zero
-        self._defects: Ints | bool | None = False
 
     def rounded(self) -> Reals:
         """As a variable keeps it: 32 bits, by the top bit of the extension alone."""
@@ -331,85 +325,40 @@ def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
 
 
 def _multiply(left: Reals, right: Reals) -> Reals:
-    """left * right: the exact product cut to 40 bits before normalising, but for the ROM's defect.
+    """left * right as the ROM builds it, a byte of the right operand at a time: the exact product
+    cut to 40 bits before normalising, but for its defect. After a second zero byte in a row the
+    upper 32 bits of what has been built move one bit too far.
 
-    The processor rounds the product to 53 bits; its error is computed exactly from the two halves
-    of the right operand, and where it rounded up, one unit of the 53rd bit is taken back. Cutting
-    to the 40th bit, or to the 39th where the product falls short by one, is then safe.
+    The bytes of the 40 bits are numbered from the extension, 0, to the top, 4, which is never zero.
     """
     left = left.rounded()
     unit = left.unit or right.unit
     if left.zero or right.zero:
         return zero(unit)
-    signs = left.bits ^ right.bits
-    a, b = np.abs(left.v), np.abs(right.v)
-    v = a * b
-    bits = v.view(np.int64)
-    upper = (right.bits & _UPPER_HALF).view(np.float64)
-    error = a * upper - v  # the exact product less the rounded one, when the lower half is added
-    error += a * (b - upper)
-    bits += error.view(np.int64) >> 63
-    # the parity of the three exponents says whether the product fell short of the top bit
-    bits &= ~((signs ^ bits) >> 39 & 0x2000 | 0x1FFF)
-    bits |= signs & _SIGN
-
-    defects = _defects(right)
-    if defects is not None:
-        _apply_defect(v, left, right, defects)
+    m1 = ((left.bits & _FRACTION | _TOP) >> 21).view(np.uint64)
+    m2 = ((right.bits & _FRACTION | _TOP) >> 13).view(np.uint64)
+    built = (m2 & _LAST_BYTE) * m1  # is shifted left and right by 8
+    before = m2 & _LAST_BYTE == 0
+    for position in range(1, 5):
+        byte = m2 >> _BYTE_SHIFTS[position] & _LAST_BYTE
+        built = (byte * m1 << _EIGHT) + built >> _EIGHT
+        none = byte == 0
+        # nothing is built yet after zeros at 0 and 1
+        twice = none & before
+        if position in (2, 3) and twice.any():
+            built = built >> _EIGHT + twice << _EIGHT | built & _LAST_BYTE
+        before = none
+    # 39 or 40 bits long, byte 4 sees to that; the bit a shorter one leaves empty is zero, as after
+    # normalising
+    v = built.astype(np.float64) * 2.0**-38
+    v *= (left.bits & ~_FRACTION).view(np.float64) * (right.bits & ~_FRACTION).view(np.float64)
     result = Reals(v, unit)
-    if (bits & _MAGNITUDE).max() >= _HALF_LARGEST:  # judged before it is normalised
+    if np.abs(v).max(initial=0.0) >= LARGEST / 2:  # judged before it is normalised
         exponents = ((left.bits & _EXPONENT) >> 52) + ((right.bits & _EXPONENT) >> 52)
         failed = (exponents >= 384 + 2 * BIAS) & (v != 0)
         result.fails(failed, OVERFLOW)
         v[failed] = 0.0
     return result._settled()
-
-
-def _defects(right: Reals) -> Ints | None:
-    """Which elements of a right operand have two zero bytes in a row above a byte that is not zero;
-    None: none has.
-
-    The bytes of the 40 bits are numbered from the extension, 0, to the top, 4, which is never zero.
-    """
-    if right._defects is not False:
-        return right._defects  # type: ignore[return-value]
-    bits = right.bits
-    defects = []
-    # a stored number's byte 0 is zero
-    for zeros, below in ((_BYTES_2_3, _BYTES_0_1), (_BYTES_1_2, _BYTE_0))[: 1 + (not right.stored)]:
-        clear = bits & zeros == 0
-        if clear.any():
-            at = np.flatnonzero(clear & (bits & below != 0))
-            if at.size:
-                defects.append(at)
-    right._defects = np.concatenate(defects) if defects else None
-    return right._defects
-
-
-def _apply_defect(v: Floats, left: Reals, right: Reals, defects: Ints) -> None:
-    """Products as the ROM builds them, a byte of the right operand at a time, where that differs.
-
-    After a second zero byte in a row the upper 32 bits of what has been built move one bit too far.
-    """
-    where = defects if right.v.shape == v.shape else slice(None)
-    bits1 = left.bits if left.v.shape == (1,) else left.bits[where]
-    bits2 = right.bits[where] if right.v.shape == v.shape else right.bits
-    m1 = ((bits1 & _FRACTION | _TOP) >> 21).view(np.uint64)
-    m2 = ((bits2 & _FRACTION | _TOP) >> 13).view(np.uint64)
-    bytes_ = [m2 >> shift & _LAST_BYTE for shift in _BYTE_SHIFTS]
-    zero = [byte == 0 for byte in bytes_]
-    built = bytes_[0] * m1  # is shifted left and right by 8
-    for position in range(1, 5):
-        built = (bytes_[position] * m1 << _EIGHT) + built >> _EIGHT
-        # nothing is built yet after zeros at 0 and 1, and byte 4 is never zero
-        if position in (2, 3):
-            double = zero[position] & zero[position - 1]
-            built = built >> _EIGHT + double << _EIGHT | built & _LAST_BYTE
-    # 39 or 40 bits long, byte 4 sees to that; the bit a shorter one leaves empty is zero, as after
-    # normalising
-    product = built.astype(np.float64) * 2.0**-38
-    sign_and_power = (bits1 & ~_FRACTION).view(np.float64) * (bits2 & ~_FRACTION).view(np.float64)
-    v[where] = product * sign_and_power
 
 
 def _divide(left: Reals, right: Reals) -> Reals:
