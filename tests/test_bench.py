@@ -109,14 +109,7 @@ def test_command(tmp_path, capsys):
     assert main(["bench", "--errors-figure", "f.doc"]) == 2
 
 
-def test_paths_and_sizes():
-    kinds = measure.paths(2000, 1)
-    assert [path["name"] for path in kinds] == list(measure.PATHS)
-    general = kinds[0]["passes"]
-    assert all(path["passes"] < general for path in kinds[1:] if "pivot" not in path["name"])
-    chosen = measure.selections(2000, 1)
-    assert chosen[0]["passes"] == max(path["passes"] for path in chosen)
-    assert "general" in tables.listing(kinds)
+def test_sizes():
     grown = measure.sizes([1, 50_000], 1)
     assert grown[1]["extra_mib"] < 16  # working arrays, not the scenes
     assert "50,000" in tables.listing(grown)

@@ -1,5 +1,5 @@
-"""One run of the benchmark: every method on every population, errors and times together; what
-skipping saves; growth with the number of scenes; and files beside the computation alone.
+"""One run of the benchmark: every method on every population, errors and times together; growth
+with the number of scenes; and files beside the computation alone.
 
 All by processor time, which other programs do not lengthen; of several threads by the clock's. Rows
 are dicts of numbers and names.
@@ -20,10 +20,8 @@ import numpy as np
 
 from .. import native
 from ..accuracy.sensitivity import movements, sensitivity
-from ..closedform.columns import examine, part, sources
-from ..closedform.fused import plan_for
-from ..closedform.solve import TILE, solve
-from ..names import FINAL_VELOCITIES, RESULTS, SCENE
+from ..closedform.solve import solve
+from ..names import FINAL_VELOCITIES, SCENE
 from ..native.formulas import ExpressionTable
 from ..native.program import Program, addresses
 from ..processors import processors
@@ -31,49 +29,16 @@ from ..progress import Meter
 from ..tables import arrow
 from ..version import __version__
 from .methods import APPLESOFT, DOUBLE, METHODS, Method, reference, relative_errors
-from .populations import BENCHMARK, POPULATIONS, Columns, enlarged, scenes
+from .populations import BENCHMARK, POPULATIONS, enlarged, scenes
 
 Row = dict[str, Any]
 ORDER = tuple(FINAL_VELOCITIES)
-GENERAL = "general"
 ROOF_SCENES = 1_000_000
 """Scenes whose columns are too many for any cache."""
 AT_ONCE = 500
 """Scenes in calls that are timed together, where a call has fewer."""
 COMPONENTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "PN", "PT", "PM", "LOSS", "DVA", "MUC")
 """Results whose errors are listed one by one."""
-_SHAPE = {"GA": 30.0, "PA": 10.0, "PB": 20.0, "TA": 5.0, "TB": 95.0, "DA": 4.0, "DB": 5.0}
-_BODIES = {"MA": 100.0, "MB": 120.0, "IA": 2000.0, "IB": 3000.0}
-PATHS: dict[str, dict[str, float]] = {
-    GENERAL: {},
-    "no spin (WA = WB = 0)": {"WA": 0, "WB": 0},
-    "no friction (MU = 0)": {"MU": 0},
-    "surface along y (GA = 0)": {"GA": 0},
-    "EM = 1 (no moment)": {"EM": 1},
-    "EM = 0": {"EM": 0},
-    "one arm 0 (DB = 0)": {"DB": 0},
-    "both arms 0 (DA = DB = 0)": {"DA": 0, "DB": 0},
-    "point mass (M = 4)": {"M": 4},
-    "barrier (B infinite)": {"MB": np.inf, "IB": np.inf, "VX": 0, "VY": 0, "WB": 0},
-    "pivot (MU = -10)": {"MU": -10},
-    "same vehicles (masses, inertias)": _BODIES,
-    "same place (all angles and arms)": _SHAPE,
-    "same scene, velocities vary": {**_SHAPE, **_BODIES, "E": 0.1, "MU": 0.5, "EM": -0.5},
-}
-"""Kinds of blocks: the columns that are the same for all scenes, as scalars."""
-SELECTIONS: dict[str, tuple[str, ...]] = {
-    "all": tuple(RESULTS),
-    "six final velocities": ORDER,
-    "four velocities (no spins)": ORDER[:4],
-    "velocities of A": ("VAX", "VAY", "WAF"),
-    "impulse PN PT": ("PN", "PT"),
-    "LOSS": ("LOSS",),
-    "DVA DVB": ("DVA", "DVB"),
-    "KI": ("KI",),
-    "contact velocities before": ("XA", "YA", "XB", "YB"),
-    "COND": ("COND",),
-    "STATUS": ("STATUS",),
-}
 
 
 def machine() -> Row:
@@ -231,50 +196,6 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
     return rows
 
 
-def moving(count: int) -> Columns:
-    """Casework in which every vehicle spins: nothing to skip."""
-    rng = np.random.default_rng(1)
-    spins = {"WA": rng.uniform(0.5, 2, 4096), "WB": rng.uniform(-2, -0.5, 4096)}
-    return enlarged({**scenes("casework", 4096, 1), **spins}, count)
-
-
-def passes(columns: Any, outputs: Sequence[str]) -> int:
-    """The passes numpy's plan for these columns makes."""
-    given, _ = sources(columns)
-    block = examine({name: part(source, 0, TILE) for name, source in given.items()})
-    return plan_for(block.kinds, tuple(outputs)).passes
-
-
-def paths(count: int, repeats: int) -> list[Row]:
-    """The six velocities of all kinds of blocks of ``count`` scenes: passes, nanoseconds a scene,
-    and what of the general path's time is saved."""
-    general = moving(count)
-    return _compared(
-        {name: ({**general, **same}, ORDER) for name, same in PATHS.items()}, count, repeats
-    )
-
-
-def selections(count: int, repeats: int) -> list[Row]:
-    """The same of selections of results; what is saved is of the time for all of them."""
-    general = moving(count)
-    return _compared(
-        {name: (general, outputs) for name, outputs in SELECTIONS.items()}, count, repeats
-    )
-
-
-def _compared(
-    works: Mapping[str, tuple[Any, Sequence[str]]], count: int, repeats: int
-) -> list[Row]:
-    times = medians([partial(solve, *work, threads=1) for work in works.values()], repeats)
-    return [
-        {
-            **{"name": name, "passes": passes(*work), "nanoseconds": 1e9 * taken / count},
-            "saved": 1 - taken / times[0],
-        }
-        for (name, work), taken in zip(works.items(), times, strict=True)
-    ]
-
-
 def _repeated(work: Callable[[], object], calls: int) -> None:
     for _ in range(calls):
         work()
@@ -286,13 +207,17 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
     results."""
     rows = []
     for count in counts:
-        columns = moving(count)
         room = {name: np.zeros(count) for name in ORDER}
+        columns: Any = enlarged(scenes(BENCHMARK[0], 4096, 1), count)
+        move = mover({name: columns[name] for name in SCENE if name != "M"}, room)
+        if count == 1:
+            columns = {name: float(values[0]) for name, values in columns.items()}
+            room = {name: np.zeros(()) for name in ORDER}
         calls = max(1, AT_ONCE // count)
         works = (
             partial(solve, columns, ORDER, threads=1),
             partial(solve, columns, out=room, threads=1),
-            mover({name: values for name, values in columns.items() if name != "M"}, room),
+            move,
         )
         times = medians([partial(_repeated, work, calls) for work in works], repeats)
         row: Row = {"scenes": count, "seconds": times[0] / calls}
@@ -300,7 +225,8 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
             row[key] = 1e9 * taken / calls / count
         tracemalloc.start()
         solve(columns, ORDER, threads=1)
-        row["extra_mib"] = (tracemalloc.get_traced_memory()[1] - 6 * 8 * count) / 2**20
+        extra = tracemalloc.get_traced_memory()[1] - 6 * 8 * count
+        row["extra_mib"] = max(0, extra) / 2**20  # results may take the place of earlier ones
         tracemalloc.stop()
         rows.append(row)
     return rows

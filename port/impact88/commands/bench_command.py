@@ -10,7 +10,6 @@ examples:
   impact88 bench                             the table, about two minutes
   impact88 bench --scenes 300 --quick        a quick look
   impact88 bench --figure work-precision.pdf --json -o bench.json
-  impact88 bench --paths                     what skipping saves, path by path
   impact88 bench --files                     a million rows from file to file
   impact88 bench --sizes                     to ten million scenes (takes 2 GB)
 
@@ -33,8 +32,8 @@ __doc__ = (__doc__ or "").format(
 
 QUICK = 0.05
 """The share of the scenes that --quick times."""
-PATH_SCENES, FILE_ROWS = 500_000, 1_000_000
-"""Scenes of --paths (their columns fit no cache), and rows of --files."""
+FILE_ROWS = 1_000_000
+"""Rows of --files."""
 COMPONENT_SCENES = 300
 """Scenes of which every result is compared with 50 digits: two milliseconds each."""
 MOST_SCENES = 10_000_000
@@ -47,7 +46,6 @@ ARGUMENTS = (
     options.seed("of the populations", 1988),
     options.count("--repeats", 1, 1000, "times are medians of so many (%(default)s)", default=5),
     options.flag("--quick", "time a twentieth of the scenes: rougher, sooner"),
-    options.flag("--paths", "what skipping saves, instead"),
     options.flag("--sizes", "growth with the scenes, instead"),
     options.flag("--files", "tables from file to file, instead"),
     options.json_option("JSON instead of tables"),
@@ -67,8 +65,8 @@ def main(arguments: argparse.Namespace) -> int:
 
     for picture in filter(None, (arguments.figure, arguments.errors_figure)):
         check_ending(picture)
-    if arguments.paths or arguments.sizes or arguments.files:
-        return _skipping(arguments)
+    if arguments.sizes or arguments.files:
+        return _growth(arguments)
     from ..bench import figure, measure, tables
     from ..progress import progress
 
@@ -99,14 +97,10 @@ def main(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _skipping(arguments: argparse.Namespace) -> int:
+def _growth(arguments: argparse.Namespace) -> int:
     from ..bench import measure, tables
 
     record: dict[str, Any] = {}
-    repeats = arguments.repeats
-    if arguments.paths:
-        record["paths"] = measure.paths(PATH_SCENES, repeats)
-        record["outputs"] = measure.selections(PATH_SCENES, repeats)
     if arguments.files:
         from ..cli import main as command_line
 
@@ -114,7 +108,7 @@ def _skipping(arguments: argparse.Namespace) -> int:
             FILE_ROWS, lambda path, to: command_line(["solve", path, "-o", to])
         )
     if arguments.sizes:
-        record["sizes"] = measure.sizes(SIZES, repeats)
+        record["sizes"] = measure.sizes(SIZES, arguments.repeats)
     machine = measure.machine()
     if arguments.json:
         _print_json({"machine": machine, **record})
