@@ -20,8 +20,8 @@ _WHOSE_BASE = {"us": "chapter", "metric": "si"}
 
 
 class Entries(NamedTuple):
-    """``texts``: the entries that are no blanks, in base units; ``units``: the system they were
-    written in, or None; ``problems``: what is wrong, by name."""
+    """``texts`` in base units, without blank ones; ``units``: the system they were written in, or
+    None; ``problems`` by name."""
 
     texts: dict[str, str]
     units: str | None
@@ -47,17 +47,14 @@ def entries(values: Mapping[str, str], units: str) -> Entries:
 
 
 def units_shown(units: str | None) -> dict[str, Any]:
-    """The units of a form: the system's ``name``, its ``base`` in words, and the ``labels`` of bare
-    numbers, by what they measure."""
+    """The system's ``name``, its ``base`` in words, ``labels`` of bare numbers by what they
+    measure."""
     from ..units import base_of, system_of
 
     system = system_of(units)
     rules = {row.unit for table in (SCENE, RESULTS, CHAPTER) for row in table.values()}
-    return {
-        "name": units or "",
-        "base": base_of(system),
-        "labels": {rule: system.label(rule) for rule in sorted(rules)},
-    }
+    labels = {rule: system.label(rule) for rule in sorted(rules)}
+    return {"name": units or "", "base": base_of(system), "labels": labels}
 
 
 def without_rounding(values: Mapping[str, float], share: float) -> dict[str, float]:
@@ -75,12 +72,9 @@ def without_rounding(values: Mapping[str, float], share: float) -> dict[str, flo
 
 def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any]:
     """A flat TOML file as a form has it: ``values`` by the names ``allowed``, ``title``, ``units``,
-    what stands beside the fields (``extra``), and how entries were understood (``remarks``).
-
-    Texts stay as they are; where an inertia is estimated or the contact point is given in a
-    vehicle's own axes, all values are worked out, in base units. Raises UserError naming file and
-    line.
-    """
+    what stands beside the fields (``extra``), and how entries were understood (``remarks``). Texts
+    stay as they are unless an inertia is estimated or the contact point is given in a vehicle's own
+    axes: then all are worked out, in base units. Raises UserError naming file and line."""
     if len(data) > LARGEST:
         raise UserError(f"is larger than {LARGEST:,} bytes, the limit here", name)
     texts = toml_texts(decode(data, name), name)

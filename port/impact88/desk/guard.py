@@ -1,10 +1,9 @@
 """Who may ask the desk, and what goes with every answer.
 
-The server listens on this machine only, but other pages in the same browser, and other users of the
-machine, can reach it too. Against them: a random token that begins every path (others do not know
-it), the exact Host (a foreign name that was pointed at 127.0.0.1 fails), the Origin and the
-browser's own word on where a request comes from (a foreign page fails even with the token), and no
-header that would let one read an answer. Whoever is refused gets no word of the desk's.
+Other pages in the same browser, and other users of the machine, can reach it too. Against them: a
+random token that begins every path, the exact Host (a foreign name pointed at 127.0.0.1 fails), the
+Origin and the browser's own word on where a request comes from (a foreign page fails even with the
+token), and no header that would let one read an answer. A refusal says nothing.
 """
 
 import hmac

@@ -1,9 +1,5 @@
-"""Connections that send no whole request: closed after a time, the oldest when they are many.
-
-All peers are this machine, so a limit for each address would be one for all of them together; a
-newcomer closes the connection that has waited longest instead. A browser whose idle connection is
-closed opens another.
-"""
+"""Connections that send no whole request: closed after a time, the oldest when they are many. (All
+peers are this machine, so that a limit for each address would be one for all of them.)"""
 
 import time
 from typing import Any
@@ -21,11 +17,9 @@ WAITING = 64
 class Channel(HTTPChannel):  # type: ignore[misc]
     """A connection that knows since when it has been sending a request."""
 
-    since = 0.0
-    served = False
+    since, served = 0.0, False
 
     def received(self, data: bytes) -> bool:
-        """Take bytes that came in."""
         if self.request is None:
             self.since = time.time()
         taken: bool = super().received(data)
@@ -33,7 +27,6 @@ class Channel(HTTPChannel):  # type: ignore[misc]
         return taken
 
     def overdue(self, now: float) -> bool:
-        """Whether the request has been on its way for too long."""
         if self.requests or self.total_outbufs_len:
             return False
         if self.request is None:  # nothing was sent, or nothing since the last answer

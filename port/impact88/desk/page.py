@@ -1,7 +1,7 @@
 """What the page's template is given: the project's one table of names, grouped for a form."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from markupsafe import Markup, escape
@@ -58,7 +58,7 @@ def unit(label: str) -> str:
 
 
 def digits(value: float | None, count: int) -> str:
-    """A number of a table; nothing for none."""
+    """A number of a table; nothing for None."""
     return "" if value is None else number(value, count)
 
 
@@ -70,13 +70,9 @@ def drivers(bound: Mapping[str, Any]) -> str:
     return ", ".join(f"{name} {number(swing, 3)}" for name, swing in ranked if swing > least)
 
 
-FILTERS = {
-    "quantity": quantity,
-    "symbol": symbol,
-    "unit": unit,
-    "digits": digits,
-    "drivers": drivers,
-}
+FILTERS: dict[str, Callable[..., Any]]
+FILTERS = {"quantity": quantity, "symbol": symbol, "unit": unit}
+FILTERS |= {"digits": digits, "drivers": drivers}
 
 
 def contents() -> dict[str, Any]:

@@ -16,10 +16,9 @@ from ..reporting.casefile import report as report_page
 from ..reporting.examination import examine_bytes
 from ..reporting.verification import Examined, Verification
 
-LONGEST_NAME = 200
+LONGEST_NAME = LONGEST_WORDS = 200
+"""Characters of a file's name; of a date, a case or a name on the report: two of its lines."""
 UNNAMED = "pasted.txt"
-LONGEST_WORDS = 200
-"""Characters of a date, a case or a name on the report."""
 WORDS = ("date", "case", "examiner")
 """What stands on a report as given."""
 
@@ -31,11 +30,9 @@ def warm() -> None:
 
 def judged(name: str, data: bytes, seed: str = "") -> dict[str, Any]:
     """The verdicts on one paper; ``data`` is its file, ``seed`` what a person made of a picture.
-
-    ``text``: the paper as text, which the places below count in, or None where it is none;
-    ``problem``: why it cannot be judged, or None; ``objects``: what `impact88 verify --json` prints
-    for it; ``printouts``: the words of each of its verdicts.
-    """
+    ``text``: the paper as text, which places count in, or None; ``problem``: why it cannot be
+    judged, or None; ``objects``: what `impact88 verify --json` prints; ``printouts``: the verdicts
+    in words."""
     examined = _examined(name, data, seed)
     return {
         "name": examined.file,
@@ -64,8 +61,7 @@ def _text(examined: Examined, data: bytes) -> str | None:
     """The text that places are counted in: of words with their places, those laid out; of a
     picture, what was read on its only page."""
     try:
-        text = pasted.decoded(data, examined.file)
-        return pasted.laid_out(text, examined.file)
+        return pasted.laid_out(pasted.decoded(data, examined.file), examined.file)
     except UserError:
         return examined.results[0].text if len(examined.results) == 1 else None
 
@@ -89,8 +85,8 @@ def _words(result: Verification) -> dict[str, Any]:
 
 
 def report(papers: Sequence[Mapping[str, str]], words: Mapping[str, str]) -> str:
-    """The page that `impact88 verify --report` writes for papers, each with ``name`` and ``data``
-    (base 64); ``words``: printed on it as given. Raises UserError."""
+    """The page of `impact88 verify --report` for papers, each with ``name`` and ``data`` (base 64);
+    ``words``: printed on it as given. Raises UserError."""
     given = {name: str(words.get(name) or "").strip() or None for name in WORDS}
     for name, text in given.items():
         if text and len(text) > LONGEST_WORDS:

@@ -15,8 +15,7 @@ from pebble import ProcessExpired, ProcessFuture, ProcessPool
 from ..errors import UserError
 
 ANSWERED_WITHIN = 60.0
-"""Seconds for an answer, after which its process is ended. The slowest pages and scans at hand take
-ten on an idle machine."""
+"""Seconds, after which the process is ended; the slowest scans at hand take ten when idle."""
 
 
 class SupersededError(Exception):
@@ -28,11 +27,8 @@ class BrokenError(Exception):
 
 
 class Bench:
-    """One process that answers one question at a time.
-
-    ``module``: the module of this room whose functions answer, loaded before the first question.
-    Questions of one ``page`` replace each other; those of different pages wait for their turn.
-    """
+    """One process that answers one question at a time by the functions of a ``module`` of this
+    room. Questions of one ``page`` replace each other; those of different pages wait."""
 
     def __init__(self, module: str) -> None:
         self._module = f"{__package__}.{module}"
@@ -50,10 +46,8 @@ class Bench:
         assert self._pool.active
 
     def ask(self, page: str, function: str, /, **arguments: Any) -> Any:
-        """What a function of the bench's module returns.
-
-        Raises UserError with what is wrong with the question, SupersededError, and BrokenError.
-        """
+        """What a function of the module returns. Raises UserError with what is wrong with the
+        question, SupersededError, and BrokenError."""
         with self._lock:
             self._cancel(page)
             asked = self._pool.schedule(

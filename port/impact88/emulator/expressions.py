@@ -9,36 +9,13 @@ that the argument was a string; CHR$, PEEK, FRE and POS never look.
 
 from collections.abc import Callable
 
-from ..applesoft import decimaltext, functions
+from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
-from ..applesoft.real import (
-    INTEGER_EXPONENT,
-    ZERO,
-    Number,
-    absolute,
-    add,
-    compare,
-    divide,
-    floor,
-    integer,
-    multiply,
-    negate,
-    rounded,
-    subtract,
-    to_integer,
-)
+from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
 from .faults import Fault, placed
-from .memory import ADDRESSES, BLANK, CLOSE, COMMA, EMPTY, FUNCTION, INTEGER, OPEN, QUOTE, STRING
-from .tokens import TOKENS
-from .variables import (
-    IS_STRING,
-    LONGEST,
-    SUBFLG_SIMPLE,
-    Variables,
-    descriptor,
-    positive_integer,
-    stored_at,
-)
+from .memory import ADDRESSES, EMPTY, FUNCTION, INTEGER, STRING, SUBFLG_SIMPLE
+from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
+from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
 
 ROOM, PENDING = 59, 12
 """CHKMEM: where the stack pointer has to be at least for a formula; bytes on the stack for an
@@ -55,25 +32,19 @@ RELATIONAL = PRECEDENCES[RELATION]
 NONE = -1
 """No operator follows: the last place in `PRECEDENCES`."""
 ONE = integer(1)
-ARITHMETIC: tuple[Callable[[Number, Number], Number], ...] = (add, subtract, multiply, divide)
+ARITHMETIC: tuple[Callable[[Number, Number], Number], ...]
+ARITHMETIC = (real.add, real.subtract, real.multiply, real.divide)
 ERROR_DEPTHS = (3, 3, 5, 3, 6)
 """How far below a level's entry + - * / and ^ find their errors."""
 SIGNS, TRUTHS = (1, 2, 4), {1: 4, 0: 2, -1: 1}
 """CPRTYP's bits for >, = and <; CPRMASK's by what `compare` says of the right operand."""
 
-NUMERIC: dict[str, Callable[[Number], Number]] = {
-    "SGN": functions.sign,
-    "ABS": absolute,
-    "LOG": functions.logarithm,
-    "ATN": functions.arc_tangent,
-}
-LOOKING_FOR_INT: dict[str, Callable[[Number], Number]] = {
-    "SQR": functions.square_root,
-    "EXP": functions.exponential,
-    "COS": functions.cosine,
-    "SIN": functions.sine,
-    "TAN": functions.tangent,
-}
+NUMERIC: dict[str, Callable[[Number], Number]]
+NUMERIC = {"SGN": functions.sign, "ABS": real.absolute, "LOG": functions.logarithm}
+NUMERIC["ATN"] = functions.arc_tangent
+LOOKING_FOR_INT: dict[str, Callable[[Number], Number]]
+LOOKING_FOR_INT = {"SQR": functions.square_root, "EXP": functions.exponential}
+LOOKING_FOR_INT |= {"COS": functions.cosine, "SIN": functions.sine, "TAN": functions.tangent}
 """Functions that ask for an INT on their way."""
 FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
 """How far below a formula's entry they find their errors; others 5."""
@@ -93,9 +64,10 @@ def address_of(x: Number, sp: int) -> int:
 
 def byte_of(x: Number, sp: int) -> int:
     """CONINT: a number from 0 to 255, rounded down. Raises ILLEGAL QUANTITY."""
-    n = positive_integer(x, sp - 2)
-    if n > LONGEST:
-        raise Fault("ILLEGAL QUANTITY", sp)
+    e, m, s = x
+    n = m >> 168 - e if e <= LARGEST_INTEGER else LONGEST + 1
+    if s or n > LONGEST:
+        raise Fault("ILLEGAL QUANTITY", sp - 2 * (s or e > LARGEST_INTEGER))
     return n
 
 
@@ -208,7 +180,7 @@ class Expressions(Variables):
                     elif doing == POWER:
                         fac = self.power(left, fac)
                     elif doing == NEGATE:
-                        fac = negate(fac)
+                        fac = real.negate(fac)
                     elif doing == NOT:
                         fac = ZERO if fac[0] else ONE
                     elif doing == OR:
@@ -363,7 +335,7 @@ class Expressions(Variables):
         return result
 
     def _int(self, fac: Number, sp: int) -> Number:
-        whole = floor(fac)
+        whole = real.floor(fac)
         if fac[0] < INTEGER_EXPONENT:
             self.charac = to_integer(whole) & 0xFF
         return whole
@@ -373,7 +345,11 @@ class Expressions(Variables):
         that of an older number."""
         result = functions.power(left, right)
         if left[2] and rounded(right)[0] >= INTEGER_EXPONENT:
-            result = negate(absolute(result)) if self._int_byte() & 1 else absolute(result)
+            result = (
+                real.negate(real.absolute(result))
+                if self._int_byte() & 1
+                else real.absolute(result)
+            )
         self.charac = "^", left, right
         return result
 
@@ -384,13 +360,13 @@ class Expressions(Variables):
         word, left, x = self.charac
         if word in ("SIN", "COS", "TAN"):
             if word == "COS":
-                x = add(functions.HALF_PI, x)
-            return to_integer(rounded(divide(x, functions.TWO_PI))) & 0xFF
+                x = real.add(functions.HALF_PI, x)
+            return to_integer(rounded(real.divide(x, functions.TWO_PI))) & 0xFF
         if word == "SQR":
             left, x = x, functions.HALF
         if word != "EXP":
-            base = absolute(rounded(left))
-            x = multiply(rounded(x), functions.logarithm(base)) if base[0] and x[0] else ZERO
+            base = real.absolute(rounded(left))
+            x = real.multiply(rounded(x), functions.logarithm(base)) if base[0] and x[0] else ZERO
         return functions.exponential_integer(x) & 0xFF
 
     def _rnd(self, fac: Number, sp: int) -> Number:

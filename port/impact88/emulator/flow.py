@@ -15,9 +15,9 @@ from ..applesoft.real import ZERO, Number, add, compare, integer, rounded
 from .expressions import ONE
 from .faults import Fault, Restart
 from .inputoutput import BREAK_CODE, InputOutput
-from .memory import ADDRESSES, COMMA, DIRECT, GOTO, HEADER, ROM, STACK, TEMPORARIES, is_digit
-from .tokens import TOKENS
-from .variables import SUBFLG_SIMPLE, store
+from .memory import ADDRESSES, DIGITS, DIRECT, GOTO, HEADER, ROM, STACK, SUBFLG_SIMPLE, TEMPORARIES
+from .tokens import COMMA, TOKENS
+from .variables import store
 
 FOR_SIZE, FOR_ROOM = 18, 74
 GOSUB_SIZE, GOSUB_ROOM = 7, 64
@@ -254,7 +254,7 @@ class Flow(InputOutput):
             byte = self.expect(THEN, sp - 2)
         if not fac[0]:
             self.rem_()
-        elif is_digit(byte):
+        elif byte in DIGITS:
             self.goto_()
         else:
             self.execute()
@@ -406,7 +406,7 @@ class Flow(InputOutput):
     def del_(self) -> None:
         """DEL. The program ends, unless the range lies before its own beginning."""
         sp = self.sp - 2
-        if not is_digit(self.character()):
+        if self.character() not in DIGITS:
             raise Fault("SYNTAX", sp)
         self.vartab = self.prgend
         _, start = self.find_line(self.line_number(sp - 2), self.txttab)

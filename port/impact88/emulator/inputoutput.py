@@ -11,21 +11,9 @@ from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import Number, integer
 from .expressions import Expressions, byte_of
 from .faults import Fault, placed
-from .memory import (
-    ADDRESSES,
-    CLOSE,
-    COLON,
-    COMMA,
-    DIRECT,
-    HEADER,
-    INPUT_BUFFER,
-    MINUS,
-    QUOTE,
-    SEMICOLON,
-    is_digit,
-)
+from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS
 from .screen import HEIGHT, WIDTH
-from .tokens import DATA, FIRST, TOKENS, spelling
+from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, spelling
 from .variables import IS_STRING
 
 TAB, SPC = TOKENS["TAB("], TOKENS["SPC("]
@@ -142,7 +130,7 @@ class InputOutput(Expressions):
     def list_(self) -> None:
         sp = self.sp - 2
         byte = self.character()
-        if not (is_digit(byte) or self.at_end() or byte in (MINUS, COMMA)):
+        if not (byte in DIGITS or self.at_end() or byte in (MINUS, COMMA)):
             return
         number = self.line_number(sp - 2)
         _, line = self.find_line(number, self.txttab)

@@ -14,10 +14,9 @@ from ..applesoft.real import integer
 from .expressions import address_of
 from .faults import Fault, Restart, placed
 from .flow import EQUAL, Flow
-from .memory import BLANK, CLOSE, COLON, COMMA, DIRECT, INPUT_BUFFER, OPEN, RTS, SPEED
+from .memory import DIRECT, INPUT_BUFFER, RTS, SPEED, SUBFLG_SIMPLE
 from .screen import FLASHING, INVERSE, NORMAL
-from .tokens import FIRST, KEYWORDS, LAST_STATEMENT
-from .variables import SUBFLG_SIMPLE
+from .tokens import BLANK, CLOSE, COLON, COMMA, FIRST, KEYWORDS, LAST_STATEMENT, OPEN
 
 EVERY_BYTE = bytes(range(256))
 KEPT = {

@@ -14,7 +14,7 @@ from ..applesoft.console import Console, Device, Keyboard
 from ..applesoft.real import Number, from_stored, to_stored
 from .faults import Fault, TooManyStatements
 from .screen import BASE, END, Screen
-from .tokens import TOKENS
+from .tokens import BLANK, COLON, OPEN, QUOTE, TOKENS
 
 TEXT_START, TOP_OF_MEMORY = 0x801, 0xC000
 """TXTTAB and, without a disk system, HIMEM."""
@@ -58,9 +58,10 @@ for _address, _name in re.findall(r"(\w+) (\w+)", WORDS):
     POINTERS |= {int(_address, 16): (_name, 0, 0xFF00), int(_address, 16) + 1: (_name, 8, 0x00FF)}
 OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
 
-BLANK, QUOTE, COLON, COMMA, SEMICOLON = map(ord, ' ":,;')
-OPEN, CLOSE, DOLLAR, PERCENT = map(ord, "()$%")
 GOTO, PLUS, MINUS = (TOKENS[word] for word in ("GOTO", "+", "-"))
+SUBFLG_SIMPLE = 0x80
+"""SUBFLG: no array and no integer may come, because of FOR or DEF FN."""
+DIGITS = range(48, 58)
 HEADER = 4
 """Bytes of a line before its text: the next line's address and the number."""
 LINE_LIMIT = 0x19
@@ -75,11 +76,6 @@ _SIGNS = bytes.maketrans(bytes((PLUS, MINUS)), b"+-")
 
 Name = tuple[int, int, bool]
 """A name's two bytes as a number, the address behind it, and whether subscripts follow."""
-
-
-def is_digit(byte: int) -> bool:
-    """0 to 9."""
-    return 48 <= byte <= 57
 
 
 class Memory:
@@ -258,7 +254,7 @@ class Memory:
     def line_number(self, sp: int) -> int:
         """LINGET: the digits that come next, in LINNUM too; 0 if there are none. Raises SYNTAX."""
         number = 0
-        while is_digit(byte := self.character()):
+        while (byte := self.character()) in DIGITS:
             if number >> 8 >= LINE_LIMIT:
                 raise Fault("SYNTAX", sp)
             self.charac = byte - 48

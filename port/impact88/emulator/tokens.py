@@ -27,6 +27,7 @@ KEYWORDS = (
 
 TOKENS = {word: FIRST + n for n, word in enumerate(KEYWORDS)}
 DATA, REM, AT, PRINT = (TOKENS[word] for word in ("DATA", "REM", "AT", "PRINT"))
+BLANK, QUOTE, COLON, COMMA, SEMICOLON, OPEN, CLOSE = map(ord, ' ":,;()')
 LAST_STATEMENT = TOKENS["NEW"]
 """Keywords up to here may begin a statement."""
 LAST_LINE = 63999

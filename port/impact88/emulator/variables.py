@@ -17,18 +17,8 @@ from typing import NamedTuple
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
 from .faults import Fault, placed
-from .memory import (
-    CLOSE,
-    COMMA,
-    EMPTY,
-    INTEGER,
-    QUOTE,
-    ROM,
-    STRING,
-    TEMPORARIES,
-    TEMPORARIES_END,
-    Memory,
-)
+from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
+from .tokens import CLOSE, COMMA, QUOTE
 
 DESCRIPTOR, IS_STRING, LONGEST = 3, 0xFF, 255
 
@@ -49,8 +39,6 @@ LARGEST_INTEGER = 143
 AFTER_SUBSCRIPT = (COMMA, CLOSE)
 DEEPEST = 63
 """A subscript needs the stack pointer to be at least here, else its formula says that it is not."""
-SUBFLG_SIMPLE = 0x80
-"""SUBFLG: no array and no integer may come, because of FOR or DEF FN."""
 _STORED = Struct(">BI")
 stored_at, store = _STORED.unpack_from, _STORED.pack_into
 
@@ -58,14 +46,6 @@ stored_at, store = _STORED.unpack_from, _STORED.pack_into
 def element_size(name: int) -> int:
     """Bytes of an element of an array, by its name: a real five, a string three, an integer two."""
     return 5 - (name >> 15) - 2 * (name >> 7 & 1)
-
-
-def positive_integer(x: Number, sp: int) -> int:
-    """MKINT: a number from 0 to 32767, rounded down. Raises ILLEGAL QUANTITY."""
-    e, m, s = x
-    if s or e > LARGEST_INTEGER:
-        raise Fault("ILLEGAL QUANTITY", sp)
-    return m >> 168 - e
 
 
 class Array(NamedTuple):

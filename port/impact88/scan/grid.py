@@ -273,11 +273,11 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
     scale = CELL_WIDTH / pitch
     middles = np.array([(top + bottom) / 2 for top, bottom in lines])
     rise, drifts = _risen(across - left, level, middles, height, scale)
-    middles = middles + drifts[:, 0]
+    middles = middles + drifts
     small = _resized(ink, scale)
     tall = round(1.7 * height * scale)
 
-    def place(u: Floats, v: Floats, line: int) -> tuple[Floats, Floats]:
+    def place(u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Where in the picture the point ``u`` across and ``v`` down the levelled page is."""
         x, y = u, v
         for _ in range(5):
@@ -285,7 +285,6 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
             y = v + x * (slope + keystone * y / span)
         t = (u - left) * scale / _STRETCH
         y = y + np.tensordot(rise, _bows(t, v * scale / _STRETCH), 1)
-        y = y + drifts[line, 1] * t + drifts[line, 2] * t * t
         return x + ink.shape[1] / 2, y + ink.shape[0] / 2
 
     def sampled(line: int) -> Image:
@@ -294,7 +293,7 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
         # the map bends slowly: it is worked out at every eighth point
         coarse = np.linspace(0, len(u) - 1, len(u) // 8)
         u_at, v_at = np.meshgrid(u[0] + coarse / scale, v[[0, -1]])
-        across, down = place(u_at, v_at, line)
+        across, down = place(u_at, v_at)
         t = np.linspace(0, 1, len(v))[:, None]
         at_x = np.stack([np.interp(np.arange(len(u)), coarse, row) for row in across])
         at_y = np.stack([np.interp(np.arange(len(u)), coarse, row) for row in down])
@@ -306,9 +305,9 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
     pictures = [sampled(line) for line in range(len(lines))]
     corners = []
     edges, ends = left + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
-    for line, middle in enumerate(middles):
+    for middle in middles:
         u, v = np.meshgrid(edges, middle + ends)
-        corners.append(np.stack(place(u, v, line), axis=-1).transpose(1, 0, 2))
+        corners.append(np.stack(place(u, v), axis=-1).transpose(1, 0, 2))
     return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns)
 
 
@@ -320,8 +319,8 @@ def _bows(u: Floats, v: Floats) -> Floats:
 def _risen(
     across: Floats, level: Floats, middles: Floats, height: float, scale: float
 ) -> tuple[Floats, Floats]:
-    """How the lines still rise and fall, in pixels: coefficients of `_bows`, and for each line
-    those of 1, t and t^2, t in stretches of `_STRETCH`. Each one's ink is laid on the mean."""
+    """How the lines still rise and fall, in pixels: coefficients of `_bows`, and how far each line
+    is off. The ink of each stretch is laid on the mean of all."""
     reach = 9
     half = int(0.85 * height * scale) + reach
     stretches = np.maximum((across * scale / _STRETCH).astype(int), 0)
@@ -336,7 +335,7 @@ def _risen(
             profiles.append(counts[stretch] / np.linalg.norm(counts[stretch]))
             places.append((line, stretch + 0.5, middle * scale / _STRETCH))
     if not profiles:
-        return np.zeros(4), np.zeros((len(middles), 3))
+        return np.zeros(4), np.zeros(len(middles))
     every, at = np.array(profiles), np.array(places)
     lines = at[:, 0].astype(int)
     size = 2 * half - 2 * reach
@@ -349,27 +348,12 @@ def _risen(
         moves = np.argmax(fits, axis=1) - reach
     off = moves - np.median(moves)
     common = np.vstack([_bows(at[:, 1], at[:, 2]), np.eye(len(middles))[:, lines]])
-    rise = _robust(common, off, 1e-3)
-    off = off - rise @ common
-    own = np.zeros((len(middles), 3))
-    for line in np.unique(lines):
-        of_line = lines == line
-        t = at[of_line, 1]
-        own[line] = _robust(np.stack([np.ones_like(t), t / 10, t * t / 100]), off[of_line], 0.3)
-    own /= [1, 10, 100]
-    own[:, 0] += rise[4:]
-    return rise[:4] / scale, own / scale
-
-
-def _robust(terms: Floats, values: Floats, ridge: float) -> Floats:
-    """Coefficients of ``terms``, shape (terms, values): values far off count less."""
-    sure = np.ones(len(values))
-    fit: Floats = np.zeros(len(terms))
-    for _ in range(6):
-        normal = (terms * sure) @ terms.T + ridge * np.eye(len(terms))
-        fit = np.asarray(np.linalg.solve(normal, (terms * sure) @ values))
-        sure = 1 / (1 + ((values - fit @ terms) / 1.5) ** 2)
-    return fit
+    sure = np.ones(len(off))
+    for _ in range(6):  # what is far off counts less
+        normal = (common * sure) @ common.T + 1e-3 * np.eye(len(common))
+        rise = np.linalg.solve(normal, (common * sure) @ off)
+        sure = 1 / (1 + ((off - rise @ common) / 1.5) ** 2)
+    return rise[:4] / scale, rise[4:] / scale
 
 
 def _resized(ink: Image, scale: float) -> Image:

@@ -8,7 +8,6 @@ relative to how far those two means are apart: -1 is the predicted glyph itself,
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import partial
 from itertools import product
 
 import numpy as np
@@ -23,7 +22,6 @@ from .typeface import (
     BLANK,
     NUMERIC,
     READABLE,
-    STRENGTHS,
     Sample,
     Typeface,
     Vectors,
@@ -51,14 +49,11 @@ _BESIDE = 2
 
 @dataclass
 class Cell:
-    """One cell held against the page. ``name``: the field it belongs to, "" for labels; ``margin``
-    as above; ``other``: the nearest other character; ``distance``, ``other_distance``: how far it
-    is from the predicted mean and the other's, 1 for what is usual on this page; ``count``,
-    ``other_count``: on how many cells those means rest; ``hand``: the
-    digit that it is in a known style of type, of cells that are far from the predicted mean or
-    alone with it, "" for the predicted or none; ``cut``: whether it
-    lies beyond an edge of the picture; ``lost``: whether it is blank on a page whose ink comes and
-    goes."""
+    """One cell held against the page. ``name``: its field, "" for labels; ``other``: the nearest
+    other character; ``distance``, ``other_distance``: from the two means, 1 for what is usual on
+    this page; ``count``, ``other_count``: on how many cells those rest; ``hand``: what a cell far
+    from the predicted mean, or alone with it, is in a known style of type, if another digit;
+    ``cut``: beyond an edge of the picture; ``lost``: blank on a page whose ink comes and goes."""
 
     sheet: int
     place: Place
@@ -90,9 +85,6 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
                 longer = bool(name) and len(shown) == len(piece.places) + 1
                 if longer and read.cost(name, shown[1:]) < read.cost(name, shown[:-1]):
                     column -= 1  # its sign was taken for a blank
-                elif name:  # a speck may stand for one of its cells
-                    spare = range(max(0, len(piece.places) - len(shown)) + 1)
-                    column += min(spare, key=partial(_beside_cost, read, name, shown))
             if not name and not text.strip():
                 shown = BLANK * len(piece.places)
             for character in shown:
@@ -101,10 +93,6 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
         for _ in range(_BESIDE):
             yield "", BLANK, row.place(column)
             column += 1
-
-
-def _beside_cost(read: Read, name: str, text: str, blanks: int) -> float:
-    return read.cost(name, BLANK * blanks + text)
 
 
 def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:
@@ -123,14 +111,15 @@ def _written(text: str) -> list[str]:
         return [text, *_written(format(Decimal(text), "f"))]
     sign, digits = ("-", text[1:]) if text.startswith("-") else ("", text)
     whole, point, part = digits.partition(".")
-    wholes = {whole, whole.lstrip("0"), whole or "0"} if point else {whole}
-    parts_ = {part, part.rstrip("0"), part.rstrip("0") + "0"} if point else {""}
-    ways = [
-        f"{sign}{w}.{p}" if point and p else f"{sign}{w or '0'}" for w in wholes for p in parts_
-    ]
-    return sorted(
-        {*ways, *([f"{sign}{whole}.0"] if not point else [])}, key=lambda way: way != text
-    )
+    if not point:
+        return [text, f"{text}.0"]
+    wholes, short = {whole, whole.lstrip("0"), whole or "0"}, part.rstrip("0")
+    ways = {
+        f"{sign}{w}.{p}" if p else f"{sign}{w or '0'}"
+        for w in wholes
+        for p in (part, short, f"{short}0")
+    }
+    return sorted(ways, key=lambda way: (way != text, way))
 
 
 def held(
@@ -142,49 +131,43 @@ def held(
         for which, (sheet, read, candidate) in enumerate(zip(sheets, reads, found, strict=True))
         for one in predicted(sheet, read, candidate)
     ]
-    names = [character for _, _, character, _ in rows]
-    shown = [grid.shows(*place) and not sheets[which].beyond(place) for which, *_, place in rows]
+    every = np.arange(len(rows))
+    names = np.array([character for _, _, character, _ in rows])
+    of_number = np.array([bool(field) for _, field, _, _ in rows])
+    cut = [not grid.shows(*place) or sheets[which].beyond(place) for which, *_, place in rows]
     sample = sample_of(grid, [place for *_, place in rows])
     typeface = typeface_of(
-        sample, [name if seen else "" for name, seen in zip(names, shown, strict=True)]
+        sample, ["" if off else str(n) for n, off in zip(names, cut, strict=True)]
     )
-    apart, strength = distances(sample, typeface.means)
-    empty = sample.norms.min(axis=1).astype(float)
-    apart = np.column_stack([apart, empty])
-    strength = np.column_stack([strength, np.ones(len(rows))])
-    energy = np.r_[np.einsum("mp,mp->m", typeface.means, typeface.means), 0.0]
-    between = _between(typeface.means)
-    characters = [*typeface.characters, BLANK]
+    characters, counts = [*typeface.characters, BLANK], [*typeface.counts.tolist(), 0]
     index = {character: k for k, character in enumerate(characters)}
     own = np.array([index.get(name, len(characters) - 1) for name in names])
-    distance = apart[np.arange(len(rows)), own].copy()
+    apart, strength = distances(sample, typeface.means)
+    apart = np.column_stack([apart, sample.norms.min(axis=1).astype(float)])
+    ink = np.column_stack([strength, np.ones(len(rows))])[every, own]
+    energy = np.r_[np.einsum("mp,mp->m", typeface.means, typeface.means), 0.0]
+    between = _between(typeface.means)
+    distance = apart[every, own].copy()
     alone = np.zeros(len(rows), bool)
-    for cell in range(len(rows)):
-        if names[cell] != BLANK:
-            mean = typeface.without(cell)
-            if mean is None:
-                alone[cell] = True
-            else:
-                one, ink = distances(sample.at(np.array([cell])), mean[None])
-                distance[cell], strength[cell, own[cell]] = one[0, 0], ink[0, 0]
+    for cell in np.flatnonzero(names != BLANK).tolist():
+        mean = typeface.without(cell)
+        if mean is None:
+            alone[cell] = True
+        else:
+            one, weight = distances(sample.at(np.array([cell])), mean[None])
+            distance[cell], ink[cell] = one[0, 0], weight[0, 0]
+    pale = bool(np.percentile(ink[~np.isin(names, list(" .,-"))], 1) < _EVEN)
     # what is weakly inked is as far from every mean as its ink allows
-    ink = strength[np.arange(len(rows)), own]
-    heavy = np.array([name not in " .,-" for name in names])
-    pale = bool(np.percentile(ink[heavy], 1) < _EVEN)
-    weak = ink**2
-    distance, apart = distance / weak, apart / weak[:, None]
+    distance, apart = distance / ink**2, apart / ink[:, None] ** 2
     usual = np.sqrt(np.maximum(energy[own], 1.0))
-    inked = (np.array(names) != BLANK) & ~alone
     relative = distance / usual
-    level = max(float(np.median(relative[inked])), _LEAST_NOISE)
-    floor = float(np.percentile(relative[inked], 75))
-    distance[alone] = floor * usual[alone]
+    others = relative[(names != BLANK) & ~alone]
+    level = max(float(np.median(others)), _LEAST_NOISE)
+    distance[alone] = float(np.percentile(others, 75)) * usual[alone]
     numeric = np.array([character in READABLE for character in characters])
     letters = np.array([character.isalpha() or character == BLANK for character in characters])
-    of_number = np.array([bool(name) for _, name, _, _ in rows])
     far = of_number & ~alone & (relative > _FAR * level)
-    hands = _hands(sample, typeface, names, alone & of_number, far)
-    counts = [*typeface.counts.tolist(), 0]
+    hands = _hands(sample, typeface, names.tolist(), alone & of_number, far)
     cells = []
     for cell, (which, name, character, place) in enumerate(rows):
         allowed = (numeric if name or character == BLANK else letters).copy()
@@ -199,34 +182,20 @@ def held(
         if hands[cell] and not alone[cell]:
             seen = hands[cell]
             other = index.get(seen, other)
-        cells.append(
-            Cell(
-                which,
-                place,
-                name,
-                character,
-                margin,
-                seen,
-                float(relative[cell] / level),
-                float(apart[cell, other] / max(usual[cell], 1e-6) / level),
-                counts[own[cell]],
-                counts[other] if seen == characters[other] else 0,
-                hands[cell],
-                not shown[cell],
-                pale and characters[other] == BLANK,
-            )
-        )
+        beyond = float(apart[cell, other] / max(usual[cell], 1e-6) / level)
+        count = counts[own[cell]], counts[other] if seen == characters[other] else 0
+        lost = pale and characters[other] == BLANK
+        compared = margin, seen, float(relative[cell] / level), beyond, *count
+        cells.append(Cell(which, place, name, character, *compared, hands[cell], cut[cell], lost))
     return cells
 
 
 def _between(means: Vectors) -> Floats:
     """Squared distances of the means from each other, of whatever strength, and from blank paper:
     of the two directions the less."""
-    whole = np.vstack([means, np.zeros_like(means[:1])]).astype(float)
-    inner = whole @ whole.T
-    energy = np.diag(inner)
-    strength = np.clip(inner / np.maximum(energy, 1e-6), *STRENGTHS)
-    apart = energy[:, None] - 2 * strength * inner + strength**2 * energy
+    whole = np.vstack([means, np.zeros_like(means[:1])])
+    norms = np.einsum("mp,mp->m", whole, whole)
+    apart, _ = distances(Sample(whole[:, None], norms[:, None], (0, 0)), whole)
     least: Floats = np.minimum(apart, apart.T)
     return least
 
