@@ -8,40 +8,27 @@ a value in flight, so PRINT can show more than the variable would hold.
 import re
 from functools import lru_cache
 
+from . import real
 from .errorcodes import overflow
-from .real import (
-    BIAS,
-    ZERO,
-    Number,
-    absolute,
-    add,
-    compare,
-    divide,
-    from_stored,
-    integer,
-    multiply,
-    negate,
-    rounded,
-    to_integer,
-)
+from .real import BIAS, ZERO, Number
 
-TEN = integer(10)
-HALF = from_stored("8000000000")
-BILLION = from_stored("9E6E6B2800")
-NINE_DIGITS = from_stored("9E6E6B27FD")
+TEN = real.integer(10)
+HALF = real.from_stored("8000000000")
+BILLION = real.from_stored("9E6E6B2800")
+NINE_DIGITS = real.from_stored("9E6E6B27FD")
 """999,999,999: above it a number has to be divided by ten before its nine digits are taken."""
-EIGHT_DIGITS = from_stored("9B3EBC1FFD")
+EIGHT_DIGITS = real.from_stored("9B3EBC1FFD")
 """99,999,999.9: not above it, a number has to be multiplied by ten."""
 
 
 def times_ten(x: Number) -> Number:
     """MUL10: x rounded, as (4x + x) doubled. Raises OVERFLOW."""
-    e, m, s = rounded(x)
+    e, m, s = real.rounded(x)
     if not e:
         return ZERO
     if e + 2 > 255:
         raise overflow()
-    e, m, s = add((e + 2, m, s), (e, m, s))
+    e, m, s = real.add((e + 2, m, s), (e, m, s))
     if e == 255:
         raise overflow()
     return e + 1, m, s
@@ -49,7 +36,7 @@ def times_ten(x: Number) -> Number:
 
 def over_ten(x: Number) -> Number:
     """DIV10: |x| rounded, divided by ten."""
-    return divide(absolute(x), TEN)
+    return real.divide(real.absolute(x), TEN)
 
 
 Numeral = tuple[str, str, str, str, str, int]
@@ -77,7 +64,7 @@ def read(text: str, start: int = 0) -> tuple[Number, int]:
     sign, whole, decimals, exponent_sign, exponent, end = scan(text, start)
     value = ZERO
     for digit in whole + decimals:
-        value = add(times_ten(value), integer(int(digit)))
+        value = real.add(times_ten(value), real.integer(int(digit)))
     power = int(exponent.lstrip("0")[:3] or "0")
     if power >= 100:
         if exponent_sign != "-":
@@ -89,7 +76,7 @@ def read(text: str, start: int = 0) -> tuple[Number, int]:
         value = times_ten(value)
     for _ in range(-steps):
         value = over_ten(value)
-    return (negate(value) if sign == "-" else value), end
+    return (real.negate(value) if sign == "-" else value), end
 
 
 def is_number(text: str) -> bool:
@@ -109,7 +96,7 @@ def write(x: Number) -> str:
     """The characters PRINT and STR$ make of ``x``: at most nine digits, extension counted."""
     if not x[0]:
         return "0"
-    digits, d = _nine_digits(absolute(x))
+    digits, d = _nine_digits(real.absolute(x))
     return lay_out("-" if x[2] else "", str(digits), d)
 
 
@@ -130,14 +117,14 @@ def _nine_digits(x: Number) -> tuple[int, int]:
     """The nine digits N written for x > 0, and d with x = N * 10^d."""
     d = 0
     if x[0] <= BIAS:
-        x = multiply(BILLION, x)
+        x = real.multiply(BILLION, x)
         d = -9
-    while (order := compare(NINE_DIGITS, x)) > 0:
+    while (order := real.compare(NINE_DIGITS, x)) > 0:
         x = over_ten(x)
         d += 1
     if order:
-        while compare(EIGHT_DIGITS, x) <= 0:
+        while real.compare(EIGHT_DIGITS, x) <= 0:
             x = times_ten(x)
             d -= 1
-        x = add(HALF, x)
-    return to_integer(x), d
+        x = real.add(HALF, x)
+    return real.to_integer(x), d

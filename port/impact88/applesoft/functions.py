@@ -8,34 +8,14 @@ are stored reals in hexadecimal, as the ROM has them.
 from collections.abc import Sequence
 from functools import lru_cache
 
+from . import real
 from .errorcodes import illegal_quantity, overflow
-from .real import (
-    BIAS,
-    INTEGER_EXPONENT,
-    LIMIT,
-    TOP,
-    ZERO,
-    Number,
-    absolute,
-    add,
-    compare,
-    divide,
-    floor,
-    from_stored,
-    integer,
-    multiply,
-    negate,
-    normalise,
-    product_exponent,
-    rounded,
-    subtract,
-    to_integer,
-)
+from .real import BIAS, ZERO, Number
 
 
 def stored_reals(text: str) -> tuple[Number, ...]:
     """Constants from their hexadecimal bytes, separated by blanks."""
-    return tuple(from_stored(word) for word in text.split())
+    return tuple(real.from_stored(word) for word in text.split())
 
 
 LOG_COEFFICIENTS = stored_reals("7F5E56CB79 80139B0B64 8076389316 8238AA3B20")
@@ -47,47 +27,37 @@ ATN_COEFFICIENTS = stored_reals(
     "76B383BDD3 791EF4A6F5 7B83FCB010 7C0C1F67CA 7CDE53CBC1 7D1464704C"
     " 7DB7EA517A 7D6330887E 7E9244993A 7E4CCC91C7 7FAAAAAA13 8100000000"
 )
-(
-    SQRT_HALF,
-    SQRT_TWO,
-    MINUS_HALF,
-    LN_TWO,
-    LOG2_E,
-    TWO_PI,
-    HALF_PI,
-    QUARTER,
-    HALF,
-) = stored_reals(
-    "803504F334 813504F334 8080000000 80317217F8 8138AA3B29 83490FDAA2 81490FDAA2 7F00000000"
-    " 8000000000"
+SQRT_HALF, SQRT_TWO, MINUS_HALF, LN_TWO, LOG2_E = stored_reals(
+    "803504F334 813504F334 8080000000 80317217F8 8138AA3B29"
 )
+TWO_PI, HALF_PI, QUARTER, HALF = stored_reals("83490FDAA2 81490FDAA2 7F00000000 8000000000")
 RND_FACTOR, RND_ADDEND = stored_reals("9835447A68 6828B14620")
-FIRST_SEED = from_stored("804FC75258")
+FIRST_SEED = real.from_stored("804FC75258")
 """RND's seed after the machine is switched on."""
-ONE = integer(1)
+ONE = real.integer(1)
 EXP_ROUNDING = 0x50
 """What EXP adds to the extension of x / ln 2 before it takes that apart."""
 
 
 def polynomial(coefficients: Sequence[Number], x: Number) -> Number:
     """c0 x^n + ... + cn by Horner's rule; x is rounded, the running value keeps its extension."""
-    x = rounded(x)
-    r = multiply(coefficients[0], x)
+    x = real.rounded(x)
+    r = real.multiply(coefficients[0], x)
     for c in coefficients[1:-1]:
-        r = multiply(x, add(c, r))
-    return add(coefficients[-1], r)
+        r = real.multiply(x, real.add(c, r))
+    return real.add(coefficients[-1], r)
 
 
 def odd_polynomial(coefficients: Sequence[Number], x: Number) -> Number:
     """x times the polynomial in x squared."""
-    x = rounded(x)
-    return multiply(x, polynomial(coefficients, multiply(x, x)))
+    x = real.rounded(x)
+    return real.multiply(x, polynomial(coefficients, real.multiply(x, x)))
 
 
 def sign(x: Number) -> Number:
     """SGN: -1, 0 or 1."""
     e, _, s = x
-    return integer(-1 if s else 1) if e else ZERO
+    return real.integer(-1 if s else 1) if e else ZERO
 
 
 def logarithm(x: Number) -> Number:
@@ -96,9 +66,9 @@ def logarithm(x: Number) -> Number:
     if s or not e:
         raise illegal_quantity()
     f = (BIAS, m, 0)
-    f = subtract(ONE, divide(SQRT_TWO, add(SQRT_HALF, f)))
-    f = add(MINUS_HALF, odd_polynomial(LOG_COEFFICIENTS, f))
-    return multiply(LN_TWO, add(f, integer(e - BIAS)))
+    f = real.subtract(ONE, real.divide(SQRT_TWO, real.add(SQRT_HALF, f)))
+    f = real.add(MINUS_HALF, odd_polynomial(LOG_COEFFICIENTS, f))
+    return real.multiply(LN_TWO, real.add(f, real.integer(e - BIAS)))
 
 
 def exponential(x: Number) -> Number:
@@ -110,19 +80,21 @@ def exponential(x: Number) -> Number:
         raise overflow()
     if exponent <= 1:
         return ZERO
-    e, m, _ = polynomial(EXP_COEFFICIENTS, negate(subtract(integer(doublings), turns)))
-    e = product_exponent(exponent - 1, e)
+    e, m, _ = polynomial(
+        EXP_COEFFICIENTS, real.negate(real.subtract(real.integer(doublings), turns))
+    )
+    e = real.product_exponent(exponent - 1, e)
     return (e, m, 0) if e else ZERO
 
 
 def _over_ln_two(x: Number) -> Number:
     """x / ln 2 as EXP takes it apart, its extension raised."""
-    e, m, s = multiply(LOG2_E, x)
+    e, m, s = real.multiply(LOG2_E, x)
     if e:
         m += EXP_ROUNDING
-        if m >= LIMIT:
+        if m >= real.LIMIT:
             # the 32-bit mantissa overflows to 80000000; the extension's sum is kept as it is
-            m = TOP | m & 0xFF
+            m = real.TOP | m & 0xFF
             e += 1
     return e, m, s
 
@@ -131,7 +103,7 @@ def exponential_integer(x: Number) -> int:
     """The whole number of doublings in EXP (x), which EXP finds with INT; 0 when it is out of
     range and EXP does not look for it."""
     e, m, s = _over_ln_two(x)
-    return to_integer((e, m & ~0xFF, s)) if e < BIAS + 8 else 0
+    return real.to_integer((e, m & ~0xFF, s)) if e < BIAS + 8 else 0
 
 
 def power(left: Number, right: Number) -> Number:
@@ -141,19 +113,19 @@ def power(left: Number, right: Number) -> Number:
     """
     if not right[0]:
         return exponential(ZERO)
-    left = rounded(left)
+    left = real.rounded(left)
     if not left[0]:
         return ZERO
-    p = rounded(right)
+    p = real.rounded(right)
     odd = False
     if left[2]:
-        if compare(p, floor(p)):
+        if real.compare(p, real.floor(p)):
             raise illegal_quantity()
         # beyond 32 bits the ROM still looks at the mantissa's last bit
-        odd = bool((p[1] >> 8 if p[0] >= INTEGER_EXPONENT else to_integer(p)) & 1)
-        left = negate(left)
-    result = exponential(multiply(p, logarithm(left)))
-    return negate(result) if odd else result
+        odd = bool((p[1] >> 8 if p[0] >= real.INTEGER_EXPONENT else real.to_integer(p)) & 1)
+        left = real.negate(left)
+    result = exponential(real.multiply(p, logarithm(left)))
+    return real.negate(result) if odd else result
 
 
 def square_root(x: Number) -> Number:
@@ -167,21 +139,21 @@ def _sine(x: Number) -> tuple[Number, bool, Number]:
 
     The angle becomes a fraction of a turn, and that is folded into -1/4 ... 1/4.
     """
-    f = rounded(divide(x, TWO_PI))
-    f = subtract(QUARTER, subtract(f, floor(f)))
+    f = real.rounded(real.divide(x, TWO_PI))
+    f = real.subtract(QUARTER, real.subtract(f, real.floor(f)))
     beyond_first_quarter = f[2]
     flag = False
     if beyond_first_quarter:
-        f = add(HALF, f)
+        f = real.add(HALF, f)
         if not f[2]:
-            f = negate(f)
+            f = real.negate(f)
             flag = True
     else:
-        f = negate(f)
-    f = add(QUARTER, f)
+        f = real.negate(f)
+    f = real.add(QUARTER, f)
     if beyond_first_quarter:
-        f = negate(f)
-    f = rounded(f)
+        f = real.negate(f)
+    f = real.rounded(f)
     return odd_polynomial(SIN_COEFFICIENTS, f), flag, f
 
 
@@ -192,28 +164,28 @@ def sine(x: Number) -> Number:
 
 def cosine(x: Number) -> Number:
     """COS of x radians, as SIN (pi/2 + x)."""
-    return _sine(add(HALF_PI, x))[0]
+    return _sine(real.add(HALF_PI, x))[0]
 
 
 def tangent(x: Number) -> Number:
     """TAN of x radians: the sine over a cosine folded from the same reduced argument."""
-    of_sine, flag, reduced = _sine(rounded(x))
-    f = add(QUARTER, negate(absolute(reduced)))
+    of_sine, flag, reduced = _sine(real.rounded(x))
+    f = real.add(QUARTER, real.negate(real.absolute(reduced)))
     if flag:
-        f = negate(f)
-    return divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f))
+        f = real.negate(f)
+    return real.divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f))
 
 
 def arc_tangent(x: Number) -> Number:
     """ATN in radians, -pi/2 ... pi/2."""
-    f = absolute(x)
+    f = real.absolute(x)
     inverted = f[0] > BIAS
     if inverted:
-        f = divide(ONE, f)
+        f = real.divide(ONE, f)
     f = odd_polynomial(ATN_COEFFICIENTS, f)
     if inverted:
-        f = subtract(HALF_PI, f)
-    return negate(f) if x[2] else f
+        f = real.subtract(HALF_PI, f)
+    return real.negate(f) if x[2] else f
 
 
 def random(x: Number, seed: Number) -> Number:
@@ -223,6 +195,6 @@ def random(x: Number, seed: Number) -> Number:
     """
     if not x[0]:
         return seed
-    e, m, _ = x if x[2] else add(RND_ADDEND, multiply(RND_FACTOR, seed))
+    e, m, _ = x if x[2] else real.add(RND_ADDEND, real.multiply(RND_FACTOR, seed))
     b1, b2, b3, b4 = (m >> 8).to_bytes(4, "big")
-    return rounded(normalise(BIAS, int.from_bytes((b4, b2, b3, b1, e), "big"), 0))
+    return real.rounded(real.normalise(BIAS, int.from_bytes((b4, b2, b3, b1, e), "big"), 0))
