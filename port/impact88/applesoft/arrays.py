@@ -15,10 +15,7 @@ SUBSCRIPT_LIMIT = 32768
 
 
 def subscript(x: Any) -> int:
-    """A subscript as the machine takes it: rounded down, 0 ... 32767.
-
-    Raises ILLEGAL QUANTITY for a negative or larger one, however small its fraction.
-    """
+    """A subscript as the machine takes it: rounded down, 0 ... 32767. Raises ILLEGAL QUANTITY."""
     if x.__class__ is Real:
         e, m, s = x.number
         if s or e > 143:
@@ -31,11 +28,8 @@ def subscript(x: Any) -> int:
 
 class Array:
     """``DIM NAME(m, n)``, or of one dimension: elements from (0, 0), all zero to begin with.
-
-    ``store`` is what happens to a value that is stored. ``data`` holds the elements with the first
-    subscript fastest, as the machine lays them out; ``sizes`` counts them per dimension. Raises
-    BAD SUBSCRIPT beyond the dimensions.
-    """
+    ``store`` is what happens to a value that is stored; ``data`` holds the elements, the first
+    subscript fastest; ``sizes`` counts them per dimension. Raises BAD SUBSCRIPT."""
 
     def __init__(self, sizes: Sequence[Any], store: Any, zero: Any) -> None:
         self.sizes = [subscript(last) + 1 for last in sizes]

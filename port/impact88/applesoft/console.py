@@ -1,12 +1,8 @@
 """Keyboard and screen: the character stream, INPUT's manners, the disk system and the printer.
 
-Characters go out with the high bit dropped and RETURN as newline. The disk operating system sits
-between the program and the screen: a line that starts with control-D is a command to it, taken and
-not shown; ``PR#n`` among them switches the output to slot n, 0 being the screen. Without a disk
-system such a line is text like any other.
-
-Devices are arguments: a keyboard is a function that returns the next line typed (None at the end),
-the screen and the printer are functions that take text.
+Characters go out with the high bit dropped and RETURN as newline. A line that starts with control-D
+is a command to the disk system, not shown; ``PR#n`` among them switches the output to slot n, 0
+being the screen. A keyboard is a function that returns the next line typed (None at the end).
 """
 
 from __future__ import annotations
@@ -78,11 +74,9 @@ class Editor:
 
 
 class Console:
-    """A screen, a keyboard, and what stands between them and a program.
-
-    ``echo``: whether typed lines go into the output (False where a terminal has shown them).
-    ``editor`` is the screen's side of typing; ``reply`` the last one that INPUT got.
-    """
+    """A screen, a keyboard, and what stands between them and a program. ``dos``: whether a disk
+    system takes its commands; ``echo``: whether typed lines go into the output; ``editor``: the
+    screen's side of typing; ``reply``: the last one that INPUT got."""
 
     def __init__(
         self,
@@ -138,9 +132,7 @@ class Console:
 
     def read_key(self) -> str:
         """One key, as GET reads it: not shown, not made upper case; RETURN after a line's last.
-
-        Raises EndOfInput.
-        """
+        Raises EndOfInput."""
         if not self._keys:
             typed = self.keyboard()
             if typed is None:
@@ -160,10 +152,8 @@ class Console:
         return line
 
     def read_line(self, prompt: str = PROMPT) -> str:
-        """One line from the keyboard as the monitor reads it: upper case, edited, echoed.
-
-        Raises EndOfInput.
-        """
+        """One line from the keyboard as the monitor reads it: upper case, edited, echoed. Raises
+        EndOfInput."""
         self.put(prompt)
         typed = capitals(self._typed_line())
         if typed.isprintable() and len(typed) <= WARNING:
@@ -228,10 +218,9 @@ class Console:
     def input(self, read: Read, zero: Any) -> Iterator[Reply]:
         """INPUT of numbers: one Reply per attempt, to be called once for each variable.
 
-        Too few values are asked for with ``??``; what is not a number gets ``?REENTER`` and a
-        new attempt; values left over get ``?EXTRA IGNORED``. Values stored before a bad one stay
-        stored, as in the ROM. Raises EndOfInput, and KeyboardInterrupt for control-C at the start
-        of a reply.
+        Too few values are asked for with ``??``, what is not a number with ``?REENTER``; values
+        stored before a bad one stay stored, as in the ROM. Raises EndOfInput, and KeyboardInterrupt
+        for control-C at the start of a reply.
         """
         while True:
             self.put("?")
@@ -249,10 +238,8 @@ class Console:
 
 
 class Reply:
-    """The values of one reply to INPUT; calling it yields the next one.
-
-    ``begun`` counts the values that have been looked for: the ROM has made so many variables.
-    """
+    """The values of one reply to INPUT, one a call. ``begun`` counts the values looked for: the ROM
+    has made so many variables."""
 
     def __init__(self, console: Console, read: Read, zero: Any, line: str) -> None:
         self._console = console
@@ -265,11 +252,8 @@ class Reply:
 
     def __call__(self, old: Any) -> Any:
         """The next value; ``old``, the variable's value so far, once this reply has been refused.
-
-        A text that only begins as a number is refused after its beginning has been stored, as in
-        the ROM; a line without any character is refused before. Raises ApplesoftError OVERFLOW and
-        EndOfInput.
-        """
+        A text that only begins as a number is refused after its beginning has been stored, an empty
+        line before. Raises ApplesoftError OVERFLOW and EndOfInput."""
         if not self.refused:
             self.begun += 1
             if self.begun > 1 and not self._at_end():
@@ -297,12 +281,9 @@ class Reply:
 
 
 def keyed(text: str) -> str:
-    """A text in the codes of the Apple's keyboard, which has seven bits.
-
-    A byte that is not text (of Apple text with its high bits set) counts for its seven bits. Other
-    characters have no key: ``?`` stands for them, so that a typographic minus or a micro sign is
-    refused where a number is expected, and not taken for the key that has its last seven bits.
-    """
+    """A text in the codes of the Apple's keyboard, which has seven bits. A byte that is not text
+    counts for its seven bits; for other characters ``?`` stands, so that a typographic minus is
+    refused where a number is expected."""
     codes = map(ord, text)
     return "".join(chr(n & 0x7F) if n < 0x80 or n in _ESCAPED else NO_KEY for n in codes)
 

@@ -56,11 +56,9 @@ def scan(text: str, start: int = 0) -> Numeral:
 
 @lru_cache(maxsize=512)  # scenes and programs repeat their numbers
 def read(text: str, start: int = 0) -> tuple[Number, int]:
-    """The number that begins at ``start``, and where it ends; no number at all reads as zero.
-
-    Blanks are passed over. The power of ten that is left, exponent less decimals, is kept in one
-    byte, and wraps. Raises OVERFLOW, for an exponent of three digits, too, whatever the number.
-    """
+    """The number that begins at ``start``, and where it ends; no number at all reads as zero. The
+    power of ten, exponent less decimals, is kept in one byte, and wraps. Raises OVERFLOW, for an
+    exponent of three digits, too, whatever the number."""
     sign, whole, decimals, exponent_sign, exponent, end = scan(text, start)
     value = ZERO
     for digit in whole + decimals:

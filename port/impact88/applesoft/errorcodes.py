@@ -25,11 +25,8 @@ CODES: dict[str, int] = {
 
 
 class ApplesoftError(Exception):
-    """An error the ROM reports.
-
-    ``kind`` is a key of `CODES`; ``line`` is the number of the BASIC line it happened in, set by
-    whoever runs the program (None: no program line, so no `` IN n``).
-    """
+    """An error the ROM reports: ``kind``, a key of `CODES`, and the BASIC line it happened in, set
+    by whoever runs the program (None: no program line, so no `` IN n``)."""
 
     def __init__(self, kind: str, line: int | None = None) -> None:
         super().__init__(kind)

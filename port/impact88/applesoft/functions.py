@@ -107,10 +107,8 @@ def exponential_integer(x: Number) -> int:
 
 
 def power(left: Number, right: Number) -> Number:
-    """left ^ right = EXP (right * LOG (left)), so X ^ 2 is not X * X.
-
-    Raises ILLEGAL QUANTITY for a negative left with a right that is not whole, OVERFLOW.
-    """
+    """left ^ right = EXP (right * LOG (left)), so X ^ 2 is not X * X. Raises ILLEGAL QUANTITY for a
+    negative left with a right that is not whole, OVERFLOW."""
     if not right[0]:
         return exponential(ZERO)
     left = real.rounded(left)
@@ -135,10 +133,8 @@ def square_root(x: Number) -> Number:
 
 @lru_cache(maxsize=64)  # a program asks for the sine of the same few angles over and over
 def _sine(x: Number) -> tuple[Number, bool, Number]:
-    """The sine, with what TAN needs of it: the quadrant flag and the reduced argument, rounded.
-
-    The angle becomes a fraction of a turn, and that is folded into -1/4 ... 1/4.
-    """
+    """The sine, and what TAN needs: the quadrant flag, and the reduced argument, a fraction of a
+    turn in -1/4 ... 1/4, rounded."""
     f = real.rounded(real.divide(x, TWO_PI))
     f = real.subtract(QUARTER, real.subtract(f, real.floor(f)))
     beyond_first_quarter = f[2]
@@ -189,10 +185,8 @@ def arc_tangent(x: Number) -> Number:
 
 
 def random(x: Number, seed: Number) -> Number:
-    """RND: the next random number, to be stored as the new seed; the seed itself for x = 0.
-
-    A negative x starts a sequence of its own. The bytes are shuffled and the exponent thrown away.
-    """
+    """RND: the next random number, to be stored as the new seed; the seed itself for x = 0. A
+    negative x starts a sequence. The bytes are shuffled and the exponent thrown away."""
     if not x[0]:
         return seed
     e, m, _ = x if x[2] else real.add(RND_ADDEND, real.multiply(RND_FACTOR, seed))

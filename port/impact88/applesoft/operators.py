@@ -52,13 +52,9 @@ def _comparison(holds: Callable[[int, int], bool]) -> Callable[[Real, object], b
 
 
 class Real:
-    """A number in the operators of Python: left operands round, right ones keep their extension.
-
-    Python integers are taken for constants; floats are refused, because they would smuggle in
-    digits not typed. ``==`` and its kin are the ROM's comparison, so reals are not hashable and
-    compare with reals only. Raises ApplesoftError: OVERFLOW, DIVISION BY ZERO, and what
-    `functions.power` raises.
-    """
+    """A number in Python's operators. Integers are taken for constants; floats are refused, because
+    they would smuggle in digits not typed. ``==`` and its kin are the ROM's comparison, so reals
+    are not hashable and compare with reals only. Raises ApplesoftError."""
 
     __slots__ = ("number",)
 

@@ -1,16 +1,12 @@
 """Whether another program's numbers agree with ours, and how closely they must.
 
-Each scene is judged by its own condition. A result agrees
-
-* *to the double* when it is no farther off than rounding allows in the best of programs
-  (`accuracy.errorbound`);
-* *to the digits claimed* when it is the exact value rounded to the digits it is written with;
-* *as elimination does* when it is no farther off than the usual ways allow in double precision in
-  this scene. Elimination is as good as the condition number of a 6 by 6 matrix as it stands, not
-  scaled: its error is below unit roundoff times that number times the largest unknown (measured on
-  the vectors: at most 0.03 of it). Contact impulses in closed form have a running error bound.
-
-Where rounding decides which way the contact slides, either way of MU's sign is right.
+Each scene is judged by its own condition. A result agrees *to the double* when it is no farther off
+than rounding allows in the best of programs (`accuracy.errorbound`); *to the digits claimed* when
+it is the exact value rounded to the digits it is written with; *as elimination does* when it is no
+farther off than the usual ways allow in this scene: elimination unit roundoff times the condition
+number of a 6 by 6 matrix as it stands times the largest unknown (measured on the vectors: at most
+0.03 of it), contact impulses their running error bound. Where rounding decides which way the
+contact slides, either way of MU's sign is right.
 """
 
 from __future__ import annotations
@@ -54,7 +50,6 @@ _NOTHING = re.compile(
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
 _HALF = 0.5 + 1e-9
 """Of the last digit written."""
-
 
 ABSENT, DOUBLE, DIGITS, ELIMINATION, DIFFER = range(5)
 """How a result agrees; absent where one side has none."""
@@ -223,12 +218,12 @@ def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Flo
 
 
 def violated(case: Case) -> dict[str, Bools]:
-    """Which of Equations 13 to 18 their results violate: number -> rows.
+    """Which of Equations 13 to 18 their results violate: number -> rows; empty when the table lacks
+    a final velocity (point masses keep their spins, given or not).
 
-    The equations are evaluated on the results as they were given, in a spelling in which none takes
-    another for granted: no solution of ours comes in. One is violated when its two sides differ by
-    more than the digits written, and rounding, allow. Empty when the table lacks a final velocity
-    (point masses keep their spins, given or not). A missing number violates nothing.
+    The equations are evaluated on the results as given, in a spelling in which none takes another
+    for granted. One is violated when its sides differ by more than the digits written, and
+    rounding, allow; a missing number violates nothing.
     """
     spelling, scene = spellings()[A_IMPULSE], case.columns
     point = scene["M"] == 4

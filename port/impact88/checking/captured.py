@@ -71,10 +71,8 @@ def _files(folder: Any, name: str) -> list[Any]:
 
 def call(operation: str, first: str, second: str, extension: str) -> str:
     """The result of a captured call of the ROM's arithmetic, made again here, in `result`'s form.
-
     The arguments are the row's columns: operands as stored bytes in hexadecimal (decimal text for
-    ``fin``), and the accumulator's extension.
-    """
+    ``fin``), and the accumulator's extension."""
     low = int(extension or "0", 16)
     try:
         if operation == "fin":
@@ -122,11 +120,9 @@ def left_behind(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[
 
 
 def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
-    """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up.
-
-    Returns the machine and all that was displayed after the echo of RUN up to the final prompt.
-    ``blanks``: whether skipped columns are written as blanks.
-    """
+    """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up:
+    the machine, and all that was displayed after the echo of RUN up to the final prompt.
+    ``blanks``: whether skipped columns are written as blanks."""
     from ..emulator.emulator import Applesoft
 
     def typed() -> Iterator[str]:

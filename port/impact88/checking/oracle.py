@@ -2,9 +2,8 @@
 
 For each scene: what the 1988 program prints; each result as Applesoft has it (printed text, the
 five bytes stored, their exact decimal value), in double precision by the closed form, and to 30
-digits; how well the scene is conditioned; how far rounding may take the final velocities and spins,
-in doubles and on the Apple (a bound; relative to `errorbound.scales`: the largest velocity about,
-spins to the largest spin or that velocity over the longer arm); what is unphysical about it.
+digits; its condition; how far rounding may take the final velocities and spins, in doubles and on
+the Apple (a bound, relative to `errorbound.scales`); what is unphysical about it.
 """
 
 import json
@@ -21,7 +20,7 @@ from ..schemas import stamped
 from ..units import base_of, system_of
 
 BATCH = 256
-"""Scenes computed together."""
+"""Scenes computed together: enough that reading and replaying them costs little a scene."""
 LONGEST_LINE = 1_000_000
 """Characters of the longest line that is read."""
 

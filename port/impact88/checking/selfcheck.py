@@ -1,8 +1,5 @@
-"""Checking an installation: what the captures of the real machine say, replayed here and now.
-
-Each check replays packaged captures (or another folder laid out like them) and counts what came
-out as captured, bit for bit. Together with the hashes and versions this is the record a laboratory
-files when it qualifies an installation.
+"""Checking an installation: what the captures of the real machine say, replayed here and now, and
+counted: with hashes and versions the record a laboratory files when it qualifies an installation.
 """
 
 import time

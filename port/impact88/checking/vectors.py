@@ -1,9 +1,8 @@
 """Test vectors for other implementations: labelled scenes with everything the oracle knows.
 
 Three classes, mixed evenly: ``casework`` (scenes as reports hold them), ``edge`` (one limit or
-special case each), ``failure`` (the 1988 program stops, or goes wrong without a word). The label
-says which case, ``expect`` what is asked of a program. Seed and number give the same vector on any
-machine, and no scene comes twice.
+special case each), ``failure`` (the 1988 program stops, or goes wrong without a word). Seed and
+number give the same vector on any machine, and no scene comes twice.
 """
 
 from collections.abc import Callable, Iterator

@@ -23,13 +23,10 @@ if TYPE_CHECKING:
 
 
 class Arithmetic:
-    """What the listing needs of a machine's numbers.
-
-    ``read(text, start)`` returns the number that begins there and where it ends; ``LET`` rounds a
-    value as storing does, ``NEXT`` increments a loop's variable; ``error`` turns an exception of
-    this arithmetic into Applesoft's, or None for any other. ``unset`` is the zero of a variable
-    never assigned, distinguished by ``is`` from ``zero``.
-    """
+    """What the listing needs of a machine's numbers. ``read(text, start)``: the number that begins
+    there and where it ends; ``LET`` rounds as storing does, ``NEXT`` increments a loop's variable;
+    ``error``: an exception of this arithmetic as Applesoft's, None for any other; ``unset``: the
+    zero of a variable never assigned, distinguished by ``is`` from ``zero``."""
 
     name: str
     read: Callable[[str, int], tuple[Any, int]]

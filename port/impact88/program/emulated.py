@@ -1,11 +1,9 @@
 """Run the restored listing, or an office's own copy of it, in the Applesoft emulator.
 
 The restored listing is an independent check of the port: a scene's lines are retyped into it, and
-the velocities typed at its prompts. The result has the form of `run.run`.
-
-Copies were retyped, and changed: other data, another pi, results rounded. The values of a scene go
-where the copy itself gets them: numbers assigned to the scene's variables, items of DATA that READ
-gives them, and replies that INPUT asks for. Everything else stays as the copy has it.
+the velocities typed at its prompts. In a copy, which may have been changed, the values of a scene
+go where it gets them itself: numbers assigned to the scene's variables, items of DATA that READ
+gives them, and replies that INPUT asks for.
 """
 
 import re

@@ -1,8 +1,5 @@
-"""Run the 1988 program on a scene, as if typed in and started with RUN.
-
-The faithful path from texts to printout: the port gets the scene's data lines, and its velocities
-over the keyboard.
-"""
+"""Run the 1988 program on a scene, as if typed in and started with RUN: the port gets the scene's
+data lines, and its velocities over the keyboard."""
 
 from __future__ import annotations
 
@@ -30,11 +27,11 @@ _UNPRINTED = {code: None for code in range(32) if chr(code) not in "\n\b"}
 class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
     """What a run left behind.
 
-    ``printout``: every character sent, RETURN as newline, control characters kept (`page` removes
-    them). ``error``: the Applesoft error that ended it, or None; ``line``: its line. ``reals``:
-    every real variable that was assigned, as five stored bytes in hexadecimal. ``A``: the array's
-    ``dims`` (sizes) and ``data``, first subscript fastest; None before line 360. In double
-    precision the values are floats. ``zero_determinant``: whether the program ended at line 1160.
+    ``printout``: every character sent, RETURN as newline; ``error``: the Applesoft error that ended
+    it, or None; ``line``: its line; ``reals``: every real variable that was assigned, as five
+    stored bytes in hexadecimal; ``A``: the array's ``dims`` (sizes) and ``data``, first subscript
+    fastest; None before line 360. In double precision the values are floats.
+    ``zero_determinant``: whether the program ended at line 1160.
 
     >>> run = impact88.run(impact88.sample(1))
     >>> run.error, run.reals["KI"]

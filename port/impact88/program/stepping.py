@@ -1,8 +1,8 @@
 """Where the port is: the BASIC line being executed, and stopping after every line.
 
 The BASIC line of a Python line of `listing` is the one in the last comment above it, held in
-`linetable`; the variables are the locals of `listing.impact`. No source is read at run time, so a
-package of compiled files alone prints the same.
+`linetable`: a package of compiled files alone prints the same. The variables are the locals of
+`listing.impact`.
 """
 
 from __future__ import annotations

@@ -1,16 +1,13 @@
 """The smallest Apple II Plus that a ROM will run on: RAM, the ROM, a keyboard, and an ear at COUT.
 
-The processor is py65's. Memory is 48K of RAM, nothing in the slots, and the ROM, which cannot be
-written. The keyboard is the two addresses a real one has. What is displayed is taken where the
-monitor's character output is called; the ROM draws its text screen besides, in RAM.
-
-A key is pressed when the ROM waits for one: when it reads the keyboard several times in a few
-cycles each. Nothing of Applesoft is known here, and nothing of it is changed.
+The processor is py65's. What is displayed is taken where the monitor's character output is called;
+the ROM draws its text screen besides, in RAM. A key is pressed when the ROM waits for one: when it
+reads the keyboard several times in a few cycles each. Nothing of Applesoft is known here.
 """
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..emulator.screen import BASE, HEIGHT, WIDTH, shown_character
 from ..errors import UserError
@@ -34,11 +31,9 @@ class Lost(UserError):
     """The machine does not come to wait for a key: it loops, or has run off into the wild."""
 
 
-class State(NamedTuple):
-    """All of a machine at rest: its memory and the processor's registers."""
-
-    memory: bytes
-    registers: tuple[int, ...]
+State = tuple[bytes, dict[str, int], int]
+"""All of a machine at rest: its memory, the processor's registers, the cursor's column."""
+_REGISTERS = ("pc", "a", "x", "y", "sp", "p")
 
 
 class Memory(bytearray):
@@ -80,11 +75,9 @@ class Memory(bytearray):
 
 
 class Apple:
-    """An Apple II Plus with a ROM in it, switched off. `boot` switches it on.
-
-    ``instructions`` counts what the processor has done since. ``blanks``: whether columns skipped
-    on a line come out as blanks when a character follows. Raises UserError when py65 is missing.
-    """
+    """An Apple II Plus with a ROM in it, switched off. ``instructions`` counts what the processor
+    has done. ``blanks``: whether columns skipped on a line come out as blanks when a character
+    follows. Raises UserError when py65 is missing."""
 
     def __init__(self, rom: bytes) -> None:
         try:
@@ -178,14 +171,14 @@ class Apple:
 
     def state(self) -> State:
         """The machine as it stands; it must be waiting for a key."""
-        cpu = self.cpu
-        return State(bytes(self.memory), (cpu.pc, cpu.a, cpu.x, cpu.y, cpu.sp, cpu.p, self._column))
+        registers = {name: getattr(self.cpu, name) for name in _REGISTERS}
+        return bytes(self.memory), registers, self._column
 
     def restore(self, state: State) -> None:
         """Make the machine what it was, with no keys typed and nothing displayed."""
-        bytearray.__setitem__(self.memory, slice(0, 0x10000), state.memory)
-        cpu = self.cpu
-        cpu.pc, cpu.a, cpu.x, cpu.y, cpu.sp, cpu.p, self._column = state.registers
+        memory, registers, self._column = state
+        bytearray.__setitem__(self.memory, slice(0, 0x10000), memory)
+        vars(self.cpu).update(registers)
         self.memory.keys.clear()
         self.memory.key = 0
         self._output.clear()

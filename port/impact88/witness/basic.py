@@ -1,8 +1,5 @@
-"""What Applesoft keeps in memory: the program's lines, the variables, the arrays.
-
-The pointers and layouts are those of the Applesoft reference manual, appendix "Applesoft in
-memory". They are only read.
-"""
+"""What Applesoft keeps in memory, by the reference manual's appendix "Applesoft in memory": the
+program's lines, the variables, the arrays."""
 
 import re
 from collections.abc import Iterator
@@ -51,11 +48,9 @@ def _name(first: int, second: int) -> str:
 
 
 def small_letters(apple: Apple, program: str) -> list[str]:
-    """The POKEs, as commands for the prompt, that put a program's small letters into its text.
-
-    An Apple II Plus has no keys for them: what is typed arrives in capitals. Only texts in quotes
-    and remarks are changed. Raises ValueError when the program in memory is another.
-    """
+    """The POKEs, as commands for the prompt, that put small letters, which no key of an Apple II
+    Plus types, into a program's texts in quotes and remarks. Raises ValueError when the program in
+    memory is another."""
     texts = dict(_lines(apple))
     commands = []
     for line in program.splitlines():

@@ -1,9 +1,8 @@
 """Hearing the witness: what the ROM does, held against the captures and against this project.
 
-A scene is run on the ROM, by the port, by the emulator and by the replay over arrays; a captured
-one is also held against its capture. Compared are every character displayed, every variable's five
-bytes, and the array. A program is held against its capture and the emulator, a calculation against
-its capture and the arithmetic here.
+Of a scene every character displayed, every variable's five bytes and the array are held against
+capture, port, emulator and replay; a program against its capture and the emulator, a calculation
+against its capture and the arithmetic here.
 """
 
 import difflib

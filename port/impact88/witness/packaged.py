@@ -60,10 +60,8 @@ def _decks() -> list[list[Case]]:
 
 
 def own_programs(folder: str) -> list[Case]:
-    """Every ``.bas`` in a folder, with the replies in the ``.in`` beside it if there is one.
-
-    Raises UserError when there is none, one cannot be read, or a line is too long to be typed.
-    """
+    """Every ``.bas`` in a folder, with the replies in the ``.in`` beside it. Raises UserError when
+    there is none, one cannot be read, or a line is too long to be typed."""
     try:
         paths = sorted(path for path in Path(folder).iterdir() if path.suffix.lower() == ".bas")
     except OSError as error:

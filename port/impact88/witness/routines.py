@@ -1,8 +1,5 @@
-"""Single calls of the ROM's arithmetic, by the entry points published for machine-code programs.
-
-They are those of John Crossley's "Applesoft Internal Entry Points" (Apple Orchard, March 1980).
-Operands are put where a program would put them, the routine is called, and the accumulator is read.
-"""
+"""Single calls of the ROM's arithmetic, by the entry points published for machine-code programs:
+John Crossley, "Applesoft Internal Entry Points" (Apple Orchard, March 1980)."""
 
 from .apple import Apple
 

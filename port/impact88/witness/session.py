@@ -1,8 +1,7 @@
 """Sessions at the ROM's own prompt: the restored listing on a scene, any program, one calculation.
 
-Everything is done with the keys a user would press. The listing is typed line by line, the scene's
-lines are retyped, RUN, and the two replies. The small letters of its prompts, which the keyboard
-does not have, are POKEd into its text at the prompt, as was done in the days.
+Everything is done with the keys a user would press: the listing and the scene's lines are typed,
+its small letters POKEd into its text at the prompt, as was done in the days, RUN, and the replies.
 """
 
 from functools import cached_property
@@ -63,8 +62,8 @@ class Session:
         return self.apple.state()
 
     def run_scene(self, scene: Scene) -> Finished:
-        """RUN the listing on a scene. Raises UserError for a line too long to be typed, and when
-        the program does not come to an end. The listing is typed once, for the first scene."""
+        """RUN the listing, typed once, on a scene. Raises UserError for a line too long to be typed
+        and a program that does not come to an end."""
         self.apple.restore(self._with_listing)
         self.apple.blanks = False
         for line in scene.typed_lines():
