@@ -55,13 +55,6 @@ ABSENT, DOUBLE, DIGITS, ELIMINATION, DIFFER = range(5)
 """How a result agrees; absent where one side has none."""
 
 
-class Verdict(NamedTuple):
-    """Results by rows: how each agrees, and the difference as a share of its size."""
-
-    grade: NDArray[np.intp]
-    relative: Floats
-
-
 class Case(NamedTuple):
     """Rows of a table, theirs and ours: arrays with the rows last, the ``names`` of results before.
 
@@ -101,8 +94,8 @@ class Case(NamedTuple):
         """Which of the results has a name."""
         return self.names.index(name)
 
-    def judged(self) -> Verdict:
-        """Where the results agree."""
+    def judged(self) -> tuple[NDArray[np.intp], Floats]:
+        """How each result agrees, and the difference as a share of its size, (results, rows)."""
         with np.errstate(all="ignore"):
             off = np.abs(self.values - self.ours)
             last_bits = 2 * np.spacing(np.abs(self.ours))
@@ -113,7 +106,7 @@ class Case(NamedTuple):
             relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
             given = np.isfinite(self.values) & np.isfinite(self.ours)
             within = (~given, off <= tight, off <= written + tight, off <= written + loose)
-            return Verdict(np.select(within, range(DIFFER), DIFFER), relative)
+            return np.select(within, range(DIFFER), DIFFER), relative
 
 
 def joined(cases: Sequence[Case]) -> Case:
@@ -132,7 +125,7 @@ def case_of(
         few = {name: column[undecided] for name, column in scene.items()}
         some = {name: (a[undecided], b[undecided]) for name, (a, b) in theirs.items()}
         other, _ = _case({**few, "MU": -few["MU"]}, some, rtol)
-        agree, now = ((c.judged().grade < DIFFER).all(0) for c in (other, case.part(undecided)))
+        agree, now = ((c.judged()[0] < DIFFER).all(0) for c in (other, case.part(undecided)))
         better = agree & ~now
         for column, instead in zip(case[6:], other[6:], strict=True):
             column[..., undecided[better]] = instead[..., better]

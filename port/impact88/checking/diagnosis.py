@@ -276,9 +276,10 @@ def _evidence(explained: Bools, bits: Floats, choices: Bools) -> float:
 
 
 def _need(program: Program) -> float:
-    if len(program.edits) > 1 or program.edits[0].rank == MEASURED:
+    rank = program.edits[0].rank
+    if len(program.edits) > 1 or rank == MEASURED:
         return _NEED_PAIR
-    return _NEED_NAMED if program.named else _NEED
+    return _NEED_NAMED if rank <= RARE_CONVENTION else _NEED
 
 
 def _sample(judge: Judge, clear: Bools) -> NDArray[np.intp]:

@@ -194,7 +194,8 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
             near = judge.near({**start.names, **start.edited(several).names}, SHOWN)
             near = np.broadcast_to(near, (len(several), size))
             for k in np.flatnonzero((near & judge.wrong).any(1)):
-                yield Found(base.with_edit(edits[found[part][k][0]]), near[k], judge.wrong)
+                program = Program((*base.edits, edits[found[part][k][0]]))
+                yield Found(program, near[k], judge.wrong)
 
 
 # --- two mistakes --------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .edits import MODEL, RARE_CONVENTION, Edit
+from .edits import Edit
 from .evaluation import Columns, Run
 from .spelling import LISTING, SHOWN, Spelling, spellings
 
@@ -15,10 +15,6 @@ class Program(NamedTuple):
     """A spelling with edits, each made on top of those before it."""
 
     edits: tuple[Edit, ...] = ()
-
-    def with_edit(self, edit: Edit) -> Program:
-        """One more."""
-        return Program((*self.edits, edit))
 
     @property
     def says(self) -> str:
@@ -29,11 +25,6 @@ class Program(NamedTuple):
             if edit.says or not later.issuperset(edit.sides):
                 said.append(edit.text)
         return "; and ".join(sorted(said, key=lambda one: "should be" in one))
-
-    @property
-    def named(self) -> bool:
-        """Whether all of it is known: conventions and other models."""
-        return all(MODEL <= edit.rank <= RARE_CONVENTION for edit in self.edits)
 
     @property
     def spelling(self) -> Spelling:

@@ -110,24 +110,17 @@ class Spelling:
     def composed(self, sides: Mapping[str, Sides]) -> Mapping[str, Sides]:
         """Statements written otherwise in this program: what is read or shown otherwise takes what
         it reads or shows already."""
-        if not self.otherwise:
-            return sides
+        again = {key for key in sides if key in SCENE or key.startswith(SHOWN)}
         return {
-            key: tuple(renamed(side, self.otherwise) for side in made)
-            if key in SCENE or key.startswith(SHOWN)
-            else made
+            key: tuple(renamed(x, self.otherwise) for x in made) if key in again else made
             for key, made in sides.items()
         }
 
     def edited(self, sides: Mapping[str, Sides]) -> Spelling:
         """The spelling with statements written otherwise."""
         made = self.composed(sides)
-        return replace(
-            self,
-            statements=tuple(
-                one._replace(sides=made.get(one.key, one.sides)) for one in self.statements
-            ),
-        )
+        statements = (one._replace(sides=made.get(one.key, one.sides)) for one in self.statements)
+        return replace(self, statements=tuple(statements))
 
 
 def operands(node: Expression) -> Sides:
