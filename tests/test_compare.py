@@ -175,7 +175,9 @@ def test_two_mistakes_in_one_table_are_both_named(tmp_path) -> None:
     one, other = MISTAKES["e squared"], MISTAKES["MA and MB"]
     half = len(ROWS) // 2
     first, second = answered(one[0]), answered(other[0])
-    made = {name: first[name][:half] + second[name][half:] for name in RESULTS}
+    # without all final velocities no pair is looked for equation by equation
+    names = RESULTS if SWEEP else [name for name in RESULTS if name != "VBX"]
+    made = {name: first[name][:half] + second[name][half:] for name in names}
     done = compared(tmp_path, made)
     assert set(done.causes) == {one[1], other[1] + IN_THESE_ROWS}
     assert done.causes[other[1] + IN_THESE_ROWS] == len(ROWS) - half
