@@ -55,18 +55,15 @@ def small_letters(apple: Apple, program: str) -> list[str]:
     commands = []
     for line in program.splitlines():
         number, _, rest = line.partition(" ")
-        for spoken in (match.group(1) or match.group() for match in _SPOKEN.finditer(rest)):
+        for spoken in (match[1] or match[0] for match in _SPOKEN.finditer(rest)):
             if spoken == spoken.upper():
                 continue
             place, text = texts[int(number)]
             offset = text.find(spoken.upper().encode("ascii"))
             if offset < 0:
                 raise ValueError(f"line {number} in memory does not hold {spoken!r}")
-            commands += [
-                f"POKE {place + offset + at},{ord(letter)}"
-                for at, letter in enumerate(spoken)
-                if letter.islower()
-            ]
+            letters = enumerate(spoken, place + offset)
+            commands += [f"POKE {at},{ord(letter)}" for at, letter in letters if letter.islower()]
     return commands
 
 

@@ -29,14 +29,11 @@ class Case(NamedTuple):
 def cases(count: int | None, seed: int = 0) -> list[Case]:
     """Captures, drawn evenly from scenes, programs and the routines of the arithmetic, none twice;
     all of them for ``count`` None."""
-    decks = [deck.copy() for deck in _decks()]
     if count is None:
-        return [case for deck in decks for case in deck]
+        return [case for deck in _decks() for case in deck]
     rng = Random(seed)
-    scenes, programs, *calls = decks
+    scenes, programs, *calls = (rng.sample(deck, len(deck)) for deck in _decks())
     rng.shuffle(calls)
-    for deck in (scenes, programs, *calls):
-        rng.shuffle(deck)
     drawn: list[Case] = []
     for turn in range(count):
         arithmetic = calls[turn // 3 % len(calls)]
@@ -68,18 +65,16 @@ def own_programs(folder: str) -> list[Case]:
         raise UserError(f"cannot be read: {error.strerror or error}", folder) from None
     if not paths:
         raise UserError("holds no .bas", folder)
-    return [_own_program(path) for path in paths]
-
-
-def _own_program(path: Path) -> Case:
-    program, replies = _text(path), path.with_suffix(".in")
-    for row, line in enumerate(program.split("\n"), 1):
-        if len(line) > LONGEST_TYPED:
-            raise UserError(
-                f"row {row} has {len(line)} characters; {LONGEST_TYPED} can be typed on a line",
-                str(path),
-            )
-    return Case(OWN, path.stem, {"bas": program, "in": _text(replies) if replies.exists() else ""})
+    found = []
+    for path in paths:
+        program, replies = _text(path), path.with_suffix(".in")
+        for row, line in enumerate(program.split("\n"), 1):
+            if len(line) > LONGEST_TYPED:
+                reason = f"{len(line)} characters; {LONGEST_TYPED} can be typed on a line"
+                raise UserError(f"row {row} has {reason}", str(path))
+        typed = _text(replies) if replies.exists() else ""
+        found.append(Case(OWN, path.stem, {"bas": program, "in": typed}))
+    return found
 
 
 def _text(path: Path) -> str:

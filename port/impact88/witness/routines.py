@@ -5,10 +5,7 @@ from .apple import Apple
 
 FAC, FAC_SIGN, FAC_EXTENSION = 0x9D, 0xA2, 0xAC
 """The accumulator: exponent, four mantissa bytes; its sign byte; the eight bits below."""
-TEXT_POINTER = 0xB8
-CHRGOT = 0x00B7
-LOAD_ARGUMENT = 0xE9E3
-STORE_ROUNDED = 0xEB2B
+TEXT_POINTER, CHRGOT, LOAD_ARGUMENT, STORE_ROUNDED = 0xB8, 0xB7, 0xE9E3, 0xEB2B
 ERROR = 0xD412
 """Where every error goes, with its code in X."""
 
@@ -24,15 +21,16 @@ READ_NUMBER = 0xEC4A
 
 _OPERAND, _STUB, _BACK, _BUFFER = 0x0300, 0x0310, 0x0340, 0x0200
 """Page 3 is the user's; a number to be read stands in the input buffer."""
-_LDA_IMMEDIATE, _LDY_IMMEDIATE, _LDX_IMMEDIATE, _LDA_ZERO, _JSR = 0xA9, 0xA0, 0xA2, 0xA5, 0x20
+_LDA, _LDY, _LDX, _LDA_ZERO, _JSR, _JMP = 0xA9, 0xA0, 0xA2, 0xA5, 0x20, 0x4C
+"""Opcodes; the first three take the number behind them."""
 
 
 def call(apple: Apple, operation: str, first: str, second: str, extension: str) -> str:
     """The result of a call in the captures' form: ``stored:raw:extension``, ``E`` and an error's
     code, the answer of a comparison, or the text written. The arguments are a captured row's."""
+    operand = [_LDA, _OPERAND & 0xFF, _LDY, _OPERAND >> 8]
     if operation == "fin":
-        text = first.encode("ascii") + b"\0"
-        _put(apple, _BUFFER, text)
+        _put(apple, _BUFFER, first.encode("ascii") + b"\0")
         _put(apple, TEXT_POINTER, _BUFFER.to_bytes(2, "little"))
         code = [*_jsr(CHRGOT), *_jsr(READ_NUMBER)]
     else:
@@ -41,10 +39,15 @@ def call(apple: Apple, operation: str, first: str, second: str, extension: str) 
         _put(apple, FAC_SIGN, accumulator[1:2])
         _put(apple, FAC_EXTENSION, bytes.fromhex(extension))
         _put(apple, _OPERAND, bytes.fromhex(first))
-        code = _code(operation)
+        if operation in WITH_MEMORY:
+            code = [*operand, *_jsr(WITH_MEMORY[operation])]
+        elif operation == "pow":  # A and the flags must show the accumulator's exponent
+            code = [*operand, *_jsr(LOAD_ARGUMENT), _LDA_ZERO, FAC, *_jsr(POWER)]
+        else:
+            code = _jsr(OF_ACCUMULATOR[operation])
     error = _execute(apple, code)
-    if error is not None:
-        return f"E{error}"
+    if error:
+        return error
     if operation == "cmp":
         return f"{apple.cpu.a:02x}"
     if operation == "fout":
@@ -52,21 +55,8 @@ def call(apple: Apple, operation: str, first: str, second: str, extension: str) 
         return bytes(apple.memory[start : start + 20]).partition(b"\0")[0].decode("ascii")
     raw = bytes(apple.memory[FAC : FAC_SIGN + 1]).hex()
     low = f"{apple.memory[FAC_EXTENSION]:02x}"
-    place = [_LDX_IMMEDIATE, _OPERAND & 0xFF, _LDY_IMMEDIATE, _OPERAND >> 8]
-    error = _execute(apple, [*place, *_jsr(STORE_ROUNDED)])
-    if error is not None:
-        return f"E{error}"
-    return f"{bytes(apple.memory[_OPERAND : _OPERAND + 5]).hex()}:{raw}:{low}"
-
-
-def _code(operation: str) -> list[int]:
-    """Machine code that calls a routine on the operand in memory and the accumulator."""
-    operand = [_LDA_IMMEDIATE, _OPERAND & 0xFF, _LDY_IMMEDIATE, _OPERAND >> 8]
-    if operation in WITH_MEMORY:
-        return [*operand, *_jsr(WITH_MEMORY[operation])]
-    if operation == "pow":  # A and the flags must show the accumulator's exponent
-        return [*operand, *_jsr(LOAD_ARGUMENT), _LDA_ZERO, FAC, *_jsr(POWER)]
-    return _jsr(OF_ACCUMULATOR[operation])
+    error = _execute(apple, [_LDX, *operand[1:], *_jsr(STORE_ROUNDED)])
+    return error or f"{bytes(apple.memory[_OPERAND : _OPERAND + 5]).hex()}:{raw}:{low}"
 
 
 def _jsr(address: int) -> list[int]:
@@ -78,11 +68,8 @@ def _put(apple: Apple, address: int, data: bytes) -> None:
         apple.memory[place] = byte
 
 
-def _execute(apple: Apple, code: list[int]) -> int | None:
-    """Run machine code; None, or the code of the error it ended in."""
-    jump_back = [0x4C, _BACK & 0xFF, _BACK >> 8]
-    _put(apple, _STUB, bytes([*code, *jump_back]))
+def _execute(apple: Apple, code: list[int]) -> str:
+    """Run machine code; the error it ended in, in the captures' form."""
+    _put(apple, _STUB, bytes([*code, _JMP, _BACK & 0xFF, _BACK >> 8]))
     apple.cpu.sp = 0xF8
-    if apple.call(_STUB, (_BACK, ERROR)) == ERROR:
-        return int(apple.cpu.x)
-    return None
+    return f"E{apple.cpu.x}" if apple.call(_STUB, (_BACK, ERROR)) == ERROR else ""
