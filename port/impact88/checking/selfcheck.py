@@ -68,9 +68,6 @@ def record(checks: list[Check]) -> dict[str, Any]:
     }
 
 
-# --- what is compared ----------------------------------------------------------------------------
-
-
 def _arithmetic(golden: Any) -> Counted:
     for several in captured.calls(golden).values():
         for row in several:

@@ -52,23 +52,23 @@ _TRANSLATIONS = {
 _MAIN = min(_TRANSLATIONS, key=lambda code: code.co_firstlineno)
 
 
+def _entries(traceback: TracebackType | None) -> Iterator[TracebackType]:
+    while traceback is not None:
+        yield traceback
+        traceback = traceback.tb_next
+
+
 def line_of(traceback: TracebackType | None) -> int | None:
     """The BASIC line an exception came from: that of the innermost frame inside a BASIC line."""
-    line = None
-    while traceback is not None:
-        if traceback.tb_frame.f_code in _TRANSLATIONS:
-            line = basic_line(traceback.tb_lineno) or line
-        traceback = traceback.tb_next
-    return line
+    inside = [one for one in _entries(traceback) if one.tb_frame.f_code in _TRANSLATIONS]
+    lines = (basic_line(one.tb_lineno) for one in reversed(inside))
+    return next(filter(None, lines), None)
 
 
 def names_in(traceback: TracebackType | None) -> Mapping[str, Any]:
     """The local names of `listing.impact` in the traceback of an exception that left it."""
-    while traceback is not None:
-        if traceback.tb_frame.f_code is _LISTING:
-            return traceback.tb_frame.f_locals
-        traceback = traceback.tb_next
-    raise LookupError("the exception did not come from the listing")
+    frames = (one.tb_frame for one in _entries(traceback))
+    return next(frame.f_locals for frame in frames if frame.f_code is _LISTING)
 
 
 def variables(names: Mapping[str, Any], unset: object) -> Variables:

@@ -20,7 +20,7 @@ from ..fields import FIELDS, outcome_fields
 from ..files import packaged_bytes
 from ..names import SCENE
 from ..program import emulated
-from ..program.run import run
+from ..program.run import Run, run
 from ..reporting import provenance
 from ..scene import Scene, sample
 from .apple import Lost
@@ -106,9 +106,8 @@ def hear_scene(
     if capture:
         captured_run = Finished(capture["printout"], capture["reals"], capture["A"])
         sides[CAPTURE] = mine, _left_behind(captured_run)
-    for who, its_run in ((PORT, run), (EMULATOR, emulated.run)):
-        done = its_run(scene, dos=False)
-        sides[who] = mine, _left_behind(Finished(done.printout, done.reals, done.A))
+    sides[PORT] = mine, _left_behind(run(scene, dos=False))
+    sides[EMULATOR] = mine, _left_behind(emulated.run(scene, dos=False))
     alone = replay({each: [scene[each]] for each in SCENE})
     replayed = {each: text for each in FIELDS if (text := alone.printed(each).tolist()[0])}
     sides[REPLAY] = outcome_fields(rom.printout), replayed
@@ -132,7 +131,7 @@ def hear_sample(session: Session, number: int) -> Heard:
     return hear_scene(session, f"sample {number}", sample(number), published=published)
 
 
-def _left_behind(run: Finished) -> dict[str, str]:
+def _left_behind(run: Finished | Run) -> dict[str, str]:
     """What a run printed and left in its variables and its array, by name."""
     reals, array = captured.left_behind(run.reals, run.A)
     whole = {"printout": run.printout, **dict(sorted(reals.items()))}
@@ -187,8 +186,6 @@ def _hear_call(session: Session, case: Case) -> Heard:
     sides: Sides = {who: (mine, {what: text}) for who, text in others.items()}
     return _held(ARITHMETIC, case.name, sides, [*asked, rom])
 
-
-# --- the record -----------------------------------------------------------------------------------
 
 TOLD = 100
 """Cases with differences that a record holds in full."""
