@@ -16,8 +16,7 @@ exit status: 0 the program ended; 1 an Applesoft error, or more than --max-state
 import argparse
 import signal
 import sys
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, suppress
 from types import FrameType
 
 from ..applesoft.console import EndOfInput
@@ -38,8 +37,6 @@ PROGRAM_LIMIT = 1_000_000
 """Bytes of a program's text; 48K hold some 50,000."""
 LEAVE = "control-Z and RETURN leave" if sys.platform == "win32" else "control-D leaves"
 BANNER = f"impact88 basic: an Apple II Plus. LIST shows the program, {{}}; {LEAVE}."
-_SHOWN_CONTROLS = "\n\a\b"
-
 
 ARGUMENTS = (
     options.reads("program", "FILE.bas", "a program to run", nargs="?"),
@@ -69,7 +66,7 @@ class Terminal:
         pipe or a file the page a person reads, unless --raw asks for all."""
         self.row = (self.row + text).rpartition("\n")[2][-200:]
         if self._terminal:
-            text = "".join(c for c in text if c >= " " or c in _SHOWN_CONTROLS)
+            text = "".join(c for c in text if c >= " " or c in "\n\a\b")
         elif not self._raw:
             text = page(text)
         sys.stdout.write(text)
@@ -91,8 +88,7 @@ class Terminal:
         prompt = "".join(c for c in self.row if c >= " ")
         self.row = ""
         if prompt:
-            sys.stdout.write("\r")
-            sys.stdout.flush()
+            print(end="\r", flush=True)
         try:
             return input(prompt)
         except EOFError:
@@ -100,21 +96,9 @@ class Terminal:
         except UnicodeDecodeError:
             raise UserError("contains bytes that are not text", called("-")) from None
 
-
-@contextmanager
-def _interrupts(machine: Applesoft, terminal: Terminal) -> Iterator[None]:
-    """Control-C breaks the program between two statements, or what is being typed."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        if terminal.waiting:
-            raise KeyboardInterrupt
-        machine.machine.interrupted = True
-
-    before = signal.signal(signal.SIGINT, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    def end_row(self) -> None:
+        """Begin a new row, unless that is done."""
+        print(end="\n" if self.row else "", flush=True)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -128,22 +112,29 @@ def main(args: argparse.Namespace) -> int:
         machine = Applesoft(
             terminal.read, terminal.show, printer, dos=not args.no_dos, echo=not terminal.typing
         )
+
+        def interrupt(number: int, frame: FrameType | None) -> None:
+            """Break the program between two statements, or what is being typed."""
+            if terminal.waiting:
+                raise KeyboardInterrupt
+            machine.machine.interrupted = True
+
         machine.machine.statements_left = args.max_statements
         load_program(machine, args.program)
         if args.slot and args.program:
             machine.machine.console.slot = args.slot
         elif args.slot:
             machine.enter(SLOT_LINE.format(args.slot))
-        with _interrupts(machine, terminal):
-            try:
-                status = _session(machine, terminal, args)
-                if status == INTERRUPTED and printer is not None:
-                    raise KeyboardInterrupt  # what the printer had so far replaces nothing
-                return status
-            except TooManyStatements:
-                _end_row(terminal)
-                note("basic", f"stopped after {args.max_statements} statements")
-                return 1
+        stack.callback(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, interrupt))
+        try:
+            status = _session(machine, terminal, args)
+            if status == INTERRUPTED and printer is not None:
+                raise KeyboardInterrupt  # what the printer had so far replaces nothing
+            return status
+        except TooManyStatements:
+            terminal.end_row()
+            note("basic", f"stopped after {args.max_statements} statements")
+            return 1
 
 
 def load_program(machine: Applesoft, path: str | None) -> None:
@@ -178,23 +169,17 @@ def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
     try:
         error = machine.run()
     except EndOfInput:
-        _end_row(terminal)
+        terminal.end_row()
         raise UserError(
             "the input ended while the program asked for more; expected a line for every INPUT"
         ) from None
     except KeyboardInterrupt:
         return INTERRUPTED
     if not stay:
-        _end_row(terminal)
+        terminal.end_row()
     if machine.machine.broken:
         return 0 if stay else INTERRUPTED
     return 1 if error and not stay else 0
-
-
-def _end_row(terminal: Terminal) -> None:
-    if terminal.row:
-        print()
-    sys.stdout.flush()
 
 
 def _disk_command(machine: Applesoft, line: str) -> bool:

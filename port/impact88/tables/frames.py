@@ -58,27 +58,23 @@ def solve_frame(
     [44.43, nan]
     """
 
-    def solver(given: Mapping[str, Any], table: TableUnits) -> dict[str, Array]:
+    def solved(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
+        """The results of a frame's columns, by heading."""
+        found = [name for name in scene_names(names) if name in SCENE]
+        given = {name: column(heading(name)) for name in found}
+        arrays = {n: np.asanyarray(c) for n, c in given.items()}
+        texts: dict[str, Column]
+        texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
+        table = TableUnits(found, units or getattr(scene, "units", None), Rows(1, 0, texts, {}))
         columns = {n: _numbers(n, values, table) for n, values in given.items()}
         for name, value in (scene or {}).items():
             if name in SCENE:
                 columns.setdefault(name, _numbers(name, [value], table.given([name]))[0])
         all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
-        check_scene_columns(
-            list(columns), (), ("M", *(UNUSED_BY_POINTS if all_points else ())), "scene="
-        )
+        optional = ("M", *(UNUSED_BY_POINTS if all_points else ()))
+        check_scene_columns(list(columns), (), optional, "scene=")
         results = table.shown(solve(columns, outputs, threads=threads))
         return {heading(name): results[name] for name in table.headings(list(results))}
-
-    def solved(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
-        """The results of a frame's columns, by heading."""
-        found = [name for name in scene_names(names) if name in SCENE]
-        columns = {name: column(heading(name)) for name in found}
-        arrays = {n: np.asanyarray(c) for n, c in columns.items()}
-        texts: dict[str, Column]
-        texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
-        first = Rows(1, 0, texts, {})
-        return solver(columns, TableUnits(found, units or getattr(scene, "units", None), first))
 
     is_dataset = type(frame).__module__.partition(".")[0] == "xarray"
     result: Any
@@ -138,10 +134,7 @@ def _dicts(rows: Sequence[Any], solved: Solver) -> list[dict[str, Any]]:
         return []
     found = solved(names, lambda name: [row.get(name, default.get(name)) for row in rows])
     results = {name: column.tolist() for name, column in found.items()}
-    return [
-        {**row, **{name: column[at] for name, column in results.items()}}
-        for at, row in enumerate(rows)
-    ]
+    return [{**row, **{n: c[at] for n, c in results.items()}} for at, row in enumerate(rows)]
 
 
 def _dataset(frame: Any, solved: Solver) -> Any:
