@@ -19,7 +19,7 @@ from fuzzing.judge import faults
 from fuzzing.kinds import KINDS, make
 
 SECONDS = float(os.environ.get("IMPACT88_FUZZ_SECONDS", "2"))
-LEAST = 25
+LEAST = 15
 """Cases that are run, however slow the machine."""
 LONG = (
     "reconstruct-na",
@@ -28,6 +28,8 @@ LONG = (
     "verify-scene-2",
     "printout-5",
     "printout-70",
+    "printout-decimals",
+    "figure-friction",
 )
 """Beginnings of the names of cases that take seconds, and have quicker ones of their kind beside
 them: run where the seconds are more than the default's."""

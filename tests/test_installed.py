@@ -32,6 +32,8 @@ import numpy
 from impact88 import cli, sample
 from impact88.bench.populations import evolved
 from impact88.desk import app
+from impact88.equations import edits
+from impact88.scan.naming import prototypes
 from impact88.schemas import NUMBERS, text
 statuses = {}
 def run(*arguments):
@@ -52,11 +54,8 @@ run("oracle", "--kit", "kit", "--vectors", "30")
 with open("scene.toml", "w") as file:
     file.write(run("scene", "--sample", "1"))
 run("report", "scene.toml", "-o", "report.html")
-results = run("solve", "--sample", "1", "--outputs", "VAX,WAF").splitlines()
-with open("theirs.csv", "w") as file:  # a spin with the other sign
-    file.write("\\n".join([results[0], results[1].replace("-1.", "1.")]))
-run("compare", "theirs.csv")
-run("verify", "--brief", sys.argv[2])
+edits.readings(), edits.variants(), edits._rules()  # what compare looks up
+prototypes()  # of a scan
 with open(os.path.join(sys.argv[1], "legacy", "run1-as-printed.txt")) as file:
     page = file.read()
 with open("altered.txt", "w") as file:
@@ -64,7 +63,7 @@ with open("altered.txt", "w") as file:
 run("verify", "altered.txt", "--report", "verified.html")
 desk = app.Desk()
 client = app.application(desk, 8088, "word").test_client()
-pages = ["/word/", *(f"/word/static/{name}" for name in sys.argv[3:])]
+pages = ["/word/", *(f"/word/static/{name}" for name in sys.argv[2:])]
 own = "http://127.0.0.1:8088"
 pages = [client.get(page, base_url=own).status_code for page in pages]
 form = {"values": dict(sample(1)), "units": ""}
@@ -101,10 +100,9 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_every_packaged_file_is_used(installed: Path, tmp_path: Path) -> None:
     package = installed / "impact88"
-    scan = ROOT / "golden" / "scans" / "clean-001.png"
     static = sorted(path.name for path in (package / "desk" / "static").iterdir())
     done = subprocess.run(
-        [sys.executable, "-c", USE, str(package), str(scan), *static],
+        [sys.executable, "-c", USE, str(package), *static],
         cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(installed)},
         capture_output=True,
@@ -114,7 +112,7 @@ def test_every_packaged_file_is_used(installed: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     where, opened, statuses, vectors, pages = json.loads(done.stdout)
     assert Path(where).is_relative_to(installed)
-    adverse = ("listing-as", "compare", "altered")
+    adverse = ("listing-as", "altered")
     assert {told for name, told in statuses.items() if not any(x in name for x in adverse)} == {0}
     assert vectors == 1000
     data = {path for path in package.rglob("*") if path.is_file() and path.suffix != ".py"}
