@@ -30,7 +30,7 @@ from impact88.checking.compare import (
     NOTHING_THERE,
     REFUSED,
     Comparison,
-    compare_file,
+    compare,
 )
 from impact88.checking.diagnosis import IN_THESE_ROWS, SINGLE, UNKNOWN
 from impact88.checking.vectors import CASEWORK, FAILURE, casework, scenes
@@ -66,7 +66,7 @@ def compared(tmp_path, results: dict[str, list[str]], rows=ROWS, **options) -> C
     path.write_text(table(results, rows), encoding="utf-8")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        return compare_file(str(path), "csv", **options)
+        return compare(str(path), "csv", **options)
 
 
 def answered(program: Program, rows=ROWS, names=RESULTS, places=None) -> dict[str, list[str]]:

@@ -18,7 +18,7 @@ import captures
 from impact88.accuracy.errorbound import oracle_bounds, scales
 from impact88.bench import populations
 from impact88.bench.populations import POPULATIONS, texts
-from impact88.checking.oracle import Request, answer, exact_decimal, look_up
+from impact88.checking.oracle import Request, answer, exact_decimal, oracle
 from impact88.checking.vectors import (
     CLASSES,
     EDGES,
@@ -65,7 +65,7 @@ def test_an_answer_has_everything() -> None:
 @pytest.mark.captures
 def test_stored_values_are_those_of_the_rom() -> None:
     rows = [row for row in captures.scenes() if "VAX=" in row["printout"]][:40]
-    found = look_up([row["scene"] for row in rows], reference=False)
+    found = oracle([row["scene"] for row in rows], reference=False)
     for row, one in zip(rows, found, strict=True):
         size, last = row["A"]["dims"][0], int(row["scene"]["M"]) + 1
         for place, name in enumerate(("VAX", "VAY", "VBX", "VBY"), 1):
@@ -258,7 +258,7 @@ def test_bounds_where_the_listing_solves_other_equations() -> None:
         ({"MU": "9.99"}, True),
         ({"MU": "-10"}, True),
     ):
-        (one,) = look_up([sample(1).replaced(changes)], reference=False)
+        (one,) = oracle([sample(1).replaced(changes)], reference=False)
         assert (one["error_bound"]["applesoft"] is not None) == bounded, changes
         assert one["error_bound"]["double"] < 1e-12
 
@@ -372,7 +372,7 @@ def test_published_vectors_are_those_of_their_seed_and_hash() -> None:
     readme = (captures.ROOT / "golden" / "README.md").read_text(encoding="utf-8")
     assert hashlib.sha256(text.encode()).hexdigest() in readme
     few = whole[::50]
-    for one, today in zip(few, look_up([one["scene"] for one in few]), strict=True):
+    for one, today in zip(few, oracle([one["scene"] for one in few]), strict=True):
         assert (one["printout"], one["ending"]) == (today["printout"], today["ending"])
         assert list(one["results"]) == list(today["results"])
         for name, row in one["results"].items():
@@ -386,5 +386,5 @@ def test_casework_closes_in() -> None:
     from random import Random
 
     rng = Random(0)
-    found = look_up([casework(rng) for _ in range(40)], reference=False)
+    found = oracle([casework(rng) for _ in range(40)], reference=False)
     assert not [one for one in found if "SEPARATING" in one["status"]]

@@ -43,29 +43,36 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from . import names, status
-    from .chapter.barrier import barrier
-    from .chapter.colinear import colinear, colinear_inverse
-    from .chapter.deltav import delta_v
-    from .checking.compare import compare_file as compare
-    from .checking.oracle import look_up as oracle
-    from .closedform.solve import solve
-    from .emulator.emulator import Applesoft
-    from .errors import UserError
-    from .figures.sceneview import scene_svg
-    from .native import accelerated
-    from .program.run import Run, run
-    from .reading.printout import read_printouts
-    from .reconstruction.adjustment import Reconstruction
-    from .reconstruction.unknowns import Solution, solve_for
-    from .replay import Replay, replay
-    from .reporting.examination import Verification, verify
-    from .scene import Scene, sample
-    from .tables.frames import solve_frame
-    from .uncertainty.bounds import bounds
-    from .uncertainty.boundstable import Bounds
-    from .uncertainty.reconstructedtable import reconstruct
-    from .uncertainty.uncertain import Uncertain
+    from . import names as names
+    from . import status as status
+    from .chapter.barrier import barrier as barrier
+    from .chapter.colinear import colinear as colinear
+    from .chapter.colinear import colinear_inverse as colinear_inverse
+    from .chapter.deltav import delta_v as delta_v
+    from .checking.compare import compare as compare
+    from .checking.oracle import oracle as oracle
+    from .closedform.solve import solve as solve
+    from .emulator.emulator import Applesoft as Applesoft
+    from .errors import UserError as UserError
+    from .figures.sceneview import scene_svg as scene_svg
+    from .native import accelerated as accelerated
+    from .program.run import Run as Run
+    from .program.run import run as run
+    from .reading.printout import read_printouts as read_printouts
+    from .reconstruction.adjustment import Reconstruction as Reconstruction
+    from .reconstruction.unknowns import Solution as Solution
+    from .reconstruction.unknowns import solve_for as solve_for
+    from .replay import Replay as Replay
+    from .replay import replay as replay
+    from .reporting.examination import Verification as Verification
+    from .reporting.examination import verify as verify
+    from .scene import Scene as Scene
+    from .scene import sample as sample
+    from .tables.frames import solve_frame as solve_frame
+    from .uncertainty.bounds import bounds as bounds
+    from .uncertainty.boundstable import Bounds as Bounds
+    from .uncertainty.reconstructedtable import reconstruct as reconstruct
+    from .uncertainty.uncertain import Uncertain as Uncertain
 
 _LAZY = {
     "Applesoft": "emulator.emulator",
@@ -83,10 +90,10 @@ _LAZY = {
     "bounds": "uncertainty.bounds",
     "colinear": "chapter.colinear",
     "colinear_inverse": "chapter.colinear",
-    "compare": "checking.compare:compare_file",
+    "compare": "checking.compare",
     "delta_v": "chapter.deltav",
     "names": "",
-    "oracle": "checking.oracle:look_up",
+    "oracle": "checking.oracle",
     "read_printouts": "reading.printout",
     "reconstruct": "uncertainty.reconstructedtable",
     "replay": "replay",
@@ -99,42 +106,10 @@ _LAZY = {
     "status": "",
     "verify": "reporting.examination",
 }
-"""Public name -> the module that holds it (after a colon, the name it has there), or nothing for a
-module of this package. A test holds this table against the imports above."""
+"""Public name -> the module that holds it, nothing for a module of this package. A test holds this
+table against the imports above."""
 
-__all__ = [  # written out: type checkers read no computed list
-    "Applesoft",
-    "Bounds",
-    "Reconstruction",
-    "Replay",
-    "Run",
-    "Scene",
-    "Solution",
-    "Uncertain",
-    "UserError",
-    "Verification",
-    "__version__",
-    "accelerated",
-    "barrier",
-    "bounds",
-    "colinear",
-    "colinear_inverse",
-    "compare",
-    "delta_v",
-    "names",
-    "oracle",
-    "read_printouts",
-    "reconstruct",
-    "replay",
-    "run",
-    "sample",
-    "scene_svg",
-    "solve",
-    "solve_for",
-    "solve_frame",
-    "status",
-    "verify",
-]
+__all__ = [*_LAZY, "__version__"]
 
 
 class _Package(ModuleType):
@@ -159,8 +134,7 @@ if not TYPE_CHECKING:  # a checker that saw it would take any name for a public 
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         if not place:
             return import_module(f".{name}", __name__)
-        module, _, inner = place.partition(":")
-        value = getattr(import_module(f".{module}", __name__), inner or name)
+        value = getattr(import_module(f".{place}", __name__), name)
         globals()[name] = value  # found at once from now on
         return value
 

@@ -117,7 +117,7 @@ class Skipped:
 
 @dataclass
 class Comparison:
-    """The result of `compare_file`.
+    """The result of `compare`.
 
     ``causes``: likely cause -> rows it explains; ``evidence`` and ``programs``: what bears out each
     cause that is a program, and the program; ``differences``: every row that disagrees;
@@ -195,7 +195,7 @@ class Comparison:
         return whole
 
 
-def compare_file(
+def compare(
     path: str | os.PathLike[str],
     form: str | None = None,
     values: Mapping[str, str] | None = None,

@@ -77,7 +77,7 @@ def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[st
     """The answers to some requests; one that cannot be used gives
     ``{"id", "error": {"line", "message"}}``. ``reference``: give 30 digits too."""
     scenes = [request.scene for request in batch if request.scene is not None]
-    answers = iter(look_up(scenes, reference))
+    answers = iter(oracle(scenes, reference))
     for request in batch:
         if request.scene is None:
             error = {"line": request.line, "message": request.problem}
@@ -92,7 +92,7 @@ def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[st
             yield stamped("oracle", whole)
 
 
-def look_up(
+def oracle(
     scenes: Mapping[str, Any] | Iterable[Mapping[str, Any]], reference: bool = True
 ) -> list[dict[str, Any]]:
     """What is known about each scene, or about the only one, see the module.

@@ -15,7 +15,7 @@ from ..doubles import doubles_of
 from ..files import packaged_bytes
 from ..names import FINAL_VELOCITIES, SCENE
 from ..schemas import stamped
-from .oracle import BATCH, look_up
+from .oracle import BATCH, oracle
 
 Texts = dict[str, str]
 _Range = tuple[float, float, int]
@@ -35,7 +35,7 @@ def vectors(
         ((index, one) for index, one in enumerate(_endless(seed)) if only in (None, one[0])), count
     )
     while batch := list(islice(labelled, BATCH)):
-        answers = look_up([scene for _, (_, _, scene) in batch], reference)
+        answers = oracle([scene for _, (_, _, scene) in batch], reference)
         for (index, (kind, label, scene)), answer in zip(batch, answers, strict=True):
             head = {"id": f"{seed}-{index:06d}", "class": kind, "label": label}
             asked = _asked(kind, label, answer)

@@ -25,7 +25,7 @@ from collections.abc import Iterator
 
 from ..accuracy.errorbound import DOUBLE
 from ..checking.agreement import EQUATIONS
-from ..checking.compare import HARMLESS, Comparison, compare_file
+from ..checking.compare import HARMLESS, Comparison, compare
 from ..errors import UserError, shown
 from ..stderr import note
 from ..tables.table import format_of
@@ -62,7 +62,7 @@ def main(args: argparse.Namespace) -> int:
     given = options.settings(args.set, units=args.units)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
-    comparison = compare_file(
+    comparison = compare(
         args.theirs,
         format_of(args.theirs, args.form),
         given,

@@ -118,7 +118,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     ``units`` as `units_shown`; for a complete scene also ``answer`` (`_answer`), ``oracle``, what
     `impact88 oracle` answers, its ``page``, ``screen`` (`_screen`), ``results`` and ``warnings``.
     """
-    from ..checking.oracle import look_up
+    from ..checking.oracle import oracle
     from ..judging import beside
     from ..program.run import page
 
@@ -128,7 +128,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     whole["units"] = units_shown(form.units)
     if form.whole:
         scene = Scene(form.texts, source="the form")
-        known = look_up([scene], reference=False)[0]
+        known = oracle([scene], reference=False)[0]
         whole |= {
             "oracle": stamped("oracle", {"id": None, "scene": dict(scene), **known}),
             "answer": _answer(scene, known["results"], form.units),

@@ -162,10 +162,10 @@ def known_file(values: Mapping[str, str], units: str = "") -> str:
 
 def known_of_sample(which: int) -> dict[str, Any]:
     """A published run with its results known and its initial velocities not. Raises UserError."""
-    from ..checking.oracle import look_up
+    from ..checking.oracle import oracle
 
     scene = sample(which)
-    results = look_up([scene], reference=False)[0]["results"]
+    results = oracle([scene], reference=False)[0]["results"]
     after = {
         name: number(results[name]["double"], _DIGITS_TO_GO_ON)
         for name in FINAL_STATE
