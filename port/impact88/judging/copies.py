@@ -30,13 +30,6 @@ _TEXTS = 4
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
 
 
-class _Page(NamedTuple):
-    """What the copy prints for a scene: by field, and its lines."""
-
-    outcome: Outcome
-    lines: list[str]
-
-
 class Prepared(NamedTuple):
     """A text as `read_printouts` takes it: its lines in the restored listing's order, those left
     empty that only the copy prints; for every line the number, from 1, that it had; and the lines
@@ -60,8 +53,7 @@ class CopyPages:
         text = self.prepared(own).text
         printed = _read(text)
         self._labels = {one.name: one.read for one in printed.labels} if printed else {}
-        fields = {name: one.text for name, one in printed.fields.items()} if printed else {}
-        self._as_listed = fields == outcome_fields(text)
+        self._as_listed = _texts(printed) == outcome_fields(text)
 
     def prepared(self, text: str) -> Prepared:
         """A text to be read."""
@@ -84,31 +76,28 @@ class CopyPages:
 
     def outcomes(self, scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
         """What the copy prints for each scene, by field."""
-        return [self._page(scene).outcome for scene in scenes]
+        return [self._run(scene)[0] for scene in scenes]
 
-    def _page(self, scene: Mapping[str, str]) -> _Page:
+    def _run(self, scene: Mapping[str, str]) -> tuple[Outcome, list[str]]:
+        """What the copy prints for a scene: by field, and its lines."""
         done = self.copy.run(scene)
         text = self.prepared(done.page).text
-        if self._as_listed:
-            fields = outcome_fields(text)
-        else:
-            printed = _read(text)
-            found = {name: one.text for name, one in printed.fields.items()} if printed else {}
-            fields = {name: found[name] for name in FIELDS if name in found}
+        fields = outcome_fields(text) if self._as_listed else _texts(_read(text))
         ending = ZERO_DETERMINANT if ZERO_DETERMINANT in done.printout else done.error
-        return _Page(Outcome(fields, ending), done.page.split("\n"))
+        return Outcome(fields, ending), done.page.split("\n")
 
     def judged(self, shown: Printout, recovered: Recovered, besides: Mapping[int, str]) -> Judged:
         """The printout judged by the copy's page for the scene that comes nearest. ``besides``: its
         lines that only the copy prints."""
-        best: Judged | None = None
-        least = 10_000
+
+        def wrong(found: Judged) -> int:
+            return sum(one.status != Status.READ for one in [*found.fields, *found.replies])
+
+        best = None
         for scene in self._scenes(shown, recovered.scene):
-            found = self._judged(shown, recovered, scene, self._page(scene), besides)
-            wrong = sum(check.status != Status.READ for check in [*found.fields, *found.replies])
-            if wrong < least:
-                best, least = found, wrong
-            if not wrong:
+            found = self._judged(shown, recovered, scene, besides)
+            best = found if best is None else min(best, found, key=wrong)
+            if not wrong(best):
                 break
         assert best is not None
         return best
@@ -120,14 +109,12 @@ class CopyPages:
         for texts in product(*ways):
             typed = dict(zip(map(scene_name, right), texts, strict=True))
             scene = {**found.recovered.scene, **typed}
-            page = self._page(scene)
-            if all(page.outcome.fields.get(name) == text for name, text in right.items()):
-                besides = {
-                    one.line or 0: one.printed or ""
-                    for one in found.replies
-                    if one.name.startswith("line ")
-                }
-                return self._judged(found.shown, found.recovered, scene, page, besides)
+            own = [one for one in found.replies if one.name.startswith("line ")]
+            besides = {one.line or 0: one.printed or "" for one in own}
+            other = self._judged(found.shown, found.recovered, scene, besides)
+            printed = other.recovered.outcome.fields
+            if all(printed.get(name) == text for name, text in right.items()):
+                return other
         return None
 
     def _scenes(self, shown: Printout, scene: dict[str, str]) -> Iterator[dict[str, str]]:
@@ -136,7 +123,7 @@ class CopyPages:
         either = [scene, *with_opposite_mu(scene)]
         yield from either
         for one in either:
-            fields = self._page(one).outcome.fields
+            fields = self._run(one)[0].fields
             printed = {
                 name: text
                 for name in ANGLES
@@ -151,11 +138,11 @@ class CopyPages:
         shown: Printout,
         recovered: Recovered,
         scene: dict[str, str],
-        page: _Page,
         besides: Mapping[int, str],
     ) -> Judged:
-        """The printout judged by one page. The copy's own labels are exact; a line that only the
-        copy prints must have its numbers, too."""
+        """The printout judged by what the copy prints for a scene. The copy's own labels are exact;
+        a line that only the copy prints must have its numbers, too."""
+        outcome, lines = self._run(scene)
         labels = [
             one._replace(state=LabelState.EXACT, doubt=False)
             if self._labels.get(one.name, one.printed) == one.read
@@ -163,8 +150,8 @@ class CopyPages:
             for one in shown.labels
         ]
         shown = replace(shown, labels=labels)
-        own = {_plain(line): line for line in page.lines}
-        of_kind = {_plain(line, "#"): line.strip() for line in page.lines}
+        own = set(map(_plain, lines))
+        of_kind = {_plain(line, "#"): line.strip() for line in lines}
         wrong = [
             FieldCheck(
                 f"line {number}", line.strip(), of_kind.get(_plain(line, "#"), "nothing"),
@@ -173,7 +160,7 @@ class CopyPages:
             for number, line in besides.items()
             if _plain(line) not in own
         ]  # fmt: skip
-        return judge(shown, replace(recovered, scene=scene, outcome=page.outcome), wrong)
+        return judge(shown, replace(recovered, scene=scene, outcome=outcome), wrong)
 
 
 def _read(text: str) -> Printout | None:
@@ -182,6 +169,11 @@ def _read(text: str) -> Printout | None:
         return read_printouts(text)[0]
     except UserError:
         return None
+
+
+def _texts(printed: Printout | None) -> dict[str, str]:
+    found = printed.fields if printed else {}
+    return {name: found[name].text for name in FIELDS if name in found}
 
 
 def _letters(line: str) -> str:
