@@ -27,33 +27,6 @@ from .verification import (
     summary,
 )
 
-_LOOKS = {
-    Verdict.IDENTICAL: "good",
-    Verdict.IDENTICAL_AS_READ: "doubt",
-    Verdict.DIFFERS: "bad",
-    Verdict.INCOMPLETE: "doubt",
-}
-_SIGNS = {Status.READ: "✓", Status.DOUBTFUL: "?", Status.CONTRADICTED: "≠"}
-"""What stands before the state of a number; a dash where it was not read."""
-_HEADINGS = ("number", "printed", "recomputed", "state", "exact", "printed − exact")
-_METHOD = (
-    "The inputs printed on a page are recovered, and the 1988 listing is run with them, bit for "
-    "bit in Applesoft's 40-bit arithmetic as checked against captures of a real Apple II Plus ROM. "
-    "Each printed number and label is held against what the program prints in its place.",
-    "Possible explanations are edits (digits misread, numbers exchanged, other units, another "
-    "arithmetic, other lines of the listing), each tested by computing the page anew and ranked by "
-    "how much it asks to be believed and how many numbers it leaves unexplained.",
-    "Exact: Equations 13 to 18 of R. M. Brach, Vehicle Collision Analysis (1988), in double "
-    "precision. These values do not bear on the verdict.",
-)
-_LIMITS = (
-    "That a page is what the program prints does not prove that its inputs are those of the "
-    "collision, nor that the mechanics apply to it.",
-    "Inputs, or digits of them, on which nothing else printed depends cannot be verified by the "
-    "page; they are listed for each printout.",
-    "An explanation is a possibility that agrees with the page, not a finding of what happened.",
-)
-
 
 def write_report(path: str, examined: Sequence[Examined], **given: str | None) -> None:
     """Write the page for ``examined`` to ``path``, whole or not at all; ``given`` as for `report`.
@@ -89,11 +62,10 @@ def report(
         date=date,
         files_read=read,
         printouts=list(map(_printout, results)),
-        headings=_HEADINGS,
-        meanings=[(TITLES[one], MEANINGS[one]) for one in Verdict],
+        titles=TITLES,
+        meanings=MEANINGS,
+        states=STATES,
         key=[(n, q.meaning, q.unit) for n in FIELDS for q in [quantity("MU" if n == "MUP" else n)]],
-        method=_METHOD,
-        limits=_LIMITS,
         provenance=[
             *digests,
             ("the listing", provenance.listing_hash()),
@@ -111,29 +83,15 @@ def _printout(result: Verification) -> dict[str, Any]:
     ]
     inputs += [""] * (-len(inputs) % 8)
     return {
+        "result": result,
         "title": f"{files.called(result.file)}, printout {result.number} ({result.where})",
-        "look": _LOOKS[result.verdict],
-        "verdict": TITLES[result.verdict],
-        "says": MEANINGS[result.verdict],
-        "summary": [f"{line[:1].upper()}{line[1:]}." for line in summary(result)],
-        "rows": [
-            {
-                "look": STATES[check.status],
-                "cells": [
-                    check.name, check.printed or "–", check.recomputed or "–",
-                    f"{_SIGNS.get(check.status, '–')} {STATES[check.status] or 'exact'}",
-                    check.exact or "", (check.difference or "").replace("-", "−"),
-                ],
-            }
-            for check in result.fields
-        ],
+        "summary": summary(result),
         "sections": sections(result),
         "drawing": _drawing(result),
         "inputs": [inputs[at : at + 8] for at in range(0, len(inputs), 8)],
-        "guessed": "; † not read exactly on the paper" if result.guessed else "",
         "exhibit": result.exhibit() if result.exhibit else None,
         "text": list(_as_read(result)),
-    }  # fmt: skip
+    }
 
 
 def _drawing(result: Verification) -> str:

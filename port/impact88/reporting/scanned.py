@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from functools import partial
+from itertools import takewhile
 from typing import Any
 
 from ..errors import UserError
@@ -86,6 +87,7 @@ def _verification(
     settled = leaf.judged.verdict is not Verdict.INCOMPLETE
     known = {name: _printed(cells) for name, cells in leaf.by_name.items()} if settled else {}
     text, starts = leaf.read.page(known)
+    printed = leaf.found.outcome.fields if leaf.found else {}
     scene: dict[str, str | None] = dict.fromkeys(SCENE)
     if leaf.found and settled:
         scene = {name: leaf.found.scene[name] for name in SCENE}
@@ -97,10 +99,12 @@ def _verification(
         basis=RATES,
         verdict=leaf.judged.verdict,
         scene=scene,
-        fields=[_check(leaf, name, name) for name in _names(leaf)],
-        replies=[
-            check for side, names in REPLIES.items() for check in _reply_checks(leaf, side, names)
+        fields=[
+            _check(leaf, name, printed.get(name), leaf.by_name.get(name, []))
+            for name in FIELDS
+            if name in printed or name in leaf.read.costs
         ],
+        replies=list(_replies(leaf)),
         stop=len(text),
         text=text,
     )
@@ -108,7 +112,11 @@ def _verification(
         if check.printed and check.name in starts:
             check.start = starts[check.name]
             check.stop = check.start + len(check.printed)
-    result.cells = [_described(cell, page, size, leaf.grid) for cell in leaf.cells if _told(cell)]
+    result.cells = [
+        _described(cell, page, size, leaf.grid)
+        for cell in leaf.cells  # blanks and labels that hold are not told
+        if (cell.name and cell.predicted != BLANK) or state(cell) != "holds"
+    ]
     if leaf.judged.reason:
         result.remarks.append(f"page {page}: {leaf.judged.reason}")
     result.findings += [
@@ -121,24 +129,10 @@ def _verification(
     return result
 
 
-def _names(leaf: Leaf) -> list[str]:
-    fields = leaf.found.outcome.fields if leaf.found else {}
-    return [name for name in FIELDS if name in fields or name in leaf.read.costs]
-
-
-def _told(cell: Cell) -> bool:
-    """Whether a cell is reported: blanks and labels that hold are not."""
-    return bool(cell.name and cell.predicted != BLANK) or state(cell) != "holds"
-
-
-def _check(leaf: Leaf, field: str, name: str) -> FieldCheck:
-    recomputed = leaf.found.outcome.fields.get(field) if leaf.found else None
-    return _of_cells(leaf, name, recomputed, leaf.by_name.get(field, []))
-
-
-def _of_cells(leaf: Leaf, name: str, recomputed: str | None, cells: list[Cell]) -> FieldCheck:
+def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell]) -> FieldCheck:
+    """A number by its cells."""
     states = [state(cell) for cell in cells]
-    printed = _printed(cells)
+    status = Status.READ
     if leaf.judged.verdict is Verdict.INCOMPLETE and "differs" in states:
         status = Status.NOT_COMPARED
     elif recomputed is None or not cells:
@@ -147,14 +141,12 @@ def _of_cells(leaf: Leaf, name: str, recomputed: str | None, cells: list[Cell]) 
         status = Status.CONTRADICTED
     elif "doubtful" in states:
         status = Status.DOUBTFUL
-    else:
-        status = Status.READ
     doubts = [
         Doubtful(cell.place.line + 1, cell.place.cell + 1, 0, cell.other, cell.predicted, "picture")
-        for cell, one in zip(cells, states, strict=True)
-        if one == "doubtful"
+        for cell in cells
+        if state(cell) == "doubtful"
     ]
-    check = FieldCheck(name, printed or None, recomputed, status, doubts=doubts)
+    check = FieldCheck(name, _printed(cells) or None, recomputed, status, doubts=doubts)
     if cells:
         check.line, check.column = cells[0].place.line + 1, cells[0].place.cell + 1
     return check
@@ -165,18 +157,13 @@ def _printed(cells: Sequence[Cell]) -> str:
     return "".join(cell.other if state(cell) == "differs" else cell.predicted for cell in cells)
 
 
-def _reply_checks(leaf: Leaf, side: str, names: tuple[str, ...]) -> Iterator[FieldCheck]:
-    cells = leaf.by_name.get(f"REPLY_{side}", [])
-    if not cells or leaf.found is None:
-        return
-    parts: list[list[Cell]] = [[]]
-    for cell in cells:
-        if cell.predicted == ",":
-            parts.append([])
-        else:
-            parts[-1].append(cell)
-    for name, part in zip(names, parts, strict=False):
-        yield _of_cells(leaf, name, "".join(cell.predicted for cell in part), part)
+def _replies(leaf: Leaf) -> Iterator[FieldCheck]:
+    for side, names in REPLIES.items() if leaf.found else ():
+        cells = iter(leaf.by_name.get(f"REPLY_{side}", []))
+        for name in names:
+            part = list(takewhile(lambda cell: cell.predicted != ",", cells))
+            if part:
+                yield _check(leaf, name, "".join(cell.predicted for cell in part), part)
 
 
 def _described(cell: Cell, page: int, size: tuple[int, ...], grid: Grid) -> dict[str, Any]:
