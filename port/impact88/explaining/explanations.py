@@ -77,7 +77,8 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
             lambda: (*rows.searched(), *_exchanged_and_slipped(page, rows, rereading)),
             lambda: programs.causes(page),
         ):
-            if in_time() and min(map(_weight, causes), default=math.inf) > _ENOUGH:
+            whole = [one.bits for one in causes if not one.left]
+            if in_time() and min(whole, default=math.inf) > _ENOUGH:
                 causes += more()
         if not any(_accuses(one) and not one.left for one in causes):
             causes += _last_places_alone(page)
