@@ -16,8 +16,7 @@ import numpy as np
 
 from ..doubles import double
 from ..fields import FIELDS, INPUTS, scene_name
-from ..judging.judgement import Judged, Status
-from ..reading.numerals import printable
+from ..judging.judgement import Judged
 from ..recovery import slips
 from ..recovery.search import in_doubles
 from ..recovery.slips import Change, Reread, Rereading
@@ -94,8 +93,11 @@ def explain_copy(
     page = PageEvidence(found)
     causes = [*_slips_alone(page), *_labels(page)]
     if not found.recovered.missing:
-        tried: list[tuple[Change, ...]] = [(one,) for one in _nearest_slips(page)[:_BY_COPY]]
-        tried += [one.changes for one in Rereading(found.recovered).best()[:_BY_COPY]]
+        rereading = Rereading(found.recovered)
+        tried: list[tuple[Change, ...]] = [
+            (one,) for one in _nearest_slips(page, rereading)[:_BY_COPY]
+        ]
+        tried += [one.changes for one in rereading.best()[:_BY_COPY]]
         for changes in filter(None, dict.fromkeys(tried)):
             other = put_right(found, {change.field: change.would_be for change in changes})
             if other is not None:
@@ -119,7 +121,7 @@ def _labels(page: PageEvidence) -> Iterator[Cause]:
     wrong = [
         one
         for one in page.shown.mislabelled
-        if one.name in page.checks and page.checks[one.name].status == Status.READ
+        if one.name in page.checks and page.checks[one.name].same
     ]
     if wrong:
         exchanged = sorted(one.read for one in wrong) == sorted(one.printed for one in wrong)
@@ -160,16 +162,11 @@ def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading)
             yield cause._replace(bits=bits, note=row.note)
 
 
-def _nearest_slips(page: PageEvidence) -> list[Change]:
+def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[Change]:
     """The single slips of printed inputs, those first whose results are nearest to the page's by
     double precision; that differs from what the program prints as in the scene recovered."""
     scene, fields = page.recovered.scene, page.recovered.outcome.fields
-    tried = [
-        Change(kind, name, text, other)
-        for name, text in page.recovered.assumed.items()
-        for other, kind in slips.misreadings(text).items()
-        if printable(other) and kind != slips.TWO_DIGITS
-    ]
+    tried = [one for one in rereading.single() if one.kind != slips.TWO_DIGITS]
     columns = {name: np.full(len(tried) + 1, double(text)) for name, text in scene.items()}
     for row, one in enumerate(tried, 1):
         turned = one.field == "MUP" and mu_turned(scene["MU"], one.printed)

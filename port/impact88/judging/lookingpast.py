@@ -1,19 +1,15 @@
 """Looking past a reader's mistakes: a printout judged anew where nothing but its reader is wrong.
 
 A page that a machine read may differ because of the reading alone. Scenes in which slips are put
-right (`rereading`) are judged as if they were the printout's own; what is still wrong must be the
-reader's. Of 110 readings of genuine pages 6 are settled so.
+right are judged as if they were the printout's own; what is still wrong must be the reader's. Of
+110 readings of genuine pages 6 are settled so.
 """
 
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import islice
 
 from ..reading.numerals import Doubt
-from ..reading.printout import Printout
-from ..recovery.recovered import Recovered
-from ..recovery.search import Scored
 from ..recovery.slips import Rereading
 from .judgement import FieldCheck, Judged, Status, Verdict, judge
 
@@ -27,48 +23,40 @@ _LOST_AND_ADDED = 3
 """So many numbers with a glyph lost or added may be put down to a reader."""
 
 
-def looked_past(shown: Printout, recovered: Recovered, rereading: Rereading) -> Judged | None:
+def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
     """The printout judged with its reader's slips put right; None where they are not its alone.
 
     The scene that explains most decides, and every other that explains the page as well must
     bear it out: a digit altered in one angle can be made good by a sign of the angle beside it.
     """
-    if not shown.machine_read or shown.fragment_of_run or shown.ending or shown.unread:
+    shown, recovered = found.shown, found.recovered
+    no_reader = not shown.machine_read or shown.fragment_of_run or shown.ending or shown.unread
+    if no_reader or recovered.missing:
         return None
-    scenes: list[Scored] = []
-    if not recovered.missing:
-        apart = set(recovered.apart)
-        own = (r for r in rereading.best() if apart.isdisjoint(one.field for one in r.changes))
-        scenes = [one.scored for one in islice(own, _TRIED)]
-        scenes.append(recovered.search.replayed_scene(recovered.scene, recovered.assumed))
+    apart = set(recovered.apart)
+    own = [r for r in rereading.best() if apart.isdisjoint(one.field for one in r.changes)]
+    scenes = [one.scored for one in own[:_TRIED]]
+    scenes.append(recovered.search.replayed_scene(recovered.scene, recovered.assumed))
+    least = min(scored.cost for scored in scenes)
     best: Judged | None = None
-    least = min((scored.cost for scored in scenes), default=0.0)
-    for scored in sorted(scenes, key=lambda scored: scored.cost):
-        if scored.cost > least + _AS_WELL:
-            break
-        judged = _judged(shown, recovered, scored)
-        if judged is None:
-            return None
-        best = best or judged
+    for one in sorted(scenes, key=lambda scored: scored.cost):
+        if one.cost <= least + _AS_WELL:
+            other = replace(recovered, scene=one.scene, assumed=one.assumed, outcome=one.outcome)
+            judged = judge(shown, other)
+            if not settled(shown.machine_read, judged.fields, judged.replies):
+                return None
+            best = best or judged
+    assert best is not None
+    for check in [*best.fields, *best.replies]:
+        if check.status == Status.CONTRADICTED:
+            check.status = Status.DOUBTFUL
+    best.verdict = Verdict.IDENTICAL_AS_READ
     return best
 
 
-def _judged(shown: Printout, recovered: Recovered, scored: Scored) -> Judged | None:
-    """The printout judged as one of a scene; None where more than its reader is wrong."""
-    other = replace(
-        recovered, scene=scored.scene, assumed=scored.assumed, outcome=scored.outcome, missing=[]
-    )
-    found = judge(shown, other)
-    if not settled(shown, found.fields, found.replies):
-        return None
-    for check in [*found.fields, *found.replies]:
-        if check.status == Status.CONTRADICTED:
-            check.status = Status.DOUBTFUL
-    found.verdict = Verdict.IDENTICAL_AS_READ
-    return found
-
-
-def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
+def settled(
+    machine_read: bool, checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]
+) -> bool:
     """Whether all that a machine-read page contradicts is its reader's doing.
 
     A reader loses and adds signs and points, and a digit of a number here and there, and where it
@@ -83,7 +71,7 @@ def settled(shown: Printout, checks: Sequence[FieldCheck], replies: Sequence[Fie
     read = sum(check.status in (Status.READ, Status.DOUBTFUL) for check in every)
     swapped = Counter(pair for check in every for pair in check.swapped())
     return (
-        shown.machine_read
+        machine_read
         and read >= _READ_WELL * len(every)
         and 1 not in swapped.values()
         and all(_digits_lost_or_added(check) <= 1 for check in wrong)

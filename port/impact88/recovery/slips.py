@@ -117,6 +117,11 @@ class Rereading:
         ]
         return sorted(rereads, key=lambda one: one.scored.cost)
 
+    def single(self) -> Iterator[Change]:
+        """Every slip in one input."""
+        for name, ways in self._ways.items():
+            yield from (Change(kind, name, self._base[name], other) for _, other, kind in ways)
+
     @cached_property
     def _ways(self) -> dict[str, list[tuple[float, str, str]]]:
         """The slips of every input: what each costs, its text and its kind, cheapest first."""

@@ -8,12 +8,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from .. import files
+from ..doubles import doubles_of
 from ..errors import UserError
 from ..fields import FIELDS
-from ..judging import beside
 from ..judging.judgement import Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
-from ..reading.fieldlabels import LabelState
 from ..report.frame import render
 from . import provenance
 from .verification import (
@@ -98,11 +97,12 @@ def _drawing(result: Verification) -> str:
     """The scene from above; none of a scene that was guessed at."""
     if not result.runnable or result.guessed or result.verdict is Verdict.INCOMPLETE:
         return ""
+    from ..closedform.solve import solve
     from ..figures.sceneview import scene_svg
 
     scene = {name: text for name, text in result.scene.items() if text is not None}
     try:
-        return scene_svg(scene, beside.solved(scene, [*FINAL_VELOCITIES, "STATUS"]))
+        return scene_svg(scene, solve(doubles_of(scene), [*FINAL_VELOCITIES, "STATUS"]))
     except (UserError, ValueError):
         return ""
 
@@ -134,7 +134,7 @@ def _marks(result: Verification) -> Iterator[tuple[int, int, str]]:
         for start, read in [(one.start, one.read) for one in check.doubts] or [(check.start, "")]:
             yield start, start + max(1, len(read)), "doubtful"
     for label in result.labels:
-        wrong = label.state is LabelState.CONTRADICTORY
+        wrong = label in result.mislabelled
         if wrong or label.doubt:
             yield label.start, label.stop, "differs" if wrong else "doubtful"
     yield from ((piece.start, piece.stop, "over") for piece in result.left_over if piece.beside)

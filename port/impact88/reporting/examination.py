@@ -183,7 +183,7 @@ def _verified(shown: Printout, given: Mapping[str, str] | None) -> Verification:
         if shown.mislabelled:
             pass
         elif in_doubt or in_time():
-            better = looked_past(shown, recovered, rereading)
+            better = looked_past(found, rereading)
         elif shown.machine_read:
             found.verdict = Verdict.INCOMPLETE
             late = [f"what its reader misread was not sought: over {BUDGET:g} s"]
