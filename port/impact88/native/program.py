@@ -133,13 +133,11 @@ def read_numbers(text: bytes, count: int) -> tuple[Array, NDArray[np.bool_]]:
     return values, odd
 
 
-def write_numbers(values: Array) -> tuple[NDArray[np.str_], NDArray[np.bool_]]:
-    """The characters PRINT makes of reals, and which are left to others (True)."""
+def write_numbers(values: Array, texts: NDArray[np.str_]) -> NDArray[np.bool_]:
+    """Fill ``texts`` with the characters PRINT makes of reals; which are left to others (True)."""
     assert native.library is not None
-    texts = np.empty(values.shape, f"<U{native.library.text_width()}")
     odd = np.empty(values.shape, np.bool_)
-    values = np.ascontiguousarray(values)
     native.library.write_numbers(
         values.ctypes.data, values.size, texts.ctypes.data, odd.ctypes.data
     )
-    return texts, odd
+    return odd

@@ -11,14 +11,12 @@ from . import compiled, statements
 from .realcolumns import Scenes
 from .reals import Floats, Packed, Reals, from_floats
 from .statements import ZERO_DETERMINANT
-from .textcolumns import Strings, write
+from .textcolumns import AT_A_TIME, TEXT, Strings, write
 from .unit import Bools, Ints, Unit
 
 OTHER_M = 2
 """The code of a scene whose M is neither 4 nor 6: not replayed."""
 _KINDS = {code: kind for kind, code in CODES.items()}
-_AT_A_TIME = 32768
-"""Numbers from which on fields are not written together."""
 
 
 class Replay:
@@ -118,27 +116,28 @@ class Replay:
         printed nowhere. Fields are written when first asked for.
         """
         name = "MUP" if name == "MU" else name
-        if name not in self._fields:
-            self._write([name])
+        self.write_fields([name])
         return self._fields[name]
 
     def write_fields(self, names: Sequence[str] = tuple(FIELDS)) -> None:
         """Write fields now, by default all, which takes less time than one after another."""
         names = [name for name in names if name not in self._fields]
-        at_a_time = max(1, _AT_A_TIME // self.count)
-        for start in range(0, len(names), at_a_time):
-            self._write(names[start : start + at_a_time])
-
-    def _write(self, names: list[str]) -> None:
-        """Write some fields together."""
         columns = self._to_print(names)
-        v = columns[0] if len(columns) == 1 else np.concatenate(columns)
-        texts = write(Reals(v, None))
-        ends = np.cumsum([column.size for column in columns])
-        for name, field in zip(names, np.split(texts, ends[:-1]), strict=True):
+        # memory in one piece is paged in twice as fast
+        texts = np.empty((len(names), self.count), TEXT)
+        if self.count < AT_A_TIME:
+            write(Reals(np.array([np.broadcast_to(v, self.count) for v in columns]), None), texts)
+        else:
+            for field, v in zip(texts, columns, strict=True):
+                if v.size > 1:
+                    write(Reals(v, None), field)
+                else:
+                    field[...] = write(Reals(v, None))
+        for name, field in zip(names, texts, strict=True):
             printed = self._printed(name)
-            whole = field.size == self.count and printed.all()
-            self._fields[name] = field if whole else np.where(printed, field, "")
+            if not printed.all():
+                field[~printed] = ""
+            self._fields[name] = field
 
     def _printed(self, name: str) -> Bools:
         """The scenes in which the program came to print a field."""

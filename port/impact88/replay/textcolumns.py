@@ -28,10 +28,10 @@ _EIGHT_DIGITS = from_number(scalar.EIGHT_DIGITS)
 _EXACT_DIGITS = 9
 """So many digits make a whole number below 2^32, which MUL10 and adding a digit leave exact."""
 
-_WIDTH = 15
+TEXT = np.dtype("<U15")
 """The longest field: sign, point, nine digits, exponent."""
 AT_A_TIME = 32768
-"""So many numbers are written together, by arrays."""
+"""Numbers that are written together, by arrays."""
 
 _QUARTER_LIMIT = 2.0**125
 """Four times this is exponent byte 256."""
@@ -129,21 +129,21 @@ def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
 # --- writing --------------------------------------------------------------------------------------
 
 
-def write(x: Reals) -> Strings:
-    """The characters PRINT makes of each: at most nine digits, the extension counted.
+def write(x: Reals, texts: Strings | None = None) -> Strings:
+    """The characters PRINT makes of each: at most nine digits, the extension counted; into
+    ``texts``, if given.
 
     Records OVERFLOW, and writes nothing: where rounding the very largest numbers fails.
     """
-    unit = x.unit or Unit(x.v.size)
-    if native.library is None:
-        texts, rows = np.empty(x.v.shape, f"<U{_WIDTH}"), np.arange(x.v.size)
-    else:
-        texts, odd = write_numbers(x.v)
-        rows = np.flatnonzero(odd)
+    v = np.ascontiguousarray(x.v)
+    texts = np.empty(v.shape, TEXT) if texts is None else texts
+    unit = x.unit or Unit(v.size)
+    odd = np.ones(v.shape, bool) if native.library is None else write_numbers(v, texts)
+    rows = np.flatnonzero(odd)
     for at in range(0, rows.size, AT_A_TIME):
         some = rows[at : at + AT_A_TIME]
         part = unit.part(some)
-        texts[some] = _written_together(Reals(x.v[some], part))
+        texts.reshape(-1)[some] = _written_together(Reals(v.reshape(-1)[some], part))
         unit.join(part, some)
     return texts
 
@@ -158,7 +158,7 @@ def _written_together(x: Reals) -> Strings:
         scalar.lay_out(sign, str(nine), power) if nine else "0"
         for sign, nine, power in zip(signs, number.tolist(), d.tolist(), strict=True)
     ]
-    return np.where(failed, "", np.array(texts, f"<U{_WIDTH}"))
+    return np.where(failed, "", np.array(texts, TEXT))
 
 
 _ROUNDS_TO_OVERFLOW = 2.0**127 - 2.0**94
