@@ -6,7 +6,7 @@ is a difference of numbers that have lost it already, and what is zero is writte
 masses (M = 4) the arms count as 0 and the spins stay out of the energies.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from . import reference
@@ -18,17 +18,11 @@ LONGEST_EXPONENT = 3
 """Digits of the largest exponents that are computed with."""
 
 
-def _exponents(scene: Mapping[str, str]) -> Iterator[str]:
-    """The digits of the numbers' exponents."""
-    for text in scene.values():
-        _, _, exponent = text.upper().replace(" ", "").partition("E")
-        yield exponent.lstrip("+-0")
-
-
 def thirty_digits(scene: Mapping[str, str]) -> dict[str, str]:
     """Result name -> 30 digits; empty when the equations are singular or make no sense. What is no
     number (LOSS where nothing moves, MUC where a pivot feels no impulse) is not in it."""
-    if any(len(exponent) > LONGEST_EXPONENT for exponent in _exponents(scene)):
+    exponents = (text.upper().replace(" ", "").partition("E")[2] for text in scene.values())
+    if any(len(exponent.lstrip("+-0")) > LONGEST_EXPONENT for exponent in exponents):
         return {}  # a number of thousands of digits is no measurement
     try:
         values = fifty_digits(scene)

@@ -85,6 +85,7 @@ def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Flo
         mass = np.fmax(_finite(scene["MA"]), _finite(scene["MB"]))
         inertia = np.fmax(_finite(scene["IA"]), _finite(scene["IB"]))
         energy = np.fmax(np.abs(solved["KI"]), np.abs(solved["KF"]))
+        normal = solve({**scene, "MU": PIVOT}, ["PN"])["PN"]
         size = {
             **dict.fromkeys(RESULTS, speed),
             **dict.fromkeys(_SPINS, spin),
@@ -92,20 +93,15 @@ def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Flo
             "LOSS": 200 * energy / np.abs(solved["KI"]),
             **dict.fromkeys(("PN", "PT"), 2 * mass * speed),
             "PM": 2 * np.fmax(inertia * spin, mass * speed * arm),
-            "MUC": _critical_scale(scene, 2 * mass * speed, solved["MUC"]),
+            # a ratio of two impulses: its errors are theirs, divided by the pivot's normal one
+            "MUC": 2 * mass * speed * (1 + np.abs(solved["MUC"])) / np.abs(normal),
             **{name: np.abs(solved[name]) for name in ("MUP", "COND")},
         }
         return {name: np.nan_to_num(column) for name, column in size.items()}
 
 
-def _critical_scale(scene: Mapping[str, Any], impulse: Floats, ratio: Any) -> Floats:
-    """MUC is a ratio of two impulses; its errors are theirs, divided by the pivot's normal one."""
-    normal = solve({**scene, "MU": PIVOT}, ["PN"])["PN"]
-    return np.asarray(impulse * (1 + np.abs(ratio)) / np.abs(normal), np.float64)
-
-
 def _largest(value: Mapping[str, Any], names: tuple[str, ...]) -> Floats:
-    columns = [np.abs(np.asarray(value[name], float)) for name in names if name in value]
+    columns = [np.abs(np.asarray(value[name], float)) for name in names]
     return np.asarray(np.fmax.reduce(np.broadcast_arrays(*columns)), float)
 
 

@@ -107,21 +107,13 @@ class Impulse(NamedTuple):
     moment: Number
 
 
-class Inverses(NamedTuple):
+def inverses(t: Terms) -> list[Number]:
     """Inverse masses and inertias; 0 for an infinite body, and for a point mass's inertia."""
-
-    ma: Number
-    mb: Number
-    ia: Number
-    ib: Number
-
-
-def inverses(t: Terms) -> Inverses:
-    """The inverse masses and inertias of a scene."""
-    zero = mpmath.mpf(0)
-    spinning = () if t.point else ("IA", "IB")
-    values = [zero if mpmath.isinf(t.g[x]) else 1 / t.g[x] for x in ("MA", "MB", *spinning)]
-    return Inverses(*values, *([zero, zero] if t.point else []))
+    unmoved = {"IA", "IB"} if t.point else set()
+    return [
+        mpmath.mpf(0) if x in unmoved or mpmath.isinf(t.g[x]) else 1 / t.g[x]
+        for x in ("MA", "MB", "IA", "IB")
+    ]
 
 
 def arms(t: Terms) -> tuple[Number, Number, Number, Number]:

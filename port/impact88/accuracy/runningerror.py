@@ -17,7 +17,6 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import reduce
 from operator import add
-from typing import NamedTuple
 
 from ..applesoft.decimaltext import scan
 from ..names import DEFAULT_M, PIVOT
@@ -27,7 +26,9 @@ UNIT = 2.0**-32
 """What rounding a number to five bytes changes of it, at most."""
 PI_ERROR = abs(LISTING_PI / math.pi - 1)
 SMALLEST_PIVOT = 1e-9
+"""Line 1080's."""
 WORST_DIVISOR = 0.25
+"""Relative error of a divisor from which the first order says nothing; twice as much is unsafe."""
 TWO_BYTES = 2.0**-16
 
 
@@ -118,24 +119,12 @@ def _terms(scene: Mapping[str, str]) -> Terms:
     return t
 
 
-class Numeral(NamedTuple):
-    """A text's number, and how many times ten it is multiplied or divided by in reading."""
-
-    value: float
-    steps: int
-
-
-def _numeral(text: str) -> Numeral:
+def _read(text: str) -> Bounded:
+    """A value as the listing has it: each multiplication by ten, or division, rounds twice."""
     text = text.replace(" ", "") or "0"
     _, _, decimals, sign, digits, _ = scan(text.upper())
-    exponent = int(sign + digits) if digits else 0
-    return Numeral(float(text), abs(exponent - len(decimals)))
-
-
-def _read(text: str) -> Bounded:
-    """A value as the listing has it: each step of reading rounds twice."""
-    value, steps = _numeral(text)
-    return Bounded(value, (2 * steps + 2) * UNIT * abs(value))
+    steps = abs((int(sign + digits) if digits else 0) - len(decimals))
+    return Bounded(float(text), (2 * steps + 2) * UNIT * abs(float(text)))
 
 
 def _turn(*degrees: Bounded) -> tuple[Bounded, Bounded]:

@@ -29,7 +29,7 @@ def _operator(name: str, reflected: bool = False) -> Callable[[Expression, Any],
         if reflected:
             a, b = b, a
         rule = getattr(self.table, name, None)
-        result: Expression = rule(a, b) if rule else self.table.condition(name, a, b)
+        result: Expression = rule(a, b) if rule else self.table.combine(name, a, b)
         return result
 
     return method
@@ -88,7 +88,7 @@ class Expression:
         return self.table.absolute(self)
 
     def __invert__(self) -> Expression:
-        return self.table.condition("not", self)
+        return self.table.combine("not", self)
 
 
 class ExpressionTable:
@@ -97,13 +97,14 @@ class ExpressionTable:
     def __init__(self) -> None:
         self._kept: dict[Key, Expression] = {}
 
-    def _keep(
+    def combine(
         self,
         operation: str,
         *operands: Expression,
         value: float | str | None = None,
         varies: bool | None = None,
     ) -> Expression:
+        """Any operation: conditions, too, which are 1 where they hold, else 0."""
         key: Key = (operation, value, *map(id, operands))
         if key not in self._kept:
             if varies is None:
@@ -112,10 +113,10 @@ class ExpressionTable:
         return self._kept[key]
 
     def constant(self, number: float) -> Expression:
-        return self._keep("constant", value=float(number), varies=False)
+        return self.combine("constant", value=float(number), varies=False)
 
     def column(self, name: str, varies: bool) -> Expression:
-        return self._keep("column", value=name, varies=varies)
+        return self.combine("column", value=name, varies=varies)
 
     def wrap(self, operand: Expression | float) -> Expression:
         return operand if isinstance(operand, Expression) else self.constant(operand)
@@ -166,7 +167,7 @@ class ExpressionTable:
         if b.is_constant(math.inf):
             return self.constant(0.0)
         # 0 / b stays: b may be 0, and the quotient then is NaN
-        return self._keep("divide", a, b)
+        return self.combine("divide", a, b)
 
     def negative(self, a: Expression) -> Expression:
         if a.operation == "constant":
@@ -174,21 +175,21 @@ class ExpressionTable:
             return self.constant(-a.value)
         if a.operation == "negative":
             return a.operands[0]
-        return self._keep("negative", a)
+        return self.combine("negative", a)
 
     def _fold(
         self, operation: str, a: Expression, b: Expression, rule: Callable[[float, float], float]
     ) -> Expression:
         if isinstance(a.value, float) and isinstance(b.value, float):
             return self.constant(rule(a.value, b.value))
-        return self._keep(operation, a, b)
+        return self.combine(operation, a, b)
 
     def absolute(self, a: Expression) -> Expression:
-        return a if a.is_zero else self._keep("absolute", a)
+        return a if a.is_zero else self.combine("absolute", a)
 
     def root(self, a: Expression) -> Expression:
         """The square root."""
-        return a if a.is_zero else self._keep("sqrt", a)
+        return a if a.is_zero else self.combine("sqrt", a)
 
     def sine_and_cosine(self, degrees: Expression) -> tuple[Expression, Expression]:
         """Sine and cosine of an angle in degrees; sin(-x) is taken as -sin x."""
@@ -197,36 +198,26 @@ class ExpressionTable:
         if degrees.operation == "negative":
             sine, cosine = self.sine_and_cosine(degrees.operands[0])
             return self.negative(sine), cosine
-        both = self._keep("sine_and_cosine", degrees)
+        both = self.combine("sine_and_cosine", degrees)
         return self.half(both, "sine"), self.half(both, "cosine")
 
     def half(self, both: Expression, name: str) -> Expression:
         """The ``sine`` or ``cosine`` of a sine and cosine made together."""
-        return self._keep(name, both)
+        return self.combine(name, both)
 
     def against(self, value: Expression, slip: Expression) -> Expression:
         """``value`` with its sign changed where ``slip`` > 0 (the rule of listing line 400)."""
         if value.is_zero or slip.is_zero:
             return value
-        return self._keep("against", value, slip)
+        return self.combine("against", value, slip)
 
     def choose(self, where: Expression, a: Expression, b: Expression) -> Expression:
         """``a`` where the condition holds, else ``b``."""
-        return a if a is b else self._keep("choose", where, a, b)
-
-    def condition(self, operation: str, *operands: Expression) -> Expression:
-        """A comparison, or conditions joined: 1 where it holds, else 0."""
-        return self._keep(operation, *operands)
+        return a if a is b else self.combine("choose", where, a, b)
 
     def equals(self, a: Expression, number: float) -> Expression:
-        return self.condition("equal", a, self.constant(number))
-
-    def combine(
-        self, operation: str, *operands: Expression, varies: bool | None = None
-    ) -> Expression:
-        """Any other operation of the machine's."""
-        return self._keep(operation, *operands, varies=varies)
+        return self.combine("equal", a, self.constant(number))
 
     def bits(self, number: Expression) -> Expression:
         """A sum of bits as the whole number it is."""
-        return self._keep("bits", number)
+        return self.combine("bits", number)

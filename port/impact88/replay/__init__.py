@@ -1,6 +1,6 @@
 """The listing's Applesoft arithmetic over numpy arrays, bit for bit.
 
-unit         what a block of scenes shares: who failed first, scratch memory
+unit         what a block of scenes shares: who failed first
 reals        the 40-bit real over arrays: round, add, multiply, divide, INT, compare
 polynomials  LOG EXP ^2 SIN COS
 textcolumns  decimal texts to reals and back

@@ -1,9 +1,6 @@
-"""The replay's statements as a program for the compiled machine.
-
-`statements.run` is run once with values that only note what is done with them; the machine then
-does it to any number of scenes. Scenes out of the ordinary (an error, a value beyond 2^100 or below
-2^-100, a comparison without its carry) are marked and left to the arrays.
-"""
+"""The replay's statements as a program for the compiled machine: `statements.run` is run once with
+values that only note what is done with them. Scenes out of the ordinary (an error, a value beyond
+2^100 or below 2^-100, a comparison without its carry) are marked and left to the arrays."""
 
 from __future__ import annotations
 
@@ -20,9 +17,6 @@ from . import statements
 from .reals import ZERO, Floats, Reals
 from .unit import Bools, Unit
 
-LARGE = 2.0**100
-"""Beyond this, or below its inverse, a scene is marked: no ordinary one comes near, and what is
-computed of ordinary ones cannot overflow before it is marked in turn."""
 NAMES = tuple(name for name in SCENE if name != "M")
 ODD = "ODD"
 """The result that marks a scene: 1, else 0."""
@@ -140,7 +134,7 @@ class _Notes(Unit):
 
     def fails(self, failed: Any, code: int) -> bool:
         if isinstance(failed, Noting):
-            self.marked = self.marked.table.condition("either", self.marked, failed.expression)
+            self.marked = self.marked.table.combine("either", self.marked, failed.expression)
         elif np.any(failed):  # in every scene
             self.marked = self.marked.table.constant(1.0)
         return False

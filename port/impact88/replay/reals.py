@@ -14,10 +14,7 @@ The values are always exactly the ROM's; float64 only carries them. Zero may be 
     bit 63 sign | 52-62 exponent byte + 894 | 21-51 mantissa without its top bit | 13-20 extension
 
 An array known to be all zero costs nothing: x + 0 is x rounded and 0 * x is 0 by the ROM's own
-rules. All others are looked at for overflow and underflow after every operation, which takes a
-sixth of the time.
-
-The scalar text of these rules is `impact88.applesoft.real`; the same captures drive both.
+rules. The scalar text of these rules is `impact88.applesoft.real`; the same captures drive both.
 """
 
 from __future__ import annotations
@@ -47,7 +44,7 @@ LARGEST = 2.0**127
 SMALLEST = 2.0**-128
 """The smallest real: exponent byte 1, mantissa 80000000."""
 WHOLE = 2.0**31
-"""From here on (exponent byte 160) INT leaves a number as it is."""
+"""From here on (exponent byte 160) INT leaves a number as it is, extension and all."""
 
 
 def _mask(low: int, high: int) -> np.int64:
@@ -63,7 +60,6 @@ def _wrapped(value: int) -> np.int64:
 
 # Parts of a real, by the bits they take.
 _SIGN = _mask(63, 63)
-_MAGNITUDE = _mask(0, 62)  # exponent and mantissa, without the sign
 _EXPONENT = _mask(52, 62)
 _FRACTION = _mask(0, 51)  # the mantissa without its top bit, which a float64 does not hold
 _HALF_UNIT = np.int64(1 << 20)  # the extension's top bit: half of what a stored real can show
@@ -71,8 +67,6 @@ _32_BITS = _mask(21, 63)  # what a stored real keeps: the extension cleared
 _40_BITS = _mask(13, 63)  # what a real keeps: what no register holds cleared
 _UPPER_HALF = _mask(33, 62)  # of a factor: 20 bits, so that its products are exact
 
-_LARGEST = np.float64(LARGEST).view(np.int64)
-_SMALLEST = np.float64(SMALLEST).view(np.uint64)
 _BELOW_ONE = np.int64(1022 << 52)  # the exponent of numbers from 1/2 to 1
 _TO_UNITS = _wrapped((1023 + 39 + 1023) << 52)  # less an exponent: the scale that makes it 2^39
 _FROM_UNITS = np.int64(39 << 52)  # takes that scale's power of two back
@@ -84,11 +78,6 @@ _52 = np.uint64(52)  # the bits below the exponent
 _TOP = np.int64(1 << 52)  # the mantissa's top bit, put back
 _EIGHT, _LAST_BYTE = np.uint64(8), np.uint64(0xFF)
 _BYTE_SHIFTS = [np.uint64(8 * position) for position in range(5)]  # extension first
-
-
-def _nowhere() -> Unit:
-    """For constants, which belong to no block and cannot fail."""
-    return Unit(1)
 
 
 def _operator(name: str, reflected: bool = False) -> Callable[[Reals, Reals | int], Reals]:
@@ -112,8 +101,7 @@ class Reals:
     belong to (None: constants). The last axis runs over the scenes, or has length 1 for what all
     scenes share. Operators do what the ROM does: the left operand is rounded, the right one keeps
     its extension; Python integers are constants. What is combined with a value of a block belongs
-    to the block, also where it is a known zero; such a result may be a lone number that stands for
-    all rows and scenes.
+    to the block, also where it is a known zero.
     """
 
     __slots__ = ("bits", "stored", "unit", "v", "zero")
@@ -131,13 +119,8 @@ class Reals:
         """As a variable keeps it: 32 bits, by the top bit of the extension alone."""
         if self.stored:
             return self
-        v = np.empty(self.v.shape)
-        bits = v.view(np.int64)
-        np.add(self.bits, _HALF_UNIT, out=bits)
-        np.bitwise_and(bits, _32_BITS, out=bits)
-        result = Reals(v, self.unit, True, self.zero)
-        # a carry may overflow, nothing underflows
-        return result._settled() if np.abs(v).max(initial=0.0) >= LARGEST else result
+        v = (self.bits + _HALF_UNIT & _32_BITS).view(np.float64)
+        return Reals(v, self.unit, True, self.zero)._settled()
 
     def __neg__(self) -> Reals:
         return Reals(np.negative(self.v), self.unit, self.stored, self.zero)
@@ -161,12 +144,10 @@ class Reals:
         return bool((np.abs(self.v) > limit).any())
 
     def floor(self) -> Reals:
-        """INT: the largest whole number not above it, its extension counted. From `WHOLE` on a
-        number stays as it is, extension and all."""
+        """INT: the largest whole number not above it, its extension counted."""
         large = np.abs(self.v) >= WHOLE
-        if not large.any():
-            return Reals(np.floor(self.v), self.unit, True, self.zero)
-        return Reals(np.where(large, self.v, np.floor(self.v)), self.unit, self.stored)
+        v = np.where(large, self.v, np.floor(self.v))
+        return Reals(v, self.unit, self.stored or not large.any(), self.zero)
 
     # the parts that LOG and EXP take a number apart into, and put it together from
 
@@ -216,15 +197,11 @@ class Reals:
 
     def _settled(self) -> Reals:
         """The rules for exponents out of range: underflow is zero, overflow an error."""
-        sizes = self.bits & _MAGNITUDE
-        if sizes.max(initial=0) >= _LARGEST:
-            failed = sizes >= _LARGEST
-            self.fails(failed, OVERFLOW)
-            self.v[failed] = 0.0
-            sizes[failed] = 0
-        # zeros become the largest unsigned number
-        if (sizes.view(np.uint64) - _ONE).min(initial=_SMALLEST) < _SMALLEST - _ONE:
-            self.v[np.abs(self.v) < SMALLEST] = 0.0
+        sizes = np.abs(self.v)
+        if sizes.max(initial=0.0) >= LARGEST:
+            self.fails(sizes >= LARGEST, OVERFLOW)
+            self.v[sizes >= LARGEST] = 0.0
+        self.v[sizes < SMALLEST] = 0.0
         return self
 
     def fails(self, failed: Any, code: int) -> bool:
@@ -232,7 +209,7 @@ class Reals:
         return self._unit().fails(failed, code)
 
     def _unit(self) -> Unit:
-        return self.unit or _nowhere()
+        return self.unit or Unit(1)  # constants cannot fail
 
     def _of(self, unit: Unit | None) -> Reals:
         """The same; a constant becomes a value of the block it was combined with, so that an error
@@ -372,7 +349,7 @@ def _divide(left: Reals, right: Reals) -> Reals:
     right = right.rounded()
     by_zero = right.v == 0
     if by_zero.any():
-        (unit or _nowhere()).fails(by_zero, DIVISION_BY_ZERO)
+        (unit or Unit(1)).fails(by_zero, DIVISION_BY_ZERO)
         right = select(by_zero, constant(1), right)
     left = left.rounded()
     if left.zero:

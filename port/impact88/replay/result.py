@@ -16,6 +16,7 @@ from .unit import Bools, Ints, Unit
 
 OTHER_M = 2
 """The code of a scene whose M is neither 4 nor 6: not replayed."""
+NEITHER = "M IS NEITHER 4 NOR 6"
 _KINDS = {code: kind for kind, code in CODES.items()}
 
 
@@ -52,23 +53,17 @@ class Replay:
     @property
     def zero_determinant(self) -> Bools:
         """The scenes the listing ends with ZERO DETERMINANT."""
-        result: Bools = self.code == ZERO_DETERMINANT
-        return result
+        return np.asarray(self.code == ZERO_DETERMINANT)
 
     @property
     def error(self) -> Strings:
-        """Each scene's error message, such as "?DIVISION BY ZERO ERROR IN 480"; "" for none.
-
-        ZERO DETERMINANT is a normal end and no error.
-        """
+        """Each scene's error message, such as "?DIVISION BY ZERO ERROR IN 480"; "" for none (ZERO
+        DETERMINANT is a normal end)."""
         messages = np.full(self.count, "", dtype="<U48")
         for i in np.flatnonzero(self.code > ZERO_DETERMINANT).tolist():
             code, line = int(self.code[i]), int(self.line[i])
-            messages[i] = (
-                "M IS NEITHER 4 NOR 6"
-                if code == OTHER_M
-                else ApplesoftError(_KINDS[code], line).message
-            )
+            other = code == OTHER_M
+            messages[i] = NEITHER if other else ApplesoftError(_KINDS[code], line).message
         return messages
 
     def __len__(self) -> int:
@@ -86,16 +81,12 @@ class Replay:
         """Every result as floats, and how each scene ended (ERROR, LINE): columns of one length,
         as a DataFrame of any library takes them."""
         ending = np.where(self.zero_determinant, "ZERO DETERMINANT", self.error)
-        return {name: self.floats(name) for name in self.names} | {
-            "ERROR": ending,
-            "LINE": self.line,
-        }
+        results = {name: self.floats(name) for name in self.names}
+        return {**results, "ERROR": ending, "LINE": self.line}
 
     def present(self, name: str) -> Bools:
         """The scenes that have the result."""
-        present = self._unit.reached(statements.ASSIGNED[name]) & (self.code != OTHER_M)
-        result: Bools = present & self._six if name in ("WAF", "WBF") else present
-        return result
+        return self._reached(name, statements.ASSIGNED)
 
     def floats(self, name: str) -> Floats:
         """A result, exactly, as float64; NaN where there is none. Raises KeyError for an unknown
@@ -109,12 +100,9 @@ class Replay:
         return np.where(self.present(name), packed, np.uint64(0))
 
     def printed(self, name: str) -> Strings:
-        """A field of the printout, character for character: "-8.78", "5E-03"; "" where the program
-        did not get as far.
-
-        ``name`` is a result's, or a scene value's; MU and MUP both are what line 680 prints. KF is
-        printed nowhere. Fields are written when first asked for.
-        """
+        """A field of the printout, of a result or a scene value, character for character: "-8.78",
+        "5E-03"; "" where the program did not get as far. MU and MUP both are what line 680 prints;
+        KF is printed nowhere. Fields are written when first asked for."""
         name = "MUP" if name == "MU" else name
         self.write_fields([name])
         return self._fields[name]
@@ -122,6 +110,8 @@ class Replay:
     def write_fields(self, names: Sequence[str] = tuple(FIELDS)) -> None:
         """Write fields now, by default all, which takes less time than one after another."""
         names = [name for name in names if name not in self._fields]
+        if not names:
+            return
         columns = self._to_print(names)
         # memory in one piece is paged in twice as fast
         texts = np.empty((len(names), self.count), TEXT)
@@ -134,16 +124,15 @@ class Replay:
                 else:
                     field[...] = write(Reals(v, None))
         for name, field in zip(names, texts, strict=True):
-            printed = self._printed(name)
+            printed = self._reached(name, statements.PRINTED)
             if not printed.all():
                 field[~printed] = ""
             self._fields[name] = field
 
-    def _printed(self, name: str) -> Bools:
-        """The scenes in which the program came to print a field."""
-        printed = self._unit.reached(statements.PRINTED[name]) & (self.code != OTHER_M)
-        result: Bools = printed & self._six if name in FINAL_SPINS else printed
-        return result
+    def _reached(self, name: str, places: Mapping[str, int]) -> Bools:
+        """The scenes in which the program got past a name's place."""
+        reached = self._unit.reached(places[name]) & (self.code != OTHER_M)
+        return np.asarray(reached & self._six if name in FINAL_SPINS else reached)
 
     def _to_print(self, names: list[str]) -> list[Floats]:
         """What PRINT gets for fields, extension included; length 1 where all scenes share it."""

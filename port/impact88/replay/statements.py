@@ -1,8 +1,7 @@
-"""The listing over arrays: lines 280 to 760 and 1000 to 1170, for a block of scenes.
+"""The listing over arrays: lines 280 to 760 and 1000 to 1170, for a block of scenes of one `Kind`.
 
-The scenes of a block run the same statements: all with the same M, all pivots or none (`Kind`).
-Each value is computed by the listing's own expression, operation by operation and in its order, so
-every bit agrees. What is saved is repetition only, and only where it cannot change a bit:
+Each value is computed by the listing's own expression, operation by operation, in its order. What is
+saved is repetition, only where it cannot change a bit:
 
 - the sines and cosines, which several lines ask for, are computed once;
 - MA * (COS (GA) - MU * SIN (GA)) of line 530 is A(3,2) of line 410: a left operand is rounded, so
@@ -12,8 +11,7 @@ every bit agrees. What is saved is repetition only, and only where it cannot cha
   own sign, because the ROM's division can lose it;
 - a value known to be zero in every scene costs nothing (`reals`).
 
-The same text serves arrays of reals (`reals`) and values that only note what is done with them
-(`compiled`).
+The same text serves arrays (`reals`) and values that only note what is done with them (`compiled`).
 """
 
 from collections.abc import Mapping
@@ -77,12 +75,9 @@ FLOORED: dict[str, Reals] = {
 def run(
     unit: Unit, scene: Mapping[str, Reals], kind: Kind, matrix: bool = False
 ) -> dict[str, Reals]:
-    """Run the listing on a block. ``scene``: stored reals by the listing's names, all but M.
-
-    Returns the results by name, whatever failed on the way (``unit`` knows); with ``matrix`` also
-    each element of A as the program leaves it, as "A(1,1)". Values are meaningless in a scene that
-    did not get as far.
-    """
+    """The results of a block by name, whatever failed on the way (``unit`` knows); with ``matrix``
+    also each element of A as the program leaves it, as "A(1,1)". ``scene``: stored reals by the
+    listing's names, all but M."""
     E, MU, EM, DA, DB = (scene[name] for name in ("E", "MU", "EM", "DA", "DB"))
     MA, MB, IA, IB = (scene[name] for name in ("MA", "MB", "IA", "IB"))
     UX, UY, WA, VX, VY, WB = (scene[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB"))
@@ -203,13 +198,10 @@ def run(
 def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool) -> None:
     """Lines 1000-1170: column M + 1 of ``A`` as they leave it; with ``matrix`` all of A.
 
-    All its oddities are kept: no scaling of rows; on a tie, and for the last pivot whatever its
-    size, the later row; pivots judged against an absolute 1E-9; and RX, the row to exchange with,
-    keeping its last value when a whole column is below that, even a row that is done already.
-
-    Columns J of the rows being eliminated are left out: A(I,J) / AP is exactly 1, and what line
-    1040 leaves in column J is never read again, unless it overflows. (It is not always zero: the
-    ROM's multiplication by 1 can miss.)
+    All its oddities are kept, see `accuracy.elimination.eliminate`. Columns J of the rows being
+    eliminated are left out: A(I,J) / AP is exactly 1, and what line 1040 leaves in column J is
+    never read again, unless it overflows. (It is not always zero: the ROM's multiplication by 1 can
+    miss.)
     """
     RX: dict[int, Any] = {}  # row -> the scenes in which RX is that row
     for J in range(1, M + 1):

@@ -1,9 +1,8 @@
 """What one block of scenes shares while it is computed: who failed first, and where.
 
-In the ROM an error ends the program. Over arrays the other scenes go on, so an error is *recorded*:
-each scene keeps the first one in program order, and what it computes after that is never shown.
-Program order is kept in the records themselves, because lines that do not depend on each other are
-computed together.
+In the ROM an error ends the program. Over arrays the other scenes go on, so an error is recorded:
+each scene keeps the first one in program order, which the records hold because lines that do not
+depend on each other are computed together.
 """
 
 from __future__ import annotations
@@ -36,11 +35,9 @@ def key(line: int, position: int = 0, order: int | None = None) -> int:
 
 
 class Unit:
-    """The state of one block: ``count`` scenes, along the last axis of every array.
-
-    `fails` notes an error at the present place. ``first`` holds one record a scene: place, count
-    of errors so far, line and code packed so that the smallest is the first in program order.
-    """
+    """The state of one block: ``count`` scenes, along the last axis of every array. ``first`` holds
+    one record a scene: place, count of errors so far, line and code packed so that the smallest is
+    the first in program order."""
 
     def __init__(self, count: int) -> None:
         self.count = count
