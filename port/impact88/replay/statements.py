@@ -1,7 +1,7 @@
 """The listing over arrays: lines 280 to 760 and 1000 to 1170, for a block of scenes of one `Kind`.
 
-Each value is computed by the listing's own expression, operation by operation, in its order. What is
-saved is repetition, only where it cannot change a bit:
+Each value is computed by the listing's own expression, operation by operation, in its order. What
+is saved is repetition, only where it cannot change a bit:
 
 - the sines and cosines, which several lines ask for, are computed once;
 - MA * (COS (GA) - MU * SIN (GA)) of line 530 is A(3,2) of line 410: a left operand is rounded, so
