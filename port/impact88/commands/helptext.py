@@ -4,7 +4,8 @@ are unless they are too long."""
 import argparse
 import re
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from itertools import groupby
 
 from . import CHAPTER, CHAPTER_MEANING, COMMANDS, GROUPS
 
@@ -41,27 +42,13 @@ def terminal_width() -> int:
 def fitted(text: str, width: int) -> str:
     """A docstring in so many columns."""
     lines: list[str] = []
-    for kind, block in _blocks(text):
-        if kind == "paragraph":
+    stripped = text.strip("\n").splitlines()
+    for is_paragraph, block in groupby(stripped, lambda line: bool(line[:1].strip())):
+        if is_paragraph:
             lines += textwrap.wrap(" ".join(block), width, break_on_hyphens=False)
         else:
-            for line in block:
-                lines += _hanging(line, width)
+            lines += [part for line in block for part in _hanging(line, width)]
     return "\n".join(lines)
-
-
-def _blocks(text: str) -> Iterator[tuple[str, list[str]]]:
-    paragraph: list[str] = []
-    for line in text.strip("\n").splitlines():
-        if line[:1].strip():
-            paragraph.append(line)
-            continue
-        if paragraph:
-            yield "paragraph", paragraph
-            paragraph = []
-        yield "as it stands", [line]
-    if paragraph:
-        yield "paragraph", paragraph
 
 
 def _hanging(line: str, width: int) -> list[str]:

@@ -57,7 +57,9 @@ class ArrowTexts(ArrowColumn):
         data = self.array.buffers()[2]
         if data is None:
             return None
-        ends = self._ends()
+        # where each text begins among the characters, and where the last one ends
+        offsets = self.array.buffers()[1]
+        ends = np.frombuffer(offsets, np.int32, len(self.array) + 1, 4 * self.array.offset)
         characters = np.frombuffer(data, np.uint8)[ends[0] : ends[-1]]
         if not _PLAIN[characters].all():
             return None
@@ -67,11 +69,6 @@ class ArrowTexts(ArrowColumn):
             return None
         return values
 
-    def _ends(self) -> NDArray[np.int32]:
-        """Where each text begins among the characters, and where the last one ends."""
-        offsets = self.array.buffers()[1]
-        return np.frombuffer(offsets, np.int32, len(self.array) + 1, 4 * self.array.offset)
-
     def replaced(self, old: str, new: str) -> ArrowTexts:
         """The column with every ``old`` a ``new``."""
         import pyarrow.compute as compute
@@ -80,14 +77,9 @@ class ArrowTexts(ArrowColumn):
 
     def filled(self, text: str) -> ArrowTexts:
         """The column with ``text`` where there is none."""
-        import pyarrow as pa
-
-        empty = np.diff(self._ends()) == 0
-        if not empty.any():
-            return self
         import pyarrow.compute as compute
 
-        return ArrowTexts(compute.if_else(pa.array(empty), text, self.array))
+        return ArrowTexts(compute.if_else(compute.equal(self.array, ""), text, self.array))
 
 
 def texts_of(values: NDArray[Any]) -> Any:
