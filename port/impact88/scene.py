@@ -23,11 +23,9 @@ LONGEST_ENTRY = 2_000
 """Characters of the longest line of a scene file; a TOML reader may be slow with long keys."""
 VALUE_LIMIT = 70
 """The longest value: three of them and their commas fit the 239 characters INPUT keeps."""
-DATA_LINES = (280, 290, 310)
-REPLY_LINES = (210, 230)
+DATA_LINES, REPLY_LINES, M_LINE = (280, 290, 310), (210, 230), 350
 TYPED_LIMIT = 239
 _NUMBER_BEGINS = tuple("0123456789.")
-M_LINE = 350
 LISTING = "impact.bas"
 
 _ENTRY = r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)"""

@@ -36,13 +36,12 @@ FILE_ROWS = 1_000_000
 """Rows of --files."""
 COMPONENT_SCENES = 300
 """Scenes of which every result is compared with 50 digits: two milliseconds each."""
-MOST_SCENES = 10_000_000
 SIZES = (1, 60, 1_000, 10_000, 100_000, 1_000_000, 10_000_000)
 
 
 ARGUMENTS = (
     options.names_option("--populations", f"default: {','.join(BENCHMARK)}"),
-    options.count("--scenes", 1, MOST_SCENES, "of each population (%(default)s)", default=2000),
+    options.count("--scenes", 1, 10**7, "of each population (%(default)s)", default=2000),
     options.seed("of the populations", 1988),
     options.count("--repeats", 1, 1000, "times are medians of so many (%(default)s)", default=5),
     options.flag("--quick", "time a twentieth of the scenes: rougher, sooner"),

@@ -43,7 +43,6 @@ if TYPE_CHECKING:
 
 FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
 """What ``--from`` and ``--to`` take."""
-MOST_DRAWS = 100_000_000
 
 
 class InputFile(str):
@@ -133,7 +132,7 @@ def sample_option(meaning: str = "the scene of a published run") -> Argument:
 def draws(default: int, meaning: str = "random draws") -> tuple[Argument, Argument]:
     """The options ``--samples`` and ``--seed``."""
     meaning += " (default: %(default)s)"
-    return count("--samples", 0, MOST_DRAWS, meaning, default=default), seed()
+    return count("--samples", 0, 10**8, meaning, default=default), seed()
 
 
 def seed(meaning: str = "which random draws", default: int = 0) -> Argument:

@@ -35,13 +35,11 @@ from ..errors import UserError
 from ..files import called, encoding_of, open_bytes
 from . import options
 
-MOST_VECTORS = 10_000_000
-
 ARGUMENTS = (
     options.reads("scenes", "SCENES.jsonl", "", nargs="?", default="-"),
     options.OUTPUT,
     options.flag("--no-reference", "leave out the 30 digits"),
-    options.count("--vectors", 1, MOST_VECTORS, "write N test vectors"),
+    options.count("--vectors", 1, 10**7, "write N test vectors"),
     options.seed("of the test vectors"),
     options.choice("--class", CLASSES, "vectors of this class only", dest="only"),
     options.choice("--to", ("jsonl", "csv"), "csv: the scenes of --vectors as a flat table"),

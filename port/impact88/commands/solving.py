@@ -150,12 +150,9 @@ class _Float64:
 def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
     """Read the cells of MU that are shares of the critical friction, and withdraw the complaints
     about them."""
-    found = {}
-    for bad in rows.bad:
-        if bad.column == "MU":
-            share = share_of(rows.columns["MU"][bad.row - rows.first])
-            if share is not None:
-                found[bad.row - rows.first] = share
+    places = [bad.row - rows.first for bad in rows.bad if bad.column == "MU"]
+    cells = {at: share_of(rows.columns["MU"][at]) for at in places}
+    found = {at: share for at, share in cells.items() if share is not None}
     if found:
         at = list(found)
         shared = {n: np.broadcast_to(x, (rows.count,))[at] for n, x in columns.items()}

@@ -36,13 +36,8 @@ if TYPE_CHECKING:
 
     Job = Callable[[Session], Heard]
 
-MOST = 10_000_000
-"""Random scenes of one run."""
-SHOWN = 10
-"""Cases with differences that are shown."""
-SHOWN_LINES = 24
-"""Lines of one case's differences that are shown."""
-
+SHOWN, SHOWN_LINES = 10, 24
+"""Cases with differences that are shown, and lines of each."""
 
 ARGUMENTS = (
     options.reads("scenes", "SCENE.toml", "scenes to run", nargs="*"),
@@ -56,7 +51,7 @@ ARGUMENTS = (
         "FOLDER",
         "every .bas of a folder, its replies in a .in beside it, on the ROM and the emulator",
     ),
-    options.count("--random", 0, MOST, "N random scenes", default=0),
+    options.count("--random", 0, 10**7, "N random scenes", default=0),
     options.seed("of what is random"),
     options.flag("--any-rom", "accept a ROM that is not known, too"),
     options.writes_folder("--save", "DIR", "write what the ROM did as captures"),

@@ -23,7 +23,6 @@ from .rows import BLOCK_ROWS, Reader, Rows, Writer, scene_names, typed
 
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
-MOST_ROWS = 1_048_576
 
 
 def _names(lines: Iterator[tuple[int, tuple[Any, ...]]], where: str) -> list[str]:
@@ -138,8 +137,8 @@ class _ExcelWriter(Writer):
 
     def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
         self._rows += rows.count
-        if self._rows > MOST_ROWS:
-            raise UserError(f"a sheet has at most {MOST_ROWS:,} rows; expected to write CSV")
+        if self._rows > 1_048_576:
+            raise UserError("a sheet has at most 1,048,576 rows; expected to write CSV")
         columns = [typed(name, rows.one_per_row(name)) for name in self.kept]
         columns += [results[name] for name in self.results]
         cells = [c.tolist() if isinstance(c, np.ndarray) else c for c in columns]
