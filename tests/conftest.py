@@ -15,6 +15,7 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 from pytest_regressions.file_regression import FileRegressionFixture
 
 from captures import ROOT
@@ -26,6 +27,11 @@ LONGEST = (
     *("verify", "bench", "files", "listing", "figures", "bounds", "mappings"),
 )
 """Files of tests that take more than some seconds (``--durations=0`` has the times)."""
+
+settings.register_profile(
+    "run", max_examples=int(os.environ.get("IMPACT88_EXAMPLES") or 40), deadline=None
+)
+settings.load_profile("run")
 
 # processes that tests start need not compile the package each for itself
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -71,7 +71,7 @@ vehicles = st.fixed_dictionaries(
 )
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(vehicles)
 def test_the_barrier_is_the_limit_of_a_growing_mass(car: dict[str, float]) -> None:
     """With B's mass and inertia every term of the solution changes by what it has of them, and the
@@ -98,7 +98,7 @@ def test_the_barrier_is_the_limit_of_a_growing_mass(car: dict[str, float]) -> No
         assert off["WAF"] <= spin + rounding
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(vehicles, st.floats(50.0, 200.0), st.floats(-30.0, 30.0))
 def test_point_masses_are_the_limit_of_vanishing_arms(
     car: dict[str, float], mass: float, speed: float

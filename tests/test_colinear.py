@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from impact88 import colinear, colinear_inverse, solve
@@ -38,7 +38,6 @@ def test_reference_cases_to_1e_12(case: Case) -> None:
         assert error <= 1e-12 * condition * largest
 
 
-@settings(deadline=None)
 @given(scenes)
 def test_the_inverse_undoes_the_forward_solution(scene: dict[str, float]) -> None:
     forward = colinear(scene)
@@ -50,7 +49,6 @@ def test_the_inverse_undoes_the_forward_solution(scene: dict[str, float]) -> Non
         assert float(back[name]) == pytest.approx(float(forward[name]), rel=1e-8, abs=1e-6)
 
 
-@settings(deadline=None)
 @given(scenes)
 def test_equations_1_to_8_hold(scene: dict[str, float]) -> None:
     s = scene | {name: float(value) for name, value in colinear(scene).items()}
@@ -64,7 +62,6 @@ def test_equations_1_to_8_hold(scene: dict[str, float]) -> None:
     assert friction == pytest.approx(0.0, abs=size)
 
 
-@settings(deadline=None)
 @given(scenes)
 def test_it_is_the_point_mass_impact_with_the_contact_plane_along_y(
     scene: dict[str, float],

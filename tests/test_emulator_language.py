@@ -397,7 +397,7 @@ STEPS = st.lists(
 )
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(STEPS)
 def test_what_can_be_typed_survives_save_and_load(words):
     machine = Applesoft()

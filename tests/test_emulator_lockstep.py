@@ -42,7 +42,7 @@ SCENE = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 @given(SCENE)
 def test_random_scene(values):
     assert first_difference(Scene(values)) is None

@@ -156,7 +156,7 @@ any_scene = st.fixed_dictionaries({name: typed for name in SCENE if name != "M"}
 )
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(any_scene, st.sampled_from(["applesoft", "float64"]))
 def test_whatever_the_numbers_only_applesoft_errors(values, arithmetic):
     result = run(values, arithmetic)
@@ -176,7 +176,7 @@ around = {
 }
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.fixed_dictionaries({name: value.map(str) for name, value in around.items()}))
 def test_momentum_is_conserved(values):
     result = run(Scene(values), "float64")

@@ -7,7 +7,7 @@ import operator
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from impact88.closedform.plan import Plan
@@ -35,7 +35,6 @@ def run(plan):
     return results
 
 
-@settings(deadline=None)  # compiling takes what it takes on a busy machine
 @given(st.data())
 def test_any_formulas_give_what_numpy_gives(data):
     """Random formulas over columns and constants, several results sharing parts."""

@@ -46,11 +46,16 @@ def exact(part: Any) -> Any:
     return closed
 
 
+@cache
+def validator(name: str) -> jsonschema.Draft202012Validator:
+    return jsonschema.Draft202012Validator(exact(schema(name)))
+
+
 def check(name: str, printed: str, version: str | None = impact88.__version__) -> Any:
     found = json.loads(printed)
     assert found["schema"] == f"impact88/{name}/{schemas.NUMBERS[name]}"
     assert version is None or found["version"] == version
-    jsonschema.Draft202012Validator(exact(schema(name))).validate(found)
+    validator(name).validate(found)
     return found
 
 
@@ -105,10 +110,10 @@ def test_oracle_answers_and_refusals() -> None:
 
 
 def test_vectors_new_and_published() -> None:
-    for line in printed("oracle", "--vectors", "90", "--seed", "2").splitlines():
+    for line in printed("oracle", "--vectors", "45", "--seed", "2").splitlines():
         check("vectors", line)
     whole = published().splitlines()
-    for line in whole[:: len(whole) // 50]:
+    for line in whole[:: len(whole) // 20]:
         check("vectors", line, version=None)  # they name the version that made them
 
 
@@ -149,13 +154,13 @@ def test_selfcheck(tmp_path, monkeypatch, capsys) -> None:
 
 
 def test_witness(tmp_path) -> None:
+    """Of a ROM that prints another digit; that of one that does not has less in it."""
     path = tmp_path / "own.rom"
     right = run(sample(1), dos=False)
-    for text in (right.printout, right.printout.replace("57.47", "57.48")):
-        path.write_bytes(rom(text, right.reals, right.A))
-        done = command("witness", "--rom", str(path), "--any-rom", "--sample", "1", "--json")
-        found = check("witness", done.stdout)
-        assert found["passed"] == (text == right.printout) == (done.returncode == 0)
+    path.write_bytes(rom(right.printout.replace("57.47", "57.48"), right.reals, right.A))
+    done = command("witness", "--rom", str(path), "--any-rom", "--sample", "1", "--json")
+    assert not check("witness", done.stdout)["passed"]
+    assert done.returncode == 1
 
 
 @pytest.mark.parametrize(
@@ -179,7 +184,7 @@ def test_bounds(options: tuple[str, ...]) -> None:
 def test_reconstruct(unknown: tuple[str, ...], known: dict[str, str]) -> None:
     values = {n: text for n, text in sample(3).items() if n not in unknown} | known
     options = [part for n, text in values.items() for part in ("--set", f"{n}={text}")]
-    check("reconstruct", printed("reconstruct", "--json", *options))
+    check("reconstruct", printed("reconstruct", "--samples", "1000", "--json", *options))
 
 
 TWO = ["--set=MA=96", "--set=MB=145"]

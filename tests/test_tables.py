@@ -12,7 +12,7 @@ import struct
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from impact88.cli import main
@@ -56,7 +56,6 @@ def test_floats_read_back_to_the_same_bits(value):
     assert struct.pack("<d", float(text)) == struct.pack("<d", value)
 
 
-@settings(deadline=None)
 @given(st.lists(st.floats(allow_nan=True), min_size=1))
 def test_pyarrow_writes_the_same_texts(values):
     array = np.array(values)

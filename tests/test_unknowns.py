@@ -412,7 +412,7 @@ PROBLEMS = {
 
 
 @pytest.mark.parametrize("problem", PROBLEMS)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(scene=impacts())
 def test_every_problem_inverts_the_forward_solution(problem: str, scene: dict[str, float]) -> None:
     assume(np.isfinite([scene[n] for n in FINAL_STATE]).all())
@@ -442,7 +442,7 @@ SOLVABLE = [
 ]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(scene=impacts(), names=st.sampled_from(SOLVABLE))
 def test_any_set_of_six_is_recovered_or_refused_as_its_rank_says(
     scene: dict[str, float], names: tuple[str, ...]
@@ -461,7 +461,7 @@ def test_any_set_of_six_is_recovered_or_refused_as_its_rank_says(
     assert max(residuals(scene | {n: float(v) for n, v in found.values.items()})) < 1e-9
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(scene=impacts())
 def test_momentum_and_angular_momentum_are_conserved(scene: dict[str, float]) -> None:
     assume(np.isfinite([scene[n] for n in FINAL_STATE]).all())
@@ -485,7 +485,7 @@ def test_momentum_and_angular_momentum_are_conserved(scene: dict[str, float]) ->
     )
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(scene=impacts(point=True))
 def test_point_masses_are_reconstructed_too(scene: dict[str, float]) -> None:
     names = ("UX", "UY", "VX", "VY")
