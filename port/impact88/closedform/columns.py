@@ -1,9 +1,8 @@
 """Columns of scenes: from what a caller hands over to blocks ready for a plan.
 
-Columns may be scalars or arrays of any shapes that broadcast together. They are never copied as a
-whole: a block of a column that is not plain float64 is converted into a buffer when its turn comes.
-Blocks are looked at once: which columns are the same for all their scenes, which are 0, which
-numbers cannot be used. The answers choose the plan.
+Columns may be scalars or arrays of any shapes that broadcast together, and are never copied as a
+whole. Blocks are looked at once: which columns are the same for all their scenes, which are 0,
+which numbers cannot be used. The answers choose the program.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -28,7 +27,6 @@ BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 """Mass, inertia, velocities and spin of A and of B."""
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """What a point-mass scene (M = 4) does not look at."""
-_UNUSED_ANGLES = tuple(name for name in UNUSED_BY_POINTS if name in ANGLES)
 
 Limits = tuple[float, float]
 """Least and most."""
@@ -109,15 +107,6 @@ class Block(NamedTuple):
     refused: NDArray[np.bool_] | None
 
 
-class _Column(NamedTuple):
-    """What `examine` finds of a column: itself (of length 1 if all its numbers are equal), its
-    kind, and whether all can be used."""
-
-    values: Floats
-    kind: str
-    usable: bool
-
-
 def examine(values: Mapping[str, Floats]) -> Block:
     """Find out what kind of block this is. ``values``: columns of one length, or of length 1.
 
@@ -132,22 +121,38 @@ def examine(values: Mapping[str, Floats]) -> Block:
     usable = True
     for name, column in values.items():
         if only_points and name in UNUSED_BY_POINTS:
-            kinds[name] = "unused"
-            fixed[name] = column[:1]
+            fixed[name], kinds[name] = column[:1], "unused"
             continue
-        least, most = extremes[name]
-        if name in _UNUSED_ANGLES and not abs(least) + abs(most) < np.inf:
-            column = np.where(values["M"] == 4, 0.0, column)
+        (least, most), (low, high) = extremes[name], ORDINARY[name]
+        if name in ANGLES and not (low <= least and most <= high):
+            if name in UNUSED_BY_POINTS:
+                column = np.where(values["M"] == 4, 0.0, column)
+            with np.errstate(invalid="ignore"):
+                column = np.where(np.abs(column) <= LARGE_ANGLE, column, np.fmod(column, 360.0))
             least, most = float(column.min()), float(column.max())
-        found = _examined(name, column, least, most)
-        kinds[name] = found.kind
-        usable = usable and found.usable
-        (fixed if len(found.values) == 1 else varying)[name] = found.values
+        alike = len(column) == 1 or least == most
+        ordinary = low <= least and most <= high  # NaN is neither
+        kind = alike_kind(name, least) if alike and ordinary else "scalar" if alike else "array"
+        if name == "M" and not ordinary:
+            ordinary = only_points
+            kind = "4" if only_points else "6" if alike else "mixed"
+        elif name in INERTIAS and not ordinary:
+            ordinary = alike and most == np.inf
+            kind = "inf" if ordinary else "scalar" if alike else "array with infinities"
+        elif name == "MU" and not ordinary:
+            ordinary = least >= -_LARGEST and most <= _LARGEST
+            if bool((column == PIVOT).any()):
+                kind = "pivot" if alike else "mixed"
+        kinds[name] = kind
+        usable = usable and ordinary
+        (fixed if alike else varying)[name] = column[:1] if alike else column
     ordered = tuple(kinds[name] for name in SCENE)
     if usable and _at_rest_where_infinite(kinds):
         return Block(fixed, varying, ordered, None)
     together = {name: fixed[name] if name in fixed else varying[name] for name in SCENE}
-    refused = _refused(together, max(map(len, values.values())))
+    refused = np.zeros(max(map(len, values.values())), np.bool_)
+    for refusal in refusals(together):
+        refused |= refusal.where
     return Block(fixed, varying, ordered, refused if refused.any() else None)
 
 
@@ -162,32 +167,6 @@ def _extremes(columns: Sequence[Floats]) -> list[Limits]:
         for i, limits in zip(long, zip(least, most, strict=True), strict=True):
             found[i] = limits
     return found
-
-
-def _examined(name: str, column: Floats, least: float, most: float) -> _Column:
-    """What there is to say of a column, of which the least and largest number are known."""
-    alike = len(column) == 1 or least == most
-    if alike:
-        column = column[:1]
-    finite = least >= -_LARGEST and most <= _LARGEST  # NaN is neither
-    if name in ANGLES and not (least >= -LARGE_ANGLE and most <= LARGE_ANGLE):
-        with np.errstate(invalid="ignore"):
-            turned = np.fmod(column, 360.0)
-        column = np.where(np.abs(column) > LARGE_ANGLE, turned, column)
-        kind = alike_kind(name, float(column[0])) if alike else "array"
-        return _Column(column, kind, finite)
-    if name == "M":
-        usable = alike and least in (4, 6)
-        kind = alike_kind(name, least) if usable else "6" if alike else "mixed"
-        return _Column(column, kind, usable)
-    if name in INERTIAS:
-        if least > 0 and most == np.inf:
-            return _Column(column, "inf" if alike else "array with infinities", alike)
-        if not (least > 0 and finite):
-            return _Column(column, "scalar" if alike else "array with infinities", False)
-    elif name == "MU" and least <= PIVOT <= most and bool((column == PIVOT).any()):
-        return _Column(column, "pivot" if alike else "mixed", finite)
-    return _Column(column, alike_kind(name, least) if alike else "array", finite)
 
 
 def _ordinary(name: str) -> Limits:
@@ -259,11 +238,3 @@ def refusals(columns: Mapping[str, Floats]) -> Iterator[Refusal]:
         yield Refusal(spin, f"is not 0, but {inertia} is infinite: a barrier is at rest", turns)
         infinite.append(no_shift | no_turn)
     yield Refusal("MB", "or IB is infinite, and so is MA or IA", infinite[0] & infinite[1])
-
-
-def _refused(columns: Mapping[str, Floats], length: int) -> NDArray[np.bool_]:
-    """Which scenes cannot be used."""
-    refused = np.zeros(length, np.bool_)
-    for refusal in refusals(columns):
-        refused |= refusal.where
-    return refused

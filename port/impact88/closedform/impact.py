@@ -81,12 +81,11 @@ class Impact:
         self.DA, self.DB = self._unless_point(scene["DA"]), self._unless_point(scene["DB"])
         self.IA, self.IB = (self._unless_point(scene[x], 1.0) for x in ("IA", "IB"))
 
-    def _unless_point(self, value: Expression, instead: float = 0.0) -> Expression:
+    def _unless_point(self, value: Expression, instead: Expression | float = 0.0) -> Expression:
         if self.point is False:
             return value
-        if self.point is True:
-            return self.table.constant(instead)
-        return self.table.choose(self.point, self.table.constant(instead), value)
+        other = self.table.wrap(instead)
+        return other if self.point is True else self.table.choose(self.point, other, value)
 
     def _by_kind(
         self, friction: Callable[[], Expression], pivot: Callable[[], Expression]
@@ -104,28 +103,21 @@ class Impact:
         s, c = self.table.sine_and_cosine(self.GA)
         return c, s
 
-    def _arms(self, d: str, phi: str, theta: str) -> Pair:
+    def _arms(self, body: str, listing: bool = False) -> Pair:
         """(an, at): what a spin adds to the normal and tangential contact velocity of A, or the
-        same of B with the sign that the *relative* velocity a - b takes."""
-        distance = self.DA if d == "DA" else self.DB
+        same of B with the sign that the *relative* velocity a - b takes; or line 330's, D3 and D4
+        of A, D1 and D2 of B."""
+        distance = self.DA if body == "A" else self.DB
         if distance.is_zero:
             return distance, distance
-        s, c = self.table.sine_and_cosine(self.scene[theta] + self.scene[phi] - self.GA)
-        return distance * s, -(distance * c)
+        angle = self.scene["T" + body] + self.scene["P" + body]
+        s, c = self.table.sine_and_cosine(angle if listing else angle - self.GA)
+        return distance * s, distance * c if listing else -(distance * c)
 
-    _a = _pair(lambda self: self._arms("DA", "PA", "TA"))
-    _b = _pair(lambda self: self._arms("DB", "PB", "TB"))
-
-    def _listing_arms(self, d: str, phi: str, theta: str) -> Pair:
-        """Line 330: D3 and D4 of A, D1 and D2 of B."""
-        distance = self.DA if d == "DA" else self.DB
-        if distance.is_zero:
-            return distance, distance
-        s, c = self.table.sine_and_cosine(self.scene[theta] + self.scene[phi])
-        return distance * s, distance * c
-
-    _D3_D4 = _pair(lambda self: self._listing_arms("DA", "PA", "TA"))
-    _D1_D2 = _pair(lambda self: self._listing_arms("DB", "PB", "TB"))
+    _a = _pair(lambda self: self._arms("A"))
+    _b = _pair(lambda self: self._arms("B"))
+    _D3_D4 = _pair(lambda self: self._arms("A", listing=True))
+    _D1_D2 = _pair(lambda self: self._arms("B", listing=True))
 
     # -- inertia
 
@@ -145,11 +137,8 @@ class Impact:
 
     _approach = _pair(lambda self: (self.UX - self.VX, self.UY - self.VY))
 
-    @cached_property
-    def _closing(self) -> Pair:
-        """The relative velocity of the mass centers along n and t."""
-        (c, s), (dx, dy) = self._n, self._approach
-        return c * dx + s * dy, c * dy - s * dx
+    _closing = _pair(lambda self: self._turned(*self._approach))
+    """The relative velocity of the mass centers along n and t."""
 
     def _with_spins(self, i: int) -> Expression:
         return self._closing[i] + self._a[i] * self.WA + self._b[i] * self.WB
@@ -194,11 +183,7 @@ class Impact:
     """A's and B's arm in the direction (1, mu)."""
     _em_kappa = _formula(lambda self: self.EM * self.kappa[0])
 
-    @cached_property
-    def _J_sigma_mu(self) -> Expression:
-        a, b = self._along_impulse
-        return self.J * (a + b)
-
+    _J_sigma_mu = _formula(lambda self: self.J * (self._along_impulse[0] + self._along_impulse[1]))
     _crossed_mu = _formula(lambda self: self._crossed_spins(*self._along_impulse))
 
     @cached_property
@@ -223,20 +208,11 @@ class Impact:
         (d3, d4), (d1, d2) = self._D3_D4, self._D1_D2
         return (d3, -d4), (d1, -d2)
 
-    @cached_property
-    def _xy_sigma(self) -> Pair:
-        (ax, ay), (bx, by) = self._xy_arms
-        return ax + bx, ay + by
-
-    @cached_property
-    def _xy_kappa(self) -> Pair:
-        (ax, ay), (bx, by) = self._xy_arms
-        return ax * self._ia - bx * self._ib, ay * self._ia - by * self._ib
-
-    @cached_property
-    def _xy_Ired_kappa(self) -> Pair:
-        kx, ky = self._xy_kappa
-        return self.Ired * kx, self.Ired * ky
+    _xy_sigma = _pair(lambda self: tuple(a + b for a, b in zip(*self._xy_arms, strict=True)))
+    _xy_kappa = _pair(
+        lambda self: tuple(a * self._ia - b * self._ib for a, b in zip(*self._xy_arms, strict=True))
+    )
+    _xy_Ired_kappa = _pair(lambda self: tuple(self.Ired * k for k in self._xy_kappa))
 
     @cached_property
     def _rebound(self) -> Pair:
@@ -311,11 +287,13 @@ class Impact:
         (x, y), (dx, dy), masses = self._pivot_rest, self._approach, self._pivot_parts[0]
         return x - masses * dx, y - masses * dy
 
-    @cached_property
-    def _pivot_ratio(self) -> Pair:
-        """The same along n and t."""
-        (c, s), (x, y) = self._n, self._pivot_numerators
+    def _turned(self, x: Expression, y: Expression) -> Pair:
+        """From along x and y to along n and t."""
+        c, s = self._n
         return c * x + s * y, c * y - s * x
+
+    _pivot_ratio = _pair(lambda self: self._turned(*self._pivot_numerators))
+    """The same along n and t."""
 
     @cached_property
     def _pivot_xy(self) -> Pair:
@@ -323,11 +301,8 @@ class Impact:
         (x, y), divisor = self._pivot_numerators, self.R * self._pivot_determinant
         return x / divisor, y / divisor
 
-    @cached_property
-    def _pivot(self) -> Pair:
-        """The same along n and t."""
-        (c, s), (x, y) = self._n, self._pivot_xy
-        return c * x + s * y, c * y - s * x
+    _pivot = _pair(lambda self: self._turned(*self._pivot_xy))
+    """The same along n and t."""
 
     _shares = _pair(lambda self: (self._ma * self._R_inverse, self._mb * self._R_inverse))
     """Of A and B in a change of the relative velocity of the mass centers."""
@@ -450,11 +425,7 @@ class Impact:
     _spin_b = _formula(lambda self: self._final_mean - self._ib * self.H)
 
     def _pass_through(self, name: str, spin: Expression) -> Expression:
-        if self.point is False:
-            return spin
-        if self.point is True:
-            return self.scene[name]
-        return self.table.choose(self.point, self.scene[name], spin)
+        return self._unless_point(spin, self.scene[name])
 
     # -- contact velocities, lines 340, 700 and 710
 

@@ -102,23 +102,17 @@ def by_machine(
     if not done or not math.isfinite(sum(found.tolist())):
         return None
     by_name: dict[str, Any] = dict(zip(names, found, strict=True))
-    if len(names) < len(wanted):
-        by_name["STATUS"] = status
-        return {name: by_name[name] for name in wanted}
-    return by_name
-
-
-class LeftToArrays(ArithmeticError):
-    """Values that are not plainly usable."""
+    if len(names) == len(wanted):
+        return by_name
+    return {name: status if name == "STATUS" else by_name[name] for name in wanted}
 
 
 def _plain(value: Any) -> float:
-    """A plain number, or an array without dimensions of one. Raises `LeftToArrays`."""
-    if type(value) in PLAIN:
-        return float(value)
-    if type(value) is np.ndarray and value.ndim == 0 and value.dtype == np.float64:
-        return float(value)
-    raise LeftToArrays
+    """A plain number, or an array without dimensions of one. Raises ArithmeticError."""
+    array = type(value) is np.ndarray and value.ndim == 0 and value.dtype == np.float64
+    if not (array or type(value) in PLAIN):
+        raise ArithmeticError
+    return float(value)
 
 
 @lru_cache(maxsize=256)
