@@ -127,7 +127,7 @@ def _jumps() -> tuple[Costs, Costs]:
     for place, one in enumerate(STATES):
         if place and STATES[place - 1].name == "=" and one.kind == "number":
             others = np.arange(size) != place - 1
-            jumps[:, others, place] += np.array(GAP_COSTS["before a number without label"])[:, None]
+            jumps[:, others, place] += np.array(GAP_COSTS["unlabelled"])[:, None]
         if one.line == ANGLE_ROW and one.kind == "number" and one.name != ANGLES[0]:
             jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
     return np.minimum(jumps, _MOST).astype(np.int16), ways[:, closing].min(axis=1).astype(np.int16)

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..fields import ANGLES, FIELDS
-from .glyphs import COSTS, UNSEEN, Gap, Page, label_cost
+from .glyphs import COSTS, Gap, Page, label_cost
 
 _REACH = 35
 """From this cost a letter on, a label is none that a reader made of its own: one letter of two read
@@ -177,7 +177,7 @@ def _state(kind: str, printed: str, read: str, others: set[str]) -> tuple[LabelS
         state = LabelState.MISSING
     elif kind == "prompt":
         doubt = False
-        if other < own - UNSEEN:
+        if other < own - COSTS["unseen"]:
             state = LabelState.CONTRADICTORY
     elif len(read + printed) > len("EL") and (read in others or not _only_lost(printed, read)):
         word = read.isascii() and read.isalpha()

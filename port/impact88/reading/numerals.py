@@ -16,7 +16,7 @@ from itertools import product
 from typing import NamedTuple
 
 from ..applesoft.decimaltext import lay_out
-from .glyphs import ILLEGIBLE, NUMERIC, Gap, Region, letters, printed_for
+from .glyphs import COSTS, GAP_COSTS, ILLEGIBLE, NUMERIC, Gap, Region, letters, printed_for
 
 
 class Doubt(StrEnum):
@@ -61,10 +61,9 @@ Glyphs = tuple[tuple[str, Gap], ...]
 _PRINTABLE = re.compile(r"-?(?:0|[1-9][0-9]*|(?=[.]))(?:[.][0-9]*[1-9])?(?:E[+-][0-9]{2})?")
 _NUMBER = re.compile(r"[+-]?(?=[.]?[0-9])[0-9]*(?:[.][0-9]*)?(?:E[+-]?[0-9]{1,2})?")
 
-_CONTRADICTION, _FOREIGN, _MARK, _SPECK, _SLIGHT = 3.0, 1.0, 0.7, 0.4, 0.25
-"""What a glyph costs that is another figure; that no figure was read as; that marks the illegible,
-or stands within a number; a speck beside one; a blank, a zero, a sign nobody prints but people
-write. Only their order matters: each is more than one of the next and less than the one before."""
+_CONTRADICTION, _FOREIGN, _MARK, _SPECK, _SLIGHT = (
+    COSTS[name] / 100 for name in ("contradiction", "foreign", "mark", "speck", "slight")
+)
 LONGEST = 64
 """Glyphs of a number's place that are looked at, or of the row of angles; what follows is left
 over."""
@@ -335,12 +334,7 @@ def _may_be(region: Glyphs, index: int, wild: bool) -> list[tuple[str, float]]:
 _CUTS = 400
 _SURPLUS = 12
 """Glyphs that a number's part of the row may hold beyond its own."""
-_NOT_THERE = 4.0
-"""What it costs that nothing is read of a number."""
-_JOINED, _JOINED_SIGN = 2.0, 0.7
-"""What it costs to cut where no gap is, and before a sign."""
-_UNCUT = {Gap.NONE: 0.0, Gap.BLANK: 0.8, Gap.WIDE: 1.6, Gap.LINE: 1.2}
-"""What a gap inside a number costs more."""
+_NOT_THERE = COSTS["not there"] / 100
 
 
 def cut_in_five(region: Region) -> list[tuple[tuple[str, ...], float]]:
@@ -349,7 +343,7 @@ def cut_in_five(region: Region) -> list[tuple[tuple[str, ...], float]]:
     @cache
     def piece(i: int, j: int) -> list[tuple[str, float]]:
         part = region[i:j]
-        uncut = sum(_UNCUT[glyph.gap] for glyph in part[1:])
+        uncut = sum(GAP_COSTS["uncut"][glyph.gap] for glyph in part[1:]) / 100
         if uncut > _NOT_THERE or not 0 < len(part) <= 2 * _SURPLUS:
             return []
         return [(text, cost + uncut) for text, cost in candidates(part, 14) if cost < _NOT_THERE]
@@ -393,7 +387,7 @@ def _cut(
         for i, so_far in ways.items():
             price = 0.0
             if 0 < i < length and not region[i].gap:
-                price = _JOINED_SIGN if region[i].char in "-~" else _JOINED
+                price = COSTS["joined sign" if region[i].char in "-~" else "joined"] / 100
             for j in (length,) if number == count - 1 else (0, *places, length):
                 for text, cost in piece(number, i, j) if i <= j else ():
                     paid = cost + (price if i < j else 0.0)

@@ -106,8 +106,7 @@ class Printout:
     the final WA, WB line is, read or not: then M = N; ``left_over``: text that belongs nowhere;
     ``remarks``: what could not be read, and where; ``labels``: how each number is named; ``notes``:
     what was normalised or passed over; ``unread``: why the text was not read to its end;
-    ``misread_letters``: how many letters of labels and asterisks were read as others; ``taken``:
-    the lines that are its own.
+    ``misread_letters``: how many letters of labels and asterisks were read as others.
     """
 
     line: int
@@ -128,7 +127,6 @@ class Printout:
     notes: list[str] = field(default_factory=list)
     unread: str = ""
     misread_letters: int = 0
-    taken: set[int] = field(default_factory=set, repr=False)
 
     @property
     def mislabelled(self) -> list[LabelCheck]:
@@ -200,7 +198,8 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     text = pasted.laid_out(text, where)
     page = Page(pasted.unwrapped(text))
     budget = Budget()
-    shown = [printout for part in _parts(page, budget) for printout in part]
+    readers = [*_readers(page, budget)]
+    shown = [reader.shown for reader in readers]
     reason = ""
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
@@ -209,7 +208,9 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
         expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
         raise UserError(f"no printout of the program in it; {reason or expected}", where)
     shown[-1].unread = reason
-    _keep_other_lines(page, shown)
+    _keep_left_over(page, readers)
+    for reader in readers:
+        reader.check_labels()
     shown[0].notes += _left_out(text, page.text)
     return shown
 
@@ -224,41 +225,41 @@ _LABEL_WORDS = frozenset(
 )
 
 
-def _keep_other_lines(page: Page, printouts: Sequence[Printout]) -> None:
-    """Every line that is none of the program's, whole: with the printout above it, or with the
-    first; and what stands on a line of the page before or after all that was taken for the page's.
-    Where a line holds a number, or one of the program's labels, it may bear on the page."""
-    taken = {line for one in printouts for line in one.taken}
-    stop = -1
-    for number, text in enumerate(page.text.split("\n"), 1):
-        start, stop = stop + 1, stop + 1 + len(text)
-        if number in taken:
-            there = [one for one in printouts if one.start < stop and start < one.stop]
-            if there:
-                _keep_text(page, there[0], start, there[0].start)
-                _keep_text(page, there[-1], there[-1].stop, stop)
-            continue
-        above = [one for one in printouts if one.line <= number]
-        bears = any(map(str.isdigit, text)) or any(
-            part in _LABEL_WORDS or (len(part) > 2 and part.upper() in _LABEL_WORDS)
-            for part in re.split(r"[^A-Za-z]+", text)
-        )
-        _keep_text(page, (above or printouts)[-1 if above else 0], start, stop, bears, True)
+def _keep_left_over(page: Page, readers: Sequence["_Reader"]) -> None:
+    """What no printout has taken of its lines, and every other line, whole: with the printout above
+    it, or with the first. A line is of the page where a number stands on it, half of its glyphs are
+    letters as they are printed, or it is a row of asterisks; what stands beside a number
+    may bear on the page, and so may another line that holds a number or one of the labels."""
+    roles = {index: role for reader in readers for index, role in reader.roles().items()}
+    printouts = [reader.shown for reader in readers]
+    numbers = [page.place(glyph.offset)[0] for glyph in page.glyphs]
+    for number, group in groupby(range(len(numbers)), numbers.__getitem__):
+        line = [*group]
+        kinds = [roles.get(index) for index in line]
+        numbered = "number" in kinds
+        stars = {"star"} <= set(kinds) <= {"star", None} and len(kinds) <= len("*****") + 2
+        whole = not (numbered or stars or 2 * kinds.count("exact") >= len(kinds))
+        loose = line if whole else [index for index in line if index not in roles]
+        for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
+            run = [index for _, index in pairs]
+            if not _SLOT_COMMAND.fullmatch("".join(page.glyphs[index].char for index in run)):
+                span = page.span(run[0], run[-1] + 1)
+                text = " ".join(page.text[slice(*span)].split())
+                piece = Piece(
+                    text, *page.place(span[0]), *span, _bears(text) if whole else numbered, whole
+                )
+                above = [one for one in printouts if one.line <= number] or printouts[:1]
+                above[-1].left_over.append(piece)
     for one in printouts:
-        one.left_over.sort(key=lambda piece: piece.start)
         one.notes += _normalised(page.text[one.start : one.stop])
 
 
-def _keep_text(
-    page: Page, shown: Printout, start: int, stop: int, beside: bool = True, whole: bool = False
-) -> None:
-    """A stretch of text as left over, unless nothing shows there."""
-    text = page.text[start:stop] if start < stop else ""
-    printed = "".join(map(plain_glyphs, "".join(text.split())))
-    if printed and not _SLOT_COMMAND.fullmatch(printed):
-        begin = start + len(text) - len(text.lstrip())
-        place = page.place(begin)
-        shown.left_over.append(Piece(" ".join(text.split()), *place, begin, stop, beside, whole))
+def _bears(text: str) -> bool:
+    """Whether a line that is none of the program's holds a number or one of its labels."""
+    return any(map(str.isdigit, text)) or any(
+        part in _LABEL_WORDS or (len(part) > 2 and part.upper() in _LABEL_WORDS)
+        for part in re.split(r"[^A-Za-z]+", text)
+    )
 
 
 def _normalised(text: str) -> list[str]:
@@ -295,8 +296,8 @@ _ENDING = re.compile(r"\??(" + "|".join(map("'?".join, _ENDINGS)) + ")")
 _IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
 
 
-def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
-    """The printouts of each stretch of text up to where a run ended early."""
+def _readers(page: Page, budget: Budget) -> Iterator["_Reader"]:
+    """The printouts of each stretch of text up to where a run ended early, read."""
     text = letters(page.glyphs)
     start = 0
     for match in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
@@ -304,24 +305,26 @@ def _parts(page: Page, budget: Budget) -> Iterator[list[Printout]]:
             return
         stop = match.start() if match else len(text)
         part = page.glyphs[start:stop]
-        found = _SLOT_COMMAND.finditer(text, start, stop)
-        commands = {at - start for command in found for at in range(*command.span())}
+        commands = {
+            at - start
+            for command in _SLOT_COMMAND.finditer(text, start, stop)
+            for at in range(*command.span())
+        }
         aligned = list(align(part, budget, commands))
         if notes := _notes(part, aligned):
             aligned = list(align(part, budget, notes | commands))
         if budget.stopped is not None:
             budget.stopped += start
-        shown = [printout for one in aligned if (printout := _Reader(page, start, one).read())]
-        if match and shown:
-            last, start = shown[-1], match.end()
-            last.ending = _ENDINGS[match[1].replace("'", "")]
-            if last.ending != ZERO_DETERMINANT and (line := _IN_LINE.match(text, start)):
-                last.ending += f" IN {line[1].translate(_DIGITS)}"
+        found = [reader for one in aligned if (reader := _Reader(page, start, one)).read()]
+        if match and found:
+            last, (begin, start) = found[-1], match.span()
+            ending = _ENDINGS[match[1].replace("'", "")]
+            if ending != ZERO_DETERMINANT and (line := _IN_LINE.match(text, start)):
+                ending += f" IN {line[1].translate(_DIGITS)}"
                 start = line.end()
-            begin, last.stop = page.span(match.start(), start)
-            last.taken |= {page.place(begin)[0], page.place(last.stop - 1)[0]}
-        if shown or not match:
-            yield shown
+            last.shown.ending, last.shown.stop = ending, page.span(begin, start)[1]
+            last.ending = range(begin, start)
+        yield from found
 
 
 def _notes(glyphs: Region, found: Sequence[Aligned]) -> set[int]:
@@ -356,6 +359,7 @@ class _Reader:
         self._page, self._glyphs = page, page.glyphs
         self._states = dict(enumerate(aligned.states, base + aligned.start))
         self._slots = {name: (base + i, base + j) for name, (i, j) in aligned.slots.items()}
+        self.ending = range(0)
         self._words: set[int] = set()
         # a word that stands apart from the number before it, and is joined to the next by its
         # equals sign, is no part of either
@@ -366,8 +370,13 @@ class _Reader:
                     self._slots[name] = (start, first)
                 elif first <= start <= sign < stop - 1:
                     self._slots[name] = (sign + 1, stop)
+        self._exact = {
+            index: STATES[state].line
+            for index, state in self._states.items()
+            if letter_of(state) == self._glyphs[index].char
+        }
         start, stop = page.span(base + aligned.start, base + aligned.stop)
-        self._shown = Printout(*page.place(start), start, stop, page)
+        self.shown = Printout(*page.place(start), start, stop, page)
 
     def _letter(self, index: int) -> str:
         """The letter of a label that a glyph is taken for, "" where it is taken for none."""
@@ -377,16 +386,16 @@ class _Reader:
         """The line of the program's page that a glyph belongs to."""
         return STATES[self._states.get(index, 0)].line
 
-    def read(self) -> Printout | None:
-        """The printout; None when there is nothing of one."""
-        shown = self._shown
+    def read(self) -> bool:
+        """Read the printout; whether there is anything of one."""
+        shown = self.shown
         self._crop()
         for name, (start, stop) in self._slots.items():
             if name not in (REPLY_A, REPLY_B):
                 self._read_number(name, start, stop)
         if not self._worth_telling():
-            return None
-        shown.has_final_spins = self._letters_read((SPINS,)) >= 2
+            return False
+        shown.has_final_spins = [*self._exact.values()].count(SPINS) >= 2
         for name in () if shown.has_final_spins else FINAL_SPINS:  # a footer, a page number
             shown.fields.pop(name, None)
             self._slots.pop(name, None)
@@ -395,7 +404,11 @@ class _Reader:
                 self._read_reply(REPLIES[side], self._slots[name][0])
         self._read_angles()
         shown.ended = any(self._line(index) == STARS[1] for index in self._states)
-        self._keep_left_over()
+        return True
+
+    def check_labels(self) -> None:
+        """How the numbers are named, and what of the letters was misread."""
+        shown = self.shown
         read = {name: self._slots[name] for name in shown.fields if name in self._slots}
         marks = shown.marks + self._misread("*") if len(shown.fields) >= _PART else READERS
         found = [
@@ -405,7 +418,6 @@ class _Reader:
         shown.labels = label_checks(self._page, found, read, marks)
         wrong = {one.name for one in shown.mislabelled}
         shown.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
-        return shown
 
     def _crop(self) -> None:
         """Where most lines that begin with a label lack its first letter, three at least, the
@@ -421,14 +433,6 @@ class _Reader:
                     self._remark(name, "begins where the margin is cut off", start)
                     del self._slots[name]
 
-    def _letters_read(self, lines: Sequence[int] = ()) -> int:
-        """How many letters of labels were read as they are printed, in some lines or all."""
-        return sum(
-            self._glyphs[index].char == self._letter(index)
-            for index in self._states
-            if not lines or self._line(index) in lines
-        )
-
     def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
         """How many of some letters of labels, but of wrong ones, and asterisks were read as other
         letters or figures."""
@@ -442,15 +446,14 @@ class _Reader:
 
     def _worth_telling(self) -> bool:
         """Whether a label and its number, or a prompt, was read."""
-        if self._letters_read((0, 1)) >= _PROMPT_LETTERS:
+        if sum(line < PROMPTS for line in self._exact.values()) >= _PROMPT_LETTERS:
             return True
-        shown = self._shown.fields
+        shown = self.shown.fields
         numbers = {name for name, one in shown.items() if any(map(str.isdigit, one.text))}
         if not numbers.issuperset(ANGLES[:-1]):
             numbers -= set(ANGLES)
         labelled = sum(map(self._labelled, numbers))
-        read = self._letters_read()
-        return (labelled >= 1 and read >= 4) or (labelled >= 2 and read >= 3)
+        return labelled >= 1 and labelled + len(self._exact) >= 5
 
     def _labelled(self, name: str) -> bool:
         """Whether a letter right before a number was read as its label's."""
@@ -463,7 +466,7 @@ class _Reader:
 
     def _remark(self, name: str, message: str, index: int) -> None:
         line, column = self._page.place(self._glyphs[index].offset)
-        self._shown.remarks.append(f"line {line}, column {column}: {name}: {message}")
+        self.shown.remarks.append(f"line {line}, column {column}: {name}: {message}")
 
     def _read_number(self, name: str, start: int, stop: int) -> None:
         signed = self._letter(start - 1) == "=" == self._glyphs[start - 1].char
@@ -473,10 +476,10 @@ class _Reader:
             shown = _quoted(self._page.shown(start, stop))
             self._remark(name, f"{shown}: expected a number", start)
         else:
-            self._shown.fields[name] = reading
+            self.shown.fields[name] = reading
 
     def _read_angles(self) -> None:
-        shown = self._shown
+        shown = self.shown
         places = [self._slots[name] for name in ANGLES if name in self._slots]
         clean = all(name in shown.fields and shown.fields[name].clean for name in ANGLES)
         if not places or (clean and all(self._glyphs[start].gap for start, _ in places[1:])):
@@ -494,7 +497,7 @@ class _Reader:
         while self._states.get(stop) and (not self._letter(stop) or self._line(stop) == line):
             stop += 1
         parts = _reply_parts(self._glyphs[start:stop])
-        before = _before_reply(parts[0], self._shown.text(names[0]))
+        before = _before_reply(parts[0], self.shown.text(names[0]))
         if before and self._glyphs[start - 1].char != "?":
             what = _quoted(letters(parts[0][:before]))
             self._remark("reply", f"{what} before the first number", start)
@@ -507,77 +510,53 @@ class _Reader:
             for name, region in zip(names, parts, strict=True):
                 reading = _reading(self._page, region)
                 if reading is not None and ILLEGIBLE not in reading.text:
-                    self._shown.replies[name] = reading
+                    self.shown.replies[name] = reading
         elif parts != [()]:
             what = _quoted(self._page.shown(start, stop))
             self._remark("reply", f"{what} is not three numbers", start)
 
-    def _keep_left_over(self) -> None:
-        """Runs of glyphs between lines or put into labels, on the lines of the page; and which
-        lines those are (`_keep_other_lines` keeps the others)."""
-        lines: dict[int, list[int]] = {}
-        for index in self._states:
-            lines.setdefault(self._page.place(self._glyphs[index].offset)[0], []).append(index)
-        numbers = {index for span in self._slots.values() for index in range(*span)}
-        for number, line in lines.items():
-            numbered = not numbers.isdisjoint(line)
-            if numbered or self._is_of_the_page(number, line):
-                self._shown.taken.add(number)
-                loose = [at for at in line if at not in self._words | numbers and self._loose(at)]
-                for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
-                    run = [index for _, index in pairs]
-                    span = self._page.span(run[0], run[-1] + 1)
-                    _keep_text(self._page, self._shown, *span, numbered)
-
-    def _loose(self, index: int) -> bool:
-        """Whether a glyph that is part of no number belongs to no label."""
-        state, char = self._states[index], self._glyphs[index].char
-        letter = letter_of(state)
-        if not letter:
-            return STATES[state].line >= PROMPTS or STATES[state].kind != "number"
-        return state == self._states.get(index - 1) or (letter in "%()=" and char.isdigit())
-
-    def _is_of_the_page(self, number: int, line: Sequence[int]) -> bool:
-        """Whether a line on which no number stands is one of the program's: half of it are letters
-        as it prints them, or it is a row of asterisks, however they were read."""
-        exact = sum(self._letter(index) == self._glyphs[index].char for index in line)
-        stars = all(self._line(index) in STARS for index in line)
-        count = len(Page(self._page.text.split("\n")[number - 1]).glyphs)
-        return 2 * exact >= count or (stars and count <= len("*****") + 2)
+    def roles(self) -> dict[int, str]:
+        """What each glyph is: of a number, an exact letter of a label, a damaged one, of a row of
+        asterisks; not those between lines or put into labels."""
+        roles = dict.fromkeys(self._exact, "exact")
+        for index, state in self._states.items():
+            letter, figure = letter_of(state), self._glyphs[index].char.isdigit()
+            again = state == self._states.get(index - 1) or (letter in "%()=" and figure)
+            if letter == "*":
+                roles[index] = "star"
+            elif letter and again:
+                roles.pop(index, None)
+            elif letter:
+                roles.setdefault(index, "letter")
+        roles = dict.fromkeys(self._words, "letter") | roles
+        for span in self._slots.values():
+            roles |= dict.fromkeys(range(*span), "number")
+        return roles | dict.fromkeys(self.ending, "exact")
 
 
 def _reading(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
     """A region of a page as a number, None when nothing of one is there."""
-    if not region:
+    text = numerals.clean(region)
+    if region and text is None:
+        ways = numerals.candidates(region, 1, sign_free)
+        # a glyph that looks like no figure within a number is illegible
+        strange = [
+            not (glyph.char in NUMERIC or printed_for(glyph.char) or glyph.gap) for glyph in region
+        ]
+        figures = [at for at, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
+        if ways and not any(strange[figures[0] + 1 : figures[-1]]):
+            text = ways[0][0]
+        else:
+            marked = (one.char if one.char in NUMERIC else ILLEGIBLE for one in region)
+            text = "".join(marked)[: numerals.LONGEST]
+            if not any(map(str.isdigit, text)) and text not in ("?", "??", "???"):
+                return None
+    if text is None:
         return None
     begin, end = region[0].offset, region[-1].offset + 1
-    text = numerals.clean(region)
-    if text is None:
-        ways = numerals.candidates(region, 1, sign_free)
-        text = _illegibly(region) if not ways or _foreign_inside(region) else ways[0][0]
-    if text is None:
-        return None
     cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
     cut = cut or page.place(end - 1)[1] == page.width
     return Reading(text, *page.place(begin), begin, end, region, cut, sign_free)
-
-
-def _foreign_inside(region: Region) -> bool:
-    """Whether a glyph that looks like no figure stands within a number."""
-    figures = [place for place, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
-    return any(
-        glyph.char not in NUMERIC and not printed_for(glyph.char) and not glyph.gap
-        for glyph in region[figures[0] + 1 : figures[-1] + 1]
-    )
-
-
-def _illegibly(region: Region) -> str | None:
-    """A region in which nothing reads as a number, its foreign glyphs as illegible; None when
-    there is nothing left."""
-    text = "".join(
-        glyph.char if glyph.char in NUMERIC else ILLEGIBLE for glyph in region[: numerals.LONGEST]
-    )
-    return text if any(map(str.isdigit, text)) or text in ("?", "??", "???") else None
 
 
 def _reply_parts(region: Region) -> list[Region]:
