@@ -102,9 +102,10 @@ def letter_of(state: int) -> str:
 
 
 @lru_cache(maxsize=1)
-def _jumps() -> tuple[Costs, Costs]:
+def _jumps() -> tuple[Costs, Costs, Costs]:
     """What it costs that a glyph belongs to another state than the one before it: ``(gap, from,
-    to)``; and that the text ends after a state."""
+    to)``; that one more glyph of a number follows a gap, ``(gap, state)``; that the text ends after
+    a state."""
     missed = np.cumsum([_missing(one) for one in STATES])
     size = len(STATES)
     between = [place for place, one in enumerate(STATES) if one.kind == "between"]
@@ -124,13 +125,18 @@ def _jumps() -> tuple[Costs, Costs]:
     into = np.roll(ways, 1, axis=1)
     into[:, [0, *between]] = ways[:, [0, *between]]
     jumps = np.array([into] * len(Gap))
+    staying = np.zeros((len(Gap), size), np.int16)
     for place, one in enumerate(STATES):
         if place and STATES[place - 1].name == "=" and one.kind == "number":
             others = np.arange(size) != place - 1
             jumps[:, others, place] += np.array(GAP_COSTS["unlabelled"])[:, None]
-        if one.line == ANGLE_ROW and one.kind == "number" and one.name != ANGLES[0]:
-            jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
-    return np.minimum(jumps, _MOST).astype(np.int16), ways[:, closing].min(axis=1).astype(np.int16)
+        if one.kind == "number":
+            reply, angle = one.line < PROMPTS, one.line == ANGLE_ROW
+            staying[:, place] = GAP_COSTS["reply" if reply else "angle" if angle else "number"]
+            if angle and one.name != ANGLES[0]:
+                jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
+    ending = ways[:, closing].min(axis=1)
+    return np.minimum(jumps, _MOST).astype(np.int16), staying, ending.astype(np.int16)
 
 
 def _then(first: NDArray[np.int_], second: NDArray[np.int_]) -> NDArray[np.int_]:
@@ -188,42 +194,10 @@ def _in_number(char: str, reply: bool) -> int:
     return COSTS["letter in number" if letter else "look-alike in number"]
 
 
-@lru_cache(maxsize=1)
-def _gaps() -> Costs:
-    """What the gap before one more glyph of a number costs, by gap and state."""
-    costs = np.zeros((len(Gap), len(STATES)), np.int16)
-    for place, one in enumerate(STATES):
-        if one.kind == "number":
-            reply, angle = one.line < PROMPTS, one.line == ANGLE_ROW
-            kind = "reply" if reply else "angle" if angle else "number"
-            costs[:, place] = GAP_COSTS[kind]
-    return costs
-
-
 # --- texts ---------------------------------------------------------------------------------------
 
 WINDOW = 9000
 """Glyphs aligned at a time: a dozen printouts."""
-
-
-@dataclass
-class Budget:
-    """How much text is read: ``left`` glyphs more, as many again for every page found;
-    ``stopped``: the glyph at which it was spent, none where it was not."""
-
-    left: int = 25_000
-    stopped: int | None = None
-
-    @property
-    def spent(self) -> bool:
-        """Whether reading stopped."""
-        return self.stopped is not None
-
-    def spend(self, count: int, found: bool) -> None:
-        """Read so many glyphs more."""
-        self.left = Budget.left if found else self.left - count
-
-
 _WHOLE = 20
 """Numbers of a page for which the budget is filled again; labels without end are aligned as 14."""
 _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
@@ -235,51 +209,48 @@ _FEW_LABELS = 4
 
 
 @dataclass
-class Aligned:
-    """One printout's part of the text: ``slots``, field -> glyphs ``(start, stop)`` in its place;
-    ``states``, the state of every glyph from ``start`` on."""
+class Budget:
+    """How much text is read: ``left`` glyphs more, as many again for every page found;
+    ``stopped``: the glyph at which it was spent, none where it was not."""
 
-    start: int
-    stop: int
-    states: list[int]
-    slots: dict[str, tuple[int, int]]
+    left: int = 25_000
+    stopped: int | None = None
 
 
 def align(
-    glyphs: Sequence[Glyph], budget: Budget, notes: Collection[int] = ()
-) -> Iterator[Aligned]:
-    """The printouts in a row of glyphs, in order, each with what its glyphs are taken for; as many
-    as the budget allows. ``notes``: glyphs known to be none of the program's."""
-    start = 0
-    while start < len(glyphs):
-        window = glyphs[start : start + WINDOW]
-        last = start + len(window) >= len(glyphs)
-        if len(_LABELS.findall(letters(window))) < _FEW_LABELS:
+    glyphs: Sequence[Glyph], start: int, stop: int, budget: Budget, notes: Collection[int]
+) -> Iterator[dict[int, int]]:
+    """The printouts in the glyphs from one place to another, in order: the state of each of its
+    glyphs, by place; as many as the budget allows. ``notes``: glyphs known to be none of the
+    program's."""
+    while start < stop:
+        window = glyphs[start : min(start + WINDOW, stop)]
+        last = start + len(window) >= stop
+        text = letters(window)
+        if len(_LABELS.findall(text)) < _FEW_LABELS:
             start += len(window)
             continue
         if budget.left <= 0:
             budget.stopped = start
             return
         chars = ["" if at in notes else glyph.char for at, glyph in enumerate(window, start)]
-        for exponent in _EXPONENT.finditer(letters(window)):
+        for exponent in _EXPONENT.finditer(text):
             chars[exponent.start()] = "0"  # as good as a figure, and no label
-        parts = _parts(_states(chars, [glyph.gap for glyph in window]))
-        taken = parts if last else parts[:-1] or parts[:1]
-        found = [_described(start + at, states) for at, states in taken]
-        budget.spend(len(window), any(len(one.slots) >= _WHOLE for one in found))
+        parts = _parts(start, _states(chars, [glyph.gap for glyph in window]))
+        found = parts if last else parts[:-1] or parts[:1]
+        numbers = [sum(STATES[one].kind == "number" for one in {*part.values()}) for part in found]
+        budget.left = (
+            Budget.left if max(numbers, default=0) >= _WHOLE else budget.left - len(window)
+        )
         yield from found
         if last:
             return
-        if len(parts) > 1:
-            start += parts[-1][0]
-        else:
-            start += max(parts[0][0] + len(parts[0][1]), 1) if parts else len(window)
+        start = min(parts[-1]) if len(parts) > 1 else max(parts[0]) + 1 if parts else start + WINDOW
 
 
 def _states(chars: Sequence[str], gaps: Sequence[int]) -> list[int]:
     """The state of every glyph on the cheapest way."""
-    jumps, ending = _jumps()
-    staying = _gaps()
+    jumps, staying, ending = _jumps()
     costs = np.empty((len(chars) + 1, len(STATES)), np.int16)
     costs[0] = np.where(np.arange(len(STATES)), _MOST, 0)
     stays = np.empty(costs.shape, bool)
@@ -298,34 +269,19 @@ def _states(chars: Sequence[str], gaps: Sequence[int]) -> list[int]:
     return states[::-1]
 
 
-def _described(start: int, states: list[int]) -> Aligned:
-    """A part of the states as one printout's."""
-    slots: dict[str, tuple[int, int]] = {}
+def _parts(start: int, states: Sequence[int]) -> list[dict[int, int]]:
+    """The stretches of glyphs inside printouts. States only go forward, so one below the one before
+    it begins another printout; a stretch that goes on where the one before left off is of the same,
+    with something between."""
+    parts: list[dict[int, int]] = []
+    last = before = 0
     for index, state in enumerate(states, start):
-        if STATES[state].kind == "number":
-            name = STATES[state].name
-            slots[name] = (slots.get(name, (index, 0))[0], index + 1)
-    return Aligned(start, start + len(states), states, slots)
-
-
-def _parts(states: Sequence[int]) -> list[tuple[int, list[int]]]:
-    """The stretches of glyphs inside printouts: start, states. States only go forward, so one below
-    the one before it begins another printout; a stretch that goes on where the one before left off
-    is of the same, with something between."""
-    parts: list[tuple[int, list[int]]] = []
-    before = 0
-    for index, state in enumerate(states):
-        if state and (not before or state < before):
-            parts.append((index, []))
         if state:
-            parts[-1][1].append(state)
-        before = state
-    merged = parts[:1]
-    for start, own in parts[1:]:
-        first, all_before = merged[-1]
-        aside = start - first - len(all_before)
-        if STATES[all_before[-1]].line < STATES[own[0]].line and aside < _ASIDE:
-            all_before += [*[0] * aside, *own]
-        else:
-            merged.append((start, own))
-    return merged
+            further = STATES[before].line < STATES[state].line and index - last <= _ASIDE
+            if not parts or not (state >= before if index == last + 1 else further):
+                parts.append({})
+            elif index > last + 1:
+                parts[-1].update(dict.fromkeys(range(last + 1, index), 0))
+            parts[-1][index] = state
+            last, before = index, state
+    return parts

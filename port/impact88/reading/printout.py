@@ -8,7 +8,7 @@ row of angles is cut, and what belongs nowhere is kept as left over.
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 from typing import NamedTuple
@@ -26,7 +26,6 @@ from .alignment import (
     SPINS,
     STARS,
     STATES,
-    Aligned,
     Budget,
     align,
     letter_of,
@@ -299,23 +298,14 @@ _IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
 def _readers(page: Page, budget: Budget) -> Iterator["_Reader"]:
     """The printouts of each stretch of text up to where a run ended early, read."""
     text = letters(page.glyphs)
+    commands = {at for one in _SLOT_COMMAND.finditer(text) for at in range(*one.span())}
     start = 0
     for match in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
-        if budget.spent:
-            return
         stop = match.start() if match else len(text)
-        part = page.glyphs[start:stop]
-        commands = {
-            at - start
-            for command in _SLOT_COMMAND.finditer(text, start, stop)
-            for at in range(*command.span())
-        }
-        aligned = list(align(part, budget, commands))
-        if notes := _notes(part, aligned):
-            aligned = list(align(part, budget, notes | commands))
-        if budget.stopped is not None:
-            budget.stopped += start
-        found = [reader for one in aligned if (reader := _Reader(page, start, one)).read()]
+        aligned = [*align(page.glyphs, start, stop, budget, commands)]
+        if notes := _notes(page.glyphs, start, stop, aligned):
+            aligned = [*align(page.glyphs, start, stop, budget, notes | commands)]
+        found = [reader for states in aligned if (reader := _Reader(page, states)).read()]
         if match and found:
             last, (begin, start) = found[-1], match.span()
             ending = _ENDINGS[match[1].replace("'", "")]
@@ -325,40 +315,50 @@ def _readers(page: Page, budget: Budget) -> Iterator["_Reader"]:
             last.shown.ending, last.shown.stop = ending, page.span(begin, start)[1]
             last.ending = range(begin, start)
         yield from found
+        if budget.stopped is not None:
+            return
 
 
-def _notes(glyphs: Region, found: Sequence[Aligned]) -> set[int]:
+def _slots_of(states: Mapping[int, int]) -> dict[str, tuple[int, int]]:
+    """Where each number stands: the field -> glyphs ``(start, stop)``."""
+    slots: dict[str, tuple[int, int]] = {}
+    for index, state in states.items():
+        if STATES[state].kind == "number":
+            name = STATES[state].name
+            slots[name] = (slots.get(name, (index, 0))[0], index + 1)
+    return slots
+
+
+def _notes(glyphs: Region, start: int, stop: int, found: Sequence[Mapping[int, int]]) -> set[int]:
     """The glyphs of lines whose numbers were taken for the page's, but of whose letters more than
     half, five at least and four a number, are none of its labels'."""
     own: set[int] = set()
     numbers: set[int] = set()
-    for one in found:
-        for place, state in enumerate(one.states, one.start):
-            if letter_of(state) == glyphs[place].char:
-                own.add(place)
-        for name, span in one.slots.items():
+    for states in found:
+        own.update(at for at, state in states.items() if letter_of(state) == glyphs[at].char)
+        for name, span in _slots_of(states).items():
             numbers.update(range(*span) if name in FIELDS else ())
-    starts = [0, *(at for at, glyph in enumerate(glyphs) if at and glyph.gap is Gap.LINE)]
+    lines: list[list[int]] = [[]]
+    for index in range(start, stop):
+        if glyphs[index].gap is Gap.LINE:
+            lines.append([])
+        lines[-1].append(index)
     notes: set[int] = set()
-    for start, stop in zip(starts, [*starts[1:], len(glyphs)], strict=True):
-        if not any(start <= place < stop for place in numbers):
-            continue
-        words = {place for place in range(start, stop) if glyphs[place].char.isalpha()}
-        foreign = len(words - own)
-        text = "".join(" "[: glyph.gap] + glyph.char for glyph in glyphs[start:stop])
-        count = len(re.findall(r"[0-9.]+", text))
-        if foreign >= max(_NOTE, 4 * count, len(words) / 2):
-            notes.update(range(start, stop))
+    for line in lines:
+        words = {index for index in line if glyphs[index].char.isalpha()}
+        text = "".join(" "[: glyphs[index].gap] + glyphs[index].char for index in line)
+        least = max(_NOTE, 4 * len(re.findall(r"[0-9.]+", text)), len(words) / 2)
+        if not numbers.isdisjoint(line) and len(words - own) >= least:
+            notes.update(line)
     return notes
 
 
 class _Reader:
     """Reads one printout from what its glyphs are taken for."""
 
-    def __init__(self, page: Page, base: int, aligned: Aligned) -> None:
-        self._page, self._glyphs = page, page.glyphs
-        self._states = dict(enumerate(aligned.states, base + aligned.start))
-        self._slots = {name: (base + i, base + j) for name, (i, j) in aligned.slots.items()}
+    def __init__(self, page: Page, states: dict[int, int]) -> None:
+        self._page, self._glyphs, self._states = page, page.glyphs, states
+        self._slots = _slots_of(states)
         self.ending = range(0)
         self._words: set[int] = set()
         # a word that stands apart from the number before it, and is joined to the next by its
@@ -375,7 +375,7 @@ class _Reader:
             for index, state in self._states.items()
             if letter_of(state) == self._glyphs[index].char
         }
-        start, stop = page.span(base + aligned.start, base + aligned.stop)
+        start, stop = page.span(min(states), max(states) + 1)
         self.shown = Printout(*page.place(start), start, stop, page)
 
     def _letter(self, index: int) -> str:
