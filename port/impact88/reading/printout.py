@@ -198,11 +198,12 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     page = Page(pasted.unwrapped(text))
     budget = Budget()
     readers = [*_readers(page, budget)]
-    shown = [reader.shown for reader in readers]
     reason = ""
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
         reason = f"what follows line {line}, column {column} was not read: there is too much of it"
+        readers = [one for one in readers if len(one.shown.fields) >= _PART]
+    shown = [reader.shown for reader in readers]
     if not shown:
         expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
         raise UserError(f"no printout of the program in it; {reason or expected}", where)
@@ -339,8 +340,11 @@ def _notes(glyphs: Region, start: int, stop: int, found: Sequence[Mapping[int, i
         for name, span in _slots_of(states).items():
             numbers.update(range(*span) if name in FIELDS else ())
     lines: list[list[int]] = [[]]
+    last = max(numbers, default=start)
     for index in range(start, stop):
         if glyphs[index].gap is Gap.LINE:
+            if index > last:
+                break
             lines.append([])
         lines[-1].append(index)
     notes: set[int] = set()

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from .. import files
 from ..errors import UserError, quoted
-from ..fields import scene_name
+from ..fields import FIELDS, scene_name
 from ..judging import beside
 from ..judging.judgement import Judged, Status, Verdict, judge
 from ..judging.lookingpast import looked_past
@@ -107,11 +107,11 @@ def _printed(
 
         pages = CopyPages(copy)
         text, lines, besides = pages.prepared(text)
-    every = read_printouts(text, where)
     begun, read = process_time(), 0
+    every = read_printouts(text, where)
     for number, shown in enumerate(every, 1):
-        read += not shown.fragment
-        if process_time() - begun > BUDGET * max(read, 1):
+        read += len(shown.fields) > len(FIELDS) / 2
+        if number > 1 and process_time() - begun > BUDGET * max(read, 1):
             said = f"this and what follows was not judged: over {BUDGET:g} s a page"
             scene: dict[str, str | None] = dict.fromkeys(SCENE)
             yield Verification(
