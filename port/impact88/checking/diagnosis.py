@@ -283,29 +283,23 @@ def _need(program: Program) -> float:
 
 
 def _sample(judge: Judge, clear: Bools) -> NDArray[np.intp]:
-    """Rows that disagree, then some that agree, of every kind of scene."""
+    """Rows that disagree, then some that agree, by kind of scene: of every kind its first and last
+    at least."""
     g = judge.scene
-    kinds = np.stack(
-        [
-            *(g["MU"] == -10, g["M"] == 4, g["MU"] == 0, (g["WA"] == 0) & (g["WB"] == 0)),
-            *(Program().results(g)["MUP"] == g["MU"], (g["DA"] == 0) & (g["DB"] == 0)),
-        ]
+    kinds = (
+        *(g["MU"] == -10, g["M"] == 4, g["MU"] == 0, (g["WA"] == 0) & (g["WB"] == 0)),
+        *(Program().results(g)["MUP"] == g["MU"], (g["DA"] == 0) & (g["DB"] == 0)),
     )
-    kind = (kinds * 2 ** np.arange(len(kinds))[:, None]).sum(0)
+    kind = np.sum([of_it << place for place, of_it in enumerate(kinds)], 0)
     chosen = []
     for rows, count in ((judge.wrong, _WRONG_SAMPLE), (~judge.wrong, _RIGHT_SAMPLE)):
         places = np.flatnonzero(rows & clear)
-        groups = [places[kind[places] == one] for one in np.unique(kind[places])]
-        least = -(-count // max(4 * len(groups), 1))
-        taken = [spread(group, least) for group in groups]
-        rest = np.setdiff1d(places, np.concatenate(taken)) if groups else places
-        taken.append(spread(rest, max(count - sum(map(len, taken)), 0)))
-        together = np.sort(np.concatenate(taken)).astype(np.intp)
-        chosen.append(together[np.argsort(kind[together], kind="stable")])
+        places = places[np.argsort(kind[places], kind="stable")]
+        _, first, many = np.unique(kind[places], return_index=True, return_counts=True)
+        evenly = spread(np.arange(places.size), count)
+        chosen.append(places[np.unique(np.concatenate([evenly, first, first + many - 1]))])
     return np.concatenate(chosen)
 
-
-# --- which programs ------------------------------------------------------------------------------
 
 _Chosen = tuple[Program, Sequence[Found], Sequence[str]]
 """A program that explains rows, others that explain the same, and the results that it gives."""
