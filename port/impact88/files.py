@@ -225,6 +225,16 @@ def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
         raise
 
 
+def write_folder(folder: str, files: Mapping[str, bytes]) -> None:
+    """Write files, by their paths in a folder, which is made. Raises UserError."""
+    for name, data in files.items():
+        path = os.path.join(folder, name)
+        with _naming(folder, "made"):
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+        with replacing(path, "wb") as file:
+            file.write(data)
+
+
 def _private(path: str, flags: int) -> int:
     """Open a file that must not be there yet, for its owner only."""
     return os.open(path, flags | os.O_EXCL, 0o600)

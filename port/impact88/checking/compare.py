@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..doubles import double
-from ..equations.otherprogram import Program
 from ..errors import UserError
 from ..files import called
 from ..mappings import texts
@@ -39,6 +38,7 @@ from .agreement import (
     read_theirs,
 )
 from .diagnosis import UNKNOWN, Cause, diagnose
+from .trials import Program
 from .vectors import FAILURE
 
 Bools = NDArray[np.bool_]

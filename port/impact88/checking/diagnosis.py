@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from ..accuracy import errorbound
 from ..equations.edits import MEASURED, RARE_CONVENTION, variants
 from ..equations.evaluation import Run
-from ..equations.otherprogram import Program
 from ..equations.spelling import LISTING, spellings
 from ..errors import UserError
 from ..fields import FIELDS
@@ -26,7 +25,7 @@ from ..names import FINAL_VELOCITIES, SCENE
 from ..progress import progress
 from ..replay import replay
 from .agreement import Case, violated
-from .trials import BORNE_OUT, Found, Judge, pairs, ranked, run, singles, spread
+from .trials import BORNE_OUT, Found, Judge, Program, pairs, ranked, run, singles, spread
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

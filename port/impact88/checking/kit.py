@@ -8,7 +8,6 @@ any machine for the same seed; ``KIT.json`` has seed, version and hashes.
 import hashlib
 import io
 import json
-import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -18,8 +17,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from .. import schemas
 from ..equations.spelling import IMPULSES, NEGATIVE, SHOWN, Expression, spellings
-from ..errors import UserError
-from ..files import replacing
+from ..files import replacing, write_folder
 from ..names import RESULTS, SCENE
 from ..version import __version__
 from .vectors import vectors
@@ -66,14 +64,8 @@ def write_kit(place: str, count: int, seed: int) -> list[str]:
         with replacing(place, "wb") as file, ZipFile(file, "w", ZIP_DEFLATED) as archive:
             for name, data in files.items():
                 archive.writestr(ZipInfo(name, _DAY), data, ZIP_DEFLATED)
-        return sorted(files)
-    try:
-        os.makedirs(place, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"cannot be made: {error.strerror or error}", place) from None
-    for name, data in files.items():
-        with replacing(os.path.join(place, name), "wb") as file:
-            file.write(data)
+    else:
+        write_folder(place, files)
     return sorted(files)
 
 

@@ -63,7 +63,7 @@ ARGUMENTS = (
 def main(args: argparse.Namespace) -> int:
     """Hear the witness, and print what it says."""
     jobs = _jobs(args)
-    from ..witness.hearing import record
+    from ..witness.hearing import record, save
     from ..witness.image import read_image
     from ..witness.session import Session
 
@@ -77,8 +77,6 @@ def main(args: argparse.Namespace) -> int:
             meter.update(1)
     whole = record(image, heard, time.perf_counter() - start)
     if args.save:
-        from ..witness.saving import save
-
         save(args.save, heard)
     options.show(args, "witness", lambda: whole, lambda: _report(image, heard, whole), indent=2)
     return 0 if whole["passed"] else 1

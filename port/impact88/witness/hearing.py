@@ -6,18 +6,21 @@ against its capture and the arithmetic here.
 """
 
 import difflib
+import gzip
+import json
+import os
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib import metadata
 from typing import Any, NamedTuple
 
 from ..applesoft.console import Console
 from ..checking import captured
-from ..checking.captured import ARITHMETIC, FUZZ, SCENES
+from ..checking.captured import ARITHMETIC, ENDINGS, FUZZ, PROGRAMS, SCENES
 from ..checking.selfcheck import GOLDEN_RUNS
 from ..emulator.faults import TooManyStatements
 from ..fields import FIELDS, outcome_fields
-from ..files import packaged_bytes
+from ..files import packaged_bytes, write_folder
 from ..names import SCENE
 from ..program import emulated
 from ..program.run import Run, run
@@ -223,3 +226,35 @@ def record(image: Image, heard: list[Heard], seconds: float) -> dict[str, Any]:
         ],
         "seconds": round(seconds, 1),
     }
+
+
+def save(folder: str, heard: Iterable[Heard]) -> None:
+    """Write captures into a folder, which is made; each file holds those of this call only. Raises
+    UserError when a place cannot be written to."""
+    files: dict[str, list[str]] = {}
+    index: dict[str, str] = {}
+    for one in heard:
+        if one.kind in (SCENES, FUZZ):
+            files.setdefault(f"{one.kind}.jsonl.gz", []).append(json.dumps(one.capture))
+        elif one.kind == ARITHMETIC:
+            name = os.path.join(ARITHMETIC, f"{one.capture[0]}.tsv.gz")
+            files.setdefault(name, []).append("\t".join(one.capture))
+        else:
+            for ending in ENDINGS:
+                if one.capture.get(ending):
+                    name = os.path.join(PROGRAMS, f"{one.name}.{ending}")
+                    files[name] = [one.capture[ending]]
+            if one.kind != OWN:
+                index[one.name] = str(one.capture["instructions"])
+    if index:
+        text = captured.golden().joinpath(PROGRAMS, "index.tsv").read_text("utf-8")
+        heading, *rows = (line.split("\t") for line in text.splitlines())
+        kept = [[*row[:-1], index[row[0]]] for row in rows if row[0] in index]
+        files[os.path.join(PROGRAMS, "index.tsv")] = ["\t".join(r) + "\n" for r in (heading, *kept)]
+    packed = {  # the same lines give the same bytes on every day
+        name: gzip.compress("".join(f"{line}\n" for line in lines).encode(), mtime=0)
+        if name.endswith(".gz")
+        else "".join(lines).encode("latin-1")
+        for name, lines in files.items()
+    }
+    write_folder(folder, packed)
