@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
-from ..equations.edits import MEASURED, RARE_CONVENTION, variants
+from ..equations.edits import RARE_CONVENTION, variants
 from ..equations.evaluation import Run
 from ..equations.spelling import LISTING, spellings
 from ..errors import UserError
@@ -50,8 +50,7 @@ _LARGE = 1e-5
 """Differences below this share of their size are no pair of mistakes."""
 _NEED, _NEED_NAMED, _NEED_PAIR = 22.0, 10.0, 32.0
 """Bits that a cause must get right: some ten more than one of 30,000 edits, one less than one of
-500 known alternatives, and as many as one pair of 30,000 edits in different equations, or an edit
-with a number of its own."""
+500 known alternatives, and as many as one pair of 30,000 edits in different equations."""
 _BITS_A_ROW = 40.0
 _CLOSE = 1e-9
 """Results this close, as a share of their size, are the same program's."""
@@ -275,10 +274,9 @@ def _evidence(explained: Bools, bits: Floats, choices: Bools) -> float:
 
 
 def _need(program: Program) -> float:
-    rank = program.edits[0].rank
-    if len(program.edits) > 1 or rank == MEASURED:
+    if len(program.edits) > 1:
         return _NEED_PAIR
-    return _NEED_NAMED if rank <= RARE_CONVENTION else _NEED
+    return _NEED_NAMED if program.edits[0].rank <= RARE_CONVENTION else _NEED
 
 
 def _sample(judge: Judge, clear: Bools) -> NDArray[np.intp]:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..equations.edits import CONVENTION, Edit, edits_of, edits_on, measured, readings, variants
+from ..equations.edits import CONVENTION, Edit, edits_of, edits_on, readings, variants
 from ..equations.evaluation import Columns, Run, chunks, value
 from ..equations.spelling import (
     A_IMPULSE,
@@ -26,7 +26,7 @@ from ..equations.spelling import (
     expression,
     spellings,
 )
-from ..names import FINAL_VELOCITIES, SCENE
+from ..names import FINAL_VELOCITIES
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -138,12 +138,6 @@ class Judge(NamedTuple):
         right = spread(np.flatnonzero(~self.wrong), _FIRST_RIGHT)
         return self.part(np.concatenate([spread(np.flatnonzero(unexplained), wrong), right]))
 
-    def with_finals(self, wrong: int = 30) -> Judge:
-        """By the final velocities: some rows that have all of them."""
-        few = self.of(FINAL_VELOCITIES).few(self.wrong, wrong)
-        given = np.all([np.isfinite(column) for column in few.theirs.values()], axis=0)
-        return few.part(np.flatnonzero(given))
-
     @property
     def has_velocities(self) -> bool:
         """Whether all final velocities are judged."""
@@ -238,13 +232,14 @@ def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
     """Programs with two mistakes, by stages. ``alone``: what explains rows alone."""
     yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
     if judge.has_velocities:
-        yield from _by_equations(judge.with_finals(_FEW), judge)
+        few = judge.of(FINAL_VELOCITIES).few(judge.wrong, _FEW)
+        given = np.all([np.isfinite(column) for column in few.theirs.values()], axis=0)
+        yield from _by_equations(few.part(np.flatnonzero(given)), judge)
     enough = (one for one in alone if one.explains >= _SHARE * judge.wrong.sum() and one.stands)
     for one in list(enough)[:_FIRSTS]:
         unexplained = judge.wrong & ~one.rows
         if unexplained.any():
             yield _second(judge, unexplained, one.program)
-    yield list(_measured(judge))
 
 
 def _second(judge: Judge, unexplained: Bools, first: Program) -> list[Program]:
@@ -261,44 +256,6 @@ def _two_readings(judge: Judge) -> Iterator[Program]:
         near = judge.near(Run(spelling.edited(other.sides), seen).names, SHOWN)
         for place in np.flatnonzero(near.mean(-1) >= BORNE_OUT) if near.ndim > 1 else ():
             yield Program((first[place], other))
-
-
-def _measured(judge: Judge) -> Iterator[Program]:
-    """Programs in which one column of the scene, or one result, is that times a number, or that
-    number: found by least squares of what their velocities leave of the equations."""
-    ours = Program().results(judge.scene)
-    for name, theirs in judge.theirs.items():
-        ratio = float(np.nanmedian((theirs / ours[name])[judge.wrong]))
-        for digits in _DIGITS:
-            yield Program((measured(name, "x*k", float(f"{ratio:.{digits}g}")),))
-    if not judge.has_velocities:
-        return
-    faults = _Faults(spellings()[A_IMPULSE], judge.with_finals(), "A")
-    forms = [(name, how) for name in SCENE if name != "M" for how in ("x*k", "k + 0*x")]
-    scene = faults.scene
-    k = np.array([0.9 if how == "x*k" else np.mean(scene[name]) + 0.1 for name, how in forms])
-    for _ in range(_STEPS):
-        moved = k * (1 + 1e-6) + 1e-12
-        both = [
-            measured(name, how, float(number)).sides
-            for several in (k, moved)
-            for (name, how), number in zip(forms, several, strict=True)
-        ]
-        here, there = np.split(np.nan_to_num(faults.left(both)).reshape(len(both), -1), 2)
-        slope = (there - here) / (moved - k)[:, None]
-        k = k - np.nan_to_num((slope * here).sum(1) / (slope * slope).sum(1))
-    fitted = [(name, how, float(x)) for (name, how), x in zip(forms, k, strict=True)]
-    left = np.abs(faults.left([measured(*one).sides for one in fitted]))
-    for place in np.argsort(np.nanmedian(left, axis=(1, 2)), kind="stable")[:_FIRSTS]:
-        for digits in _DIGITS:
-            name, how, number = fitted[place]
-            yield Program((measured(name, how, float(f"{number:.{digits}g}")),))
-
-
-_STEPS = 8
-"""Of Newton's method: enough for all that is linear in the number, or nearly."""
-_DIGITS = (3, 5, 8)
-"""That a number is measured to: the fewest that explain the rows are kept."""
 
 
 # --- by equations --------------------------------------------------------------------------------

@@ -30,7 +30,7 @@ from .spelling import (
     written,
 )
 
-MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE, MEASURED = range(7)
+MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE = range(6)
 """How likely an edit is: of those that compute the same, the likeliest is named."""
 CONDITIONS = ("point", "pivot", "stick")
 """Names that are true or false."""
@@ -206,15 +206,6 @@ def edits_on(spelling: Spelling) -> tuple[Edit, ...]:
     """The edits of one node of a spelling, edited or not, its input and output apart."""
     shown = sum(one.target.startswith(SHOWN) for one in spelling.statements)
     return tuple(_node_edits(spelling, range(len(SCENE), len(spelling.statements) - shown)))
-
-
-def measured(name: str, how: str, number: float) -> Edit:
-    """A column of the scene, or a result, that a number found by measuring stands in: ``how`` it
-    does, an expression in the column x and the number k."""
-    place = {"x": f"{TYPED}{name}" if name in SCENE else name, "k": number}
-    key = name if name in SCENE else f"{SHOWN}{name}"
-    says = written(name, (renamed(expression(how), {**place, "x": name}),))
-    return Edit("", {key: (renamed(expression(how), place),)}, MEASURED, f"{says} (measured)")
 
 
 # --- conventions and models ----------------------------------------------------------------------

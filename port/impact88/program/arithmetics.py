@@ -8,7 +8,7 @@ and math, printed by Applesoft's layout of nine digits.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from .. import doubles
 from ..applesoft import decimaltext, functions
@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 class Arithmetic:
     """What the listing needs of a machine's numbers. ``read(text, start)``: the number that begins
     there and where it ends; ``LET`` rounds as storing does, ``NEXT`` increments a loop's variable;
-    ``error``: an exception of this arithmetic as Applesoft's, None for any other; ``unset``: the
-    zero of a variable never assigned, distinguished by ``is`` from ``zero``."""
+    ``unset``: the zero of a variable never assigned, distinguished by ``is`` from ``zero``."""
 
     name: str
     read: Callable[[str, int], tuple[Any, int]]
@@ -37,13 +36,20 @@ class Arithmetic:
     SIN: Callable[[Any], Any]
     COS: Callable[[Any], Any]
     write: Callable[[Any], str]
-    error: Callable[[Exception], ApplesoftError | None]
+    errors: Mapping[type[Exception], Callable[[], ApplesoftError]]
     unset: Any
     zero: Any
 
     def __init__(self, **operations: Any) -> None:
         self.__dict__.update(operations)
         self._constants: dict[str, Any] = {}
+
+    def error(self, exception: Exception) -> ApplesoftError | None:
+        """An exception as Applesoft's error; None for one that is not this arithmetic's."""
+        if isinstance(exception, ApplesoftError):
+            return exception
+        kinds = (made for kind, made in self.errors.items() if isinstance(exception, kind))
+        return next((made() for made in kinds), None)
 
     def number(self, text: str) -> Any:
         """A number from its text, not yet rounded. Raises ApplesoftError OVERFLOW."""
@@ -56,10 +62,6 @@ class Arithmetic:
         return self._constants[text]
 
 
-def _applesoft_error(error: Exception) -> ApplesoftError | None:
-    return error if isinstance(error, ApplesoftError) else None
-
-
 def _read_real(text: str, start: int) -> tuple[Real, int]:
     number, end = decimaltext.read(text, start)
     return Real(number), end
@@ -67,16 +69,6 @@ def _read_real(text: str, start: int) -> tuple[Real, int]:
 
 def _of_reals(function: Callable[[Number], Number]) -> Callable[[Real], Real]:
     return lambda x: Real(function(x.number))
-
-
-def _float_error(error: Exception) -> ApplesoftError | None:
-    if isinstance(error, ZeroDivisionError):
-        return division_by_zero()
-    if isinstance(error, OverflowError):
-        return overflow()
-    if isinstance(error, ValueError):
-        return illegal_quantity()
-    return _applesoft_error(error)
 
 
 def _read_float(text: str, start: int) -> tuple[float, int]:
@@ -114,7 +106,7 @@ APPLESOFT = Arithmetic(
     SIN=_of_reals(functions.sine),
     COS=_of_reals(functions.cosine),
     write=lambda x: decimaltext.write(x.number),
-    error=_applesoft_error,
+    errors={},
     unset=Real(ZERO),
     zero=Real(ZERO),
 )
@@ -128,7 +120,11 @@ FLOAT64 = Arithmetic(
     SIN=math.sin,
     COS=math.cos,
     write=_write_float,
-    error=_float_error,
+    errors={
+        ZeroDivisionError: division_by_zero,
+        OverflowError: overflow,
+        ValueError: illegal_quantity,
+    },
     unset=float("0"),
     zero=float("0"),
 )
