@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from impact88.checking.compare import Comparison, compare_file
+from impact88.checking.compare import Comparison, compare
 from impact88.checking.kit import write_kit
 from impact88.checking.vectors import ANSWER, EITHER, REFUSE
 from impact88.names import SCENE
@@ -34,7 +34,7 @@ def compared(folder: Path, text: str, causes: bool = False) -> Comparison:
     """A table of answers, as `compare --strict` judges it."""
     path = folder / "theirs"
     path.write_text(text, encoding="utf-8")
-    return compare_file(path, "jsonl" if text.startswith("{") else "csv", causes=causes)
+    return compare(path, "jsonl" if text.startswith("{") else "csv", causes=causes)
 
 
 def all_agree(done: Comparison) -> bool:
@@ -134,7 +134,7 @@ def test_the_spreadsheet_answers_all(kit: Path) -> None:
     if shutil.which("soffice"):
         order = ["soffice", "--headless", "--convert-to", "csv", "--outdir", str(kit.parent)]
         subprocess.run([*order, str(kit / "impact.xlsx")], check=True, capture_output=True)
-        assert all_agree(compare_file(kit.parent / "impact.csv", causes=False))
+        assert all_agree(compare(kit.parent / "impact.csv", causes=False))
 
 
 def compiled(kit: Path) -> list[str]:
