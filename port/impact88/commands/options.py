@@ -553,7 +553,7 @@ def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = F
     """The bounds the options ask for, in the units of the inputs. Raises UserError."""
     from ..progress import progress
     from ..uncertainty.bounds import bounds
-    from ..uncertainty.boundsunits import in_units
+    from ..uncertainty.boundstable import in_units
 
     inputs, units = inputs_given(args)
     if not any(item.varies for item in inputs.values.values()):

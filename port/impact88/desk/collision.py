@@ -237,8 +237,7 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     """What `impact88 bounds --json` prints for the form's ranges, with fewer draws. Raises
     UserError, also for a form without ranges."""
     from ..uncertainty.bounds import bounds
-    from ..uncertainty.boundstable import as_json
-    from ..uncertainty.boundsunits import in_units
+    from ..uncertainty.boundstable import as_json, in_units
     from ..uncertainty.ranges import read_inputs
 
     form = read(values, units)

@@ -1,8 +1,6 @@
-"""A solved impact as tables to read and as JSON to process.
-
-`tables` and `numbers` are what solutions of exact values (`unknowns`) and reconstructions with
-tolerances (`uncertainty.reconstructedtable`) have in common: the answer in a few lines, then
-velocities, coefficients, impulse, what follows, remarks.
+"""A solved impact as tables to read and as JSON to process: what solutions of exact values
+(`unknowns`) and reconstructions with tolerances (`uncertainty.reconstructedtable`) share: the
+answer in a few lines, then velocities, coefficients, impulse, what follows, remarks.
 """
 
 from __future__ import annotations
@@ -22,7 +20,7 @@ from ..units import RULES, VELOCITY, System, written
 from .doublerange import within_doubles
 from .impulse import clock, forces
 from .outcome import moment_ratio, outcome
-from .state import CHANGES
+from .state import CHANGES, COURSES, FORCES
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
@@ -31,24 +29,25 @@ _BARRIERS = (
     *("XB", "YB", "XBF", "YBF", "DVB", "DVBF", "DVBR", "CBX", "CBY", "PDOFB"),
     *("SB", "HB", "SBF", "HBF"),
 )
-"""What is not worth telling of B when it is a rigid barrier."""
+"""What a rigid barrier does not have."""
 _TURNING = (
     *("EM", "RR0", "PM", "WA", "WAF", "WB", "WBF", "IA", "IB", "DA", "DB", "PA", "PB"),
     *("XA", "YA", "XB", "YB", "XAF", "YAF", "XBF", "YBF", "CAX", "CAY", "CBX", "CBY"),
 )
-"""What point masses have not, or have twice."""
+"""What point masses do not have, or twice."""
 _ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}
-"""What a speed on the road is said in beside units that it is not."""
+"""The unit of speeds on the road."""
 _SPINS = ("WA", "WB", "WAF", "WBF")
 _SHARE = 0.05
 """Of a speed's variance: less is not named in the answer."""
 _LEFT, _WIDTH = 16, 104
 """Characters of the answer's labels and lines."""
+_NOISE = 1e-9
+"""Of the largest quantity of the same unit: less is rounding, and printed as 0."""
 
 
 class Spread(NamedTuple):
-    """What is uncertain of a quantity: standard deviation, attained bounds, the shares of its
-    variance by known value."""
+    """Standard deviation, attained bounds, and shares of the variance by known value."""
 
     deviation: float
     lower: float = math.nan
@@ -57,8 +56,7 @@ class Spread(NamedTuple):
 
 
 def completed(values: dict[str, float], contact_time: float | None) -> dict[str, float]:
-    """One impact's values and what follows from them (`outcome`; forces for a contact time), in the
-    tables' order."""
+    """An impact's values and what follows from them, in the tables' order."""
     following = {name: float(value) for name, value in outcome(values).items()}
     if contact_time is not None and "P" in following:
         following["TF"] = contact_time
@@ -66,11 +64,11 @@ def completed(values: dict[str, float], contact_time: float | None) -> dict[str,
     values = values | following
     if "EM" in values:
         values["RR0"] = float(moment_ratio(values["EM"]))
-    untold = _untold(values)
-    return {name: values[name] for name in _ORDER if name in values and name not in untold}
+    absent = _absent(values)
+    return {name: values[name] for name in _ORDER if name in values and name not in absent}
 
 
-def _untold(values: Mapping[str, float]) -> tuple[str, ...]:
+def _absent(values: Mapping[str, float]) -> tuple[str, ...]:
     # a barrier's mass is left out of the values
     barrier = _BARRIERS if math.isinf(values.get("MB", math.inf)) else ()
     return (*barrier, *_TURNING) if values.get("M") == 4 else barrier
@@ -89,8 +87,9 @@ def tables(
     """The answer, the impact in tables, ``further`` tables and remarks; ``spreads`` of SA SB DVA
     DVB; ``unknown``: what is not determined (by default the velocities without a value), and
     ``helpful``: further values that would determine it."""
+    values = _without_noise(values)
     if unknown is None:
-        absent = {*VELOCITIES, *FINAL_STATE} - {*values, *_untold(values)}
+        absent = {*VELOCITIES, *FINAL_STATE} - {*values, *_absent(values)}
         unknown = [name for name in (*VELOCITIES, *FINAL_STATE) if name in absent]
     blocks = [
         _answer(values, spreads or {}, unknown, helpful, len(remarks), units),
@@ -108,6 +107,23 @@ def tables(
     return "\n".join(lines).rstrip("\n")
 
 
+def _without_noise(values: Mapping[str, float]) -> dict[str, float]:
+    """Values below `_NOISE` of the largest of their unit are 0, directions above -180."""
+    largest: dict[str, float] = {}
+    for name, value in values.items():
+        if math.isfinite(value):
+            unit = quantity(name).unit
+            largest[unit] = max(abs(value), largest.get(unit, 0.0))
+    largest["1"] = 0.0  # numbers have no common size
+    clean = {}
+    for name, value in values.items():
+        small = abs(value) < _NOISE * largest.get(quantity(name).unit, 0.0)
+        clean[name] = 0.0 if small else value
+        if name in (*COURSES, *FORCES) and value <= -180 * (1 - _NOISE):
+            clean[name] = value + 360
+    return clean
+
+
 def numbers(
     values: Mapping[str, float], known: Collection[str], remarks: Sequence[str], units: System
 ) -> dict[str, Any]:
@@ -123,10 +139,9 @@ def numbers(
 
 def in_turn(texts: Sequence[str], note: str = "") -> str:
     """The solutions one below the other, numbered where there are several."""
-    if len(texts) == 1:
-        return texts[0]
-    total = len(texts)
-    return "\n\n".join(f"SOLUTION {i} OF {total}{note}\n\n{t}" for i, t in enumerate(texts, 1))
+    titles = [f"SOLUTION {i} OF {len(texts)}{note}\n\n" for i in range(1, len(texts) + 1)]
+    titles = titles if len(texts) > 1 else [""]
+    return "\n\n".join(title + text for title, text in zip(titles, texts, strict=True))
 
 
 # -- the answer
@@ -161,7 +176,7 @@ def _answer(
     for vehicle in vehicles:
         text, course = size(vehicle, name := f"S{vehicle}"), f"H{vehicle}"
         if values.get(name) and course in values:
-            text += f", heading {number(values[course], 3)}"
+            text += f", heading {number(values[course], 3)}".replace("-180", "180")
         rows.append(("BEFORE IMPACT", text))
     for vehicle in vehicles:
         text, origin = size(vehicle, f"DV{vehicle}"), values.get(f"PDOF{vehicle}", math.nan)

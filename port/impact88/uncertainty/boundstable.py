@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields, replace
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -14,24 +14,21 @@ from .. import notebook
 from ..names import quantity
 from ..plaintable import number, plain
 from ..plaintable import table as columns
-from ..units import system_of
+from ..units import RULES, system_of, written
 from .draws import Drive, Spread
 from .uncertain import Uncertain
 
 if TYPE_CHECKING:
     from .reconstructed import Range
 
-DRIVERS_SHOWN = 4
-
 
 @dataclass(frozen=True)
 class Bound:
     """Lowest and highest value of one result over the box, and the inputs that give them.
 
-    ``nominal``: with every input at its nominal value; ``corner_lower`` and ``corner_upper``: the
-    extremes over the corners evaluated, which are the bounds themselves unless the result turns
-    around inside; a bound is infinite where the range holds a scene without solution, and the
-    inputs beside it then are close to that scene's; ``lower_warnings`` and ``upper_warnings``:
+    ``nominal``: with every input at its nominal value; ``corner_lower`` and ``corner_upper``: over
+    the corners evaluated; a bound is infinite where the range holds a scene without solution (the
+    inputs beside it are then close to that scene's); ``lower_warnings`` and ``upper_warnings``:
     names of what is unphysical there.
     """
 
@@ -55,7 +52,7 @@ class Bounds:
     ``unusable``: share of the draws without a finite result or excluded, left out of the spreads;
     ``evaluations``: scenes solved in search of the bounds; ``draws``: each output's draws, arrays
     of the ``samples`` values, kept on request; ``units``: the system of units of all of it
-    (`uncertainty.boundsunits`), None for base units or any others that are consistent.
+    (`in_units`), None for base units or any others that are consistent.
 
     >>> found = impact88.bounds({**impact88.sample(1), "MU": "0.7 .. 0.9"}, ["LOSS"], samples=100)
     >>> round(found.bounds["LOSS"].lower, 2), round(found.bounds["LOSS"].upper, 2)
@@ -84,6 +81,48 @@ class Bounds:
         return notebook.preformatted(table(self))
 
 
+def in_units(found: Bounds, name: str | None) -> Bounds:
+    """What was found in base units, in those of the system of that name; as it is for None."""
+    units = system_of(name)
+    if units is RULES:
+        return found
+
+    def times(record: Any, name: str, **other: Any) -> Any:
+        factor, numbers = units.factor(name), {}
+        for each in fields(record):
+            value = getattr(record, each.name)
+            if isinstance(value, float) and each.name != "rank_correlation":
+                numbers[each.name] = value * factor
+        return replace(record, **numbers, **other)
+
+    def quantiles(name: str, spread: Spread) -> dict[float, float]:
+        return {share: value * units.factor(name) for share, value in spread.quantiles.items()}
+
+    return replace(
+        found,
+        inputs={n: times(item, n) for n, item in found.inputs.items()},
+        limits={
+            n: (low * units.factor(n), high * units.factor(n))
+            for n, (low, high) in found.limits.items()
+        },
+        bounds={
+            n: times(
+                *(bound, n),
+                at_lower=written(bound.at_lower, units),
+                at_upper=written(bound.at_upper, units),
+            )
+            for n, bound in found.bounds.items()
+        },
+        spreads={n: times(x, n, quantiles=quantiles(n, x)) for n, x in found.spreads.items()},
+        drives={
+            n: {source: times(drive, n) for source, drive in drives.items()}
+            for n, drives in found.drives.items()
+        },
+        draws={n: draws * units.factor(n) for n, draws in found.draws.items()},
+        units=units.name,
+    )
+
+
 def as_json(bounds: Bounds) -> dict[str, Any]:
     """Everything found, as JSON takes it; a value that does not exist is null."""
     units = system_of(bounds.units)
@@ -95,22 +134,16 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
             "unit": units.label(quantity(name).unit),
             **asdict(bound),
             "unbounded": unbounded(bound),
-            "mean": spread.mean,
-            "deviation": spread.deviation,
+            **asdict(spread),
             "quantiles": {f"{share:g}": value for share, value in spread.quantiles.items()},
             "drives": {source: asdict(drive) for source, drive in bounds.drives[name].items()},
         }
 
+    alike = ("problem", "samples", "seed", "sigmas", "evaluations", "unusable", "warnings")
     whole: dict[str, Any] = plain(
         {
-            "problem": bounds.problem,
-            "samples": bounds.samples,
-            "seed": bounds.seed,
-            "sigmas": bounds.sigmas,
-            "evaluations": bounds.evaluations,
+            **{name: getattr(bounds, name) for name in alike},
             "all_corners": bounds.corners_in_full,
-            "unusable": bounds.unusable,
-            "warnings": bounds.warnings,
             "correlations": [
                 {"names": pair, "correlation": value} for pair, value in bounds.correlations.items()
             ],
@@ -154,20 +187,14 @@ def table(bounds: Bounds) -> str:
     lines += ["", "Bounds, and quantiles of the draws", ""]
     heading = ["", "nominal", "lower", "", "upper", ""]
     heading += [*(f"{100 * share:g} %" for share in spreads), "unit"]
-    rows, inside = [], False
+    rows = []
     for name, bound in bounds.bounds.items():
+        ends = (bound.lower, bound.corner_lower), (bound.upper, bound.corner_upper)
         width = _width(bound)
-        marks = [
-            "*" if abs(value - corner) > 1e-6 * width else ""
-            for value, corner in (
-                (bound.lower, bound.corner_lower),
-                (bound.upper, bound.corner_upper),
-            )
-        ]
-        inside = inside or "*" in marks
+        below, above = ("*" if abs(end - at) > 1e-6 * width else "" for end, at in ends)
         nominal = bound.nominal if abs(bound.nominal) > 1e-12 * width else 0.0
-        cells = [number(nominal, 4), number(bound.lower, 5), marks[0], number(bound.upper, 5)]
-        cells += [marks[1], *(number(q, 4) for q in bounds.spreads[name].quantiles.values())]
+        cells = [number(nominal, 4), number(bound.lower, 5), below, number(bound.upper, 5), above]
+        cells += [number(q, 4) for q in bounds.spreads[name].quantiles.values()]
         rows.append([name, *cells, units.label(quantity(name).unit)])
     lines += columns(rows, heading, left=(0, 3, 5, len(heading) - 1))
     lines += [
@@ -179,12 +206,12 @@ def table(bounds: Bounds) -> str:
         ranked = sorted(bounds.drives[name].items(), key=lambda entry: -abs(entry[1].swing or 0.0))
         drivers = "".join(
             f"  {source:<4}{drive.rank_correlation:>+6.2f} ({drive.swing:.3g})".ljust(23)
-            for source, drive in ranked[:DRIVERS_SHOWN]
+            for source, drive in ranked[:4]
             if drive.swing > 1e-9 * _width(bounds.bounds[name])
         )
         lines.append(f"{name:6}{drivers}".rstrip())
     lines.append("")
-    if inside:
+    if any("*" in row for row in rows):
         lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
     if any(map(unbounded, bounds.bounds.values())):
         lines.append("inf: unbounded; somewhere in the ranges the equations have no solution")
