@@ -100,10 +100,10 @@ def straight(system: System, starts: Floats) -> tuple[Floats, Floats]:
     return x, np.broadcast_to(left_over, x.shape[1:])
 
 
-def tightened(system: System, x: Floats) -> tuple[Floats, Floats]:
-    """Least squares from several starts, a column each, and the largest of what conditions
-    leave over at each end. Tight tolerances among loose ones make a narrow curved valley: all
-    begin loose and are tightened little by little."""
+def tightened(system: System, x: Floats) -> tuple[Floats, float]:
+    """Least squares from one start, and the largest of what conditions leave over at the end. Tight
+    tolerances among loose ones make a narrow curved valley: all begin loose and are tightened
+    little by little."""
     held = np.full(len(system.conditions), _HELD)
     shares = np.array(
         [system.known[n].standard_deviation / system.scale(n) for n in system.observations]
@@ -113,71 +113,54 @@ def tightened(system: System, x: Floats) -> tuple[Floats, Floats]:
     loosest, tightest = 1.0, max(float(shares.min()), _TIGHTEST)
     while loosest > tightest:
         weights = np.where(spared, 1.0, np.minimum(1.0, shares / loosest))
-        rows = np.concatenate([held / loosest, weights])
-        x = _descended(system, x, rows[:, None], _ROUGHLY)
+        x = _descended(system, x, np.concatenate([held / loosest, weights])[:, None], _ROUGHLY)
         loosest *= _TIGHTER
     rows = np.concatenate([held / tightest, np.ones(len(shares))])
     x = _descended(system, x, rows[:, None], _CLOSELY)
-    return x, np.abs(system.left(system.state(x))[: len(held)]).max(axis=0, initial=0.0)
+    return x, float(np.abs(system.left(system.state(x))[: len(held)]).max(initial=0.0))
 
 
 def _descended(system: System, x: Floats, rows: Floats, enough: float) -> Floats:
     """Least squares of what conditions and observations leave over, ``rows`` times as much, in
     damped steps (Levenberg, Marquardt) until three gain less than the share ``enough``."""
-    x, residual = x.copy(), rows * system.left(system.state(x))
-    squares, damping = _squares(residual), np.full(x.shape[1], 1e-3)
-    idle, going = np.zeros(x.shape[1], int), np.isfinite(squares)
+    residual, damping, idle = rows * system.left(system.state(x)), 1e-3, 0
     for _ in range(2 * _STEPS):
-        who = np.flatnonzero(going)
-        jacobian = rows[:, None] * system.linearized(x[:, who], system.left)[1]
-        finite = np.isfinite(jacobian).all(axis=(0, 1))
-        going[who[~finite]] = False
-        who, jacobian = who[finite], jacobian[:, :, finite].transpose(2, 0, 1)
-        if not len(who):
+        jacobian = rows * system.slopes(x)
+        if not (np.isfinite(jacobian).all() and np.isfinite(residual).all()):
             break
         u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
-        first, trying = squares.copy(), np.arange(len(who))
-        while len(trying):
-            one, width = who[trying], s[trying]
-            damped = width**2 + damping[one, None] * width[:, :1] ** 2
-            inverse = (vt[trying].swapaxes(1, 2) * (width / damped)[:, None]) @ (
-                u[trying].swapaxes(1, 2)
-            )
-            step = -_times(inverse, residual[:, one])
-            size = np.abs(step).max(axis=0, initial=0.0)
-            going[one] = size > _LAST
-            step *= np.minimum(1.0, _LONGEST / np.where(going[one], size, 1.0))
-            promised = residual[:, one] + _times(jacobian[trying], step)
-            tried, after = _bent(system, x[:, one] + step, promised, inverse, rows)
-            less = _squares(after) < squares[one]
-            kept, won = going[one] & less, one[going[one] & less]
-            x[:, won], residual[:, won] = tried[:, kept], after[:, kept]
-            squares[won] = _squares(after)[kept]
-            damping[one] = np.where(less, np.maximum(damping[one] / 10, 1e-16), damping[one] * 10)
-            trying = trying[going[one] & ~less]
-        gained = first[who] - squares[who] > enough * first[who]
-        idle[who] = np.where(gained, 0, idle[who] + 1)
-        going[who[idle[who] == 3]] = False
+        before = after = float(np.square(residual).sum())
+        while not after < before:
+            inverse = (vt.T * (s / (s * s + damping * s[0] ** 2))) @ u.T
+            step = -inverse @ residual
+            size = np.abs(step).max()
+            if not size > _LAST:
+                return x
+            step *= min(1.0, _LONGEST / size)
+            tried, missed = _bent(system, x + step, residual + jacobian @ step, inverse, rows)
+            after = float(np.square(missed).sum())
+            damping *= 10
+        x, residual, damping = tried, missed, max(damping / 100, 1e-16)
+        idle = 0 if before - after > enough * before else idle + 1
+        if idle == 3:
+            break
     return x
 
 
 def _bent(
     system: System, x: Floats, promised: Floats, inverse: Floats, rows: Floats
 ) -> tuple[Floats, Floats]:
-    """Straight steps' ends brought to where what is left over is what the slopes promised, as
+    """A straight step's end brought to where what is left over is what the slopes promised, as
     long as that lessens it: so steps follow narrow curved valleys."""
     after = rows * system.left(system.state(x))
-    squares, straight, who = _squares(after), _squares(promised), np.arange(x.shape[1])
     for _ in range(_STEPS):
-        who = who[squares[who] > 1.1 * straight[who]]
-        if not len(who):
+        if not np.square(after).sum() > 1.1 * np.square(promised).sum():
             break
-        tried = x[:, who] - _times(inverse[who], after[:, who] - promised[:, who])
-        residual = rows * system.left(system.state(tried))
-        better = _squares(residual) < 0.9 * squares[who]
-        who = who[better]
-        x[:, who], after[:, who] = tried[:, better], residual[:, better]
-        squares[who] = _squares(after[:, who])
+        tried = x - inverse @ (after - promised)
+        missed = rows * system.left(system.state(tried))
+        if not np.square(missed).sum() < 0.9 * np.square(after).sum():
+            break
+        x, after = tried, missed
     return x, after
 
 
@@ -249,11 +232,6 @@ def _start(system: System, rng: np.random.Generator, count: int) -> Floats:
 def _squares(rows: Floats) -> Floats:
     """Of each column."""
     return np.asarray(np.square(rows).sum(axis=0))
-
-
-def _times(matrices: Floats, columns: Floats) -> Floats:
-    """A matrix for each column."""
-    return np.asarray(np.einsum("nij,jn->in", matrices, columns))
 
 
 def _balanced(matrix: Floats) -> Floats:
@@ -580,12 +558,13 @@ def _solutions(
     few, more = begin[:, :_TIGHTENED_FIRST], begin[:, _TIGHTENED_FIRST:_TIGHTENED]
     for some in () if at_hand else (few, more):
         settled = begin.shape[1] == 1 or (some is more and not found.is_open)
-        if not some.size or (found.solutions and settled):
+        if found.solutions and settled:
             break
-        nearby, left_over = tightened(system, some)
-        for i in np.flatnonzero(left_over <= _NEARLY):
-            met = True
-            found.follow(nearby[:, i : i + 1])
+        for one in some.T:
+            nearby, left_over = tightened(system, one[:, None])
+            if left_over <= _NEARLY:
+                met = True
+                found.follow(nearby)
     if not (met or np.isfinite(over).any()):
         raise np.linalg.LinAlgError("not finite")
     if met and not found.solutions:
