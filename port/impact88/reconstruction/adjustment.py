@@ -1,12 +1,10 @@
 """Any reconstruction with its tolerances: adjustment of observations with conditions.
 
-What is known of an impact, each value exactly or within a tolerance, is adjusted so that the laws
-hold exactly: Equations 13, 14 and 17 by the way an impact is written (`State`), Equations 15, 16
-and 18 and the exact values as conditions. The sum of squared adjustments, each in units of its
-standard deviation, is made least: by Gauss and Newton's steps, or Levenberg and Marquardt's while
-tolerances are tightened little by little, and at last by Newton's method, which shows that nothing
-beside it is less. With as many known values as unknowns nothing is adjusted; with fewer, what is
-determined is found. First-order deviations and correlations come from the same equations.
+What is known of an impact is adjusted so that the laws and the exact values hold (`system.System`)
+and the sum of squared adjustments, each in units of its standard deviation, is least: by Gauss and
+Newton's steps, or Levenberg and Marquardt's while tolerances are tightened little by little, and at
+last by Newton's method, which shows that nothing beside it is less. First-order deviations and
+correlations come from the same equations.
 """
 
 from __future__ import annotations
@@ -42,32 +40,28 @@ turned, mirrored, vehicles exchanged), with twice as many none more is found."""
 _TIGHTENED_FIRST, _TIGHTENED = 4, 12
 """Of the starts so many with tolerances tightened little by little, the second number where nothing
 is found by then, or something not determined."""
-_STEPS = 50
-"""Of an iteration at most (a descent: twice as many); with twice as many nothing else is found."""
-_LONGEST, _LAST = 2.0, 1e-14
-"""The longest and the last step in scaled variables, the last as a share of them."""
+# of these none changes a solution of 104 problems when doubled
+_STEPS, _LONGEST, _LAST = 50, 2.0, 1e-14
+"""Of an iteration (a descent: twice as many); longest and last, the last as a share of them."""
 _TIGHTER, _TIGHTEST = 0.1, 1e-12
 """Tolerances are tightened by so much at a time, to so much of an ordinary size at most."""
 _ROUGHLY, _CLOSELY = 0.1, 1e-9
-"""The share of the squares below which a step of a descent gains too little: while tolerances are
-tightened, and at last."""
+"""The share of the squares a descent must gain: while tolerances are tightened, and at last."""
 _HELD = 100.0
 """Conditions count so many times as much as the tightest tolerance."""
 _NEARLY, _HOLDS = 1e-3, 1e-10
-"""What scaled conditions may leave over where the exact solution is sought, and there."""
-_BESIDE = 1e-5
-"""Of two ends no farther apart one is followed."""
+"""What conditions may leave over where the exact solution is sought, and there."""
+_BESIDE, _CLOSE = 1e-5, 0.5
+"""Of ends no farther apart one is followed, no farther than the second."""
 _FEW = 8
-"""So many ends of steps that may climb are followed, where something is not determined."""
-_CLOSE = 0.5
-"""Of the variables: no longer step leads to the exact solution."""
+"""Ends followed where something is not determined."""
 _DIFFERENCE, _DOWNWARD = 1e-6, 1e-9
-"""Half the distance slopes are compared over, for curvatures; and curvatures that are rounding."""
+"""Half the distance slopes are compared over, for curvatures; curvatures that are rounding."""
 _RANK, _OPEN = 1e-10, 1e-7
 """Singular values, and shares of a gradient in the null space, up to that are none."""
 _LIKELY = 4.0
 """Impacts with so many times the least sum of squares are reported, too."""
-_TOLD_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
+_HELPFUL_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 """Of what is not known, what can be found out best."""
 
 
@@ -97,7 +91,7 @@ def straight(system: System, starts: Floats) -> tuple[Floats, Floats]:
         if not len(going):
             break
     left_over = np.abs(system.left(system.state(x))[:count]).max(axis=0, initial=0.0)
-    return x, np.broadcast_to(left_over, x.shape[1:])
+    return x, left_over
 
 
 def tightened(system: System, x: Floats) -> tuple[Floats, float]:
@@ -183,7 +177,7 @@ def polished(system: System, x: Floats) -> tuple[Floats, float]:
         return x, np.inf
     before, after = system.left(system.state(begin)), system.left(system.state(x))
     # neither a saddle nor another valley
-    if not least or _squares(after[count:])[0] > 1.01 * _squares(before[count:])[0] + 1e-9:
+    if not least or np.square(after[count:]).sum() > 1.01 * np.square(before[count:]).sum() + 1e-9:
         return x, np.inf
     return x, float(np.abs(after[:count]).max(initial=0.0))
 
@@ -229,11 +223,6 @@ def _start(system: System, rng: np.random.Generator, count: int) -> Floats:
     return x
 
 
-def _squares(rows: Floats) -> Floats:
-    """Of each column."""
-    return np.asarray(np.square(rows).sum(axis=0))
-
-
 def _balanced(matrix: Floats) -> Floats:
     """A symmetric matrix in other units, so that no row is much larger than others: as many of its
     eigenvalues are negative."""
@@ -262,27 +251,18 @@ def _steps(residual: Floats, slopes: Floats, count: int) -> Floats:
 
 
 def pseudo_inverse(matrix: Floats) -> tuple[Floats, Floats]:
-    """The Moore-Penrose inverse, and a basis of the null space.
-
-    Raises LinAlgError for a matrix that is not finite, whose singular values LAPACK may seek
-    without end.
-    """
+    """The Moore-Penrose inverse, and a basis of the null space. Raises LinAlgError for a matrix
+    that is not finite, whose singular values LAPACK may seek without end."""
     u, s, vt, null = _decomposed(matrix)
     return (vt.T / s) @ u.T, null
 
 
 def _decomposed(matrix: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """U, the singular values above rounding and V^T of a matrix, and a basis of its null space.
-
-    Raises LinAlgError for a matrix that is not finite.
-    """
+    """U, the singular values above rounding, V^T, and a basis of the null space."""
     if not np.isfinite(matrix).all():
         raise np.linalg.LinAlgError("not finite")
-    rows, columns = matrix.shape
-    if not matrix.size:
-        return np.zeros((rows, 0)), np.zeros(0), np.zeros((0, columns)), np.eye(columns)
     u, s, vt = np.linalg.svd(matrix)
-    rank = int((s > _RANK * s[0]).sum()) if s[0] else 0
+    rank = int((s > _RANK * s.max(initial=0.0)).sum())
     return u[:, :rank], s[:rank], vt[:rank], vt[rank:].T
 
 
@@ -306,12 +286,12 @@ class Adjusted(NamedTuple):
 class Reconstruction:
     """One impact that agrees with what is known.
 
-    ``values``: every quantity determined, by name (`state.QUANTITIES`), and the scene's values,
-    adjusted. ``undetermined``: the velocities and coefficients that are not. ``adjusted``: what was
-    known within a tolerance. ``redundancy``: known values more than needed. ``squares``: the sum of
-    squared adjustments in standard deviations; about the redundancy when tolerances are right.
-    ``assumed``: the tolerances were not given but taken equal for all known velocities.
-    ``against_sign``: friction drives the sliding that MU's sign was chosen to oppose.
+    ``values``: every quantity determined (`state.QUANTITIES`), and the scene's values, adjusted;
+    ``undetermined``: velocities and coefficients; ``adjusted``: what was known within a tolerance;
+    ``redundancy``: known values more than needed; ``squares``: of the adjustments in standard
+    deviations, about the redundancy when tolerances are right; ``assumed``: the tolerances were
+    taken equal for all known velocities; ``against_sign``: friction drives the sliding that MU's
+    sign was chosen to oppose.
 
     >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
     >>> best, *others = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
@@ -352,18 +332,16 @@ class Reconstruction:
     @cached_property
     def helpful(self) -> tuple[str, ...]:
         """Further values that would determine all that is not; none where none would."""
-        jacobian = self.system.slopes(self.x)
-        _, null = pseudo_inverse(jacobian)
-        rows = np.zeros((0, null.shape[1]))
-        names: list[str] = []
-        for name in (*_TOLD_FIRST, *self.undetermined):
+        _, null = pseudo_inverse(self.system.slopes(self.x))
+        rows, names = np.zeros((0, null.shape[1])), []
+        for name in dict.fromkeys((*_HELPFUL_FIRST, *self.undetermined)):
             gradient = self.system.gradient(self.x, name)
-            if name in names or name not in self.undetermined or not np.isfinite(gradient).all():
-                continue
-            tried = np.vstack([rows, gradient @ null / np.abs(gradient).max(initial=1e-300)])
-            if np.linalg.matrix_rank(tried, tol=_OPEN) > len(rows):
-                rows = tried
-                names.append(name)
+            if name in self.undetermined and np.isfinite(gradient).all():
+                row = gradient @ null / np.abs(gradient).max(initial=1e-300)
+                tried = np.vstack([rows, row])
+                if np.linalg.matrix_rank(tried, tol=_OPEN) > len(rows):
+                    rows = tried
+                    names.append(name)
         return tuple(names) if len(rows) == null.shape[1] else ()
 
     @cached_property
@@ -372,8 +350,6 @@ class Reconstruction:
         jacobian = self.system.slopes(self.x)
         count = len(self.system.conditions)
         _, free = pseudo_inverse(jacobian[:count])
-        if not free.shape[1] or len(jacobian) == count:
-            return np.zeros((len(self.x), len(self.system.observations)))
         narrowed, _ = pseudo_inverse(jacobian[count:] @ free)
         responses: Floats = free @ narrowed
         if self.assumed and self.redundancy:
@@ -453,13 +429,12 @@ def reconstruct(
     """
     given = _checked(known)
     mu = given.pop("MU", None)
-    if mu is None:
-        readings = [given]
-    elif mu.nominal in (0, PIVOT) and not mu.varies:
+    readings = [given]
+    if mu is not None:
         readings = [{**given, "MUP": mu}]
-    else:
-        turned = replace(mu, nominal=-mu.nominal, low=-mu.high, high=-mu.low)
-        readings = [{**given, "MUP": mu}, {**given, "MUP": turned}]
+        if mu.varies or mu.nominal not in (0, PIVOT):
+            turned = replace(mu, nominal=-mu.nominal, low=-mu.high, high=-mu.low)
+            readings.append({**given, "MUP": turned})
     found: list[Reconstruction] = []
     failure: UserError | None = None
     # what contradicts itself in one reading of MU's sign may agree in the other
@@ -472,9 +447,9 @@ def reconstruct(
         agreeing = [s for s in found if mu is None or _agrees(s, mu.nominal)]
         if agreeing:
             return _preferred(agreeing)
-    fitted = [s for s in found if s.redundancy]
+    fitted = [replace(s, against_sign=True) for s in found if s.redundancy]
     if fitted:
-        return _preferred([replace(s, against_sign=True) for s in fitted])
+        return _preferred(fitted)
     raise failure or UnsolvableError(
         "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
         "opposes the sliding joins what is known"
@@ -513,9 +488,8 @@ def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertai
     if missing:
         raise UserError(f"missing {' '.join(missing)}: the vehicles and their geometry are needed")
     for name in ("MA", "MB", "IA", "IB"):
-        if (not given[name].low > 0 and given[name].kind != "normal") or not given[
-            name
-        ].nominal > 0:
+        least = given[name].nominal if given[name].kind == "normal" else given[name].low
+        if not least > 0:
             raise UserError(f"{name} is not positive")
     if "MU" in given and "MUP" in given:
         raise UserError("MU and MUP are both given; expected one")
@@ -533,9 +507,8 @@ def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertai
 def _agrees(solution: Reconstruction, mu: float) -> bool:
     """Whether friction with this solution's sign opposes its own sliding, as line 400 has it."""
     signed = solution.system.nominal["MUP"]
-    if set(VELOCITIES) & set(solution.undetermined):
-        return True
-    return typed_friction(solution.system.state(solution.x), signed) == mu
+    known = not set(VELOCITIES) & set(solution.undetermined)
+    return not known or typed_friction(solution.system.state(solution.x), signed) == mu
 
 
 def _solutions(
@@ -644,13 +617,10 @@ def _with_tolerances(known: Mapping[str, Uncertain]) -> tuple[Mapping[str, Uncer
     if any(item.varies for item in known.values()):
         return known, False
     length = System(known, adjusted=False).gyration
-    measured = {
-        name: Uncertain(
-            *("normal", item.nominal, -np.inf, np.inf), 1 / length if name in SPINS else 1.0
-        )
-        for name, item in known.items()
-        if name in (*VELOCITIES, *FINAL_STATE)
-    }
+    measured = {}
+    for name in {*known} & {*VELOCITIES, *FINAL_STATE}:
+        deviation = 1 / length if name in SPINS else 1.0
+        measured[name] = Uncertain("normal", known[name].nominal, -np.inf, np.inf, deviation)
     return {**known, **measured}, True
 
 
@@ -659,8 +629,6 @@ def _described(system: System, x: Floats, residual: float, assumed: bool) -> Rec
     rest = system.left(state)[:, 0]
     rows = system.slopes(x)
     _, null = pseudo_inverse(rows)
-    count = len(system.conditions)
-    rank = rows.shape[1] - null.shape[1]
     values = {n: float(np.ravel(state.values[n])[0]) for n in ("M", *GEOMETRY)}
     undetermined = []
     with np.errstate(all="ignore"):
@@ -688,14 +656,9 @@ def _described(system: System, x: Floats, residual: float, assumed: bool) -> Rec
         item = system.known[name]
         value = float(np.ravel(system.measured(state, name))[0])
         adjusted.append(Adjusted(name, item.nominal, item.tolerance, value))
+    rest = rest[len(system.conditions) :]
+    redundancy = len(rows) - (rows.shape[1] - null.shape[1])
     return Reconstruction(
-        system=system,
-        x=x,
-        values=values,
-        undetermined=tuple(undetermined),
-        adjusted=tuple(adjusted),
-        redundancy=len(rows) - rank,
-        squares=float(rest[count:] @ rest[count:]),
-        left_over=residual,
-        assumed=assumed,
+        *(system, x, values, tuple(undetermined), tuple(adjusted), redundancy),
+        *(float(rest @ rest), residual, assumed),
     )

@@ -3,11 +3,7 @@
 The contact plane makes the angle Γ with the y axis; n = (cos Γ, sin Γ) is normal to it, t =
 (-sin Γ, cos Γ) lies in it. The contact point is at (-d4, -d3) from A's center of gravity and at
 (d2, d1) from B's, so A is on the +n side. The impulse (P_n, P_t) and moment impulse M act on A,
-their opposites on B.
-
-`Geometry` states the two linear maps everything else is made of: velocities -> relative velocity
-at the contact point, and impulse -> velocity changes. Masses and inertias appear inverted only,
-so that a rigid barrier (infinite mass) is nothing special.
+their opposites on B. Masses appear inverted only: a rigid barrier is nothing special.
 """
 
 from __future__ import annotations
@@ -54,11 +50,8 @@ def with_point_masses(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Geometry:
-    """Directions, contact point and inverse inertias of scenes, as arrays that broadcast.
-
-    ``cosine`` and ``sine`` of Γ; ``d1`` ... ``d4`` as in listing line 330; ``point`` where the
-    vehicles are point masses (M = 4: no lever arms, nothing turns them).
-    """
+    """Of scenes, as arrays that broadcast: ``cosine`` and ``sine`` of Γ; ``d1`` ... ``d4`` as in
+    listing line 330; ``point``: point masses (M = 4: no lever arms, nothing turns them)."""
 
     cosine: Array
     sine: Array
@@ -74,8 +67,7 @@ class Geometry:
 
     @classmethod
     def of(cls, columns: Mapping[str, Any]) -> Geometry:
-        """The geometry of scenes given by name (`NAMES`, and M where not 6; see
-        `with_point_masses`), angles in degrees."""
+        """Of scenes given by name (`NAMES`, and M where not 6), angles in degrees."""
         columns = with_point_masses(columns)
         value = {name: _numbers(columns[name]) for name in NAMES}
         point = np.asarray(columns.get("M", 6), np.float64) == 4
@@ -84,49 +76,35 @@ class Geometry:
         sine_b, cosine_b = sin_cos(value["TB"] + value["PB"])
         da, db = np.where(point, 0.0, value["DA"]), np.where(point, 0.0, value["DB"])
         with np.errstate(divide="ignore"):
-            return cls(
-                cosine=cosine,
-                sine=sine,
-                d1=db * sine_b,
-                d2=db * cosine_b,
-                d3=da * sine_a,
-                d4=da * cosine_a,
-                inverse_ma=1 / value["MA"],
-                inverse_mb=1 / value["MB"],
-                inverse_ia=1 / value["IA"],
-                inverse_ib=1 / value["IB"],
-                point=point,
-            )
+            ma, mb, ia, ib = (1 / value[name] for name in ("MA", "MB", "IA", "IB"))
+        d1, d2, d3, d4 = db * sine_b, db * cosine_b, da * sine_a, da * cosine_a
+        return cls(cosine, sine, d1, d2, d3, d4, ma, mb, ia, ib, point)
 
     @cached_property
-    def an(self) -> Array:
+    def an(self) -> Any:
         """Normal lever arm of A: the spin's share in the contact point's normal velocity."""
-        result: Array = self.d3 * self.cosine - self.d4 * self.sine
-        return result
+        return self.d3 * self.cosine - self.d4 * self.sine
 
     @cached_property
-    def at(self) -> Array:
-        result: Array = -(self.d4 * self.cosine + self.d3 * self.sine)
-        return result
+    def at(self) -> Any:
+        return -(self.d4 * self.cosine + self.d3 * self.sine)
 
     @cached_property
-    def bn(self) -> Array:
+    def bn(self) -> Any:
         """Normal lever arm of B, with the sign it has in the *relative* velocity A minus B."""
-        result: Array = self.d1 * self.cosine - self.d2 * self.sine
-        return result
+        return self.d1 * self.cosine - self.d2 * self.sine
 
     @cached_property
-    def bt(self) -> Array:
-        result: Array = -(self.d2 * self.cosine + self.d1 * self.sine)
-        return result
+    def bt(self) -> Any:
+        return -(self.d2 * self.cosine + self.d1 * self.sine)
 
-    @cached_property
-    def inverse_mass(self) -> Array:
+    @property
+    def inverse_mass(self) -> Any:
         """R = 1/m_a + 1/m_b."""
         return self.inverse_ma + self.inverse_mb
 
-    @cached_property
-    def inverse_spin_inertia(self) -> Array:
+    @property
+    def inverse_spin_inertia(self) -> Any:
         """1/Ī = 1/I_a + 1/I_b."""
         return self.inverse_ia + self.inverse_ib
 
@@ -139,8 +117,8 @@ class Geometry:
         return normal, c * dy - s * dx + self.at * wa + self.bt * wb, wa - wb
 
     def changes(self, pn: Any, pt: Any, moment: Any) -> list[Array]:
-        """The changes of the six velocities an impulse makes (the reason no inertia is inverted
-        twice: the map is the transpose of `relative`'s, times the inverse inertias)."""
+        """The changes of the six velocities an impulse makes: the transpose of `relative`'s map,
+        times the inverse inertias."""
         x, y = self.cosine * pn - self.sine * pt, self.sine * pn + self.cosine * pt
         on_a, on_b = self.an * pn + self.at * pt + moment, self.bn * pn + self.bt * pt - moment
         a, b = self.inverse_ma, self.inverse_mb

@@ -1,14 +1,12 @@
 """Force from impulse (chapter, Section III), and the direction a vehicle feels it from.
 
 An impulse P over the contact time t_f is an average force F_A = P/t_f; the largest force F_M is
-"typically two to three times the average"; contact "almost always is from 0.1 to 0.2 sec". All
-are estimates, as good as the contact time.
+"typically two to three times the average".
 
 Principal direction of force (PDOF), as the field states it: the direction *from* which the force
-comes, seen from the vehicle, clockwise from its front: 0 a frontal, 90 a blow from the right, -90
-from the left, 180 from behind. Which way a vehicle faces follows from the chapter's geometry: B's
-contact point lies at the angle θ_b + φ_b from its center of gravity, so B faces θ_b; A's lies at
-θ_a + φ_a + 180°, so A faces θ_a + 180° (Table 1: A's with θ = 0 drive towards -x).
+comes, seen from the vehicle, clockwise from its front: 0 a frontal, 90 a blow from the right, 180
+from behind. B's contact point lies at the angle θ_b + φ_b from its center of gravity, so B faces
+θ_b; A's lies at θ_a + φ_a + 180°, so A faces θ_a + 180°.
 """
 
 from typing import Any
@@ -20,22 +18,15 @@ from ..errors import UserError
 
 Array = NDArray[np.float64]
 
-PEAK_FACTORS = (2.0, 3.0)
-"""Peak over average force, lower and upper, of Section III."""
-
 
 def forces(impulse: Any, contact_time: Any) -> dict[str, Array]:
-    """Average force FA and the range FM2 ... FM3 of the peak force of an impulse.
-
-    ``impulse`` (mass·length/time) and ``contact_time`` (time) broadcast. Raises UserError unless
-    every contact time is positive.
-    """
+    """Average force FA and the range FM2 ... FM3 of the peak force of an impulse over a contact
+    time. Raises UserError unless every contact time is positive."""
     time = np.asarray(contact_time, np.float64)
     if not (time > 0).all() or not np.isfinite(time).all():
         raise UserError(f"contact time {contact_time} is not positive; expected a duration")
     average = np.abs(np.asarray(impulse, np.float64)) / time
-    low, high = PEAK_FACTORS
-    return {"FA": average, "FM2": low * average, "FM3": high * average}
+    return {"FA": average, "FM2": 2.0 * average, "FM3": 3.0 * average}
 
 
 def facing(vehicle: str, theta: Any) -> Array:

@@ -73,14 +73,12 @@ class UnsolvableError(UserError):
 class Solution:
     """One solution: every quantity it has, by name, in the shape of the given values.
 
-    ``values``: the velocities, E, EM, MUP, MU (to be typed into the listing) and the impulses PN
-    PT PM, as far as they are given or determined. ``unknown``: what was solved for.
-    ``amplification``: for each of them, the error it takes when every known velocity is in error,
-    independently, by one unit (root of the sum of squares; a spin's unit is one unit of velocity
-    over ``gyration``; a coefficient's error is multiplied by the closing speed, so that it is
-    a pure number like the others). ``agrees``: whether the sign of MUP is the one line 400 gives.
-    ``mismatch``: for unknowns fewer than the equations, the equations' root-mean-square mismatch,
-    a velocity; 0 otherwise.
+    ``values``: velocities, E, EM, MUP, MU (to be typed into the listing), PN PT PM, as far as they
+    are determined; ``unknown``: what was solved for; ``amplification``: the error of each unknown
+    when every known velocity errs, independently, by one unit (a spin's unit is one of velocity
+    over ``gyration``, a coefficient's error is multiplied by the closing speed); ``agrees``:
+    whether the sign of MUP is the one line 400 gives; ``mismatch``: root mean square of what the
+    equations leave over, a velocity.
 
     >>> solution, *others = impact88.solve_for({**impact88.sample(1)})
     >>> float(solution.values["VAX"].round(3))
@@ -100,17 +98,12 @@ class Solution:
     @property
     def found(self) -> NDArray[np.bool_]:
         """Where all unknowns have a value."""
-        result: NDArray[np.bool_] = np.all(
-            [np.isfinite(self.values[n]) for n in self.unknown], axis=0
-        )
-        return result
+        return np.asarray(np.all([np.isfinite(self.values[n]) for n in self.unknown], axis=0))
 
     @property
     def worst(self) -> Array:
         """The largest amplification of any unknown."""
-        zero = np.zeros(np.shape(self.agrees))
-        result: Array = np.max([zero, *self.amplification.values()], axis=0)
-        return result
+        return np.asarray(np.max([*self.amplification.values()], axis=0))
 
     @property
     def badly_conditioned(self) -> NDArray[np.bool_]:
@@ -121,28 +114,24 @@ class Solution:
     def contradictory(self) -> NDArray[np.bool_]:
         """Whether the known values contradict one another beyond rounding."""
         speeds = [np.abs(self.values[n]) for n in (*VELOCITIES, *FINAL_STATE) if n in self.values]
-        result: NDArray[np.bool_] = self.mismatch > 1e-9 * np.max(speeds, axis=0)
-        return result
+        return np.asarray(self.mismatch > 1e-9 * np.max(speeds, axis=0))
 
 
 @within_doubles
 def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) -> list[Solution]:
     """Solve Equations 13-18 for what ``known`` leaves out.
 
-    ``known``: numbers or arrays that broadcast, by name: the vehicles and their geometry (DA DB GA
-    PA PB TA TB MA MB IA IB; M, 6 where left out, 4 for point masses; MB and IB may be infinite),
-    and whichever are known of the velocities before (UX UY WA VX VY WB) and after (VAX VAY WAF VBX
-    VBY WBF) and the coefficients E, EM, and MUP or MU (-10: pivot). ``unknown``: the quantities
-    wanted; by default all that is left out. Ask for fewer to get those that are determined though
-    the rest is not (Section VII finds UX and VY from Equations 13 and 14, no coefficient known).
+    ``known``: numbers or arrays that broadcast, by name: the vehicles and their geometry (M is 6
+    where left out, 4 for point masses; MB and IB may be infinite), velocities before (UX ... WB)
+    and after (VAX ... WBF), coefficients E, EM, and MUP or MU (-10: pivot). ``unknown``: the
+    quantities wanted, by default all that is left out; fewer may be determined though the rest is
+    not (Section VII finds UX and VY from Equations 13 and 14, no coefficient known).
 
     Returns one `Solution`, or two where MU is known in size only and both signs agree with the
-    sliding they lead to. For single scenes only agreeing solutions are returned, and of these no
-    least-squares fit of contradictory values (`Solution.contradictory`) beside one without
-    contradiction; for arrays, solutions that agree anywhere, with their mask. An element of an
-    array that is not determined is NaN; a single scene, or an array without any determined element,
-    raises `UnsolvableError` with the reason. Raises UserError for names or numbers that cannot be
-    used.
+    sliding they lead to: of single scenes those that agree, least-squares fits of contradictory
+    values only where nothing else is; of arrays those that agree anywhere. An element that is not
+    determined is NaN; where none is, raises `UnsolvableError` with the reason. Raises UserError for
+    names or numbers that cannot be used.
 
     >>> known = {**impact88.sample(1)}
     >>> after = impact88.solve(known, impact88.names.FINAL_VELOCITIES)
@@ -171,10 +160,8 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
 
 @dataclass(frozen=True)
 class _Problem:
-    """What is known and wanted, checked; every number an array of one ``shape``.
-
-    ``names``: what can be unknown; ``absent``: what is.
-    """
+    """What is known and wanted, checked; every number an array of one ``shape``; ``names``: what
+    can be unknown; ``absent``: what is."""
 
     known: dict[str, Array]
     wanted: tuple[str, ...]
@@ -210,17 +197,12 @@ class _Problem:
         """MUP, or MU with its sign still open."""
         return self.known.get("MUP", self.known.get("MU"))
 
-    @property
-    def pivot(self) -> bool:
-        return self.friction is not None and bool((self.friction == PIVOT).any())
-
     def solutions(self) -> list[Solution]:
-        """One solution, or one for each sign of MU where line 400 cannot be applied beforehand;
-        NaN where not determined."""
+        """One solution, or one for each sign of MU where line 400 needs what is unknown."""
         if "MU" not in self.known:
             return [self._solved(self.friction)]
         mu = self.known["MU"]
-        if self.pivot or not mu.any():
+        if (mu == PIVOT).any() or not mu.any():
             return [self._solved(mu)]
         if all(name in self.known for name in VELOCITIES if not (self.point and name in SPINS)):
             # solve's own line 400; what else a scene has does not matter to it
@@ -270,16 +252,15 @@ class _Problem:
             given["MUP"] = given.pop("MU")
         return _Problem.of(given | changes, wanted)
 
-    def _determined(self, wanted: Sequence[str], **changes: float) -> bool:
-        """Whether all of ``wanted`` is determined in the first scene, for some sign of MU."""
-        problem = self._first(wanted, **changes)
-        return any(bool(solution.found.all()) for solution in problem.solutions())
+    def _determines(self, wanted: Sequence[str], **changes: float) -> bool:
+        """Whether all of ``wanted`` is determined in the first scene."""
+        return all(s.found.all() for s in self._first(wanted, **changes).solutions())
 
     def reason(self) -> str:
         """One line saying why the wanted unknowns are not determined in the first scene."""
         if blame := self._coefficient_to_blame() or self._nothing_over_nothing():
             return blame
-        alone = [name for name in self.absent if self._determined([name])]
+        alone = [name for name in self.absent if self._determines([name])]
         hint = f"; {' '.join(alone)} could be found alone" if alone else ""
         count, few = (4, "four") if self.point else (6, "six")
         if len(self.absent) > count:
@@ -308,7 +289,7 @@ class _Problem:
             given["MUP"] = self.friction.flat[0]
         for size in range(1, len(given) + 1):
             for names in combinations(given, size):
-                if self._determined(self.wanted, **{n: ORDINARY[n] for n in names}):
+                if self._determines(self.wanted, **{n: ORDINARY[n] for n in names}):
                     return "; and ".join(_blame(n, float(given[n])) for n in names)
         return None
 
@@ -316,7 +297,7 @@ class _Problem:
         """A wanted coefficient whose parts are determined but give no quotient."""
         bad = []
         for name in self.wanted:
-            alone = name in COEFFICIENTS and not self._determined([name])
+            alone = name in COEFFICIENTS and not self._determines([name])
             if alone and _determined(self._first([name]).known, [name], self.point)["parts"].all():
                 bad.append(_NO_VALUE[name])
         return "; and ".join(bad) or None
@@ -443,23 +424,17 @@ _NO_VALUE = {
 
 
 def _blame(name: str, value: float) -> str:
-    if name == "E" and value == 0:
-        return (
-            "E = 0: Equation 15 then only says that the contact points stay together, so the "
-            "final velocities do not determine how fast they approached"
-        )
-    if name == "EM" and value == 0:
-        return (
-            "EM = 0: Equation 18 then only says that the final spins are equal, and the "
-            "moment impulse is not determined"
-        )
-    if name == "MUP" and value == PIVOT:
-        return (
-            "MU = -10 (pivot): its condition holds for final velocities only, and the "
-            "tangential impulse is not determined"
-        )
+    why = {
+        ("E", 0.0): "E = 0: Equation 15 then only says that the contact points stay together, so "
+        "the final velocities do not determine how fast they approached",
+        ("EM", 0.0): "EM = 0: Equation 18 then only says that the final spins are equal, and the "
+        "moment impulse is not determined",
+        ("MUP", PIVOT): "MU = -10 (pivot): its condition holds for final velocities only, and the "
+        "tangential impulse is not determined",
+    }
     label = "MU (signed)" if name == "MUP" else name
-    return f"{label} = {value:.6g}: at exactly this value the unknowns cannot be separated"
+    usual = f"{label} = {value:.6g}: at exactly this value the unknowns cannot be separated"
+    return why.get((name, value), usual)
 
 
 def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:
@@ -484,22 +459,18 @@ def _is_point_mass(given: Mapping[str, Array]) -> bool:
 
 
 def check_physical(given: Mapping[str, Array]) -> None:
-    """Raises UserError for what no vehicles have: masses that are not positive, two infinite ones,
-    values that are not finite."""
+    """Raises UserError for values that are not finite, masses that are not positive, two infinite
+    ones."""
     mu = given.get("MUP", given.get("MU"))
     if mu is not None and (mu == PIVOT).any() and not (mu == PIVOT).all():
         raise UserError("MU is the pivot's -10 in some scenes only; solve pivots apart")
     for name, value in given.items():
+        meaning = f"{quantity(name).meaning} [{quantity(name).unit}]"
         infinite_allowed = name in ("MA", "MB", "IA", "IB")
         if np.isnan(value).any() or (np.isinf(value).any() and not infinite_allowed):
-            raise UserError(f"{name} is not finite; expected {_meaning(name)}")
+            raise UserError(f"{name} is not finite; expected {meaning}")
         if infinite_allowed and not (value > 0).all():
-            raise UserError(f"{name} is not positive; expected {_meaning(name)}")
+            raise UserError(f"{name} is not positive; expected {meaning}")
     for kind, names in (("mass", ("MA", "MB")), ("moment of inertia", ("IA", "IB"))):
         if all(np.isinf(given[name]).any() for name in names):
             raise UserError(f"{' and '.join(names)} are both infinite; expected one {kind} at most")
-
-
-def _meaning(name: str) -> str:
-    what = quantity(name)
-    return f"{what.meaning} [{what.unit}]"
