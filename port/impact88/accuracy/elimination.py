@@ -28,8 +28,8 @@ ORDER = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 def fill(columns: Mapping[str, Any], pi: float = np.pi) -> tuple[Array, Array]:
     """The matrices (n, 6, 6) and right-hand sides (n, 6) of n scenes with M = 6.
 
-    ``columns``: scene name -> array of shape (n,) or number. `listing_rows`, with ``pi`` for the
-    listing's. Where line 510 takes for a pivot what is none (MU below -10), this does not.
+    ``columns``: scene name -> array of shape (n,) or number. Where line 510 takes for a pivot what
+    is none (MU below -10), this does not.
     """
     g = {name: np.asarray(value, dtype=np.float64) for name, value in columns.items()}
 
@@ -63,14 +63,9 @@ def changes(columns: Mapping[str, Any], A: Array) -> tuple[Array, Array]:
     """Right-hand sides (n, 6) with which the matrices of `fill` give what the velocities *change*,
     and the velocities before (n, 6). They are small where a body is heavy; the listing's unknowns,
     the velocities themselves, then lose them."""
-    before = np.stack(
-        np.broadcast_arrays(
-            *(np.asarray(columns[name], dtype=np.float64) for name in VELOCITIES_OF_BOTH),
-            np.empty(len(A)),
-        )[:6],
-        axis=1,
-    )
-    b = np.zeros((len(A), 6))
+    b, before = np.zeros((2, len(A), 6))
+    for i, name in enumerate(VELOCITIES_OF_BOTH):
+        before[:, i] = columns[name]
     # gn and, of a pivot, gt are what rows 4 and 3 make of the velocities before
     approach, slip = (np.einsum("ij,ij->i", A[:, row], before) for row in (3, 2))
     b[:, 2] = np.where(np.asarray(columns["MU"]) == PIVOT, -slip, 0.0)

@@ -3,12 +3,9 @@
 `Bounded` numbers carry, beside a double, how far the 1988 program's number may be from the exact
 one: what its operands are off, and what the operation rounds, always at their worst. Lines 300 to
 560 and 1000 to 1170 are done in them (`elimination`), so the bound knows what the listing's choice
-of unknowns and its pivots without scaling do to a lorry and a car, which the condition of the
-equations does not. It is of first order (where a divisor is uncertain by a quarter there is none),
-supposes that the pivots chosen are those a double finds.
-On 10^5 scenes of each population of the benchmark that the program can be given, bodies 10^12 times
-heavier than others among them, no error was above it; it is a thousand times the error of a usual
-scene.
+of unknowns and its pivots without scaling do. It is of first order and supposes that the pivots
+chosen are those a double finds. On 10^5 scenes of each of the benchmark's populations that can be
+typed no error was above it; it is a thousand times the error of a usual scene.
 """
 
 from __future__ import annotations

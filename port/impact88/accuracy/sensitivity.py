@@ -1,9 +1,8 @@
 """How far final velocities move when the scene's numbers do: the condition of the data.
 
-A method is backward stable when its result is the exact result of nearly the given scene: when its
-error is a small multiple of the unit roundoff times the sensitivity given here. The condition of
-the six equations alone does not bound it: in a sideswipe the approach is a small difference of
-large velocities, and no arithmetic can know it better than they are known.
+A method is backward stable when its error is a small multiple of the unit roundoff times this
+sensitivity. The condition of the six equations alone does not bound it: in a sideswipe the approach
+is a small difference of large velocities.
 """
 
 from collections.abc import Mapping, Sequence

@@ -108,11 +108,8 @@ class Block(NamedTuple):
 
 
 def examine(values: Mapping[str, Floats]) -> Block:
-    """Find out what kind of block this is. ``values``: columns of one length, or of length 1.
-
-    Every column is read for its least and largest number; only where something may be unusable are
-    the scenes looked at one by one.
-    """
+    """Find out what kind of block this is. ``values``: columns of one length, or of length 1. Only
+    where something may be unusable are the scenes looked at one by one."""
     extremes = dict(zip(values, _extremes(list(values.values())), strict=True))
     only_points = extremes["M"] == (4.0, 4.0)
     fixed: dict[str, Floats] = {}

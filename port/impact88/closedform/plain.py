@@ -56,7 +56,7 @@ class _Layout:
 
 
 class _Look:
-    """What the machine finds of columns: the least and the most of each, and its kind."""
+    """What the machine finds of columns: the least and the most of each (``found``), its kind."""
 
     def __init__(self, layout: _Layout) -> None:
         self.where = np.empty(len(NAMES), np.int64)

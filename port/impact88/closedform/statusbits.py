@@ -31,12 +31,11 @@ def friction_faults(gn: Any, pn: Any, mu: Any, pivot_pn: Any, pivot_pt: Any) -> 
     sign, 0 for a pivot; ``pivot_pn``, ``pivot_pt``: the impulse on A if the sliding ended at
     separation. They broadcast.
 
-    In an approach (gn < 0, Pn > 0) friction is admissible from 0 to what ends the sliding: the
-    pivot's P_t/P_n, MUC. With less some of the sliding is left, against which friction still acts;
-    with more it is reversed. A normal impulse on eccentric contact turns the sliding round without
-    any friction, so its direction before the impact decides nothing. Where the pivot's normal
-    impulse would pull, no friction ends the sliding, and any in the pivot's direction is
-    admissible. Where MUC is 0 no friction is, for without it the points do not slide apart.
+    In an approach (gn < 0, Pn > 0) friction is admissible from 0 to what ends the sliding, the
+    pivot's P_t/P_n, MUC; with more it is reversed. The direction of the sliding before the impact
+    decides nothing: a normal impulse on eccentric contact can turn it round without friction. Where
+    the pivot's normal impulse would pull, no friction ends the sliding, and any in the pivot's
+    direction is admissible. Where MUC is 0 none is.
     """
     room = FRICTION_TOLERANCE
     approach, limited, down = (gn < 0) & (pn > 0), pivot_pn > 0, pivot_pt < 0

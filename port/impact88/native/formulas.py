@@ -1,12 +1,11 @@
 """Expressions over columns: formulas written once, pruned to what is asked and to what is given.
 
-A formula is written with `Expression` operands and the usual operators. Building it does no
-arithmetic; it records *what* would be computed, and leaves out on the spot what need not be:
+A formula is written with `Expression` operands and the usual operators, which record what would be
+computed, and leave out on the spot what need not be:
 
 - equal subexpressions become one (same operation on the same operands);
 - an operand known to be exactly 0, 1 or infinite disappears: x + 0, x · 1, 0 · x, sin 0, 1/inf;
-- signs go into sums: a + (-b) · c becomes a - b · c;
-- what no wanted result depends on is never reached when a `plan` is made.
+- signs go into sums: a + (-b) · c becomes a - b · c.
 
 None of these changes a bit of a result (but the sign of a zero, which a plan clears), and no other
 rearrangement is made: a scene gets the same digits alone, in a column, and on every path.

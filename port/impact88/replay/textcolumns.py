@@ -52,9 +52,6 @@ def over_ten(x: Reals) -> Reals:
     return abs(x) / _TEN
 
 
-# --- reading --------------------------------------------------------------------------------------
-
-
 def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals:
     """The numbers that texts are, extension included: as many texts as ``unit`` has scenes.
 
@@ -126,15 +123,9 @@ def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
     x.unit.join(part, rows)
 
 
-# --- writing --------------------------------------------------------------------------------------
-
-
 def write(x: Reals, texts: Strings | None = None) -> Strings:
     """The characters PRINT makes of each: at most nine digits, the extension counted; into
-    ``texts``, if given.
-
-    Records OVERFLOW, and writes nothing: where rounding the very largest numbers fails.
-    """
+    ``texts``, if given. Records OVERFLOW where rounding the very largest numbers fails."""
     v = np.ascontiguousarray(x.v)
     texts = np.empty(v.shape, TEXT) if texts is None else texts
     unit = x.unit or Unit(v.size)
@@ -163,8 +154,6 @@ def _written_together(x: Reals) -> Strings:
 
 _ROUNDS_TO_OVERFLOW = 2.0**127 - 2.0**94
 """From exponent byte 255, mantissa FFFFFFFF and extension 80 on."""
-_SURELY_BELOW = 9e7
-"""Below this the comparison with 99,999,999.9 needs not be made."""
 
 
 def _nine_digits(x: Reals) -> tuple[Ints, Ints, Bools]:
@@ -173,34 +162,16 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints, Bools]:
     v = np.abs(x.v)
     failed = v >= _ROUNDS_TO_OVERFLOW
     v[failed] = 0.0
-    d = np.zeros(v.shape, np.int64)
-    nonzero = v != 0
-
-    def part(rows: Ints) -> Reals:
-        return Reals(v[rows], Unit(rows.size))
-
-    rows = np.flatnonzero(nonzero & (v < 1))
-    if rows.size:
-        v[rows] = (_BILLION * part(rows)).v
-        d[rows] = -9
-    rounds = nonzero.copy()
-    rows = np.flatnonzero(v > _SURELY_BELOW)
-    while rows.size:
-        current = part(rows)
-        order = compare(_NINE_DIGITS, current)
-        rounds[rows[order == 0]] = False
-        rows = rows[order > 0]
-        if rows.size:
-            v[rows] = over_ten(part(rows)).v
-            d[rows] += 1
-    rows = done = np.flatnonzero(rounds)
-    while rows.size:
-        doubtful = v[rows] > _SURELY_BELOW
-        if doubtful.any():
-            rows = rows[~doubtful | (compare(_EIGHT_DIGITS, part(rows)) <= 0)]
-        if rows.size:
-            v[rows] = times_ten(part(rows)).v
-            d[rows] -= 1
-    if done.size:
-        v[done] = (_HALF + part(done)).v
+    nonzero, small = v != 0, (v != 0) & (v < 1)
+    unit = Unit(v.size)
+    v = np.where(small, (_BILLION * Reals(v, unit)).v, v)
+    d = np.where(small, -9, 0)
+    while (above := (order := compare(_NINE_DIGITS, Reals(v, unit))) > 0).any():
+        v = np.where(above, over_ten(Reals(v, unit)).v, v)
+        d += above
+    rounds = nonzero & (order != 0)
+    while (below := rounds & (compare(_EIGHT_DIGITS, Reals(v, unit)) <= 0)).any():
+        v = np.where(below, times_ten(Reals(v, unit)).v, v)
+        d -= below
+    v = np.where(rounds, (_HALF + Reals(v, unit)).v, v)
     return np.floor(v).astype(np.int64), d, failed
