@@ -61,7 +61,8 @@ def fifty_digits(scene: Mapping[str, str | float]) -> dict[str, Any]:
         f |= {"PN": P.normal, "PT": P.tangential, "PM": P.moment, "MUP": t.mu}
         if t.point:
             f |= {"WAF": t.g["WA"], "WBF": t.g["WB"]}
-        return f | _critical_friction(texts)
+        pivot = reference.impulse(reference.terms({**texts, "MU": "-10"}))
+        return f | ({"MUC": pivot.tangential / pivot.normal} if pivot and pivot.normal else {})
 
 
 def _contact_velocities(t: Any, velocities: list[Any], suffix: str) -> dict[str, Any]:
@@ -101,9 +102,3 @@ def _energies(t: Any, P: Any, after: list[Any]) -> dict[str, Any]:
         work = total(P.normal * normal, P.tangential * sliding, P.moment * total(wa, -wb))
         values["LOSS"] = -50 * work / initial
     return values
-
-
-def _critical_friction(texts: Mapping[str, str | float]) -> dict[str, Any]:
-    """MUC, the ratio of tangential to normal impulse when the contact point is a pivot."""
-    P = reference.impulse(reference.terms({**texts, "MU": "-10"}))
-    return {"MUC": P.tangential / P.normal} if P is not None and P.normal else {}

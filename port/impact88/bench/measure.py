@@ -89,14 +89,15 @@ def memory_roof() -> float:
     return medians([move], 7)[0] / ROOF_SCENES
 
 
-def medians(works: Sequence[Callable[[], object]], repeats: int) -> list[float]:
-    """The median processor time of each work, in seconds; a round does every one once, so that all
-    see the same machine."""
+def medians(works: Sequence[Callable[[], object]], repeats: int, calls: int = 1) -> list[float]:
+    """The median processor time of each work in ``calls`` calls, in seconds; a round does every
+    one, so that all see the same machine."""
     times: list[list[float]] = [[] for _ in works]
     for _ in range(repeats):
         for taken, work in zip(times, works, strict=True):
             start = time.process_time()
-            work()
+            for _ in range(calls):
+                work()
             taken.append(time.process_time() - start)
     return [statistics.median(taken) for taken in times]
 
@@ -196,11 +197,6 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
     return rows
 
 
-def _repeated(work: Callable[[], object], calls: int) -> None:
-    for _ in range(calls):
-        work()
-
-
 def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
     """The six velocities for growing numbers of scenes: nanoseconds a scene, the same into arrays
     given again and again (``out``), what memory alone takes, and MiB allocated beside the
@@ -219,7 +215,7 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
             partial(solve, columns, out=room, threads=1),
             move,
         )
-        times = medians([partial(_repeated, work, calls) for work in works], repeats)
+        times = medians(works, repeats, calls)
         row: Row = {"scenes": count, "seconds": times[0] / calls}
         for key, taken in zip(("nanoseconds", "nanoseconds_out", "memory"), times, strict=True):
             row[key] = 1e9 * taken / calls / count

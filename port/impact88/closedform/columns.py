@@ -32,8 +32,6 @@ Limits = tuple[float, float]
 """Least and most."""
 _LARGEST = float(np.finfo(np.float64).max)
 _SMALLEST = float(np.nextafter(0.0, 1.0))
-_ABOVE_PIVOT = float(np.nextafter(PIVOT, 0.0))
-_ANY = -_LARGEST, _LARGEST
 
 
 Source = Array | Any
@@ -166,17 +164,12 @@ def _extremes(columns: Sequence[Floats]) -> list[Limits]:
     return found
 
 
-def _ordinary(name: str) -> Limits:
-    if name in ANGLES:
-        return -LARGE_ANGLE, LARGE_ANGLE
-    if name in INERTIAS:
-        return _SMALLEST, _LARGEST
-    if name == "M":
-        return 6.0, 6.0
-    return (_ABOVE_PIVOT, _LARGEST) if name == "MU" else _ANY
-
-
-ORDINARY = {name: _ordinary(name) for name in SCENE}
+ORDINARY: dict[str, Limits] = {
+    **dict.fromkeys(SCENE, (-_LARGEST, _LARGEST)),
+    **dict.fromkeys(ANGLES, (-LARGE_ANGLE, LARGE_ANGLE)),
+    **dict.fromkeys(INERTIAS, (_SMALLEST, _LARGEST)),
+    **{"M": (6.0, 6.0), "MU": (float(np.nextafter(PIVOT, 0.0)), _LARGEST)},
+}
 """Name -> within which a column is an ordinary array, or an ordinary value: nothing in it has to be
 looked at."""
 

@@ -1,8 +1,10 @@
 """What is run for a kind of block and the results wanted: numpy's plan (`plan.Plan`), one operation
 at a time, or the same operations as a program of `impact88.native`, one pass over the scenes."""
 
-import ctypes
+import struct
 from functools import lru_cache
+
+import numpy as np
 
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE
 from ..native.formulas import Expression, ExpressionTable
@@ -16,26 +18,15 @@ Kinds = tuple[str, ...]
 """Of each column, see `closedform.columns.Block`."""
 
 
-class _Circle(ctypes.Structure):
-    """What `degrees.sine_and_cosine` works with."""
-
-    _fields_ = (
-        ("turn", ctypes.c_void_p),
-        *((name, ctypes.c_double) for name in "per_step step shift s0 s1 s2 c1 c2".split()),
-        ("steps", ctypes.c_int64),
-    )
-
-
-_CIRCLE = _Circle(
-    degrees.table().ctypes.data,
-    1 / sinetable.STEP,
-    sinetable.STEP,
-    sinetable.INTEGER_IN_LOW_BITS,
-    *sinetable.POLYNOMIALS,
-    sinetable.STEPS,
-)
-CIRCLE = ctypes.addressof(_CIRCLE)
-"""Where the machine finds it."""
+_CIRCLE = np.frombuffer(
+    struct.pack(
+        *("P8dq", degrees.table().ctypes.data, 1 / sinetable.STEP, sinetable.STEP),
+        *(sinetable.INTEGER_IN_LOW_BITS, *sinetable.POLYNOMIALS, sinetable.STEPS),
+    ),
+    np.uint8,
+).copy()
+CIRCLE = _CIRCLE.ctypes.data
+"""Where the machine finds what sines and cosines are made of, ``circle`` there."""
 
 
 @lru_cache(maxsize=1024)
@@ -48,18 +39,6 @@ def plan_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None) -
 def program_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None) -> Program:
     """By the compiled machine: no negative zero, and NaN for what is not finite; COND alone may be
     infinite."""
-    results = _expressions(kinds, wanted, sign)
-    endings = ["RESULT_OR_INFINITE" if name == "COND" else "RESULT" for name in results]
-    for number, (name, e) in enumerate(results.items()):
-        if e.operation == "bits":
-            # the sum of STATUS's bits becomes a whole number as it is written
-            results[name], endings[number] = e.operands[0], "BITS"
-    return Program(results, endings)
-
-
-def _expressions(
-    kinds: Kinds, wanted: tuple[str, ...], sign: float | None
-) -> dict[str, Expression]:
     table = ExpressionTable()
     kind = dict(zip(SCENE, kinds, strict=True))
     scene: dict[str, Expression] = {}
@@ -78,7 +57,13 @@ def _expressions(
         point = table.equals(scene["M"], 4.0)
     infinite = any("inf" in what for what in kinds)
     impact = Impact(table, scene, pivot, point, infinite, sign)
-    return {name: getattr(impact, name) for name in wanted}
+    results: dict[str, Expression] = {name: getattr(impact, name) for name in wanted}
+    endings = ["RESULT_OR_INFINITE" if name == "COND" else "RESULT" for name in results]
+    for number, (name, e) in enumerate(results.items()):
+        if e.operation == "bits":
+            # the sum of STATUS's bits becomes a whole number as it is written
+            results[name], endings[number] = e.operands[0], "BITS"
+    return Program(results, endings)
 
 
 def varying(pivot: bool, point: bool) -> Kinds:

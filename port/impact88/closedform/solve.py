@@ -98,7 +98,11 @@ def solve(
     """
     if type(columns) is not dict:
         check_mapping(columns)
-    wanted = _wanted(tuple(out) if outputs is None and out is not None else outputs)
+    if outputs is None:
+        outputs = ALL if out is None else tuple(out)
+    elif isinstance(outputs, str):
+        outputs = outputs.replace(",", " ").split()
+    wanted = _known(tuple(outputs))
     mu = columns.get("MU")
     if type(mu) in _CELLS or getattr(mu, "dtype", _FLOATS).kind in "OUS":
         columns = _with_shares_typed(in_base(columns))
@@ -170,13 +174,6 @@ def quantities(
     ``sign``: +1 to keep MU's sign in all scenes, -1 to change it, instead of line 400's rule.
     """
     return _solved(columns, tuple(names), 1, sign)
-
-
-def _wanted(outputs: Sequence[str] | str | None) -> tuple[str, ...]:
-    if outputs is None:
-        return ALL
-    names = outputs.replace(",", " ").split() if isinstance(outputs, str) else outputs
-    return _known(tuple(names))
 
 
 @lru_cache(maxsize=256)

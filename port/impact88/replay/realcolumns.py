@@ -11,17 +11,13 @@ from .reals import Floats, Packed, from_packed
 from .textcolumns import read
 from .unit import NEVER, Ints, Unit, key
 
-
-def _input_places() -> dict[str, tuple[int, int]]:
-    """Where the program reads each value: line, and position in it."""
-    order = [*VELOCITIES, *(name for name in SCENE if name not in VELOCITIES)]
-    return {name: (SCENE[name].line, i) for i, name in enumerate(order)}
-
-
 _AT_A_TIME = 32768
 """So many texts are read together, if there are that many: few calls for few, cache for many."""
 
-PLACES = _input_places()
+PLACES = {
+    name: (SCENE[name].line, i) for i, name in enumerate(dict.fromkeys([*VELOCITIES, *SCENE]))
+}
+"""Where the program reads each value: line, and position in it."""
 
 
 class Scenes(NamedTuple):
@@ -75,21 +71,17 @@ def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], firs
     if others:
         every = [text for column in texts.values() for text in column]
     sizes = [len(column) for column in texts.values()]
-    names = list(texts)
     starts = np.concatenate([[0], np.cumsum(sizes)])
     unit = Unit(len(every))
-    if others:
-        unit.at_every(np.repeat([key(*PLACES[name]) for name in names], sizes))
-    else:
-        unit.at(*PLACES[names[0]])
+    unit.at_every(np.repeat([key(*PLACES[name]) for name in texts], sizes))
 
     def where(index: int) -> str:
         column = int(np.searchsorted(starts, index, side="right")) - 1
         row = f", row {index - starts[column] + 1}" if sizes[column] > 1 else ""
-        return names[column] + row
+        return list(texts)[column] + row
 
     x = read(every, unit, where).rounded()
-    for name, start, size in zip(names, starts, sizes, strict=False):
+    for name, start, size in zip(texts, starts, sizes, strict=False):
         values[name] = x.v[start : start + size]
         np.minimum(first, unit.first[start : start + size], out=first)
 

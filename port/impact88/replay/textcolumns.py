@@ -87,7 +87,8 @@ def _read_together(texts: Sequence[str], unit: Unit, where: Callable[[int], str]
     x = Reals(np.array([int(text[:_EXACT_DIGITS] or 0) for text in digits], float), unit, True)
     for place in range(_EXACT_DIGITS, max(map(len, digits))):
         rows = np.array([row for row, text in enumerate(digits) if len(text) > place])
-        _treat(x, rows, partial(_next_digit, digit=np.array([int(digits[i][place]) for i in rows])))
+        digit = Reals(np.array([float(digits[i][place]) for i in rows]), None, True)
+        _treat(x, rows, partial(_next_digit, digit=digit))
     powers = [
         int(sign + (power.lstrip("0")[:3] or "0")) if power else 0 for *_, sign, power in numerals
     ]
@@ -108,9 +109,8 @@ def _read_together(texts: Sequence[str], unit: Unit, where: Callable[[int], str]
     return x
 
 
-def _next_digit(value: Reals, digit: Ints) -> Reals:
-    """Ten times the value, and (ADDACC: that rounded) a digit added."""
-    return times_ten(value) + Reals(digit.astype(np.float64), value.unit, True)
+def _next_digit(value: Reals, digit: Reals) -> Reals:
+    return times_ten(value) + digit  # ADDACC: the former rounded
 
 
 def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
