@@ -114,9 +114,7 @@ __all__ = [*_LAZY, "__version__"]
 
 class _Package(ModuleType):
     """This package: ``impact88.replay`` stays the function when the room of that name is imported.
-
-    Python would bind the name to the module once anything imports it.
-    """
+    Python would bind the name to the module once anything imports it."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not (isinstance(value, ModuleType) and _LAZY.get(name)):

@@ -281,13 +281,11 @@ def _uses(values: Iterable[_Value]) -> list[tuple[str, str]]:
 def in_base(
     texts: Mapping[str, str], source: str, system: System | None = None
 ) -> tuple[dict[str, str], System | None]:
-    """The texts in base units, and the system they belong to (None where nothing says).
-
-    ``texts``: by name, as they were written, and perhaps the entry ``units``; ``system``: of bare
-    numbers, where no entry says. Raises UserError for what is not an amount, a unit that does not
-    measure the quantity, for bare numbers among others with units, and for units of two systems
-    where none is named.
-    """
+    """The texts in base units, and the system they belong to (None where nothing says). ``texts``:
+    by name, as they were written, and perhaps the entry ``units``; ``system``: of bare numbers,
+    where no entry says. Raises UserError for what is not an amount, a unit that does not measure
+    the quantity, for bare numbers among others with units, and for units of two systems where none
+    is named."""
     entries = dict(texts)
     named = entries.pop(ENTRY, None)
     if named is not None:

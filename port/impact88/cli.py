@@ -113,10 +113,8 @@ def _run(name: str, arguments: Sequence[str]) -> int:
 def _prepare_streams() -> None:
     """Make a stream that the shell closed (``2>&-``, None in Python) read or write nothing. The
     result is UTF-8 whatever the locale, so that a file made by ``>`` is one this project reads; and
-    no character is an error on a terminal that lacks it.
-
-    Raises UserError when standard output is closed: the result would be lost without a word.
-    """
+    no character is an error on a terminal that lacks it. Raises UserError when standard output is
+    closed: the result would be lost without a word."""
     closed = sys.stdout is None
     sys.stdin = sys.stdin or open(os.devnull)  # noqa: SIM115
     sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115

@@ -29,10 +29,8 @@ def is_number(text: str) -> bool:
 
 
 def double(text: str) -> float:
-    """The double that the whole of ``text`` is; infinite past the range of doubles.
-
-    Raises ValueError for a text that INPUT would not take for one number.
-    """
+    """The double that the whole of ``text`` is; infinite past the range of doubles. Raises
+    ValueError for a text that INPUT would not take for one number."""
     if _PLAIN.issuperset(text):
         try:
             return float(text)
@@ -49,10 +47,8 @@ def doubles_of(texts: Mapping[str, str]) -> dict[str, float]:
 
 
 def doubles(texts: Sequence[str]) -> list[float]:
-    """`double` of each of many texts.
-
-    Raises ValueError if any is not a number, TypeError if any is not text.
-    """
+    """`double` of each of many texts. Raises ValueError if any is not a number, TypeError if any is
+    not text."""
     if _PLAIN.issuperset("".join(texts)):
         try:
             return list(map(float, texts))

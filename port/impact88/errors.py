@@ -13,12 +13,10 @@ BEYOND_DOUBLES = "the values known lead beyond the range of doubles"
 
 
 def shown(text: str, longest: int = LONGEST_MESSAGE) -> str:
-    """``text`` on one line of at most ``longest`` characters, fit for a terminal.
-
-    Whatever does not print (control characters, terminal escapes, line ends, marks that turn the
-    writing direction, lone surrogates) is shown as Python would write it in a literal; of a longer
-    text the middle is left out.
-    """
+    """``text`` on one line of at most ``longest`` characters, fit for a terminal. Whatever does not
+    print (control characters, terminal escapes, line ends, marks that turn the writing direction,
+    lone surrogates) is shown as Python would write it in a literal; of a longer text the middle is
+    left out."""
     if len(text) > longest:
         kept = longest - 5
         text = f"{text[: kept - kept // 3]} ... {text[-(kept // 3) :]}"

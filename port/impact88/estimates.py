@@ -39,13 +39,10 @@ def with_estimates(
     texts: Mapping[str, str], source: str, units: str | None
 ) -> tuple[dict[str, str], dict[str, str], dict[str, float]]:
     """The texts with estimates of IA and IB where they are asked for, without LA BA LB BB; for each
-    estimated name how it was found; and the vehicles' sizes that were given.
-
-    ``texts``: by name, in base units; ``units``: the name of their system, None if it is not known.
-    An estimate has four digits. Beside a known inertia a size is the vehicle's outline and no more.
-    Raises UserError where the mass, one of two sizes or the system is missing, and for a weight
-    that is no car's.
-    """
+    estimated name how it was found; and the vehicles' sizes that were given. ``texts``: by name, in
+    base units; ``units``: the name of their system, None if it is not known. An estimate has four
+    digits. Beside a known inertia a size is the vehicle's outline and no more. Raises UserError
+    where the mass, one of two sizes or the system is missing, and for a weight that is no car's."""
     values, how, outlines = dict(texts), {}, {}
     for vehicle, sizes in SIZES.items():
         name, given = f"I{vehicle}", [size for size in sizes if size in values]

@@ -55,9 +55,7 @@ def encoding_of(start: bytes) -> str:
 
 def decode(data: bytes, where: str) -> str:
     """The text of ``data``: UTF-8, or UTF-16 with a byte-order mark; line ends become newlines.
-
-    Raises UserError (naming ``where`` and the byte) if it is neither.
-    """
+    Raises UserError (naming ``where`` and the byte) if it is neither."""
     encoding = encoding_of(data)
     try:
         text = data.decode(encoding)
@@ -188,13 +186,11 @@ def _sink(
 @contextmanager
 def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     """Open a temporary file beside ``path``; rename it to ``path`` when the block ends well.
-
     ``mode`` is ``"w"`` (text, UTF-8) or ``"wb"``. The bytes are on the disk before the rename. When
     the block raises, or the process is asked to leave, the temporary file is removed and ``path``
     stays as it was. A path that is not a regular file (a terminal, a pipe, /dev/null) is written
     directly: there is nothing to rename. Raises UserError when the place cannot be written to, the
-    disk is full, or what stands there is read-only.
-    """
+    disk is full, or what stands there is read-only."""
     target, usual = _target(path)
     if os.path.exists(target) and not os.path.isfile(target):
         with _sink(target, path, mode) as file:
@@ -270,11 +266,9 @@ def _settle(handle: int) -> None:
 
 def check_apart(inputs: Iterable[str], outputs: Mapping[str, str | None]) -> None:
     """Raise UserError when a file to write is one that is read, or another one to write, links of
-    either kind included; or when a folder to write into holds a file that is read.
-
-    ``inputs``: paths; ``outputs``: what a message calls the place (an option) -> its path, None
-    where there is none. ``-`` is a standard stream.
-    """
+    either kind included; or when a folder to write into holds a file that is read. ``inputs``:
+    paths; ``outputs``: what a message calls the place (an option) -> its path, None where there is
+    none. ``-`` is a standard stream."""
     inputs = list(inputs)
     places = {_place(path): "a file that is read" for path in inputs}
     for name, path in outputs.items():

@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 
 
 def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The values in base units: texts are texts of numbers or of ranges afterwards.
-
-    Beside the entry ``units`` numbers and arrays are in that system, too. Raises UserError.
-    """
+    """The values in base units: texts are texts of numbers or of ranges afterwards. Beside the
+    entry ``units`` numbers and arrays are in that system, too. Raises UserError."""
     return _in_base(values)[0]
 
 
@@ -55,10 +53,8 @@ def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
 
 
 def in_doubles(name: str, values: Any) -> Array:
-    """A value, or an array of any shape, as numbers (float64 where it held texts).
-
-    Raises UserError for what holds no numbers.
-    """
+    """A value, or an array of any shape, as numbers (float64 where it held texts). Raises UserError
+    for what holds no numbers."""
     import numpy as np
 
     if type(values) is str:

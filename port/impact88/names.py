@@ -18,13 +18,10 @@ from .errors import UserError
 
 
 class Quantity(namedtuple("Quantity", ("name", "symbol", "meaning", "unit", "line"))):
-    """One row of the table.
-
-    ``name``: the listing's variable, or this project's name for what the listing leaves unnamed;
-    ``symbol``: the chapter's symbol (List of Symbols); ``meaning``: in words; ``unit``: the unit
-    rule; ``line``: the listing line that sets or asks for it (scene) or prints it (results; 0 when
-    the listing has no such value).
-    """
+    """One row of the table. ``name``: the listing's variable, or this project's name for what the
+    listing leaves unnamed; ``symbol``: the chapter's symbol (List of Symbols); ``meaning``: in
+    words; ``unit``: the unit rule; ``line``: the listing line that sets or asks for it (scene) or
+    prints it (results; 0 when the listing has no such value)."""
 
     __slots__ = ()
 

@@ -32,14 +32,12 @@ _ENTRY = r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)"""
 
 
 class Entries:
-    """What a file, or a mapping of texts, says of a collision.
-
-    ``values``: by name, in base units, as numbers or within limits, the contact point as DA PA DB
-    PB, inertias estimated where that is asked for; ``units``: the name of their system, None where
-    nothing says; ``estimated``: how each estimate was found; ``outlines``: LA BA LB BB, in base
-    units; ``sources``: where a value comes from, in the file's words; ``remarks``: by name, how
-    entries were understood, for people who see the result; ``given``: the entries as written.
-    """
+    """What a file, or a mapping of texts, says of a collision. ``values``: by name, in base units,
+    as numbers or within limits, the contact point as DA PA DB PB, inertias estimated where that is
+    asked for; ``units``: the name of their system, None where nothing says; ``estimated``: how each
+    estimate was found; ``outlines``: LA BA LB BB, in base units; ``sources``: where a value comes
+    from, in the file's words; ``remarks``: by name, how entries were understood, for people who see
+    the result; ``given``: the entries as written."""
 
     title: str | None = None
     case: str | None = None

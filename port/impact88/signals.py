@@ -36,11 +36,9 @@ def _leave(number: int, frame: FrameType | None) -> None:
 
 @contextmanager
 def orderly() -> Iterator[None]:
-    """Within, control-C is a KeyboardInterrupt once, SIGTERM and SIGHUP are `Terminated`.
-
-    A signal that the caller ignores (nohup, a shell's background job) or handles stays as it is.
-    Outside the main thread, where Python takes no handlers, nothing changes.
-    """
+    """Within, control-C is a KeyboardInterrupt once, SIGTERM and SIGHUP are `Terminated`. A signal
+    that the caller ignores (nohup, a shell's background job) or handles stays as it is. Outside the
+    main thread, where Python takes no handlers, nothing changes."""
     usual: dict[int, Any] = {
         signal.SIGINT: signal.default_int_handler,
         signal.SIGTERM: signal.SIG_DFL,

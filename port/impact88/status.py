@@ -94,9 +94,7 @@ def sentences(status: int, values: Mapping[str, Any] | None = None) -> list[str]
 
 def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
     """Which sign of MU is admissible and how large it may be, if ``status`` says that it is not.
-
-    ``values``: MUC and MUP of the impact; MU, GA, XA YA XB YB as far as they are known.
-    """
+    ``values``: MUC and MUP of the impact; MU, GA, XA YA XB YB as far as they are known."""
     critical, used, typed = (float(values.get(name, nan)) for name in ("MUC", "MUP", "MU"))
     if not status & _FRICTION or not isfinite(critical) or not used:
         return []

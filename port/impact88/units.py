@@ -140,11 +140,9 @@ def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, st
 
 
 class System(NamedTuple):
-    """A consistent set and how its quantities are written.
-
-    ``base``: sizes of its length and mass in m and kg (its time is the second); ``usual``: the unit
-    of a bare number, by what it measures; ``labels``: of what is not entered, but shown.
-    """
+    """A consistent set and how its quantities are written. ``base``: sizes of its length and mass
+    in m and kg (its time is the second); ``usual``: the unit of a bare number, by what it measures;
+    ``labels``: of what is not entered, but shown."""
 
     name: str
     base: tuple[Fraction, Fraction]

@@ -314,10 +314,8 @@ def settings(
     texts: Sequence[str], others: Collection[str] = (), units: str | None = None
 ) -> dict[str, str]:
     """What ``--set`` gives of a scene: the text of a number for each name, in base units.
-
     ``others``: texts taken although they are not numbers; ``units``: the system of bare numbers.
-    Raises UserError.
-    """
+    Raises UserError."""
     given, _ = in_base_units(_set_pairs(texts, tuple(SCENE)), "--set", units)
     for name, text in given.items():
         if text not in others and not (name == "MU" and is_share(text)):
@@ -386,12 +384,10 @@ def known_values(
     args: argparse.Namespace, allowed: Collection[str]
 ) -> tuple[dict[str, float], str | None]:
     """What is known of a problem: the values of a flat TOML file or a sample, changed by ``--set``,
-    in base units, and the name of the system they were written in.
-
-    What is not known is left out of the file, or left empty as in a template; an empty setting
-    makes a value unknown; of a value within limits the middle is taken. Raises UserError, naming
-    file and name, for names not ``allowed`` and texts that are not amounts.
-    """
+    in base units, and the name of the system they were written in. What is not known is left out of
+    the file, or left empty as in a template; an empty setting makes a value unknown; of a value
+    within limits the middle is taken. Raises UserError, naming file and name, for names not
+    ``allowed`` and texts that are not amounts."""
     values, named = known_within_limits(args, allowed, single=True)
     return {name: item.nominal for name, item in values.items()}, named
 

@@ -22,13 +22,11 @@ class TextFile(NamedTuple):
 
 
 class Lines:
-    """An iterator over lines as they stand, their ends included.
-
-    ``first``: lines already taken off the file; ``before``: how many lines came before those.
-    ``number``: of the line last given, from 1; ``taken``: the characters given since `begin_block`.
-    Raises UserError, naming file and line, for bytes that are not text, and for a line, or several
-    since `begin_record`, longer than `LONGEST_LINE` characters.
-    """
+    """An iterator over lines as they stand, their ends included. ``first``: lines already taken off
+    the file; ``before``: how many lines came before those. ``number``: of the line last given, from
+    1; ``taken``: the characters given since `begin_block`. Raises UserError, naming file and line,
+    for bytes that are not text, and for a line, or several since `begin_record`, longer than
+    `LONGEST_LINE` characters."""
 
     def __init__(self, file: TextFile, first: bytes = b"", before: int = 0) -> None:
         self.where = file.source.name

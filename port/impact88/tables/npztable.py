@@ -30,10 +30,8 @@ _KINDS = "biufcSU"
 
 
 def read_arrays(path: str) -> dict[str, NDArray[Any]]:
-    """Every array of an .npz file by name.
-
-    Raises UserError if it is not one, holds anything else, or unpacks to more than it may.
-    """
+    """Every array of an .npz file by name. Raises UserError if it is not one, holds anything else,
+    or unpacks to more than it may."""
     try:
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()

@@ -56,13 +56,11 @@ class BadCell(NamedTuple):
 
 @dataclass
 class Rows:
-    """Some rows of a table.
-
-    ``first``: the number of the first, from 1; ``columns``: scene name -> texts (None where the row
-    has none, `ABSENT` where it lacks the key) or an array; ``others``: the other columns, passed
-    through; ``lines``: the file's line of each row, if it has lines; ``bad``: rows that could not
-    be read; ``late``: columns that the table's first rows did not have, and the line of each.
-    """
+    """Some rows of a table. ``first``: the number of the first, from 1; ``columns``: scene name ->
+    texts (None where the row has none, `ABSENT` where it lacks the key) or an array; ``others``:
+    the other columns, passed through; ``lines``: the file's line of each row, if it has lines;
+    ``bad``: rows that could not be read; ``late``: columns that the table's first rows did not
+    have, and the line of each."""
 
     first: int
     count: int
@@ -118,12 +116,9 @@ class Units(Protocol):
 
 
 class Reader:
-    """An open table; iterating it yields `Rows`.
-
-    ``names``: its columns (of JSON Lines, those of the first row); ``total``: its size in the units
-    of ``position``, which are rows unless a format has its own (None: unknown); ``delimiter``:
-    between a CSV's fields.
-    """
+    """An open table; iterating it yields `Rows`. ``names``: its columns (of JSON Lines, those of
+    the first row); ``total``: its size in the units of ``position``, which are rows unless a format
+    has its own (None: unknown); ``delimiter``: between a CSV's fields."""
 
     def __init__(
         self,
@@ -194,11 +189,9 @@ _UNIT = re.compile(r"(.*?)\s*(?:\[([^]]*)\]|\(([^)]*)\))\s*")
 
 
 def scene_names(names: Sequence[str], where: str | None = None) -> list[str]:
-    """The names of a table's columns: those in small letters, or with a unit behind them
-    (``Mu [1]``), are the scene's or a result's names where the table has no such column otherwise.
-
-    Raises UserError for two columns of one name, where the table has a name (``where``).
-    """
+    """The names of a table's columns: those in small letters, or with a unit behind them (``Mu
+    [1]``), are the scene's or a result's names where the table has no such column otherwise. Raises
+    UserError for two columns of one name, where the table has a name (``where``)."""
     known = set(names)
     matched: list[str] = []
     for name in names:

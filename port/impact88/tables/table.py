@@ -53,9 +53,7 @@ def open_reader(
     path: str, form: str, encoding: str | None = None
 ) -> AbstractContextManager[Reader]:
     """Open a table for reading (``-``: standard input). Raises UserError if it is not one.
-
-    ``encoding``: of a CSV or of JSON Lines that are not UTF-8.
-    """
+    ``encoding``: of a CSV or of JSON Lines that are not UTF-8."""
     if encoding is not None and form not in _TEXTS:
         raise UserError(f"--encoding is for text; {form} has its own")
     if path == "-" and form not in _TEXTS:

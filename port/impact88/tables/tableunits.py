@@ -22,12 +22,9 @@ _RATIOS = ("1", "-", "–", "—", "")
 
 
 class TableUnits:
-    """What the columns of one table are in.
-
-    ``system``: what results are shown in, `RULES` where nothing names a unit. Raises UserError for
-    a heading whose unit does not measure its quantity, and for bare columns beside such with units
-    where ``given`` names no system.
-    """
+    """What the columns of one table are in. ``system``: what results are shown in, `RULES` where
+    nothing names a unit. Raises UserError for a heading whose unit does not measure its quantity,
+    and for bare columns beside such with units where ``given`` names no system."""
 
     def __init__(
         self,
