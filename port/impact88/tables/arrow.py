@@ -77,9 +77,11 @@ class ArrowTexts(ArrowColumn):
 
     def filled(self, text: str) -> ArrowTexts:
         """The column with ``text`` where there is none."""
+        import pyarrow as pa
         import pyarrow.compute as compute
 
-        return ArrowTexts(compute.if_else(compute.equal(self.array, ""), text, self.array))
+        empty = compute.equal(self.array, pa.scalar(""))
+        return ArrowTexts(compute.if_else(empty, pa.scalar(text), self.array))
 
 
 def texts_of(values: NDArray[Any]) -> Any:

@@ -265,19 +265,24 @@ class _CsvWriter(Writer):
 
     def _joined(self, arrays: Sequence[Any]) -> Any:
         """The same of pyarrow's texts: the bytes of whole rows."""
+        import pyarrow as pa
         from pyarrow import compute
 
-        join, fields = compute.binary_join_element_wise, []
+        def joined(*parts: Any, by: str = "") -> Any:
+            texts = (pa.scalar(part) if isinstance(part, str) else part for part in (*parts, by))
+            return compute.binary_join_element_wise(*texts)
+
+        fields = []
         for array in arrays:
             held = bytes(
                 array.buffers()[2] or b""
             )  # a search of a regex in every text takes longer
             if any(mark.encode() in held for mark in (self._delimiter, '"', "\r", "\n")):
                 ends = compute.match_substring_regex(array, self._ends)
-                doubled = join('"', compute.replace_substring(array, '"', '""'), '"', "")
+                doubled = joined('"', compute.replace_substring(array, '"', '""'), '"')
                 array = compute.if_else(ends, doubled, array)
             fields.append(array)
-        return join(join(*fields, self._delimiter), "\n", "").buffers()[2]
+        return joined(joined(*fields, by=self._delimiter), "\n").buffers()[2]
 
 
 def _fields(column: Column) -> Sequence[str]:
