@@ -9,6 +9,7 @@ lines that only the copy prints, such as prompts and the replies to them, are co
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import product
 from typing import NamedTuple
 
@@ -161,6 +162,10 @@ class CopyPages:
             if _plain(line) not in own
         ]  # fmt: skip
         return judge(shown, replace(recovered, scene=scene, outcome=outcome), wrong)
+
+
+pages_of = lru_cache(maxsize=1)(CopyPages)
+"""The pages of the copy that was asked for last: many files are held against one."""
 
 
 def _read(text: str) -> Printout | None:

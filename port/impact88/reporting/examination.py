@@ -103,9 +103,9 @@ def _printed(
         raise UserError(f"{where}: is larger than {LARGEST_FILE:,} bytes of text")
     text = decoded(data, where)
     if copy:
-        from ..judging.copies import CopyPages
+        from ..judging.copies import pages_of
 
-        pages = CopyPages(copy)
+        pages = pages_of(copy)
         text, lines, besides = pages.prepared(text)
     begun, read = process_time(), 0
     every = read_printouts(text, where)
