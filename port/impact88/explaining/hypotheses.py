@@ -97,7 +97,12 @@ class Rows:
         self._values = doubles_of({name: text or "0" for name, text in self._scene.items()})
         self._places = {name: decimals_of(text.strip()) for name, text in self._scene.items()}
         rows = (row for row in table() if row.inputs)
-        self._every = [one for row in rows for one in self._either_sign(row)]
+        made = (one for row in rows for one in self._made(row))
+        self._every = [
+            one._replace(scene=scene)
+            for one in made
+            for scene in (one.scene, *with_opposite_mu(one.scene))
+        ]
         self._found = self._in_doubles([one.scene for one in self._every], page.results)
         for index, one in enumerate(self._every):
             names = {name: self._found[name][index] for name in self._found if one.row.results}
@@ -106,17 +111,21 @@ class Rows:
                     self._found[name][index] = value(made, {**names, "x": names[name]})
 
     def causes(self) -> Iterator[Cause]:
-        """The rows of inputs that fit the page, and all rows of results."""
+        """The rows of inputs that fit the page, and those of results that change what differs."""
         fits = self._page.fits(self._found, len(self._every), 1.05, _ROUGH)
         own = (one for one, fit in zip(self._every, fits, strict=True) if fit)
-        results = (Hypothesis(row, self._scene) for row in table() if not row.inputs)
+        results = (
+            Hypothesis(row, self._scene)
+            for row in table()
+            if not row.inputs and len(self._page.base - {*row.results}) <= self._page.most_left
+        )
         return self._tested([*own, *results])
 
     def exchanges(self) -> Iterator[tuple[Row, list[Change]]]:
         """The inputs in each other's place that are printed on the page."""
         for row in table():
             names = all(isinstance(made, str) for made in row.inputs.values())
-            if row.inputs and names and row.bits < _ANY_TWO and (made := self._made(row)):
+            for made in self._made(row) if row.inputs and names and row.bits < _ANY_TWO else ():
                 changes = self._changes(made)
                 if {change.field for change in changes} <= set(self._printed):
                     yield row, changes
@@ -140,18 +149,10 @@ class Rows:
 
     # --- the scene that a row means ---
 
-    def _either_sign(self, row: Row) -> Iterator[Hypothesis]:
-        made = [self._made(row)]
-        if made[0] and made[0].within:
-            made.append(self._made(row, in_full=True))
-        for one in filter(None, made):
-            yield one
-            for scene in with_opposite_mu(one.scene):
-                yield one._replace(scene=scene)
-
-    def _made(self, row: Row, in_full: bool = False) -> Hypothesis | None:
-        """A row's scene; numbers converted are the shortest that round so, or ``in_full``."""
+    def _made(self, row: Row) -> Iterator[Hypothesis]:
+        """A row's scene; numbers converted are the shortest that round so, or in full."""
         typed: dict[str, str] = {}
+        in_full: dict[str, str] = {}
         within: dict[str, float] = {}
         most = max(self._places[name] for name in row.inputs)
         for name, made in row.inputs.items():
@@ -161,17 +162,16 @@ class Rows:
             x = self._values[name]
             found = self._value(made, x)
             if not isfinite(found):
-                return None
-            slack = 0.0
+                return
+            typed[name] = in_full[name] = _short(found)
             if x and isinstance(made, tuple) and made[0] not in ("+", "-", NEGATIVE):
                 # a conversion; all were rounded to as many decimals, but what fills nine digits
-                full = digits_of(self._scene[name]) >= 9
-                half = 0.5 * 10.0 ** -(self._places[name] if full else most)
-                ends = self._value(made, x - half), self._value(made, x + half)
-                slack = within[name] = abs(ends[1] - ends[0]) / 2
-            typed[name] = _shortest(found, 0.0 if in_full else slack)
-        scene = {**self._scene, **typed}
-        return None if scene == self._scene else Hypothesis(row, scene, within)
+                places = self._places[name] if digits_of(self._scene[name]) >= 9 else most
+                within[name] = abs(found / x) * 0.5 * 10.0**-places
+                typed[name] = _shortest(found, within[name])
+        for own in (typed, typed | in_full) if typed != typed | in_full else (typed,):
+            if (scene := {**self._scene, **own}) != self._scene:
+                yield Hypothesis(row, scene, within)
 
     def _changes(self, one: Hypothesis) -> list[Change]:
         """The inputs that it puts right, as they would be printed."""

@@ -95,16 +95,12 @@ class Rereading:
     def best(self, most: int = 2, exchanged: Mapping[str, str] | None = None) -> list[Reread]:
         """Scenes with one input put right, or with up to two, those that explain most first.
         ``exchanged``: texts printed in place of others, by field, and not to be put right."""
-        exchanged = exchanged or {}
-        columns = []
-        for name in INPUTS:
-            text = self._base.get(name, self._recovered.scene[scene_name(name)])
-            ways = [] if name in exchanged else self._ways.get(name, [])
-            options = [((other,), cost) for cost, other, _ in ways]
-            first = (exchanged.get(name, text),)
-            apart = name not in self._recovered.assumed
-            columns.append(Column((name,), [(first, 0.0), *options], apart))
-        columns.append(Column(("M",), [((self._recovered.scene["M"],), 0.0)], True))
+        columns = [
+            Column(one.names, [((exchanged[one.names[0]],), 0.0)], one.typed)
+            if exchanged and one.names[0] in exchanged
+            else one
+            for one in self._columns
+        ]
         search = self._recovered.search
         if most == 1:
             picks = search.screened(columns, one_each(columns), 2 if exchanged else _REPLAYED)
@@ -116,6 +112,17 @@ class Rereading:
             for pick, scored in zip(picks.tolist(), search.replayed(columns, picks), strict=True)
         ]
         return sorted(rereads, key=lambda one: one.scored.cost)
+
+    @cached_property
+    def _columns(self) -> list[Column]:
+        """Every input as it is, and with its slips."""
+        scene, columns = self._recovered.scene, []
+        for name in INPUTS:
+            text = self._base.get(name, scene[scene_name(name)])
+            slips = [((other,), cost) for cost, other, _ in self._ways.get(name, [])]
+            apart = name not in self._recovered.assumed
+            columns.append(Column((name,), [((text,), 0.0), *slips], apart))
+        return [*columns, Column(("M",), [((scene["M"],), 0.0)], True)]
 
     def single(self) -> Iterator[Change]:
         """Every slip in one input."""
