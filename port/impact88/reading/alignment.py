@@ -125,6 +125,11 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
     into = np.roll(ways, 1, axis=1)
     into[:, [0, *between]] = ways[:, [0, *between]]
     jumps = np.array([into] * len(Gap))
+    numbers = np.flatnonzero([one.kind == "number" for one in STATES])
+    for place, one in enumerate(STATES):
+        if one.name == "=" or (one.kind == "letter" and one.name.isalpha()):
+            before = [number for number in numbers if STATES[number].line == one.line]
+            jumps[Gap.NONE, before, place] += COSTS["label without gap"]
     staying = np.zeros((len(Gap), size), np.int16)
     for place, one in enumerate(STATES):
         if place and STATES[place - 1].name == "=" and one.kind == "number":
@@ -135,6 +140,9 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
             staying[:, place] = GAP_COSTS["reply" if reply else "angle" if angle else "number"]
             if angle and one.name != ANGLES[0]:
                 jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
+            elif not angle:
+                before = numbers[numbers != place]
+                jumps[Gap.NONE, before, place] += COSTS["number without gap"]
     ending = ways[:, closing].min(axis=1)
     return np.minimum(jumps, _MOST).astype(np.int16), staying, ending.astype(np.int16)
 
