@@ -237,9 +237,10 @@ def _keep_left_over(page: Page, readers: Sequence["_Reader"]) -> None:
         line = [*group]
         kinds = [roles.get(index) for index in line]
         numbered = "number" in kinds
-        stars = {"star"} <= set(kinds) <= {"star", None} and len(kinds) <= len("*****") + 2
+        figures = sum(page.glyphs[index].char.isdigit() for index in line)
+        stars = 4 * figures <= len(line) <= len("*****") + 2 and {"star", "gap"} & {*kinds}
         whole = not (numbered or stars or 2 * kinds.count("exact") >= len(kinds))
-        loose = line if whole else [index for index in line if index not in roles]
+        loose = line if whole else [at for at in line if roles.get(at) in (None, "gap")]
         for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
             run = [index for _, index in pairs]
             if not _SLOT_COMMAND.fullmatch("".join(page.glyphs[index].char for index in run)):
@@ -355,6 +356,9 @@ def _notes(glyphs: Region, start: int, stop: int, found: Sequence[Mapping[int, i
         if not numbers.isdisjoint(line) and len(words - own) >= least:
             notes.update(line)
     return notes
+
+
+_BESIDE_STARS = [one for one in STATES if one.kind == "between" and one.line in STARS]
 
 
 class _Reader:
@@ -521,13 +525,13 @@ class _Reader:
 
     def roles(self) -> dict[int, str]:
         """What each glyph is: of a number, an exact letter of a label, a damaged one, of a row of
-        asterisks; not those between lines or put into labels."""
+        asterisks or beside one; not others between lines or put into labels."""
         roles = dict.fromkeys(self._exact, "exact")
         for index, state in self._states.items():
             letter, figure = letter_of(state), self._glyphs[index].char.isdigit()
             again = state == self._states.get(index - 1) or (letter in "%()=" and figure)
-            if letter == "*":
-                roles[index] = "star"
+            if letter == "*" or STATES[state] in _BESIDE_STARS:
+                roles[index] = "star" if letter else "gap"
             elif letter and again:
                 roles.pop(index, None)
             elif letter:

@@ -6,7 +6,7 @@ and the best of them are replayed in the Apple's own arithmetic. What a scene co
 inputs cost to believe plus what every printed result then costs.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -18,11 +18,11 @@ from ..closedform import energy as closed_form
 from ..closedform.solve import solve
 from ..doubles import double
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
-from ..names import PIVOT, VELOCITIES
+from ..names import VELOCITIES
 from ..reading.numerals import candidates
 from ..reading.printout import Printout
 from . import replays
-from .typedtext import mu_turned, opposite, stored_and_printed, texts_that_print
+from .typedtext import mu_turned, opposite, texts_that_print
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
@@ -196,8 +196,7 @@ class Search:
         for count, enough, expected in ((_CLOSELY, 4 * _CLOSELY, few), (most, most, self.expected)):
             if len(picks) > enough:
                 value = _values(columns, picks)
-                if "MUP" in self._on_page:
-                    value["MU"] = _typed_mu(value)[0]
+                value["MU"] = self._typed_mu(value)
                 costs = _believing(columns, picks)
                 results = in_doubles(value, [one.name for one in expected])
                 for one in expected:
@@ -210,10 +209,8 @@ class Search:
     def replayed(self, columns: Sequence[Column], picks: Picks) -> list[Scored]:
         """Combinations, replayed in the Apple's arithmetic, in their order."""
         value = _values(columns, picks)
-        typed, unsure = _typed_mu(value)
-        turned = (typed != value["MU"]) & ("MUP" in self._on_page)
+        turned = self._typed_mu(value) != value["MU"]
         scenes: list[tuple[dict[str, str], dict[str, str], float]] = []
-        rows: list[int] = []
         for row, pick in enumerate(picks.tolist()):
             scene: dict[str, str] = {}
             assumed: dict[str, str] = {}
@@ -228,14 +225,23 @@ class Search:
             if turned[row]:
                 scene["MU"] = opposite(scene["MU"])
             scenes.append((scene, assumed, cost))
-            rows.append(row)
-            if unsure[row] and "MUP" in self._on_page:
-                scenes.append(({**scene, "MU": opposite(scene["MU"])}, assumed, cost))
-                rows.append(row)
-        best: dict[int, Scored] = {}
-        for row, scored in zip(rows, self._scored(scenes), strict=True):
-            best[row] = min(best.get(row, scored), scored, key=_cost)
-        return list(best.values())
+        found = [*self._scored(scenes)]
+        # where double precision does not tell which way the contact slides
+        other = [row for row, one in enumerate(found) if "MUP" in one.wrong]
+        again = [
+            ({**scene, "MU": opposite(scene["MU"])}, assumed, cost)
+            for scene, assumed, cost in (scenes[row] for row in other)
+        ]
+        for row, scored in zip(other, self._scored(again), strict=True):
+            found[row] = min(found[row], scored, key=_cost)
+        return found
+
+    def _typed_mu(self, value: Mapping[str, Floats]) -> Floats:
+        """What was typed where MU is printed so: line 400 turns its sign or not, whatever it is."""
+        mu = value["MU"]
+        if "MUP" not in self._on_page:
+            return mu
+        return np.where(in_doubles(value, ["MUP"])["MUP"] == -mu, -mu, mu)
 
     def _typed_text(self, name: str, text: str) -> str:
         known = self._typed.get(name, {}).get(text)
@@ -288,18 +294,11 @@ def _cost(scored: Scored) -> float:
 def _texts_of(best: Scored) -> Iterator[tuple[str, list[str]]]:
     """The texts that may have been typed for each value of a scene, of different bits."""
     for name, typed in best.scene.items():
-        angle = name in ANGLES
-        texts = [typed]
-        printed = best.assumed.get("MUP" if name == "MU" else name)
-        seen = stored_and_printed(typed, angle)
-        if printed is not None and seen and name != "M":
-            others: Iterable[str] = texts_that_print(printed, angle)
-            if name == "MU" and mu_turned(typed, printed):
-                others = map(opposite, others)
-            for text in others:
-                if (stored_and_printed(text, angle) or seen)[0] != seen[0]:
-                    texts.append(text)
-        yield name, texts
+        printed = best.assumed.get("MUP" if name == "MU" else name, "")
+        texts = list(texts_that_print(printed, name in ANGLES)) if name != "M" else []
+        if name == "MU" and texts and mu_turned(typed, printed):
+            texts = [*map(opposite, texts)]
+        yield name, [typed, *(text for text in texts if text != typed)]
 
 
 def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) -> Picks:
@@ -328,13 +327,12 @@ def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) ->
 
 def one_each(columns: Sequence[Column]) -> Picks:
     """The cheapest combination, and every one that departs from it in one column."""
-    counts = [len(column.options) - 1 for column in columns]
-    picks = np.zeros((1 + sum(counts), len(columns)), np.intp, "F")
-    at = 1
-    for place, count in enumerate(counts):
-        picks[at : at + count, place] = np.arange(1, count + 1)
-        at += count
-    return picks
+    picks = [np.zeros((1, len(columns)), np.intp)]
+    for place, column in enumerate(columns):
+        some = np.zeros((len(column.options) - 1, len(columns)), np.intp)
+        some[:, place] = np.arange(1, len(column.options))
+        picks.append(some)
+    return np.concatenate(picks)
 
 
 def _number(text: str) -> float:
@@ -359,21 +357,6 @@ def _values(columns: Sequence[Column], picks: Picks) -> dict[str, Floats]:
         for place, column in enumerate(columns)
         for name, numbers in column.numbers.items()
     }
-
-
-def _typed_mu(value: Mapping[str, Floats]) -> tuple[Floats, NDArray[np.bool_]]:
-    """What was typed where MU is printed so: line 400 turns its sign where the contact points slide
-    one way, which does not depend on MU; and where double precision does not tell which way."""
-    points = in_doubles(value, ("XA", "YA", "XB", "YB"))
-    angle = np.radians(value["GA"])
-    with np.errstate(all="ignore"):
-        slide = (points["XA"] - points["XB"]) * np.sin(angle)
-        slide -= (points["YA"] - points["YB"]) * np.cos(angle)
-        size = sum(map(np.abs, points.values()))
-        mu = value["MU"]
-        unsure = ~(np.abs(slide) > _ROUGH * size) | (np.abs(mu) == -PIVOT)
-        typed = np.where((slide < 0) & (mu != PIVOT), -mu, mu)
-    return typed, unsure & (mu != 0)
 
 
 def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
