@@ -378,6 +378,7 @@ class _Reader:
                     self._slots[name] = (start, first)
                 elif first <= start <= sign < stop - 1:
                     self._slots[name] = (sign + 1, stop)
+        self._part_row()
         self._exact = {
             index: STATES[state].line
             for index, state in self._states.items()
@@ -385,6 +386,20 @@ class _Reader:
         }
         start, stop = page.span(min(states), max(states) + 1)
         self.shown = Printout(*page.place(start), start, stop, page)
+
+    def _part_row(self) -> None:
+        """A line of five clean numbers is the row of angles; what stands below it is none of it."""
+        places = [index for name in ANGLES for index in self._slots.get(name, ())]
+        starts = places[:1]
+        for index in range(min(places, default=0) + 1, max(places, default=0)):
+            if self._glyphs[index].gap is Gap.LINE:
+                parts = list(zip(starts, [*starts[1:], index], strict=True))
+                clean = all(numerals.clean(self._glyphs[i:j]) for i, j in parts)
+                if clean and len(parts) == len(ANGLES):
+                    self._slots.update(zip(ANGLES, parts, strict=True))
+                return
+            if self._glyphs[index].gap:
+                starts.append(index)
 
     def _letter(self, index: int) -> str:
         """The letter of a label that a glyph is taken for, "" where it is taken for none."""
