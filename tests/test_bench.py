@@ -17,10 +17,16 @@ from impact88.figures import canvas
 from impact88.progress import progress
 
 
+@pytest.fixture(autouse=True)
+def small_roof(monkeypatch):
+    """What memory takes is no test's matter."""
+    monkeypatch.setattr(measure, "ROOF_SCENES", 1000)
+
+
 @pytest.fixture(scope="module")
 def rows():
     with progress(None, "test") as meter:
-        return measure.measure(["casework", "heavy"], 40, 3, 1, meter, effort=0.02)
+        return measure.measure(["casework", "heavy"], 40, 3, 1, meter, effort=0.005)
 
 
 def test_every_method_on_every_population(rows):

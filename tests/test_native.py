@@ -149,7 +149,7 @@ REPLAYED = (
     "em-half",
     "pivots",
 )
-SCENES = int(os.environ.get("IMPACT88_REPLAY_SCENES", "0")) or 500
+SCENES = int(os.environ.get("IMPACT88_REPLAY_SCENES", "0")) or 200
 
 
 @pytest.mark.parametrize("name", REPLAYED)
