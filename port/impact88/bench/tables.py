@@ -96,31 +96,28 @@ _RATIOS = (
     ("casework", "seconds", "closed-form-numpy", "closed-form", "by numpy alone"),
     ("casework", "seconds", "closed-form", "closed-form-2", "one core"),
     ("casework", "seconds", "applesoft", "replay", "the Applesoft port, bit for bit the same"),
-    ("casework", "largest", "lapack-fill", "closed-form", "LAPACK's (it depends on the seed)"),
+    ("casework", "largest", "lapack-fill", "closed-form", "LAPACK (it depends on the seed)"),
     ("heavy", "largest", "elimination", "closed-form", "the listing's elimination in double"),
-    ("heavy", "largest", "lapack-changes", "closed-form", "LAPACK's with velocity changes"),
+    ("heavy", "largest", "lapack-changes", "closed-form", "LAPACK with velocity changes"),
 )
 """Population, what is compared, of which method, with which, and the words for it."""
 
 
-def ratios(rows: Sequence[Row], roof: float | None = None) -> str:
-    """What the aims are measured by: times, and largest errors."""
+def ratios(rows: Sequence[Row], roof: float) -> str:
+    """What the aims are measured by: times, and largest errors on a population."""
     by = {(row["population"], row["method"]): row for row in rows}
     lines = []
     for population, key, other, mine, words in _RATIOS:
         if (population, mine) in by:
             ratio = by[population, other][key] / by[population, mine][key]
-            name = by[population, mine]["name"]
-            how = "times as fast as" if key == "seconds" else f"largest error on {population} of"
-            text = (
-                f"{ratio:,.1f}" if ratio < 10 else f"{ratio:,.0f}" if ratio < 1e6 else _error(ratio)
-            )
-            lines.append(
-                f"{name}: {text} {how} {words}"
+            how = (
+                "times as fast as"
                 if key == "seconds"
-                else f"{how} {words}: {text} times the closed form's"
+                else f"times more accurate on {population} than"
             )
-    if roof and ("casework", "closed-form") in by:
+            size = f"{ratio:,.3g}" if ratio < 1000 else _rate(ratio)
+            lines.append(f"{by[population, mine]['name']}: {size} {how} {words}")
+    if ("casework", "closed-form") in by:
         taken = by["casework", "closed-form"]["seconds"]
         lines.append(f"closed form, one core: {taken / roof:.1f} times what memory alone takes")
     return "\n".join(lines)

@@ -16,7 +16,7 @@ from ..errors import UserError
 from ..fields import ANGLES
 from ..mappings import in_base, in_doubles
 from ..names import DEFAULT_M, PIVOT, SCENE
-from ..native.program import addresses, extremes
+from ..native.program import extremes
 from .written import LARGE_ANGLE
 
 Array = NDArray[Any]
@@ -155,13 +155,9 @@ def _extremes(columns: Sequence[Floats]) -> list[Limits]:
     """The least and the largest number of each column; both NaN where one is."""
     if native.library is None:
         return [(float(column.min()), float(column.max())) for column in columns]
-    found = [(float(column[0]), float(column[0])) for column in columns]
-    long = [i for i, column in enumerate(columns) if len(column) > 1]
-    if long:
-        least, most = extremes(addresses(columns[i] for i in long), len(columns[long[0]]))
-        for i, limits in zip(long, zip(least, most, strict=True), strict=True):
-            found[i] = limits
-    return found
+    order = sorted(range(len(columns)), key=lambda i: -len(columns[i]))
+    found = extremes([columns[i] for i in order])
+    return [found[order.index(i)] for i in range(len(columns))]
 
 
 ORDINARY: dict[str, Limits] = {

@@ -1,7 +1,7 @@
 """Programs for the compiled machine, and its other functions over arrays."""
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -109,14 +109,16 @@ class Room:
         return done
 
 
-def extremes(columns: Addresses, count: int) -> tuple[list[float], list[float]]:
-    """The least and the largest of ``count`` numbers of each column; both NaN where one is."""
+def extremes(columns: Sequence[Array]) -> list[tuple[float, float]]:
+    """The least and the largest number of each column, both NaN where one is; columns of one
+    length, then those of one number."""
     assert native.library is not None
-    found = np.empty((len(columns), 2))
-    many = len(columns)
-    native.library.survey_kinds(columns.ctypes.data, many, many, count, found.ctypes.data, 0, 0)
-    least, most = found.T.tolist()
-    return least, most
+    found, count = np.empty((len(columns), 2)), len(columns[0])
+    many = sum(len(column) == count for column in columns)
+    where = addresses(columns)
+    to = found.ctypes.data
+    native.library.survey_kinds(where.ctypes.data, many, len(columns), count, to, 0, 0)
+    return [(least, most) for least, most in found.tolist()]
 
 
 def addresses(arrays: Iterable[NDArray[np.generic]]) -> Addresses:

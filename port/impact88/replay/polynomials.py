@@ -7,27 +7,16 @@ is a branch there is a selection here; where a branch cannot fail both ways are 
 from collections.abc import Sequence
 
 from ..applesoft import functions as scalar
-from .reals import (
-    ILLEGAL_QUANTITY,
-    ZERO,
-    Reals,
-    constant,
-    from_number,
-    select,
-)
+from .reals import ILLEGAL_QUANTITY, ZERO, Reals, constant, from_number, select
 
 _LOG = [from_number(c) for c in scalar.LOG_COEFFICIENTS]
 _EXP = [from_number(c) for c in scalar.EXP_COEFFICIENTS]
 _SIN = [from_number(c) for c in scalar.SIN_COEFFICIENTS]
-_SQRT_HALF = from_number(scalar.SQRT_HALF)
-_SQRT_TWO = from_number(scalar.SQRT_TWO)
-_MINUS_HALF = from_number(scalar.MINUS_HALF)
-_LN_TWO = from_number(scalar.LN_TWO)
-_LOG2_E = from_number(scalar.LOG2_E)
-_TWO_PI = from_number(scalar.TWO_PI)
+_SQRT_HALF, _SQRT_TWO = from_number(scalar.SQRT_HALF), from_number(scalar.SQRT_TWO)
+_MINUS_HALF, _LN_TWO = from_number(scalar.MINUS_HALF), from_number(scalar.LN_TWO)
+_LOG2_E, _TWO_PI = from_number(scalar.LOG2_E), from_number(scalar.TWO_PI)
+_QUARTER, _HALF = from_number(scalar.QUARTER), from_number(scalar.HALF)
 _HALF_PI = from_number(scalar.HALF_PI)
-_QUARTER = from_number(scalar.QUARTER)
-_HALF = from_number(scalar.HALF)
 ONE = constant(1)
 
 
