@@ -26,17 +26,8 @@ from ..progress import progress
 from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
-from .agreement import (
-    ABSENT,
-    DIFFER,
-    DIGITS,
-    DOUBLE,
-    ELIMINATION,
-    Case,
-    case_of,
-    joined,
-    read_theirs,
-)
+from . import agreement
+from .agreement import Case
 from .diagnosis import UNKNOWN, Cause, diagnose
 from .trials import Program
 from .vectors import FAILURE
@@ -88,13 +79,13 @@ class Tally:
 
     def add(self, grades: NDArray[np.intp], relative: NDArray[np.float64]) -> None:
         """Count a block's rows."""
-        counts = np.bincount(grades, minlength=DIFFER + 1).tolist()
-        self.compared += sum(counts[DOUBLE:])
-        self.double += counts[DOUBLE]
-        self.digits += counts[DIGITS]
-        self.elimination += counts[ELIMINATION]
-        self.differ += counts[DIFFER]
-        self.largest = float(relative.max(initial=self.largest, where=grades > ABSENT))
+        counts = np.bincount(grades, minlength=agreement.DIFFER + 1).tolist()
+        self.compared += sum(counts[agreement.DOUBLE :])
+        self.double += counts[agreement.DOUBLE]
+        self.digits += counts[agreement.DIGITS]
+        self.elimination += counts[agreement.ELIMINATION]
+        self.differ += counts[agreement.DIFFER]
+        self.largest = float(relative.max(initial=self.largest, where=grades > agreement.ABSENT))
 
 
 @dataclass
@@ -280,17 +271,19 @@ def _compare_block(
     scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
     scene |= numbers(rows, units)
     scene = {name: scene[name] for name in SCENE}
-    theirs = {name: read_theirs(rows, name, units.factor(name)) for name in comparison.tallies}
-    case = case_of(scene, theirs, rtol)
+    theirs = {
+        name: agreement.read_theirs(rows, name, units.factor(name)) for name in comparison.tallies
+    }
+    case = agreement.case_of(scene, theirs, rtol)
     bad = {one.row for one in rows.bad}
     readable = np.array([rows.first + index not in bad for index in range(rows.count)], bool)
     grades, relative = case.judged()
-    grades = np.where(readable, grades, ABSENT)
-    compared, wrong = (grades > ABSENT).any(0), (grades == DIFFER).any(0)
+    grades = np.where(readable, grades, agreement.ABSENT)
+    compared, wrong = (grades > agreement.ABSENT).any(0), (grades == agreement.DIFFER).any(0)
     for place, tally in enumerate(comparison.tallies.values()):
         tally.add(grades[place], relative[place])
         solved = compared & np.isfinite(case.ours[place])
-        tally.missing += int((solved & (grades[place] == ABSENT)).sum())
+        tally.missing += int((solved & (grades[place] == agreement.ABSENT)).sum())
     comparison.rows += rows.count
     comparison.bad += rows.bad
     comparison.agreeing += int((compared & ~wrong).sum())
@@ -300,7 +293,7 @@ def _compare_block(
             skipped = comparison.not_compared.setdefault(reason, Skipped())
             skipped.rows += len(found)
             skipped.first = (skipped.first + found)[:WORST]
-    loosely = ~wrong & (grades == ELIMINATION)
+    loosely = ~wrong & (grades == agreement.ELIMINATION)
     by_row = np.where(loosely, relative, 0.0).max(0)
     loose = comparison.elimination
     loose.rows += int(loosely.any(0).sum())
@@ -308,7 +301,7 @@ def _compare_block(
         worst = int(by_row.argmax())
         loose.worst_row, loose.worst_relative = rows.first + worst, largest
         loose.worst_condition = float(case.condition[worst])
-    off = np.where(grades == DIFFER, relative, -1.0).argmax(0)
+    off = np.where(grades == agreement.DIFFER, relative, -1.0).argmax(0)
     comparison.differences += _differing(rows, np.flatnonzero(wrong), off, relative, case)
     right = np.flatnonzero(compared & ~wrong)[:LOOKED_INTO]
     looked_into = np.concatenate([np.flatnonzero(wrong), right])
@@ -351,7 +344,7 @@ def _explain(kept: Sequence[tuple[Case, Bools]], comparison: Comparison) -> None
     """Find the causes, over the whole table at once."""
     wrong = np.concatenate([wrong for _, wrong in kept])
     places = np.concatenate([np.flatnonzero(wrong), np.flatnonzero(~wrong)[:LOOKED_INTO]])
-    found = diagnose(joined([case for case, _ in kept]).part(places), wrong[places])
+    found = diagnose(agreement.joined([case for case, _ in kept]).part(places), wrong[places])
     rows = comparison.differences
     comparison.equations, comparison.programs = found.equations, found.programs
     comparison.evidence = [

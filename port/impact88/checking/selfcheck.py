@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from ..fields import FIELDS, outcome_fields
-from ..names import SCENE
+from ..names import FINAL_VELOCITIES, SCENE
 from ..program.run import run
 from ..reporting import provenance
 from ..scene import sample
@@ -109,27 +109,22 @@ def _published(golden: Any) -> Counted:
 
 
 def _closed_form(golden: Any) -> Counted:
-    """Momentum, linear and angular, before and after, by the closed form in double precision."""
+    """Momentum, linear and angular (Equations 13, 14, 17), by the closed form in doubles."""
     import numpy as np
 
-    from ..accuracy import errorbound
     from ..closedform.solve import solve
+    from . import agreement
 
     rows = captured.rows(golden, captured.SCENES)
-    rows = [row for row in rows if row["scene"]["M"] == "6"]
-    g = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
+    scenes = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
+    solved = solve(scenes)
+    finals = {name: (solved[name], np.zeros(len(rows))) for name in FINAL_VELOCITIES}
     with np.errstate(all="ignore"):
-        solved = {name: column.astype(float) for name, column in solve(g).items()}
-        bound = errorbound.relative_bounds(solved["COND"])
-        usable = np.isfinite(solved["VAX"]) & np.isfinite(solved["WAF"])
-        ok = np.ones(len(rows), bool)
-        for a, b, before in (("VAX", "VBX", ("UX", "VX")), ("VAY", "VBY", ("UY", "VY"))):
-            parts = [g["MA"] * solved[a], g["MB"] * solved[b]]
-            parts += [-g["MA"] * g[before[0]], -g["MB"] * g[before[1]]]
-            ok &= np.abs(sum(parts)) <= bound * 2 * np.max(np.abs(parts), axis=0)
-    for row, good, used in zip(rows, ok.tolist(), usable.tolist(), strict=True):
-        if used:
-            yield row["id"], good
+        violated = agreement.violated(agreement.case_of(scenes, finals))
+    broken = violated["13"] | violated["14"] | violated["17"]
+    usable = np.all([np.isfinite(solved[name]) for name in FINAL_VELOCITIES], axis=0)
+    for index in np.flatnonzero(usable).tolist():
+        yield rows[index]["id"], not broken[index]
 
 
 CHECKS: dict[str, tuple[str, Callable[[Any], Counted]]] = {
