@@ -225,9 +225,6 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
                 yield Found(program, near[k], judge.wrong)
 
 
-# --- two mistakes --------------------------------------------------------------------------------
-
-
 def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
     """Programs with two mistakes, by stages. ``alone``: what explains rows alone."""
     yield list(_two_readings(judge.few(judge.wrong, _FEW // 2)))
@@ -257,8 +254,6 @@ def _two_readings(judge: Judge) -> Iterator[Program]:
         for place in np.flatnonzero(near.mean(-1) >= BORNE_OUT) if near.ndim > 1 else ():
             yield Program((first[place], other))
 
-
-# --- by equations --------------------------------------------------------------------------------
 
 _IMPULSES = {
     "A": {"Px": "MA*(VAX - UX)", "Py": "MA*(VAY - UY)", "Pm": "ia*(WAF - WA) - D3*Px + D4*Py"},

@@ -66,9 +66,6 @@ class Edit(NamedTuple):
         return "; and ".join(said)
 
 
-# --- one node ------------------------------------------------------------------------------------
-
-
 def _node_edits(spelling: Spelling, places: Iterable[int]) -> Iterator[Edit]:
     """Every edit of one node of statements, of each statement the likeliest first: of those that
     compute the same it stays."""
@@ -146,9 +143,6 @@ def _filled(made: Expression, bound: Mapping[str, Expression]) -> Expression:
     return renamed(made, bound)
 
 
-# --- one equation --------------------------------------------------------------------------------
-
-
 def equation_edits(spelling: Spelling) -> Iterator[Edit]:
     """The same edit throughout one statement, or all that share a subject up to a comma."""
     groups: dict[str, list[int]] = {}
@@ -206,9 +200,6 @@ def edits_on(spelling: Spelling) -> tuple[Edit, ...]:
     """The edits of one node of a spelling, edited or not, its input and output apart."""
     shown = sum(one.target.startswith(SHOWN) for one in spelling.statements)
     return tuple(_node_edits(spelling, range(len(SCENE), len(spelling.statements) - shown)))
-
-
-# --- conventions and models ----------------------------------------------------------------------
 
 
 @cache

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import SCENE
 from .spelling import COMPARISONS, NEGATIVE, TYPED, Expression, Spelling, nodes
 
 Floats = NDArray[np.float64]
@@ -101,17 +102,12 @@ class Run:
     def __init__(self, spelling: Spelling, scene: Columns, clamped: Columns | None = None) -> None:
         self.spelling = spelling
         self.clamped = {name: np.atleast_2d(column) for name, column in (clamped or {}).items()}
-        self.names: dict[str, Any] = {
-            f"{TYPED}{name}": np.atleast_2d(np.asarray(column, float))
-            for name, column in scene.items()
-        }
-        if f"{TYPED}before_M" not in self.names:
-            self.names |= {
-                f"{TYPED}{row}_{name}": np.roll(self.names[f"{TYPED}{name}"], step, -1)
-                for row, step in BESIDE.items()
-                for name in scene
-            }
-        self.size = max(column.shape[-1] for column in self.names.values())
+        columns = {name: np.atleast_2d(np.asarray(column, float)) for name, column in scene.items()}
+        for row, step in BESIDE.items():
+            beside = {f"{row}_{name}": np.roll(columns[name], step, -1) for name in SCENE}
+            columns = beside | columns
+        self.names: dict[str, Any] = {f"{TYPED}{name}": c for name, c in columns.items()}
+        self.size = max(column.shape[-1] for column in columns.values())
         self._own: list[Any] = [None] * len(spelling.statements)
         basis = np.eye(len(spelling.unknown) + 1)[1:, :, None, None]
         self._unknown = {name: basis[i] for i, name in enumerate(spelling.unknown)}

@@ -97,15 +97,13 @@ class Spelling:
 
     @cached_property
     def otherwise(self) -> dict[str, Expression]:
-        """What stands for a column as typed, or a result, where it is read or shown otherwise."""
-        made = {}
-        for one in self.statements:
-            if one.target in SCENE or one.target.startswith(SHOWN):
-                name = one.target.removeprefix(SHOWN)
-                usual = name if name != one.target else f"{TYPED}{name}"
-                if one.sides != (usual,):
-                    made[usual] = one.sides[0]
-        return made
+        """What is read for each column as typed, and shown for each result."""
+        return {
+            f"{TYPED}{one.target}" if one.target in SCENE else one.target.removeprefix(SHOWN): side
+            for one in self.statements
+            for side in one.sides[:1]
+            if one.target in SCENE or one.target.startswith(SHOWN)
+        }
 
     def composed(self, sides: Mapping[str, Sides]) -> Mapping[str, Sides]:
         """Statements written otherwise in this program: what is read or shown otherwise takes what
