@@ -152,38 +152,25 @@ def _case(
         undecided = np.abs(sliding) <= off * errorbound.DOUBLE
         undecided &= (scene["MU"] != PIVOT) & (scene["MU"] != 0)
     per_unit = np.fmax(best, finite)
-    alike = None if rtol is None else np.full(best.size, rtol)
     columns = np.stack([scene[name] for name in SCENE])
-    case = Case(
-        tuple(theirs),
-        columns,
-        np.roll(columns, 1, -1),
-        np.roll(columns, -1, -1),
-        np.stack([values for values, _ in theirs.values()]),
-        np.stack([units for _, units in theirs.values()]),
-        np.stack([ours[name] for name in theirs]),
-        np.stack([sizes[name] for name in theirs]),
-        ours["COND"],
-        best * errorbound.DOUBLE if alike is None else alike,
-        per_unit * errorbound.DOUBLE if alike is None else alike,
-        per_unit,
-    )
+    beside = np.roll(columns, 1, -1), np.roll(columns, -1, -1)
+    values, units = (np.stack(column) for column in zip(*theirs.values(), strict=True))
+    mine, measures = (np.stack([found[name] for name in theirs]) for found in (ours, sizes))
+    shared = [
+        share * errorbound.DOUBLE if rtol is None else np.full(best.size, rtol)
+        for share in (best, per_unit)
+    ]
+    found = (columns, *beside, values, units, mine, measures, ours["COND"], *shared, per_unit)
+    case = Case(tuple(theirs), *found)
     return case, np.flatnonzero(undecided)
 
 
 def _condition(scene: Columns) -> Floats:
     """The larger condition number (largest row sum) of the two 6 by 6 matrices as they stand, the
     listing's and the one with A's impulse; infinite where there is no finite one."""
-    largest = np.zeros(scene["M"].size)
-    for title in (LISTING, A_IMPULSE):
-        matrix = Run(spellings()[title], scene).system({})[0][0]
-        usable = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
-        matrix[~usable] = np.eye(6)
-        usable &= np.linalg.slogdet(matrix)[0] != 0
-        matrix[~usable] = np.eye(6)
-        condition = np.abs(matrix).sum(2).max(1) * np.abs(np.linalg.inv(matrix)).sum(2).max(1)
-        largest = np.fmax(largest, np.where(usable & np.isfinite(condition), condition, np.inf))
-    return largest
+    matrices = (Run(spellings()[title], scene).system({})[0][0] for title in (LISTING, A_IMPULSE))
+    both = [np.linalg.cond(matrix, np.inf) for matrix in matrices]
+    return np.asarray(np.where(np.isnan(both), np.inf, both).max(0))
 
 
 def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Floats]:
