@@ -95,9 +95,6 @@ class Flow(InputOutput):
             sp = sp + FOR_SIZE & 0xFF
         return -1, sp
 
-    def let_(self) -> None:
-        self.let(self.sp - 2)
-
     def let(self, sp: int) -> None:
         """LET, with its keyword or without."""
         known = self.atoms.get(self.txtptr)
@@ -204,18 +201,11 @@ class Flow(InputOutput):
         self.sp = frame.sp
 
     def return_(self) -> None:
-        if not self.at_end():
-            return
-        frame = self._subroutine()
-        self.curlin = frame.line
-        self.txtptr = frame.text
+        frame = self.subroutine()
+        self.curlin, self.txtptr = frame.line, frame.text
         self.data_()
 
-    def pop_(self) -> None:
-        if self.at_end():
-            self._subroutine()
-
-    def _subroutine(self) -> Frame:
+    def subroutine(self) -> Frame:
         """The innermost GOSUB, which is over then. The ROM looks for a loop whose variable lies at
         $xxFF, xx being left over from the last assignment, and fails if there is one."""
         self.forpnt |= 0xFF
@@ -300,31 +290,24 @@ class Flow(InputOutput):
             self.clear()
             self.goto(self.sp - 2)
 
-    def _note_place(self) -> None:
-        """Where CONT goes on, unless at the prompt."""
+    def end(self, message: bytes = b"") -> None:
+        """END, or STOP with a message; CONT goes on here, unless at the prompt."""
         if self.curlin < DIRECT:
             self.oldtext, self.oldlin = self.txtptr, self.curlin
-
-    def end_(self) -> None:
-        if self.at_end():
-            self._note_place()
-            raise Restart
-
-    def stop_(self) -> None:
-        if self.at_end():
-            self._stop()
-
-    def _stop(self) -> None:
-        self._note_place()
-        self.message(b"\rBREAK")
+        if message:
+            self.message(message)
         raise Restart
+
+    def stop(self) -> None:
+        """STOP."""
+        self.end(b"\rBREAK")
 
     def break_(self) -> None:
         """Control-C: an error under ONERR, else as STOP."""
         if self.errflg & 0x80:
             raise Fault("SYNTAX", self.sp - 4, BREAK_CODE)
         self.broken = True
-        self._stop()
+        self.stop()
 
     def message(self, text: bytes) -> None:
         """What stands before the prompt: a text, the bell, the line if there is one."""
@@ -333,11 +316,11 @@ class Flow(InputOutput):
             self.show_message(b" IN ")
             self.show_number(integer(self.curlin))
 
-    def cont_(self) -> None:
-        if self.at_end():
-            if not self.oldtext >> 8:
-                raise Fault("CAN'T CONTINUE", self.sp - 2)
-            self.txtptr, self.curlin = self.oldtext, self.oldlin
+    def cont(self) -> None:
+        """CONT."""
+        if not self.oldtext >> 8:
+            raise Fault("CAN'T CONTINUE", self.sp - 2)
+        self.txtptr, self.curlin = self.oldtext, self.oldlin
 
     def lines(self) -> Iterator[tuple[int, bytes]]:
         """Numbers and tokens, as the addresses lead."""
@@ -392,10 +375,8 @@ class Flow(InputOutput):
             address = following
         self.prgend = self.vartab
 
-    def new_(self) -> None:
+    def new(self) -> None:
         """NEW. A program that does it comes to its end, from where CONT can go on."""
-        if not self.at_end():
-            return
         self.lock = 0
         self.ram[self.txttab : self.txttab + 2] = END_MARK
         # the carry is set here, so that there is one byte more than the program takes

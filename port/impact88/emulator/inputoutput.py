@@ -173,9 +173,6 @@ class InputOutput(Expressions):
         data = text.encode("latin-1") + b"\0"
         self.ram[INPUT_BUFFER : INPUT_BUFFER + len(data)] = data
 
-    def read_(self) -> None:
-        self._take_items(FROM_DATA, self.datptr, self.sp - 2)
-
     def restore_(self) -> None:
         self.datptr = self.txttab - 1
 
@@ -211,14 +208,14 @@ class InputOutput(Expressions):
         self._put_in_buffer(reply)
         if reply.startswith(CONTROL_C):
             raise KeyboardInterrupt
-        self._take_items(FROM_REPLY, INPUT_BUFFER - 1, sp)
+        self.take_items(FROM_REPLY, INPUT_BUFFER - 1, sp)
 
     def get_(self) -> None:
         self.refuse_direct(self.sp - 4)
         self.ram[INPUT_BUFFER + 1] = 0
-        self._take_items(FROM_KEY, INPUT_BUFFER + 1, self.sp - 4)
+        self.take_items(FROM_KEY, INPUT_BUFFER + 1, self.sp - 4)
 
-    def _take_items(self, source: int, values: int, sp: int) -> None:
+    def take_items(self, source: int, values: int, sp: int) -> None:
         """PROCESS_INPUT_LIST: TXTPTR stands at the variables, ``values`` before the values."""
         ram = self.ram
         while True:

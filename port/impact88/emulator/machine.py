@@ -14,6 +14,7 @@ from ..applesoft.real import integer
 from .expressions import address_of
 from .faults import Fault, Restart, placed
 from .flow import EQUAL, Flow
+from .inputoutput import FROM_DATA
 from .memory import DIRECT, INPUT_BUFFER, RTS, SPEED, SUBFLG_SIMPLE
 from .screen import FLASHING, INVERSE, NORMAL
 from .tokens import BLANK, CLOSE, COLON, COMMA, FIRST, KEYWORDS, LAST_STATEMENT, OPEN
@@ -45,20 +46,28 @@ class Machine(Flow):
         self.after_line: Callable[[int], object] | None = None
         self.error: ApplesoftError | None = None
         self.fac = AFTER_TYPING
-        others: dict[str, Callable[[], None]] = {
+        statements: dict[str, Callable[[], object]] = {
+            word: getattr(self, f"{word.lower().rstrip(':')}_", partial(self.refuse, word))
+            for word in KEYWORDS[: LAST_STATEMENT - FIRST + 1]
+        }
+        statements |= {
             **{word: partial(self.keep_byte, *where) for word, where in KEPT.items()},
             "HOME": self.screen.home,
             "TEXT": self.screen.full_window,
             "NORMAL": partial(self.set_mode, NORMAL),
             "INVERSE": partial(self.set_mode, INVERSE),
             "FLASH": partial(self.set_mode, FLASHING, FLASH_BIT),
+            "LET": lambda: self.let(self.sp - 2),
+            "POKE": lambda: self.poke(*self._address_and_byte()),
+            "READ": lambda: self.take_items(FROM_DATA, self.datptr, self.sp - 2),
+            "PR#": lambda: self.console.select(self.byte(self.sp - 4)),
+            "IN#": lambda: self.byte(self.sp - 4),  # nothing but the keyboard is plugged in
         }
-        self.statements = [
-            others.get(word)
-            or getattr(self, f"{word.lower().rstrip('#:')}_", None)
-            or partial(self.refuse, word)
-            for word in KEYWORDS[: LAST_STATEMENT - FIRST + 1]
-        ]
+        alone: dict[str, Callable[[], object]]
+        alone = {"CLEAR": self.clear, "CONT": self.cont, "END": self.end, "NEW": self.new}
+        alone |= {"POP": self.subroutine, "RETURN": self.return_, "STOP": self.stop}
+        statements |= {word: partial(self._alone, does) for word, does in alone.items()}
+        self.statements = list(statements.values())
         self.text_changed()
         self.variables_changed()
 
@@ -197,9 +206,6 @@ class Machine(Flow):
         self.expect(COMMA, sp)
         return place, self.byte(sp + 2)
 
-    def poke_(self) -> None:
-        self.poke(*self._address_and_byte())
-
     def wait_(self) -> None:
         """WAIT: until bits come up, which nothing but control-C does here."""
         (place, mask), flip = self._address_and_byte(), 0
@@ -236,22 +242,16 @@ class Machine(Flow):
         self.vartab = place
         self.clear()
 
-    def clear_(self) -> None:
+    def _alone(self, does: Callable[[], object]) -> None:
+        """A statement that takes nothing; where something follows it does nothing."""
         if self.at_end():
-            self.clear()
+            does()
 
     def keep_byte(self, place: int, table: bytes) -> None:
         n = self.byte(self.sp - 4)
         if n >= len(table):
             raise Fault("ILLEGAL QUANTITY", self.sp - 2)
         self.ram[place] = table[n]
-
-    def pr_(self) -> None:
-        self.console.select(self.byte(self.sp - 4))
-
-    def in_(self) -> None:
-        """IN#: nothing but the keyboard is plugged in."""
-        self.byte(self.sp - 4)
 
     def trace_(self) -> None:
         self.trcflg = self.trcflg >> 1 | 0x80

@@ -7,11 +7,12 @@ This is the one module that knows how text is recovered.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
+from operator import attrgetter
 from types import MappingProxyType
 
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
-from ..fields import ANGLES, INPUTS, REPLIES
+from ..fields import ANGLES, INPUTS, REPLIES, scene_name
 from ..reading.printout import read_printouts
 from ..recovery.recovered import recover
 from ..recovery.replays import Outcome, run_all
@@ -24,12 +25,13 @@ WORST = 6.0
 _SETTLED = 1.0
 """A page whose cells cost less than this in all needs no search."""
 _ROUNDS, _KEPT = 2, 3
+"""Times that scenes next to the best are tried, and how many are the best."""
 
 
 @dataclass
 class Read:
-    """Numbers of a printout as cells: for each name the cost of each of `READABLE`
-    in each cell, shape (cells, characters), 0 for the likeliest."""
+    """Numbers of a printout as cells: by name the cost of each of `READABLE` in each cell, shape
+    (cells, characters), 0 for the likeliest."""
 
     sheet: Sheet
     costs: dict[str, Floats]
@@ -46,10 +48,9 @@ class Read:
         """What it costs to take a number's cells for a text."""
         if text is None:
             return 2 * WORST
-        key = (name, text)
-        if key not in self._known:
-            self._known[key] = self._cost(self.costs[name], text)
-        return self._known[key]
+        if (name, text) not in self._known:
+            self._known[name, text] = self._cost(self.costs[name], text)
+        return self._known[name, text]
 
     def _cost(self, costs: Floats, text: str) -> float:
         total = WORST * max(0, len(text) - len(costs))
@@ -88,33 +89,34 @@ def scene_of(read: Read, seeds: Sequence[dict[str, str]] = ()) -> Candidate | No
     """The scene whose page fits the cells best, None where none can be run. ``seeds``: scenes that
     another reader found."""
     known: dict[tuple[tuple[str, str], ...], Candidate] = {}
-    # what the text's recovery finds in it is asked for only where the numbers as read leave doubts
+    best: list[Candidate] = []
+    # the text's recovery is asked only where the numbers as read leave doubts
     for recovered in (False, True):
         first = scenes_in(read.page()[0]) if recovered else [*_direct(read), *seeds]
         for scene in first:
             _weigh(read, [scene], known)
+        best = sorted(known.values(), key=_cost)[:_KEPT]
         for _ in range(_ROUNDS):
-            best = sorted(known.values(), key=_cost)[:_KEPT]
             if not best or best[0].cost < _SETTLED:
                 break
             for one in best:
                 _weigh(read, list(_neighbours(read, one)), known)
-            if min(known.values(), key=_cost).cost > best[0].cost - 0.5:
+            before, best = best[0].cost, sorted(known.values(), key=_cost)[:_KEPT]
+            if best[0].cost > before - 0.5:
                 break
-        if known and min(known.values(), key=_cost).cost < _SETTLED:
+        if best and best[0].cost < _SETTLED:
             break
-    return min(known.values(), key=_cost, default=None)
+    return best[0] if best else None
 
 
-def _cost(candidate: Candidate) -> float:
-    return candidate.cost
+_cost = attrgetter("cost")
 
 
 def _direct(read: Read) -> Iterator[dict[str, str]]:
     """The scene of the numbers as read, of either sign of MU."""
     texts = {name: read.text(name) for name in read.costs}
     if all(is_number(texts.get(name, "")) for name in INPUTS):
-        direct = {("MU" if name == "MUP" else name): texts[name] for name in INPUTS}
+        direct = {scene_name(name): texts[name] for name in INPUTS}
         # what was typed may have more figures than are printed, or fewer: 5.749 prints 5.74900001
         for typed, spins, sign in product((_typed(read), {}), ("6", "4"), (1, -1)):
             yield {**direct, **typed, "M": spins, "MU": _signed(texts["MUP"], sign)}
@@ -132,15 +134,19 @@ def scenes_in(text: str) -> list[dict[str, str]]:
 def borne_out(one: Candidate, shown: Mapping[str, str]) -> Candidate:
     """The scene with some inputs as the paper shows them, where the program's page is otherwise the
     same: results bear out neither an angle nor an arm that they do not depend on."""
-    if not shown:
-        return one
-    typed = {("MU" if name == "MUP" else name): text for name, text in shown.items()}
+    typed = {scene_name(name): text for name, text in shown.items()}
+    for outcome in _outcomes([{**one.scene, **typed}]) if shown else ():
+        if outcome.fields == {**one.outcome.fields, **shown}:
+            return Candidate({**one.scene, **typed}, outcome, one.cost)
+    return one
+
+
+def _outcomes(scenes: list[dict[str, str]]) -> list[Outcome]:
+    """What the program prints for scenes, nothing where one of them cannot be run."""
     try:
-        (outcome,) = run_all([{**one.scene, **typed}])
+        return run_all(scenes)
     except (UserError, ValueError, OverflowError):
-        return one
-    same = outcome.fields == {**one.outcome.fields, **shown}
-    return Candidate({**one.scene, **typed}, outcome, one.cost) if same else one
+        return []
 
 
 def _weigh(
@@ -150,11 +156,7 @@ def _weigh(
 ) -> None:
     keys = [tuple(sorted(scene.items())) for scene in scenes]
     new = [(key, scene) for key, scene in zip(keys, scenes, strict=True) if key not in known]
-    try:
-        outcomes = run_all([scene for _, scene in new])
-    except (UserError, ValueError, OverflowError):
-        return
-    for (key, scene), outcome in zip(new, outcomes, strict=True):
+    for (key, scene), outcome in zip(new, _outcomes([scene for _, scene in new]), strict=False):
         known[key] = Candidate(scene, outcome, cost_of(read, outcome))
 
 
@@ -171,11 +173,12 @@ def cost_of(read: Read, outcome: Outcome) -> float:
 def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
     """Scenes that differ in one character of one input, and those of the reply's numbers."""
     for name in INPUTS:
-        typed = "MU" if name == "MUP" else name
+        typed = scene_name(name)
         if name not in read.costs:
             continue
         text = one.outcome.fields.get(name) or read.text(name)
-        sign = -1 if typed == "MU" and _opposite(one.scene["MU"], text) else 1
+        opposite = one.scene["MU"].startswith("-") != text.startswith("-")
+        sign = -1 if typed == "MU" and opposite else 1
         seen = read.text(name)  # its last figure may have been altered to a nought, or erased
         for shown in {text, seen, seen.ljust(len(read.costs[name]), "0")}:
             for at, character in enumerate(shown):
@@ -190,10 +193,6 @@ def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
         yield {**one.scene, typed: _signed(text, -1)}
     yield {**one.scene, "M": "4" if one.scene["M"] == "6" else "6"}
     yield {**one.scene, **_typed(read)}
-
-
-def _opposite(first: str, second: str) -> bool:
-    return first.startswith("-") != second.startswith("-")
 
 
 def _signed(text: str, sign: int) -> str:
