@@ -8,7 +8,6 @@ Smooth polynomials carry both over the page, which takes in turned, keystoned an
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from .ink import Floats, Image, Points, points_of, slopes
@@ -32,16 +31,11 @@ _STRAIN = 0.02
 """What a pitch of keystone or bow costs of the clarity (0 to 1) it gains: without it a page of
 broken type, in which gaps stand within characters, is bent to fit them; twice as much leaves two of
 the given photographs flat."""
-_PEAKS, _CLEAR = 2, 0.85
-"""Pitches that are tried, and how clear the columns are where one is right: of the given pages
-that were read the least clear has 0.9."""
 _GUTTER, _COLUMN = 6, 0.25
 """The least gap between printouts side by side, in 300ths of the page, some three characters of
 160, and the least part of the ink that is a column: angles at the end of their line are none."""
 _COARSE = 80
 """Stretches of a dozen cells from which the starts are found, those with the clearest gaps."""
-_STARTS = 5
-"""Places from which the fit of the columns starts."""
 
 
 @dataclass
@@ -119,21 +113,16 @@ def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
     return [(low + top, low + bottom) for top, bottom in edges.reshape(-1, 2)]
 
 
-def _pitches(xs: list[Floats], height: float, span: float) -> list[float]:
-    """What the pitch may be, the likeliest first: periods of the gaps between characters. (The ink
-    has others: most digits have a stroke at each side of their cell.)"""
+def _pitch(xs: list[Floats], height: float, span: float) -> float:
+    """The period of the gaps between characters, 0 for none. (The ink has others: most digits have
+    a stroke at each side of their cell.)"""
     size, low = 1 << 15, min(float(x.min()) for x in xs)
     gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
     power = sum(np.abs(np.fft.rfft(one, size)) ** 2 / one.sum() for one in gaps)
     first, last = (int(2 * height * part) for part in _PITCHES)
     first = max(first, int(2 * span / _MOST_COLUMNS))
     chosen = np.arange(size // last, size // max(first, 2) + 1)
-    strong = np.asarray(power)[chosen]
-    # frequencies nearer each other than a line is long are one
-    wide = 2 * size // int(max(2 * (x.max() - low) for x in xs)) + 1
-    peaks = np.flatnonzero(strong == ndimage.maximum_filter1d(strong, 2 * wide + 1))
-    best = peaks[np.argsort(-strong[peaks])][:_PEAKS]
-    return [float(size / chosen[peak] / 2) for peak in best]
+    return float(size / chosen[np.argmax(np.asarray(power)[chosen])] / 2) if len(chosen) else 0.0
 
 
 def _terms(x: Floats, y: Floats, span: float) -> Floats:
@@ -175,40 +164,19 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
         np.arange(-reach * span, reach * span, width)
         for reach, width in ((0.1, step), (0.04, step), (0.15, 2 * step), (0.06, 4 * step))
     )
-    curves = [(keystone, bow) for keystone in keystones for bow in bows - bows.mean()]
+    curves = np.array([(keystone, bow) for keystone in keystones for bow in bows - bows.mean()])
     few = np.argsort(-np.abs(total))[:_COARSE]
     strong, sited = total[few], terms[:, few]
     wide = np.exp(turn * np.outer(slants, sited[2]))
     narrow = np.exp(turn * np.outer(stretches, sited[1])).T
-    most = float(np.abs(strong).sum())
-
-    def strain(keystone: float, bow: float) -> float:
-        return _STRAIN * (abs(keystone) + abs(bow)) / pitch
-
-    curved = [strong * np.exp(turn * (np.array(curve) @ sited[3:5])) for curve in curves]
-    clear = np.stack(
-        [
-            np.abs((wide * sums) @ narrow) / most - strain(*curve)
-            for curve, sums in zip(curves, curved, strict=True)
-        ]
-    )
-    found, best = (np.zeros(6), 0.0), -np.inf
-    for _ in range(_STARTS):
-        one = np.unravel_index(int(np.argmax(clear)), clear.shape)
-        clear[tuple(slice(max(0, k - 1), k + 2) for k in one)] = -np.inf
-        first = np.array([0, stretches[one[2]], slants[one[1]], *curves[one[0]], 0])
-        fit = _bent(first, total, terms, pitch)
-        if fit[1] - strain(*fit[0][3:5]) > best:
-            found, best = fit, fit[1] - strain(*fit[0][3:5])
-    return found
-
-
-def _bent(
-    best: Floats, total: NDArray[np.complex128], terms: Floats, pitch: float
-) -> tuple[Floats, float]:
-    """Coefficients refined from ``best``: what is off by a good part of a pitch counts less."""
-    turn, weights = 2j * np.pi / pitch, np.abs(total)
+    curved = strong * np.exp(turn * curves @ sited[3:5])
+    clear = np.stack([np.abs((wide * sums) @ narrow) for sums in curved]) / np.abs(strong).sum()
+    clear -= _STRAIN * np.abs(curves).sum(axis=1)[:, None, None] / pitch
+    one = np.unravel_index(int(np.argmax(clear)), clear.shape)
+    best = np.array([0, stretches[one[2]], slants[one[1]], *curves[one[0]], 0])
+    weights = np.abs(total)
     for reach in (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2):
+        # what is off by a good part of a pitch counts less
         turned = total * np.exp(turn * best @ terms)
         off = np.angle(turned * np.conj(turned.sum())) / (2 * np.pi) * pitch
         sure = weights * np.exp(-((off / (reach * pitch)) ** 2))
@@ -257,14 +225,10 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
         return None
     members = [np.flatnonzero((level >= top) & (level < bottom)) for top, bottom in lines]
     xs, ys = [x[inside] for inside in members], [y[inside] for inside in members]
-    clarity = 0.0
-    for one in _pitches(xs, height, span):
-        if clarity < _CLEAR:
-            bent, clear = _bend(xs, ys, one, span)
-            if clear > clarity:
-                pitch, bend, clarity = one, bent, clear
-    if not clarity:
+    pitch = _pitch(xs, height, span)
+    if not pitch:
         return None
+    bend, clarity = _bend(xs, ys, pitch, span)
     across = x + bend @ _terms(x, y, span)
     everything = across[np.concatenate(members)]
     first, last = np.floor(everything.min() / pitch) - 1, np.ceil(everything.max() / pitch) + 1
