@@ -171,7 +171,7 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     monkeypatch.setattr(
         sheets,
         "read_numbers",
-        lambda grid, found: [Read(one, {"MA": np.zeros((1, 1))}) for one in found],
+        lambda grid, found: [{"MA": np.zeros((1, 1))} for one in found],
     )
     monkeypatch.setattr(sheets, "scene_of", lambda *given: object())
     monkeypatch.setattr(sheets, "held", lambda *given: [])
@@ -192,7 +192,7 @@ def test_no_scene_is_searched_for_where_columns_are_not_clear(monkeypatch, clari
     monkeypatch.setattr(
         sheets,
         "read_numbers",
-        lambda grid, found: [Read(one, {"MA": np.zeros((1, 1))}) for one in found],
+        lambda grid, found: [{"MA": np.zeros((1, 1))} for one in found],
     )
     monkeypatch.setattr(sheets, "scene_of", lambda read, seeds: asked.append(read))
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=clarity)

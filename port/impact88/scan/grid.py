@@ -220,7 +220,6 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
     level = y - x * (slope + keystone * y / span)
     lines = _lines(points, level)
     height = float(np.median([bottom - top for top, bottom in lines])) if lines else 0.0
-    lines = _mended(lines, height)
     if not 6 <= len(lines) <= _MOST_LINES or height < _LEAST_HEIGHT:
         return None
     members = [np.flatnonzero((level >= top) & (level < bottom)) for top, bottom in lines]
@@ -326,14 +325,3 @@ def _resized(ink: Image, scale: float) -> Image:
     height, width = ink.shape
     size = (max(1, round(width * scale)), max(1, round(height * scale)))
     return np.asarray(Pillow.fromarray(ink).resize(size, Pillow.Resampling.BILINEAR), np.float32)
-
-
-def _mended(lines: list[tuple[float, float]], height: float) -> list[tuple[float, float]]:
-    """Lines in whose place a stroke stands above (a broken row) joined, specks left out."""
-    kept: list[tuple[float, float]] = []
-    for top, bottom in lines:
-        if kept and top - kept[-1][1] < 0.15 * height and bottom - kept[-1][0] < 1.6 * height:
-            kept[-1] = (kept[-1][0], bottom)
-        else:
-            kept.append((top, bottom))
-    return [(top, bottom) for top, bottom in kept if bottom - top > 0.25 * height]

@@ -11,35 +11,20 @@ from decimal import Decimal
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .grid import Grid
-from .ink import Floats
 from .layout import SPACED, Place, Sheet, parts
-from .naming import STYLES, likeness
 from .scenes import Candidate, Read
-from .typeface import (
-    BLANK,
-    NUMERIC,
-    READABLE,
-    Sample,
-    Typeface,
-    Vectors,
-    distances,
-    sample_of,
-    typeface_of,
-)
+from .typeface import BLANK, READABLE, distances, hands_of, sample_of, typeface_of
 
 _NOISE = 3.0
 _LEAST_NOISE = 0.1
 """The usual distance of a cell from its mean on an excellent scan, in units of the root of its
 energy; pages drawn by a program have 0.01 to 0.04, and there any other hand is a hundred times as
 far as is usual."""
-_FAR, _CLEARLY = 10.0, (0.13, 2.5)
-"""From how many times the usual distance a cell is compared with all known styles, how unlike one
-of their digits it is at most, and how many times as unlike the predicted: 16 digits drawn in
-another font came to 0.01 to 0.12 and 2.7 to 27 times, all named rightly; 60 digits with a blot, a
-stroke or a scratch to 0.09 and more and 1 to 2.2 times, one to 0.05."""
+_FAR = 10.0
+"""From how many times the usual distance a cell is compared with all known styles: digits drawn in
+another font are farther."""
 _EVEN = 0.8
 """The strength of ink, 1 for the page's usual, that 99 % of the cells have on evenly inked paper:
 0.82 and more on seven pages of which a digit was erased, 0.4 to 0.75 on those that lost some."""
@@ -146,7 +131,7 @@ def held(
     apart = np.column_stack([apart, sample.norms.min(axis=1).astype(float)])
     ink = np.column_stack([strength, np.ones(len(rows))])[every, own]
     energy = np.r_[np.einsum("mp,mp->m", typeface.means, typeface.means), 0.0]
-    between = _between(typeface.means)
+    between = typeface.between()
     distance = apart[every, own].copy()
     alone = np.zeros(len(rows), bool)
     for cell in np.flatnonzero(names != BLANK).tolist():
@@ -167,7 +152,7 @@ def held(
     numeric = np.array([character in READABLE for character in characters])
     letters = np.array([character.isalpha() or character == BLANK for character in characters])
     far = of_number & ~alone & (relative > _FAR * level)
-    hands = _hands(sample, typeface, names.tolist(), alone & of_number, far)
+    hands = hands_of(sample, typeface, names.tolist(), alone & of_number, far)
     cells = []
     for cell, (which, name, character, place) in enumerate(rows):
         allowed = (numeric if name or character == BLANK else letters).copy()
@@ -188,36 +173,3 @@ def held(
         compared = margin, seen, float(relative[cell] / level), beyond, *count
         cells.append(Cell(which, place, name, character, *compared, hands[cell], cut[cell], lost))
     return cells
-
-
-def _between(means: Vectors) -> Floats:
-    """Squared distances of the means from each other, of whatever strength, and from blank paper:
-    of the two directions the less."""
-    whole = np.vstack([means, np.zeros_like(means[:1])])
-    norms = np.einsum("mp,mp->m", whole, whole)
-    apart, _ = distances(Sample(whole[:, None], norms[:, None], (0, 0)), whole)
-    least: Floats = np.minimum(apart, apart.T)
-    return least
-
-
-def _hands(
-    sample: Sample,
-    typeface: Typeface,
-    names: Sequence[str],
-    alone: NDArray[np.bool_],
-    far: NDArray[np.bool_],
-) -> list[str]:
-    """The digit that a cell is in a known style of type, where it is not the predicted: of cells
-    alone with their character the nearest in the page's styles, of those that are far from their
-    mean what they clearly are in any."""
-    hands = [""] * len(names)
-    known = np.array([name in NUMERIC for name in names])
-    for asked, styles, most, clearly in ((alone, STYLES, 1.0, 1.0), (far, None, *_CLEARLY)):
-        chosen = np.flatnonzero(asked & known)
-        if len(chosen):
-            apart = likeness(sample.at(chosen), typeface, styles)
-            for cell, row in zip(chosen.tolist(), apart, strict=True):
-                least = float(row.min())
-                if least < most and least * clearly < row[NUMERIC.index(names[cell])]:
-                    hands[cell] = NUMERIC[int(row.argmin())]
-    return hands

@@ -14,9 +14,8 @@ from .grid import Grid, grids_of
 from .holding import Cell, held
 from .ink import Image, ink_of
 from .layout import OPTIONAL, Sheet, sheets_of
-from .naming import read_numbers
 from .scenes import Candidate, Read, borne_out, scene_of
-from .typeface import BLANK
+from .typeface import BLANK, read_numbers
 
 _UPRIGHT = 600.0
 """Gain of a printout that is found the right way up: those of 445 pages have 740 and more, upside
@@ -94,9 +93,8 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
 
 
 def _judged(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:
-    legible = read_numbers(grid, [sheet for sheet in sheets if sheet.gain > _LEGIBLE])
-    by_sheet = {id(read.sheet): read for read in legible}
-    reads = [by_sheet.get(id(sheet), Read(sheet, {})) for sheet in sheets]
+    costs = iter(read_numbers(grid, [sheet for sheet in sheets if sheet.gain > _LEGIBLE]))
+    reads = [Read(sheet, next(costs) if sheet.gain > _LEGIBLE else {}) for sheet in sheets]
     found = [scene_of(read, seeds) if read.costs else None for read in reads]
     known = [
         (sheet, read, one) for sheet, read, one in zip(sheets, reads, found, strict=True) if one
