@@ -400,7 +400,7 @@ class TestText:
             ("v", False), ("an", True), (", v", False), ("at", True),
         ]  # fmt: skip
         runs = text_runs(Text(0j, "V_a", 10))
-        assert runs[1].size == 7
+        assert runs[1][2] == 7
         assert runs[1].at.imag < runs[0].at.imag
         assert runs[1].at.real == pytest.approx(text_width("V", 10))
 

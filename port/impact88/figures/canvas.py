@@ -80,10 +80,10 @@ def painted(drawing: Drawing) -> Figure:
                 )
             )
             continue
-        for run in text_runs(item):
-            look: dict[str, Any] = {"fontsize": size * run.size, "zorder": order}
+        for at, piece, points_high in text_runs(item):
+            look: dict[str, Any] = {"fontsize": size * points_high, "zorder": order}
             look["fontweight"] = "bold" if item.bold else "normal"
-            place = (run.at.real, run.at.imag, run.text.replace("$", r"\$"))
+            place = (at.real, at.imag, piece.replace("$", r"\$"))
             # the halo is drawn as outlines, the text itself stays text
             axes.text(*place, path_effects=halo, **look)
             axes.text(*place, color=item.colour, **look)

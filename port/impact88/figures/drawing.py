@@ -71,14 +71,6 @@ class Text(NamedTuple):
     role: str = ""
 
 
-class Run(NamedTuple):
-    """A piece of a text in one size, placed."""
-
-    at: complex
-    text: str
-    size: float
-
-
 class Label(NamedTuple):
     """A text for the point ``at``, best placed in direction ``towards`` (of any length)."""
 
@@ -213,13 +205,13 @@ def _start(text: Text) -> complex:
     return text.at - share * text_width(text.text, text.size, text.bold)
 
 
-def text_runs(text: Text) -> list[Run]:
-    """The pieces of a text and where each starts."""
+def text_runs(text: Text) -> list[tuple[complex, str, float]]:
+    """The pieces of a text: where each starts, its text, its size."""
     at, runs = _start(text), []
     for piece, below in pieces(text.text):
         size = text.size * (SUBSCRIPT_SIZE if below else 1.0)
         drop = SUBSCRIPT_DROP * text.size * MM_PER_POINT if below else 0.0
-        runs.append(Run(at - 1j * drop, piece, size))
+        runs.append((at - 1j * drop, piece, size))
         at += text_width(piece, size, text.bold)
     return runs
 
@@ -272,10 +264,10 @@ def turning_arrow(
     center: complex,
     radius: float,
     counterclockwise: bool,
-    colour: str = BLACK,
-    width: float = 0.35,
-    dash: tuple[float, ...] = (),
-    opening: float = 90.0,
+    colour: str,
+    width: float,
+    dash: tuple[float, ...],
+    opening: float,
     span: float = 250.0,
     role: str = "",
 ) -> list[Path]:

@@ -62,9 +62,9 @@ stroke before the fill (``paint-order``)."""
 def _text(text: Text) -> str:
     weight = ' font-weight="bold"' if text.bold else ""
     spans = "".join(
-        f'<tspan x="{_number(run.at.real)}" y="{_number(-run.at.imag)}" '
-        f'font-size="{_number(run.size * MM_PER_POINT)}">{escape(run.text, False)}</tspan>'
-        for run in text_runs(text)
+        f'<tspan x="{_number(at.real)}" y="{_number(-at.imag)}" '
+        f'font-size="{_number(size * MM_PER_POINT)}">{escape(piece, False)}</tspan>'
+        for at, piece, size in text_runs(text)
     )
     space = 'xml:space="preserve"'
     behind = (

@@ -13,14 +13,15 @@ from .scenegeometry import Motion, Plan, Vehicle, plan
 from .sceneview import ARROWS, COLOURS
 
 _GAP = 6.0
+"""Between the views of a strip, in mm."""
 
 
 def strip_drawing(
     scene: Any, result: Mapping[str, Any], title: str = "Before, impact and after"
 ) -> Drawing:
-    """Before, impact and after side by side, two columns wide, in one scale. The vehicles move and
-    turn as they did for the time in which the faster one goes its own length. Arguments as
-    `scene_drawing`; ``result`` must hold the final velocities. Raises UserError without them."""
+    """Before, impact and after side by side, two columns wide, in one scale; the vehicles move and
+    turn for the time in which the faster one goes its own length. Arguments as `scene_drawing`.
+    Raises UserError without final velocities."""
     shapes, units = view.planned(scene, result, None, None)
     if not all(vehicle.after for vehicle in shapes.vehicles):
         raise UserError("there are no velocities after the impact to draw")
@@ -82,9 +83,8 @@ def _tip(vehicle: Vehicle, kind: str, time: float) -> complex:
     return vehicle.center + (time if kind != "impact" else 0.0) * motion.velocity
 
 
-_PANEL_GAP = 4.0
-_TITLE = 5.0
-_PAD = 3.5
+_PANEL_GAP, _TITLE, _PAD = 4.0, 5.0, 3.5
+"""In mm: between panels, of a panel's title, within a panel."""
 
 
 def configurations() -> Drawing:
@@ -116,7 +116,16 @@ def configurations() -> Drawing:
         at = View(middle - scale * complex(box.left + box.right, box.bottom + box.top) / 2, scale)
         bottom = top - _TITLE - tall
         frame = Box(left + 0.3, bottom + 0.3, left + wide - 0.3, top - _TITLE + 0.5)
-        _panel(drawing, plans[count], at, arrow, frame)
+        view.draw_bodies(drawing, plans[count].vehicles, at)
+        for vehicle in plans[count].vehicles:
+            colour, center = COLOURS[vehicle.name], at(vehicle.center)
+            start, (_, width, dash, _) = at(_tail(vehicle, plans[count], arrow)), ARROWS["before"]
+            role = f"{vehicle.name} before"
+            drawing.add(*d.arrow(start, center, colour, width, dash, 2.0, role))
+            drawing.add(Path(d.circle(center, 0.5), colour, 0.3, fill=d.WHITE))
+            drawing.add(view.name_label(vehicle, center, 0.3 + 1j, 8))
+        drawing.add(Path(d.circle(at(0), 0.5), d.BLACK, 0.3, fill=d.WHITE))
+        place(drawing, frame)
         if column:
             top = bottom
     drawing.height = 1.0 - top
@@ -127,16 +136,3 @@ def _tail(vehicle: Vehicle, shapes: Plan, arrow: float) -> complex:
     """Where the arrow of a vehicle's velocity starts; the fastest one's is ``arrow`` long."""
     fastest = max(other.before.speed for other in shapes.vehicles)
     return vehicle.center - arrow / fastest * vehicle.before.velocity
-
-
-def _panel(drawing: Drawing, shapes: Plan, at: View, arrow: float, frame: Box) -> None:
-    view.draw_bodies(drawing, shapes.vehicles, at)
-    for vehicle in shapes.vehicles:
-        colour, center = COLOURS[vehicle.name], at(vehicle.center)
-        start, (_, width, dash, _) = at(_tail(vehicle, shapes, arrow)), ARROWS["before"]
-        role = f"{vehicle.name} before"
-        drawing.add(*d.arrow(start, center, colour, width, dash, 2.0, role))
-        drawing.add(Path(d.circle(center, 0.5), colour, 0.3, fill=d.WHITE))
-        drawing.add(view.name_label(vehicle, center, 0.3 + 1j, 8))
-    drawing.add(Path(d.circle(at(0), 0.5), d.BLACK, 0.3, fill=d.WHITE))
-    place(drawing, frame)
