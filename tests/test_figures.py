@@ -399,10 +399,10 @@ class TestText:
         assert pieces("v_{an}, v_{at}") == [
             ("v", False), ("an", True), (", v", False), ("at", True),
         ]  # fmt: skip
-        runs = text_runs(Text(0j, "V_a", 10))
-        assert runs[1][2] == 7
-        assert runs[1].at.imag < runs[0].at.imag
-        assert runs[1].at.real == pytest.approx(text_width("V", 10))
+        (first, _, _), (second, _, size) = text_runs(Text(0j, "V_a", 10))
+        assert size == 7
+        assert second.imag < first.imag
+        assert second.real == pytest.approx(text_width("V", 10))
 
     def test_labels_keep_off_lines_and_texts(self):
         drawing = Drawing(60, "t", height=60)

@@ -5,6 +5,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -93,7 +94,7 @@ class Row(NamedTuple):
 
 @dataclass
 class Sheet:
-    """One printout on the grid: its pieces and where they begin, by line of `LINES`."""
+    """One printout on the grid: its pieces and rows by line of `LINES`."""
 
     pieces: dict[int, list[Piece]] = field(default_factory=dict)
     rows: dict[int, Row] = field(default_factory=dict)
@@ -118,21 +119,15 @@ class Sheet:
 
 @lru_cache
 def parts(line: str) -> tuple[tuple[str, str], ...]:
-    """A line of `LINES` as (name, text): one of the two is empty. A blank that begins a line is a
-    part of its own, which the chapter leaves out."""
+    """A line of `LINES` as (name, text): one of the two is empty. A blank that begins a line, which
+    the chapter leaves out, is a part of its own."""
     found = re.findall(r"\{(\w+)\}|(^ | {2,}|(?:[^{} ]| (?! ))+)", line)
     return tuple((name, text) for name, text in found)
 
 
-def _weights(odds: Floats) -> tuple[Floats, Floats]:
-    """What cells gain when they are taken for inked or blank."""
-    return np.clip(odds, -6, 6) / 2, -np.clip(odds, 0, 6) / 2
-
-
 def _gains(line: str, inked: Floats, blank: Floats) -> tuple[Floats, list[Floats]]:
     """How well rows of cells divide into the parts of a line: the best gain of each row, and the
-    gains after each part by the cell it ends before, each of shape (rows, cells + 1). ``inked``,
-    ``blank``: what each cell gains when taken for inked or blank."""
+    gains after each part by the cell it ends before, each of shape (rows, cells + 1)."""
     rows, cells = inked.shape
     edge = np.zeros((rows, 1))
     filled, emptied, typed = (
@@ -191,29 +186,30 @@ def _ends(line: str, inked: Floats, blank: Floats) -> list[int]:
 def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     """The printouts on a grid. ``odds``: for each line the log odds that each cell is inked;
     ``tops``: where the lines are, in pitches down the page."""
-    first = _margin(odds)
+    # the cell that most lines begin in, or near it
+    begins = [int(np.argmax(row > 0)) for row in odds if np.any(row > 0)]
+    first = int(np.bincount(begins).argmax()) if begins else 0
     margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
     keys, rows = [], []
     for margin in margins:
         for start in range(len(odds)):
             keys.append((margin, start, 1))
-            laid = Row(start, 1, margin, "").cells(odds)
-            rows.append(laid)
+            whole = Row(start, 1, margin, "").cells(odds)
+            rows.append(whole)
             followed = start + 1 < len(odds) and tops[start + 1] - tops[start] <= 3.2
-            if followed and len(laid) >= WRAP and not np.any(laid[WRAP:] > 2):
+            if followed and len(whole) >= WRAP and not np.any(whole[WRAP:] > 2):
                 keys.append((margin, start, 2))
                 rows.append(Row(start, 2, margin, "").cells(odds))
     width = max(map(len, rows))
     padded = np.stack([np.pad(row, (0, width - len(row))) for row in rows])
-    inked, blank = _weights(padded)
+    # what cells gain when they are taken for inked or blank
+    inked, blank = np.clip(padded, -6, 6) / 2, -np.clip(padded, 0, 6) / 2
     before = [np.r_[0.0, np.cumsum(np.clip(row, 0, None))] for row in odds]
-    lost = np.array(
-        [
-            sum(before[at][max(margin, 0)] for at in range(start, start + used))
-            + (_WRAPPED if used == 2 else 0)
-            for margin, start, used in keys
-        ]
-    )
+    lost = [
+        sum(before[at][max(margin, 0)] for at in range(start, start + used))
+        + _WRAPPED * (used == 2)
+        for margin, start, used in keys
+    ]
     fits: dict[int, dict[tuple[int, int, int], tuple[float, str]]]
     fits = {margin: {} for margin in margins}
     for line in range(len(LINES)):
@@ -234,15 +230,13 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
         gain, text = fits[margin][start, used, line]
         row = keys.index((margin, start, used))
         sheets[-1].gain += gain
-        ends = _ends(text, inked[row], blank[row])
-        _place(sheets[-1], line, Row(start, used, margin, text), ends)
+        laid = sheets[-1].rows[line] = Row(start, used, margin, text)
+        ends = pairwise(_ends(text, inked[row], blank[row]))
+        sheets[-1].pieces[line] = [
+            Piece(*part, [laid.place(column) for column in range(*span)])
+            for part, span in zip(parts(text), ends, strict=True)
+        ]
     return [sheet for sheet in sheets if len(sheet.numbers) >= _FEWEST]
-
-
-def _margin(odds: Sequence[Floats]) -> int:
-    """The cell that most lines begin in, or near it."""
-    starts = [int(np.argmax(row > 0)) for row in odds if np.any(row > 0)]
-    return int(np.bincount(starts).argmax()) if starts else 0
 
 
 def _aligned(
@@ -287,11 +281,3 @@ def _aligned(
             found.append((i, used, j))
         at = (i, j)
     return total, found[::-1]
-
-
-def _place(sheet: Sheet, line: int, row: Row, ends: Sequence[int]) -> None:
-    pieces = []
-    for (name, text), begin, end in zip(parts(row.text), ends, ends[1:], strict=False):
-        pieces.append(Piece(name, text, [row.place(column) for column in range(begin, end)]))
-    sheet.pieces[line] = pieces
-    sheet.rows[line] = row

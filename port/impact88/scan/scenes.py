@@ -157,17 +157,12 @@ def _weigh(
     keys = [tuple(sorted(scene.items())) for scene in scenes]
     new = [(key, scene) for key, scene in zip(keys, scenes, strict=True) if key not in known]
     for (key, scene), outcome in zip(new, _outcomes([scene for _, scene in new]), strict=False):
-        known[key] = Candidate(scene, outcome, cost_of(read, outcome))
-
-
-def cost_of(read: Read, outcome: Outcome) -> float:
-    """What the program's page costs against the cells."""
-    fields = outcome.fields
-    total = 2 * WORST * len(set(fields) - set(read.costs))
-    for name in read.costs:
-        if not name.startswith("REPLY"):
-            total += read.cost(name, fields.get(name))
-    return total
+        fields = outcome.fields
+        cost = 2 * WORST * len(set(fields) - set(read.costs))
+        for name in read.costs:
+            if not name.startswith("REPLY"):
+                cost += read.cost(name, fields.get(name))
+        known[key] = Candidate(scene, outcome, cost)
 
 
 def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:

@@ -167,20 +167,13 @@ def prototypes() -> tuple[str, Vectors]:
     return characters, ndimage.gaussian_filter(glyphs, (0, 0, 0.8, 0.8))
 
 
-def capitals(typeface: Typeface) -> tuple[float, float]:
-    """Top and foot of the page's capitals, in rows of a cell."""
-    height, width = typeface.shape
-    chosen = [
-        typeface.index(letter) for letter in "MABEIDTPUVXYKL" if letter in typeface.characters
-    ]
-    profile = typeface.means[chosen].reshape(-1, height, width).sum(axis=(0, 2))
-    inked = np.flatnonzero(profile > 0.25 * profile.max())
-    return float(inked[0]), float(inked[-1] + 1)
-
-
-def _normal(sample: Sample, top: float, foot: float) -> Vectors:
-    """Cells, the height of their capitals that of the prototypes': (cells, rows, columns)."""
+def _normal(sample: Sample, typeface: Typeface) -> Vectors:
+    """Cells, the height of the page's capitals that of the prototypes': (cells, rows, columns)."""
     height, width = sample.shape
+    capitals = [typeface.index(c) for c in "MABEIDTPUVXYKL" if c in typeface.characters]
+    profile = typeface.means[capitals].reshape(-1, height, width).sum(axis=(0, 2))
+    inked = np.flatnonzero(profile > 0.25 * profile.max())
+    top, foot = float(inked[0]), float(inked[-1] + 1)
     middle = sample.vectors[:, sample.vectors.shape[1] // 2].reshape(-1, height, width)
     at = top + (np.arange(_ROWS) + 0.5 - _TOP) * (foot - top) / (_BOTTOM - _TOP) - 0.5
     low = np.floor(at).astype(int)
@@ -194,7 +187,7 @@ def likeness(sample: Sample, typeface: Typeface, styles: int | None = _STYLES) -
     """How unlike each cell is to each of `NUMERIC` in the ``styles`` that fit best, None for all:
     shape (cells, characters), 0 for the same picture, 1 for nothing in common."""
     characters, glyphs = prototypes()
-    cells = ndimage.gaussian_filter(_normal(sample, *capitals(typeface)), (0, 0.5, 0.5))
+    cells = ndimage.gaussian_filter(_normal(sample, typeface), (0, 0.5, 0.5))
     reach = 3
     padded = np.pad(cells, ((0, 0), (reach, reach), (reach, reach)))
     flat = glyphs.reshape(-1, _ROWS * CELL_WIDTH)
@@ -246,12 +239,6 @@ def _apart(sample: Sample) -> Floats:
     return pairs
 
 
-def _widest(labels: Sample, names: NDArray[np.str_]) -> float:
-    """How far apart two cells of one character are on this page, as its labels show."""
-    same = np.triu(names[:, None] == names[None], 1)
-    return _SPREAD * float(np.percentile(_apart(labels)[same], 75)) if same.any() else 0.0
-
-
 def _named(sample: Sample, unlike: Floats, widest: float) -> NDArray[np.intp]:
     """A name for each cell, as an index of `NUMERIC`: cells that are alike have one name, cells
     that are not have two where that costs little. So a 3 that is most like the 8 of every known
@@ -291,7 +278,11 @@ def read_numbers(grid: Grid, sheets: Sequence[Sheet]) -> list[dict[str, Floats]]
     of_numbers = sample.at(chosen)
     labels = np.array([k for k, name in enumerate(names) if name != BLANK])
     unlike = likeness(of_numbers, typeface_of(sample, names))
-    first = _named(of_numbers, unlike, _widest(sample.at(labels), np.array(names)[labels]))
+    # how far apart two cells of one character are on this page, as its labels show
+    letters = np.array(names)[labels]
+    same = np.triu(letters[:, None] == letters, 1)
+    usual = np.percentile(_apart(sample.at(labels))[same], 75) if same.any() else 0.0
+    first = _named(of_numbers, unlike, _SPREAD * float(usual))
     for cell, k in zip(chosen, first, strict=True):
         names[cell] = NUMERIC[k]
     empty = sample.norms.min(axis=1)
