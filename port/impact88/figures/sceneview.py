@@ -145,13 +145,20 @@ class _Field:
             if vehicle.wall:
                 self._draw_wall(drawing, vehicle)
             else:
-                towards = -vehicle.front
-                drawing.add(name_label(vehicle, at(vehicle.center), towards))
+                drawing.add(name_label(vehicle, at(vehicle.center), -vehicle.front))
         draw_bodies(drawing, self.shapes.bodies, at)
-        self._draw_plane(drawing)
+        ends = at.all([-self.half, self.half])
+        drawing.add(Path(ends, d.BLACK, 0.3, PLANE, role="contact plane"))
+        corner = 0.72 * self.half
+        normal = corner + 0.28 * self.size * self.shapes.normal
+        for name, end in (("n", normal), ("t", self.half)):
+            start, tip = at.all([corner, end])
+            drawing.add(*d.arrow(start, tip, d.BLACK, 0.35, head=1.8, role=f"{name} axis"))
+            drawing.add(Label(tip, tip - start, name, role=f"{name} label"))
         for vehicle in self.shapes.bodies:
             self._draw_motion(drawing, vehicle)
-        self._draw_impulse(drawing)
+        for vehicle in self.shapes.bodies if self.shapes.impulse else ():
+            self._draw_impulse(drawing, vehicle)
         drawing.add(Path(d.circle(at(0), 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
         drawing.add(Path(d.circle(at(0), 0.2), None, fill=d.BLACK))
         drawing.add(Label(at(0), -self.shapes.tangent, "C", role="contact label"))
@@ -168,16 +175,6 @@ class _Field:
             high = fourth + (third - fourth) * (step + 1) / 12
             drawing.add(Path((low, high), colour, 0.2, role=role))
         drawing.add(name_label(vehicle, (third + fourth) / 2, fourth - first))
-
-    def _draw_plane(self, drawing: Drawing) -> None:
-        ends = self.at.all([-self.half, self.half])
-        drawing.add(Path(ends, d.BLACK, 0.3, PLANE, role="contact plane"))
-        corner = 0.72 * self.half
-        normal = corner + 0.28 * self.size * self.shapes.normal
-        for name, end in (("n", normal), ("t", self.half)):
-            start, tip = self.at.all([corner, end])
-            drawing.add(*d.arrow(start, tip, d.BLACK, 0.35, head=1.8, role=f"{name} axis"))
-            drawing.add(Label(tip, tip - start, name, role=f"{name} label"))
 
     def _draw_motion(self, drawing: Drawing, vehicle: Vehicle) -> None:
         colour, name = COLOURS[vehicle.name], vehicle.name.lower()
@@ -202,19 +199,17 @@ class _Field:
         role = f"{vehicle.name} center"
         drawing.add(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=role))
 
-    def _draw_impulse(self, drawing: Drawing) -> None:
-        """The force on each vehicle, and from where on its clock it comes."""
-        if not self.shapes.impulse:
-            return
-        for vehicle in self.shapes.bodies:
-            acted = vehicle.name == "A"
-            force = self.force if acted else -self.force
-            role = "impulse" if acted else "opposite impulse"
-            width, head = (0.9, 2.8) if acted else (0.45, 2.2)
-            tip = self.at(force)
-            drawing.add(*d.arrow(self.at(0), tip, IMPULSE, width, head=head, role=role))
-            text = f"{'P' if acted else '−P'}, {clock(vehicle.pdof(self.shapes.impulse))}"
-            drawing.add(Label(tip, force, text, 7.5, IMPULSE, acted, f"{role} label"))
+    def _draw_impulse(self, drawing: Drawing, vehicle: Vehicle) -> None:
+        """The force on a vehicle, and from where on its clock it comes."""
+        acted = vehicle.name == "A"
+        force, symbol, role = -self.force, "−P", "opposite impulse"
+        width, head = 0.45, 2.2
+        if acted:
+            force, symbol, role, width, head = self.force, "P", "impulse", 0.9, 2.8
+        tip = self.at(force)
+        drawing.add(*d.arrow(self.at(0), tip, IMPULSE, width, head=head, role=role))
+        text = f"{symbol}, {clock(vehicle.pdof(self.shapes.impulse or 0j))}"
+        drawing.add(Label(tip, force, text, 7.5, IMPULSE, acted, f"{role} label"))
 
 
 def name_label(vehicle: Vehicle, at: complex, towards: complex, size: float = 10) -> Label:
