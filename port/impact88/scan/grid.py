@@ -220,6 +220,7 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
     level = y - x * (slope + keystone * y / span)
     lines = _lines(points, level)
     height = float(np.median([bottom - top for top, bottom in lines])) if lines else 0.0
+    lines = [(top, bottom) for top, bottom in lines if bottom - top > 0.25 * height]  # no specks
     if not 6 <= len(lines) <= _MOST_LINES or height < _LEAST_HEIGHT:
         return None
     members = [np.flatnonzero((level >= top) & (level < bottom)) for top, bottom in lines]
