@@ -21,7 +21,7 @@ from ..reading.fieldlabels import LabelState
 from ..reading.numerals import value_of
 from ..reading.printout import Printout, read_printouts
 from ..recovery.recovered import Recovered
-from ..recovery.replays import Outcome
+from ..recovery.replays import Outcome, run_once
 from ..recovery.typedtext import opposite, texts_that_print, with_opposite_mu
 from ..scene import sample
 from .judgement import FieldCheck, Judged, Status, judge
@@ -166,6 +166,11 @@ class CopyPages:
 
 pages_of = lru_cache(maxsize=1)(CopyPages)
 """The pages of the copy that was asked for last: many files are held against one."""
+
+
+def restored(found: Judged) -> dict[str, str]:
+    """What the restored listing prints for the scene, by field."""
+    return run_once(found.recovered.scene).fields
 
 
 def _read(text: str) -> Printout | None:

@@ -189,21 +189,19 @@ def _status(match: Match, region: Region, text: str) -> Status:
     if any(spot.doubt is Doubt.CUT for spot in match.spots) and not match.contradicts:
         return Status.NOT_READ
     foreign = any(not glyph.char.isdigit() and glyph.char not in "-.+" for glyph in region)
-    if (foreign or not match.contradicts) and _hardly_read(match, region, text):
+    if (foreign or not match.contradicts) and _hardly_read(match, text):
         return Status.NOT_READ
     return Status.CONTRADICTED if match.contradicts else Status.DOUBTFUL
 
 
-def _hardly_read(match: Match, region: Region, text: str) -> bool:
+def _hardly_read(match: Match, text: str) -> bool:
     """Whether more is guessed than read."""
     if any(spot.doubt is Doubt.RETYPED for spot in match.spots):
         return False
     alike = sum(spot.doubt in (Doubt.LOOK_ALIKE, Doubt.BLANK) for spot in match.spots)
     if not match.exact and not alike:
         return True
-    if len(text) <= 2:
-        return len(region) > len(text) + 2 and match.exact + alike == 0
-    return 2 * match.exact + alike < len(text)
+    return len(text) > 2 and 2 * match.exact + alike < len(text)
 
 
 def _angle_row(shown: Printout, recovered: Recovered) -> dict[str, Region]:
@@ -215,14 +213,11 @@ def _angle_row(shown: Printout, recovered: Recovered) -> dict[str, Region]:
 
 
 def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
-    doubts = []
-    for spot in spots:
-        inside = spot.at < len(reading.region)
-        start = reading.region[spot.at].offset if inside else reading.stop
-        doubts.append(
-            Doubtful(*shown.place(start), start, spot.read, spot.printed, str(spot.doubt))
-        )
-    return doubts
+    starts = [*(glyph.offset for glyph in reading.region), reading.stop]
+    return [
+        Doubtful(*shown.place(starts[one.at]), starts[one.at], *one[1:3], str(one.doubt))
+        for one in spots
+    ]
 
 
 # --- replies, and the ending ---------------------------------------------------------------------
@@ -242,7 +237,7 @@ def _reply(shown: Printout, recovered: Recovered, name: str, reading: Reading) -
     part, match = _likest(reading, value)
     if any(same_value(text, value) for text, _, _ in reply_ways(reading)):
         check.status, how = Status.DOUBTFUL, Doubt.LOOK_ALIKE
-    elif match.contradicts and (reading.clean or not _hardly_read(match, part.region, value)):
+    elif match.contradicts and (reading.clean or not _hardly_read(match, value)):
         check.status, check.doubts = Status.CONTRADICTED, _doubts(shown, part, match.spots)
         return check
     elif reading.clean:
@@ -269,15 +264,11 @@ def same_value(one: str, other: str) -> bool:
 
 
 def _ending(shown: Printout, recovered: Recovered) -> FieldCheck:
-    """How the printout ends against how the replay does."""
+    """How the printout ends against how the replay does; one that is cut off shows no message."""
     recomputed = recovered.outcome.ending
+    status = Status.READ if shown.ending == recomputed else Status.CONTRADICTED
     if recovered.missing:
         status = Status.NOT_COMPARED if shown.ending else Status.READ
-    elif shown.ending == recomputed:
-        status = Status.READ
-    elif shown.ending is None:
-        # cut off before the message, unless the printout goes on past it: then fields differ
+    elif status is Status.CONTRADICTED and shown.ending is None:
         status = Status.NOT_COMPARED
-    else:
-        status = Status.CONTRADICTED
     return FieldCheck("ENDING", shown.ending, recomputed, status)

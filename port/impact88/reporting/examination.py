@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
+from hashlib import sha256
 from time import process_time
 from typing import TYPE_CHECKING, Any, overload
 
@@ -23,9 +24,8 @@ from ..names import SCENE
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
-from ..recovery.replays import run_all, run_once
 from ..recovery.slips import Rereading
-from . import provenance, verification
+from . import verification
 from .verification import Examined, Verification
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def examine_bytes(
     seed: str = "",
 ) -> Examined:
     """The same of a file's bytes; ``path`` is what it is called."""
-    examined = Examined(path, provenance.sha256(data))
+    examined = Examined(path, sha256(data).hexdigest())
     picture = data.startswith(PICTURE_STARTS)
     try:
         if picture and (given or copy):
@@ -213,13 +213,14 @@ def _verified(shown: Printout, given: Mapping[str, str] | None) -> Verification:
 
 def _against(pages: CopyPages, found: Judged) -> Verification:
     """The verdict on a printout as a page of an office's copy of the listing."""
+    from ..judging.copies import restored
+
     copy, result = pages.copy, _result(found)
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain_copy
 
         result.explanations = explain_copy(found, pages.put_right)
-    restored = run_once(found.recovered.scene).fields
-    result.findings = verification.of_copy(copy, found, restored)
+    result.findings = verification.of_copy(copy, found, restored(found))
     changed = [line._asdict() for line in copy.changed_lines()]
     result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed}
     return completed(result, pages.outcomes)
@@ -241,10 +242,10 @@ def _result(found: Judged) -> Verification:
     )  # fmt: skip
 
 
-def completed(result: Verification, program: Program = run_all) -> Verification:
-    """The same with what stands beside the verdict: what the page cannot show of what ``program``
-    prints, exact values and warnings."""
-    result.unseen = unseen(result.scene, result.missing, program)
+def completed(result: Verification, *program: Program) -> Verification:
+    """The same with what stands beside the verdict: what the page cannot show of what ``program``,
+    by default the restored listing, prints, exact values and warnings."""
+    result.unseen = unseen(result.scene, result.missing, *program)
     if result.runnable:
         scene = {name: text or "" for name, text in result.scene.items()}
         beside.add_exact_values(scene, result.fields)
