@@ -272,12 +272,10 @@ def _ranked(page: PageEvidence, causes: Iterable[Cause]) -> list[Explanation]:
 
 
 def _weight(one: Cause) -> float:
-    """The bits that it asks for, with those of what it leaves unexplained."""
     return one.bits + _LEFT * len(one.left)
 
 
 def _accuses(one: Cause) -> bool:
-    """Whether it says that another program or machine made the page."""
     return one.note.endswith(NOT_APPLESOFT)
 
 

@@ -195,7 +195,6 @@ class Rows:
     def _in_doubles(
         self, scenes: Sequence[Mapping[str, str]], names: Iterable[str]
     ) -> dict[str, Any]:
-        """Results of all scenes by double precision."""
         columns = {name: np.full(len(scenes), one) for name, one in self._values.items()}
         for index, scene in enumerate(scenes):
             for name, text in scene.items():
@@ -219,7 +218,6 @@ class Rows:
     # --- what it leaves unexplained ---
 
     def _tested(self, every: Sequence[Hypothesis]) -> Iterator[Cause]:
-        """Each replayed."""
         scenes = list({tuple(one.scene.values()): one.scene for one in every}.values())
         names = [name for name in self._page.texts if name not in INPUTS]
         columns = self._in_doubles(scenes, names) if scenes else {}
@@ -261,7 +259,6 @@ def _field(name: str) -> str:
 
 
 def _short(number: float) -> str:
-    """A value as one would type it, nine digits at most."""
     return f"{number + 0.0:.9G}"
 
 

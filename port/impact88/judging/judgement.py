@@ -125,7 +125,6 @@ def judge(shown: Printout, recovered: Recovered, others: Sequence[FieldCheck] = 
 
 
 def _verdict(found: Judged) -> Verdict:
-    """The verdict that the numbers and labels amount to."""
     shown, missing = found.shown, found.recovered.missing
     if shown.mislabelled:
         return Verdict.DIFFERS
@@ -174,7 +173,6 @@ def _fields(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
 
 
 def _check(name: str, reading: Reading | None, text: str | None) -> FieldCheck:
-    """A number not yet compared, with its place."""
     check = FieldCheck(name, reading.text if reading else None, text)
     if reading:
         check.line, check.column = reading.line, reading.column
@@ -195,7 +193,6 @@ def _status(match: Match, region: Region, text: str) -> Status:
 
 
 def _hardly_read(match: Match, text: str) -> bool:
-    """Whether more is guessed than read."""
     if any(spot.doubt is Doubt.RETYPED for spot in match.spots):
         return False
     alike = sum(spot.doubt in (Doubt.LOOK_ALIKE, Doubt.BLANK) for spot in match.spots)

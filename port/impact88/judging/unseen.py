@@ -114,7 +114,6 @@ def _faint(
 
 
 def _marked(text: str, places: set[int]) -> str:
-    """A number with some of its digits in brackets."""
     marked = "".join(f"({glyph})" if at in places else glyph for at, glyph in enumerate(text))
     return marked.replace(")(", "")
 

@@ -74,7 +74,6 @@ def report(
 
 
 def _printout(result: Verification) -> dict[str, Any]:
-    """What the template shows of a printout."""
     inputs = [
         text
         for name, value in result.scene.items()

@@ -227,7 +227,6 @@ def _against(pages: CopyPages, found: Judged) -> Verification:
 
 
 def _result(found: Judged) -> Verification:
-    """What is told of a printout that was judged."""
     shown, scene = found.shown, found.recovered.scene_or_missing()
     read = {scene_name(one.name) for one in found.fields if one.status == Status.READ}
     guessed = [

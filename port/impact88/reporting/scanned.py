@@ -130,7 +130,6 @@ def _verification(
 
 
 def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell]) -> FieldCheck:
-    """A number by its cells."""
     states = [state(cell) for cell in cells]
     status = Status.READ
     if leaf.judged.verdict is Verdict.INCOMPLETE and "differs" in states:
@@ -167,7 +166,6 @@ def _replies(leaf: Leaf) -> Iterator[FieldCheck]:
 
 
 def _described(cell: Cell, page: int, size: tuple[int, ...], grid: Grid) -> dict[str, Any]:
-    """A cell as `impact88 verify --json` shows it."""
     return {
         "page": page,
         "box": box(cell, size, grid),

@@ -133,9 +133,7 @@ class Verification:
         return [check.name for check in self.fields if check.status == Status.NOT_READ]
 
     def renumber(self, lines: Sequence[int]) -> None:
-        """Give every place the number that its line had in the file; none: they stand."""
-        if not lines:
-            return
+        """Give every place the number that its line had in the file."""
         for check in [*self.fields, *self.replies]:
             check.line = lines[check.line - 1] if check.line else None
             check.doubts = [one._replace(line=lines[one.line - 1]) for one in check.doubts]
@@ -144,7 +142,6 @@ class Verification:
         self.left_over = [one._replace(line=lines[one.line - 1]) for one in self.left_over]
 
     def _repr_html_(self) -> str:
-        """What the command prints, as a notebook shows it."""
         return notebook.preformatted("\n".join(lines(self)))
 
     def as_json(self) -> dict[str, Any]:
@@ -166,7 +163,6 @@ _IN_JSON = (
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON takes it."""
     if isinstance(value, list):
         return list(map(_plain, value))
     if hasattr(value, "as_json"):
@@ -286,7 +282,6 @@ _DOUBTS: dict[str, str] = {
 
 
 def _doubts(check: FieldCheck) -> Iterator[str]:
-    """What stands doubtfully in a number, place by place."""
     for one in check.doubts:
         if one.how in _DOUBTS:
             words = {**one._asdict(), "program": check.recomputed or "", "whole": check.printed}
@@ -481,14 +476,12 @@ def lines(result: Verification, brief: bool = False) -> Iterator[str]:
 
 
 def _some(said: list[str], brief: bool) -> list[str]:
-    """All lines, or a few of them and how many more there are."""
     if not brief or len(said) <= 4:
         return said
     return [*said[:3], f"and {len(said) - 3} more places"]
 
 
 def _table(checks: Sequence[FieldCheck], exact: bool) -> list[str]:
-    """Rows of printed against recomputed, those that differ marked."""
     rows = [["", "printed", "recomputed", *["exact", "printed-exact"] * exact, ""]]
     for check in checks:
         beside = [check.exact or "", check.difference or ""] * exact
