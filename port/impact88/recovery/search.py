@@ -303,7 +303,7 @@ def _texts_of(best: Scored) -> Iterator[tuple[str, list[str]]]:
 
 def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) -> Picks:
     """The combinations of one option each, cheapest first, up to ``most`` and up to a cost."""
-    picks = np.zeros((1, 0), np.intp)
+    steps = []
     costs: Floats = np.zeros(1)
     for column in columns:
         options = column.costs
@@ -321,7 +321,12 @@ def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) ->
         else:
             kept = np.argsort(every, kind="stable")
         costs = every[kept]
-        picks = np.column_stack([picks[before[kept]], option[kept]])
+        steps.append((before[kept], option[kept]))
+    picks = np.empty((len(costs), len(columns)), np.intp, "F")
+    at = np.arange(len(costs))
+    for place in reversed(range(len(columns))):
+        before, option = steps[place]
+        picks[:, place], at = option[at], before[at]
     return picks
 
 
