@@ -104,8 +104,9 @@ def work_precision(rows: Sequence[Row], roof: float) -> Drawing:
 
 
 def error_distribution(rows: Sequence[Row]) -> Drawing:
-    """Two panels for each population: every scene's error against its COND, the bound
-    `relative_bounds` of each precision as a line; and the share of scenes with a larger error."""
+    """Two panels for each population: every scene's error, by its `errorbound.scales`, against its
+    COND, the bound `relative_bounds` of each precision as a line; and the share of scenes with a
+    larger error."""
     title = "Error against condition, and the distribution of errors"
     rows = [row for row in rows if row["method"] in SCATTERED]
     page = _Page(title, "Errors against condition and their distribution", rows)
@@ -113,14 +114,14 @@ def error_distribution(rows: Sequence[Row]) -> Drawing:
         errors = page.panel(
             *(12, 84, place, [name]),
             (_CONDITIONS, "condition", powers(1, 1e16, 4)),
-            (_ERRORS, "" if place else _LABEL, _ERROR_TICKS),
+            (_ERRORS, "" if place else "error by the scene's speeds and spins", _ERROR_TICKS),
         )
         for unit, colour in ((DOUBLE, ORANGE), (APPLESOFT, VERMILION)):
             line = [_shown(x) for x in relative_bounds(_CONDITIONS, unit).tolist()]
             errors.line(_CONDITIONS, line, colour, 0.4, (1.2, 0.6), role="bound")
         shares = page.panel(
             *(98, 170, place, []),
-            (_ERRORS, "relative error", _ERROR_TICKS),
+            (_ERRORS, "the same error", _ERROR_TICKS),
             (_SHARES, "" if place else "share of scenes with a larger error", powers(1e-4, 1, 1)),
         )
         for row in rows:

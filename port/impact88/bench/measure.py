@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from .. import native
+from ..accuracy.errorbound import scales
 from ..accuracy.sensitivity import movements, sensitivity
 from ..closedform.solve import solve
 from ..names import FINAL_VELOCITIES, SCENE
@@ -119,10 +120,11 @@ def measure(
     rounds, each method once a round; ``effort``: the share of `Method.timed` scenes to time.
 
     A row has the relative errors of the final velocities over the scenes with an answer;
-    ``unanswered`` counts those without (ZERO DETERMINANT, an Applesoft error). ``over_condition``
-    and ``over_sensitivity``: the largest error divided by the method's unit roundoff and the
-    scene's COND or data sensitivity. ``seconds`` per scene. ``errors`` and ``conditions``: arrays,
-    of each scene with an answer.
+    ``unanswered`` counts those without (ZERO DETERMINANT, an Applesoft error).
+    ``over_sensitivity``: the largest divided by the method's unit roundoff and the scene's data
+    sensitivity. ``errors`` and ``conditions`` (COND): of each scene with an answer, by its
+    `errorbound.scales`; ``over_condition``: their largest quotient by the roundoff. ``seconds`` per
+    scene.
     """
     rows: list[Row] = []
     for name in populations:
@@ -131,15 +133,19 @@ def measure(
         hi, lo = reference(columns)
         reference_seconds = (time.process_time() - start) / count
         meter.update(1)
-        condition, sensitive = solve(columns, ["COND"])["COND"], sensitivity(columns)
+        solved, sensitive = solve(columns), sensitivity(columns)
+        by_name = scales(columns, solved)
+        sizes = np.stack([by_name[result] for result in ORDER], axis=1)
         works: list[tuple[Method, Any, list[float]]] = []
         mine: list[Row] = []
         for method in METHODS:
             if method.roundoff == APPLESOFT and not POPULATIONS[name].listing:
                 continue
-            error = relative_errors(method.velocities(columns), hi, lo)
+            found = method.velocities(columns)
+            error = relative_errors(found, hi, lo)
             fine = np.isfinite(error)
-            told = error[fine]
+            told, scaled = error[fine], relative_errors(found, hi, lo, sizes)[fine]
+            condition = solved["COND"][fine]
             timed = max(10, round(effort * method.timed))
             works.append((method, method.prepare(enlarged(columns, timed)), []))
             mine.append(
@@ -149,9 +155,9 @@ def measure(
                     "median": float(np.median(told)),
                     "per_mille": float(np.quantile(told, 0.999)),
                     "largest": float(told.max()),
-                    "over_condition": float((told / condition[fine]).max() / method.roundoff),
+                    "over_condition": float((scaled / condition).max() / method.roundoff),
                     "over_sensitivity": float((told / sensitive[fine]).max() / method.roundoff),
-                    **{"errors": told, "conditions": condition[fine]},
+                    **{"errors": scaled, "conditions": condition},
                 }
             )
             meter.update(1)

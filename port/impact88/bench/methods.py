@@ -150,16 +150,16 @@ def reference(columns: Columns, names: Sequence[str] = ORDER) -> tuple[Floats, F
     return hi, lo
 
 
-def relative_errors(computed: Floats, hi: Floats, lo: Floats) -> Floats:
-    """Every scene's largest relative error, velocities by the largest velocity, spins by the larger
-    spin; infinite where there is no answer."""
+def relative_errors(
+    computed: Floats, hi: Floats, lo: Floats, sizes: Floats | None = None
+) -> Floats:
+    """Every scene's largest error, velocities by the largest velocity, spins by the larger spin, or
+    each by its own size (n, 6); infinite where there is no answer."""
+    if sizes is None:
+        groups = (np.abs(hi[:, group]).max(axis=1) for group in [slice(0, 4), slice(4, 6)])
+        sizes = np.repeat(np.stack([*groups], axis=1), [4, 2], axis=1)
     with np.errstate(all="ignore"):
         error = np.abs((computed - hi) - lo)
-        parts = []
-        for group in (slice(0, 4), slice(4, 6)):
-            scale = np.abs(hi[:, group]).max(axis=1)
-            worst = error[:, group].max(axis=1)
-            parts.append(np.where(worst == 0, 0.0, worst / scale))
-    largest: Floats = np.maximum(*parts)
+        largest: Floats = np.where(error == 0, 0.0, error / sizes).max(axis=1)
     largest[np.isnan(largest)] = np.inf
     return largest

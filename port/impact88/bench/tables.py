@@ -110,13 +110,9 @@ def ratios(rows: Sequence[Row], roof: float) -> str:
     for population, key, other, mine, words in _RATIOS:
         if (population, mine) in by:
             ratio = by[population, other][key] / by[population, mine][key]
-            how = (
-                "times as fast as"
-                if key == "seconds"
-                else f"times more accurate on {population} than"
-            )
-            size = f"{ratio:,.3g}" if ratio < 1000 else _rate(ratio)
-            lines.append(f"{by[population, mine]['name']}: {size} {how} {words}")
+            how = "times as fast as" if key == "seconds" else "times more accurate than"
+            name = by[population, mine]["name"]
+            lines.append(f"{name}, {population}: {_times(ratio)} {how} {words}")
     if ("casework", "closed-form") in by:
         taken = by["casework", "closed-form"]["seconds"]
         lines.append(f"closed form, one core: {taken / roof:.1f} times what memory alone takes")
