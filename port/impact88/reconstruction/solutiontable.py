@@ -89,22 +89,43 @@ def tables(
     ``helpful``: further values that would determine it."""
     values = _without_noise(values)
     if unknown is None:
-        absent = {*VELOCITIES, *FINAL_STATE} - {*values, *_absent(values)}
-        unknown = [name for name in (*VELOCITIES, *FINAL_STATE) if name in absent]
+        unknown = [n for n in (*VELOCITIES, *FINAL_STATE) if n not in (*values, *_absent(values))]
+    named = (
+        *(("E", "MUP", "EM", "RR0"), ("PN", "PT", "PM", "P", "PDOFA", "PDOFB")),
+        *(("TF", "FA", "FM2", "FM3"), (*CHANGES, "VC", "VS"), ("KI", "KF", "EL", "LOSS")),
+    )
     blocks = [
         _answer(values, spreads or {}, unknown, helpful, len(remarks), units),
         _velocities(known, values, units),
-        _named(("E", "MUP", "EM", "RR0"), known, values, units),
-        _named(("PN", "PT", "PM", "P", "PDOFA", "PDOFB"), known, values, units),
-        _named(("TF", "FA", "FM2", "FM3"), known, values, units),
-        _named((*CHANGES, "VC", "VS"), known, values, units),
-        _named(("KI", "KF", "EL", "LOSS"), known, values, units),
+        *(_named(names, known, values, units) for names in named),
         *further,
     ]
     lines = [line for block in blocks if block for line in (*block, "")]
     for remark in remarks:
         lines += paragraph(f"! {remark}")
     return "\n".join(lines).rstrip("\n")
+
+
+def numbers(
+    values: Mapping[str, float], known: Collection[str], remarks: Sequence[str], units: System
+) -> dict[str, Any]:
+    """The same for a program."""
+    plain_values = {n: v for n, v in written(values, units).items() if n != "STATUS"}
+    return {
+        "known": list(known),
+        "values": plain_values,
+        "units": {n: units.label(quantity(n).unit) for n in plain_values},
+        "status": int(values["STATUS"]) if "STATUS" in values else None,
+        "warnings": remarks,
+    }
+
+
+def in_turn(texts: Sequence[str], note: str = "") -> str:
+    """The solutions one below the other, numbered where there are several."""
+    if len(texts) == 1:
+        return texts[0]
+    total = len(texts)
+    return "\n\n".join(f"SOLUTION {i} OF {total}{note}\n\n{t}" for i, t in enumerate(texts, 1))
 
 
 def _without_noise(values: Mapping[str, float]) -> dict[str, float]:
@@ -124,26 +145,6 @@ def _without_noise(values: Mapping[str, float]) -> dict[str, float]:
     return clean
 
 
-def numbers(
-    values: Mapping[str, float], known: Collection[str], remarks: Sequence[str], units: System
-) -> dict[str, Any]:
-    """The same for a program."""
-    return {
-        "known": list(known),
-        "values": {n: v for n, v in written(values, units).items() if n != "STATUS"},
-        "units": {n: units.label(quantity(n).unit) for n in values if n != "STATUS"},
-        "status": int(values["STATUS"]) if "STATUS" in values else None,
-        "warnings": remarks,
-    }
-
-
-def in_turn(texts: Sequence[str], note: str = "") -> str:
-    """The solutions one below the other, numbered where there are several."""
-    titles = [f"SOLUTION {i} OF {len(texts)}{note}\n\n" for i in range(1, len(texts) + 1)]
-    titles = titles if len(texts) > 1 else [""]
-    return "\n\n".join(title + text for title, text in zip(titles, texts, strict=True))
-
-
 # -- the answer
 
 
@@ -156,16 +157,16 @@ def _answer(
     units: System,
 ) -> list[str]:
     vehicles = "A" if math.isinf(values.get("MB", math.inf)) else "AB"
+    unit = units.label(VELOCITY)
 
     def size(vehicle: str, name: str) -> str:
         if name not in values:
             return f"{vehicle} unknown"
-        unit, shown = units.label(VELOCITY), units.shown(VELOCITY, values[name])
+        shown = units.shown(VELOCITY, values[name])
         text = f"{vehicle} {number(shown, 3)}"
         if units is not RULES:
-            text += f" {unit}"
-            if road := _ROAD.get(unit):
-                text += f" ({number(shown * road[1], 3)} {road[0]})"
+            road, factor = _ROAD.get(unit, ("", 0.0))
+            text += f" {unit}" + (f" ({number(shown * factor, 3)} {road})" if road else "")
         if spread := spreads.get(name):
             deviation, lower, upper = (number(units.shown(VELOCITY, v), 3) for v in spread[:3])
             text += f", sd {deviation}"
@@ -187,8 +188,7 @@ def _answer(
         names = [name for name in unknown if name not in _SPINS]
         text = ", ".join(["spins", *names] if {*_SPINS} <= {*unknown} else unknown)
         if helpful:
-            *most, last = helpful
-            text += f": give {', '.join(most)}{' and ' if most else ''}{last}"
+            text += ": give " + " and ".join(filter(None, (", ".join(helpful[:-1]), helpful[-1])))
         rows.append(("NOT FOUND", text))
     for vehicle in vehicles:
         drivers = spreads[f"S{vehicle}"].drivers if f"S{vehicle}" in spreads else ()
@@ -199,10 +199,9 @@ def _answer(
     lines: list[str] = []
     before = ""
     for label, text in rows:
-        first, *more = wrap(text, _WIDTH - _LEFT)
-        lines.append(f"{'' if label == before else label:{_LEFT}}{first}")
-        lines += [f"{'':{_LEFT}}{line}" for line in more]
-        before = label
+        for part in wrap(text, _WIDTH - _LEFT):
+            lines.append(f"{'' if label == before else label:{_LEFT}}{part}")
+            before = label
     return lines
 
 
@@ -220,12 +219,13 @@ _ROWS = (
 
 
 def _velocities(known: Collection[str], values: Mapping[str, float], units: System) -> list[str]:
-    """Velocities before and after of both vehicles, in components, sizes and directions."""
     values = written(values, units)
-    decimals = {}
-    for unit in ("length/time", "rad/time", "degree"):
-        alike = [name for _, row_unit, row in _ROWS if row_unit == unit for name in row]
-        decimals[unit] = decimals_for([values[name] for name in alike if name in values])
+    decimals = {
+        unit: decimals_for(
+            [values[n] for _, own, row in _ROWS if own == unit for n in row if n in values]
+        )
+        for unit in ("length/time", "rad/time", "degree")
+    }
     rows = []
     vehicles = 2 if "VX" in values or "VBX" in values else 1
     for label, unit, all_names in _ROWS:
@@ -246,22 +246,19 @@ def _velocities(known: Collection[str], values: Mapping[str, float], units: Syst
 def _named(
     names: Sequence[str], known: Collection[str], values: Mapping[str, float], units: System
 ) -> list[str]:
-    """Values by name, each with unit and meaning."""
     values = written(values, units)
     rows = []
     for name in names:
-        if name not in values or values[name] != values[name]:
+        if math.isnan(values.get(name, math.nan)):
             continue
         what = quantity(name)
         given = name in known or (name == "MUP" and "MU" in known)
         mark = "*" if name in ("E", "MUP", "EM") and not given else " "
-        note = what.meaning
+        note = _friction(values) if name == "MUP" else what.meaning
         if name.startswith("PDOF"):
-            note = f"{note} ({clock(values[name])})"
-        if name == "MUP":
-            note = _friction(values)
+            note += f" ({clock(values[name])})"
         if name == "EM":
-            note = f"{note}; {number(-values[name])} with the sign the other way"
+            note += f"; {number(-values[name])} with the sign the other way"
         rows.append([name, f"{number(values[name])}{mark}", units.label(what.unit), note])
     return table(rows, left=(0, 2, 3))
 
@@ -298,10 +295,11 @@ class Exact(NamedTuple):
         contact_time: float | None = None,
     ) -> list[Exact]:
         """Every solution of a single scene. Raises UserError."""
-        return [
-            cls(known, one, completed({**known, **_floats(one.values)}, contact_time))
-            for one in solve_for(known, wanted)
-        ]
+        found = []
+        for solution in solve_for(known, wanted):
+            values = {**known, **{name: float(value) for name, value in solution.values.items()}}
+            found.append(cls(known, solution, completed(values, contact_time)))
+        return found
 
     def warnings(self, units: System = RULES) -> list[str]:
         """What a reader must know, in sentences."""
@@ -351,10 +349,6 @@ class Exact(NamedTuple):
             }
         )
         return whole
-
-
-def _floats(values: Mapping[str, Any]) -> dict[str, float]:
-    return {name: float(value) for name, value in values.items()}
 
 
 @within_doubles

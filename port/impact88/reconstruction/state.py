@@ -1,10 +1,9 @@
 """An impact known from its vehicles, initial velocities and impulse: everything else follows.
 
-Equations 13, 14 and 17 are "velocity after = velocity before + impulse / inertia" for each vehicle,
-so that a `State` obeys them whatever its numbers are. Equations 15, 16 and 18 are its `law`s; the
-velocities after, speeds and courses, changes of velocity and energies are its quantities. All is
-made of sums, products, roots and quotients, over numbers or arrays, real or complex (an imaginary
-part carries a derivative).
+Equations 13, 14 and 17 are "velocity after = velocity before + impulse / inertia" for each vehicle:
+a `State` obeys them whatever its numbers are. Equations 15, 16 and 18 are its `law`s. All is made
+of sums, products, roots and quotients, over numbers or arrays, real or complex (an imaginary part
+carries a derivative).
 """
 
 from __future__ import annotations
@@ -32,8 +31,10 @@ CRUSH = ("ELA", "ELB")
 CONTACT = ("VC", "VS")
 CHANGES = ("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR")
 ENERGIES = ("KI", "KF", "EL", "LOSS", "DT")
-QUANTITIES = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS, *IMPULSES, *SPEEDS, *COURSES)
-QUANTITIES = (*QUANTITIES, *CHANGES, *ENERGIES, *CONTACT, *FORCES)
+QUANTITIES = (
+    *(*VELOCITIES, *FINAL_STATE, *COEFFICIENTS, *IMPULSES, *SPEEDS, *COURSES),
+    *(*CHANGES, *ENERGIES, *CONTACT, *FORCES),
+)
 """What a state can be asked for."""
 
 
@@ -64,7 +65,7 @@ class State:
         state.energy_lost = state.initial_energy - state._energy(late)
         return state
 
-    @cached_property
+    @property
     def impulse(self) -> list[Any]:
         return [self.values[name] for name in IMPULSES]
 
@@ -115,8 +116,7 @@ class State:
         if name in FINAL_STATE:
             return self.after[FINAL_STATE.index(name)]
         if name in SPEEDS:
-            x, y = self._components(name)
-            return np.sqrt(x * x + y * y)
+            return _size(*self._components(name))
         if name in COURSES:
             return course(*self._components(COURSES[name]))
         if name in COEFFICIENTS:
@@ -185,10 +185,6 @@ class State:
                 velocities[f"Y{vehicle}{suffix}"] = y + arm_y * spin
         return velocities
 
-    def _size_of_change(self, first: int) -> Any:
-        x, y = self.changes[first : first + 2]
-        return np.sqrt(x * x + y * y)
-
     def _change(self, vehicle: str) -> tuple[Any, Any]:
         """A vehicle's change of velocity along its length, forward, and across, to its right."""
         first = 0 if vehicle == "A" else 3
@@ -213,17 +209,13 @@ class State:
     def energy_lost(self) -> Any:
         """The work of the impulse at the mean relative velocities, negated: no digits are lost as
         in the difference of two energies."""
-        work: Any = 0.0
-        for part, early, late in zip(
-            self.impulse, self.relative_before, self.relative_after, strict=True
-        ):
-            work = work + part * (early + late)
-        return -0.5 * work
+        parts = zip(self.impulse, self.relative_before, self.relative_after, strict=True)
+        return -0.5 * sum(part * (early + late) for part, early, late in parts)
 
 
 _QUANTITIES: dict[str, Callable[[State], Any]] = {
-    "DVA": lambda state: state._size_of_change(0),
-    "DVB": lambda state: state._size_of_change(3),
+    "DVA": lambda state: _size(*state.changes[:2]),
+    "DVB": lambda state: _size(*state.changes[3:5]),
     "DVAF": lambda state: state._change("A")[0],
     "DVAR": lambda state: state._change("A")[1],
     "DVBF": lambda state: state._change("B")[0],
@@ -238,6 +230,10 @@ _QUANTITIES: dict[str, Callable[[State], Any]] = {
     "PDOFA": lambda state: state._pdof("PDOFA"),
     "PDOFB": lambda state: state._pdof("PDOFB"),
 }
+
+
+def _size(x: Any, y: Any) -> Any:
+    return np.sqrt(x * x + y * y)
 
 
 def _unit(degrees: Any) -> tuple[Any, Any]:

@@ -52,12 +52,10 @@ def climb(
     taken: Callable[[int], bool] = lambda points: True,
 ) -> tuple[Array, Array, Array, Flags]:
     """Where c climbers that start at ``u`` (c x k) and the states ``x`` (s x c) end: coordinates,
-    states, all functions there, and whether each climber came to its end.
-
-    ``number``: whose function each climbs, -1 for those who only seek the way inside the walls;
-    ``sense``: +1 up, -1 down; ``least``: the gain not worth a step; ``taken`` is told how many
-    points were looked at, and says whether to go on.
-    """
+    states, all functions there, and whether each came to its end. ``number``: whose function each
+    climbs, -1 for those who only seek the way inside the walls; ``sense``: +1 up, -1 down;
+    ``least``: the gain not worth a step; ``taken`` is called with the points looked at, and returns
+    whether to go on."""
     x, functions, walls, usable = ground.at(u, x)
     u, reach = u.copy(), np.where(usable, REACH, 0.0)
     for _ in range(ROUNDS):
@@ -114,12 +112,9 @@ def extremes_of(
     taken: Callable[[int], bool] = lambda points: True,
 ) -> tuple[Array, Array, Flags]:
     """The lowest and the highest values of m functions, 2 x m: the values (nan where there is
-    none), the coordinates there, and whether the climb came to its end.
-
-    Climbers start from the best ``starts`` of each group of the ``points``, given by number, where
-    the functions are known; ``gain``: of a function's range, not worth a step; ``states`` from
-    which points are reached.
-    """
+    none), the coordinates there, and whether the climb came to its end. Climbers start from the
+    best ``starts`` of each group of the ``points``, given by number, and their ``states``;
+    ``gain``: of a function's range, not worth a step."""
     count = functions.shape[1]
     number, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
     height = below_all(functions[:, number] * sense)
@@ -180,14 +175,12 @@ def _best_between_walls(
         return np.concatenate([move, np.einsum("crk,ck->cr", rows, move)], axis=1)
 
     def back(weights: Array) -> Array:
-        product: Array = weights[:, :k] + np.einsum("crk,cr->ck", rows, weights[:, k:])
-        return product
+        return np.asarray(weights[:, :k] + np.einsum("crk,cr->ck", rows, weights[:, k:]))
 
     def room(values: Array, changes: Array) -> Array:
         """The longest share of the changes that leaves values above 0, nearly."""
         shares = np.where(changes < 0, -values / np.where(changes < 0, changes, -1.0), np.inf)
-        result: Array = np.minimum(1.0, 0.99 * shares.min(axis=1))[:, None]
-        return result
+        return np.asarray(np.minimum(1.0, 0.99 * shares.min(axis=1))[:, None])
 
     gap = np.maximum(ceiling - floor, 1e-12)
     over = np.clip(all_rows(step) - floor, 0.1 * gap, gap)
@@ -227,5 +220,4 @@ def _best_between_walls(
             step = step + first * move
             over, under = over + first * d_over, under + first * d_under
             push, pull = push + second * d_push, pull + second * d_pull
-    result: Array = np.clip(np.nan_to_num(step * unit), low, high)
-    return result
+    return np.asarray(np.clip(np.nan_to_num(step * unit), low, high))

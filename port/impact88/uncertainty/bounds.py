@@ -1,14 +1,11 @@
 """Upper and lower bounds from ranges of the data (chapter, Section V: "reasonable ranges of these
 variables should be used ... to provide upper and lower bounds on vehicle speed").
 
-Of one scene whose values are known within limits (`uncertainty.uncertain`):
-
-- `Bound`: how far a result can go. The box the ranges span is searched (`uncertainty.extremes`) for
-  each sign that line 400 can give MU. Every bound is attained at the inputs kept beside it; that
-  none lies farther is likely, not proven. Where the equations become singular inside, a bound is
-  infinite. Correlations play no part: a corner stays possible.
-- `Spread`: seeded Monte Carlo. `Drive`: rank correlation, and how far a result goes when one input
-  runs through its range with the others at their nominal values.
+Of one scene whose values are known within limits (`uncertainty.uncertain`), the box the ranges span
+is searched (`uncertainty.extremes`) for each sign that line 400 can give MU, correlations or not.
+Every bound is attained at the inputs kept beside it; that none lies farther is likely, not proven.
+Where the equations become singular inside, a bound is infinite. Beside it stand seeded Monte Carlo
+(`Spread`) and what each input does alone (`Drive`).
 
 The forward problem goes from initial to final velocities (Equations 13-18); the reconstruction from
 the six final velocities back, with MUP, the signed P_t/P_n, for MU: line 400's sign rule needs
@@ -27,7 +24,7 @@ from .. import status
 from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
 from ..mappings import within_limits
-from ..names import CHAPTER, FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names
+from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names
 from ..reconstruction.contact import MOVES, moved, placed
 from ..reconstruction.model import Model, forward_model, reconstruction_model
 from ..scene import check_mapping
@@ -37,9 +34,6 @@ from .extremes import CORNERS_IN_FULL, Extremes, Piece, extremes, merged
 from .uncertain import Uncertain, columns_of, correlation_root, fixed
 
 Array = NDArray[np.float64]
-SPEEDS = {name: CHAPTER[name] for name in ("SA", "SB")}
-"""What a reconstruction is asked for, beside the six initial velocities."""
-
 PROBLEMS = ("forward", "reconstruction")
 FORWARD_OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 RECONSTRUCTION_OUTPUTS = (*VELOCITIES, "SA", "SB", "DVA", "DVB", "LOSS")
@@ -56,13 +50,12 @@ RANKED = 20_000
 SLIP_APART = 1e-12
 """How far from gt = 0 the changed sign of MU is met, of gt's range: on it the sign is kept."""
 SWEEP_POINTS = 41
-"""Points of a one-at-a-time sweep."""
+MOST_DRAWS = 100_000_000
+"""Draws of all outputs together that are kept: 800 MB."""
 
 
 def input_names(problem: str) -> tuple[str, ...]:
-    """The values a problem needs: the scene's, for a reconstruction with the six final velocities
-    in place of the initial ones and the signed friction MUP in place of MU. Beside them CX and CY
-    (`reconstruction.contact`) may move the contact point."""
+    """The values a problem needs; CX and CY may move the contact point beside them."""
     if problem == "forward":
         return tuple(SCENE)
     kept = (name for name in SCENE if name not in VELOCITIES)
@@ -159,28 +152,27 @@ def bounds(
     )
 
 
-MOST_DRAWS = 100_000_000
-"""Draws of all outputs together that are kept: 800 MB."""
-
-
 def _check(samples: int, sigmas: float, quantiles: Sequence[float], outputs: int) -> None:
-    for wrong, reason in (
-        (samples < 2, f"{samples} samples are too few; expected 2 or more"),
-        (not 0 < sigmas < np.inf, f"{sigmas:g} standard deviations span nothing; expected above 0"),
-        *((not 0 <= q <= 1, f"{q:g} is not a quantile; expected 0 ... 1") for q in quantiles),
-        (
-            samples * outputs > MOST_DRAWS,
+    reason = ""
+    if samples < 2:
+        reason = f"{samples} samples are too few; expected 2 or more"
+    elif not 0 < sigmas < np.inf:
+        reason = f"{sigmas:g} standard deviations span nothing; expected above 0"
+    elif wrong := [q for q in quantiles if not 0 <= q <= 1]:
+        reason = f"{wrong[0]:g} is not a quantile; expected 0 ... 1"
+    elif samples * outputs > MOST_DRAWS:
+        reason = (
             f"{samples:,} samples of {outputs} outputs are more than {MOST_DRAWS:,} numbers; "
-            "expected fewer samples, or fewer outputs",
-        ),
-    ):
-        if wrong:
-            raise UserError(reason)
+            "expected fewer samples, or fewer outputs"
+        )
+    if reason:
+        raise UserError(reason)
 
 
 @dataclass(frozen=True)
 class _Box:
-    """The problem over the box of its inputs' limits, k inputs that vary and m outputs."""
+    """The problem over the box of its inputs' limits, k inputs that vary and m outputs; ``share``:
+    MU is a share of the critical friction."""
 
     model: Model
     known: dict[str, float]
@@ -189,7 +181,6 @@ class _Box:
     limits: dict[str, tuple[float, float]]
     excluded: int
     share: bool
-    """MU is a share of the critical friction."""
 
     @classmethod
     def of(
@@ -215,19 +206,18 @@ class _Box:
         for name, (low, high) in limits.items():
             if not high - low < float("inf"):
                 raise UserError("its limits are too far apart for double precision", name)
-        forward = problem == "forward"
-        model = forward_model if forward else reconstruction_model
+        model = forward_model if problem == "forward" else reconstruction_model
         check_names(exclude, WARNINGS, "warning")
         excluded = sum({WARNINGS[name] for name in exclude})
         share = "MU" in given and given["MU"].share
         return cls(model, known, inputs, wanted, limits, excluded, share)
 
+    # points are n x k, of the unit cube
+
     def columns(self, point: Array) -> dict[str, Array]:
-        """Points of the unit cube, n x k -> the inputs that vary, n each."""
         return columns_of(self.limits, point)
 
     def inputs_at(self, point: Array) -> dict[str, float]:
-        """One point of the unit cube -> the inputs there."""
         return {name: float(column[0]) for name, column in self.columns(point[None]).items()}
 
     def solved(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
@@ -236,9 +226,7 @@ class _Box:
             return self.model(self.scenes(columns), outputs, None)[0]
 
     def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
-        """All inputs, the contact point where its own axes, CX and CY have it."""
-        values: dict[str, Array | float] = {**self.known, **columns}
-        values = dict(moved(values))
+        values = moved({**self.known, **columns})
         return {**values, "MU": share_typed(values, values["MU"])} if self.share else values
 
     def extremes(self, rng: np.random.Generator) -> Extremes:
@@ -267,11 +255,12 @@ class _Box:
             columns = self.scenes(self.columns(points))
             with np.errstate(all="ignore"):
                 solved, denominators = self.model(columns, names, sign)
-            results = [np.array(solved[name]) for name in self.outputs]
+            results = [solved[name] for name in self.outputs]
             if self.excluded:
                 left_out = self.left_out(solved)
                 results = [np.where(left_out, np.nan, column) for column in results]
-            return _stacked([*results, *denominators], len(points))
+            every = [np.broadcast_to(column, len(points)) for column in (*results, *denominators)]
+            return np.stack(every, axis=1)
 
         def margin(points: Array) -> Array:
             return -(sign or 1.0) * self.slip(points) - apart
@@ -279,17 +268,15 @@ class _Box:
         return Piece(values, len(self.outputs), None if sign is None else margin)
 
     def slip(self, points: Array) -> Array:
-        """gt at points of the unit cube, n."""
         values = quantities(self.scenes(self.columns(points)), ["gt"])["gt"]
         return np.broadcast_to(values, len(points))
 
     def left_out(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
         """Which of the scenes solved carry a warning that excludes them."""
-        result: NDArray[np.bool_] = (np.asarray(solved["STATUS"], np.int64) & self.excluded) != 0
-        return result
+        return np.asarray(np.asarray(solved["STATUS"], np.int64) & self.excluded, bool)
 
     def warnings_at(self, point: Array) -> tuple[str, ...]:
-        """Names of the warnings at one point of the unit cube."""
+        """Names of the warnings at one point."""
         bits = int(np.ravel(self.solved(self.columns(point[None]), ["STATUS"])["STATUS"])[0])
         return tuple(name for name, bit in WARNINGS.items() if bits & bit)
 
@@ -308,17 +295,10 @@ class _Box:
         upper, `SWEEP_POINTS` of them."""
         rest = {name: np.full(SWEEP_POINTS, item.nominal) for name, item in self.inputs.items()}
         result = {}
-        for name, (low, high) in self.limits.items():
-            solved = self.solved({**rest, name: np.linspace(low, high, SWEEP_POINTS)}, self.outputs)
-            result[name] = {
-                output: np.broadcast_to(solved[output], SWEEP_POINTS) for output in self.outputs
-            }
+        for name, ends in self.limits.items():
+            solved = self.solved({**rest, name: np.linspace(*ends, SWEEP_POINTS)}, self.outputs)
+            result[name] = {n: np.broadcast_to(solved[n], SWEEP_POINTS) for n in self.outputs}
         return result
-
-
-def _stacked(columns: Sequence[Array], count: int) -> Array:
-    """Columns (or lone numbers) side by side, n x m."""
-    return np.stack([np.broadcast_to(column, count) for column in columns], axis=1)
 
 
 def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
@@ -359,12 +339,10 @@ def _check_invertible(given: Mapping[str, Uncertain]) -> None:
 def _outputs(problem: str, point_masses: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The outputs taken where none are asked for, and those that can be."""
     usual: tuple[str, ...] = FORWARD_OUTPUTS if problem == "forward" else RECONSTRUCTION_OUTPUTS
-    results = tuple(name for name in RESULTS if name != "STATUS")
-    if problem != "forward":
-        results = RECONSTRUCTED
     if point_masses:
         usual = tuple(name for name in usual if name not in ("WA", "WB", "WAF", "WBF"))
-    return usual, results
+    results = tuple(name for name in RESULTS if name != "STATUS")
+    return usual, results if problem == "forward" else RECONSTRUCTED
 
 
 def _monte_carlo(

@@ -58,14 +58,10 @@ def ranks(values: Array) -> Array:
 def drive_of(sweep: Array, input_ranks: Array, output_ranks: Array) -> Drive:
     first, second = input_ranks - input_ranks.mean(), output_ranks - output_ranks.mean()
     size = np.sqrt((first @ first) * (second @ second))
-    finite = sweep[np.isfinite(sweep)]
-    return Drive(
-        rank_correlation=float(first @ second / size) if size > 0 else float("nan"),
-        at_low=float(sweep[0]),
-        at_high=float(sweep[-1]),
-        lowest=float(finite.min()) if len(finite) else float("nan"),
-        highest=float(finite.max()) if len(finite) else float("nan"),
-    )
+    correlation = float(first @ second / size) if size > 0 else float("nan")
+    finite = sweep[np.isfinite(sweep)] if np.isfinite(sweep).any() else np.array([np.nan])
+    ends = (sweep[0], sweep[-1], finite.min(), finite.max())
+    return Drive(correlation, *(float(end) for end in ends))
 
 
 def spread_out(coordinates: int, count: int, rng: np.random.Generator) -> Array:

@@ -1,10 +1,9 @@
 """The lowest and highest values several functions take over a box.
 
 The functions come as one array function on the unit cube, smooth where they count: a `Piece`. What
-jumps (line 400's sign of MU makes results jump) is given as several pieces, each with the margin
-that says where it counts, and searched piece by piece, the margin a wall. The search begins at
-corners, at points on faces and in the interior; from the best it climbs (`ascent`), slopes taken by
-differences. Where a denominator changes its sign inside, the functions it divides may go to
+jumps (line 400's sign of MU makes results jump) is searched piece by piece, the margin that says
+where each counts a wall. The search climbs (`ascent`) from the best of corners, points on faces and
+in the interior. Where a denominator changes its sign inside, the functions it divides may go to
 infinity: looked for on both sides of its zero.
 
 What it returns is attained (or, at a surface that belongs to the other piece, approached). It is no
@@ -37,10 +36,9 @@ LEAST_GAIN = 1e-10
 """Of a function's range over the points tried: a gain not worth a step."""
 HALVES = 34
 """Times a distance is halved to find a zero: well below the distances beside it."""
-BESIDE_POLE = (1e-4, 1e-6)
+BESIDE_POLE, POLE_GROWTH = (1e-4, 1e-6), 30.0
 """Where functions are taken beside a denominator's zero, of the distance between two points on
 either side of it: a pole makes them a hundred times as large at the second as at the first."""
-POLE_GROWTH = 30.0
 STEPS, STEPS_AT_ONCE = 0.25 * 0.85 ** np.arange(80), 32
 """Lengths of random steps, and how many of each."""
 POLE_PAIRS = 64
@@ -50,10 +48,9 @@ POLE_PAIRS = 64
 class Piece(NamedTuple):
     """m functions of k coordinates, smooth where they count.
 
-    ``function``: points of the unit cube, n x k -> values, n x (m + q): the m functions, ``size``
-    is m, and q denominators, finite and continuous: where one is zero functions may have a pole.
-    ``margin``: points -> n, smooth; the functions count where it is not negative (None:
-    everywhere).
+    ``function``: points of the unit cube, n x k -> n x (m + q): the m functions, ``size`` is m, and
+    q denominators, finite and continuous: where one is zero functions may have a pole. ``margin``:
+    points -> n, smooth; the functions count where it is not negative (None: everywhere).
     """
 
     function: Callable[[Array], Array]
@@ -63,13 +60,9 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True)
 class Extremes:
-    """The lowest and highest values of m functions of k coordinates: ``bound``, 2 x m; ``at``, 2 x
-    m x k, points of the unit cube; ``corner``, 2 x m, over the corners evaluated; ``evaluations``,
-    points at which the functions were taken.
-
-    A function without any finite value has nan everywhere. An extreme is infinite where a pole lies
-    inside; its point is then one close to the pole.
-    """
+    """Of m functions of k coordinates: ``bound``, 2 x m, infinite where a pole lies inside, nan
+    where no value is finite; ``at``, 2 x m x k, points of the unit cube, at a pole one close to it;
+    ``corner``, 2 x m, over the corners evaluated; ``evaluations``, points looked at."""
 
     bound: Array
     at: Array
@@ -124,31 +117,25 @@ def extremes(
 
 def merged(pieces: Sequence[Extremes]) -> Extremes:
     """The extremes over several pieces together."""
-    bound, at, corner = (
-        np.stack([getattr(piece, name) for piece in pieces]) for name in ("bound", "at", "corner")
-    )
 
-    # a pole's are infinite
-    which, where = (
-        np.where(np.isnan(values), -np.inf, _SENSE * values).argmax(axis=0)[None]
-        for values in (bound, corner)
-    )
-    return Extremes(
-        np.take_along_axis(bound, which, 0)[0],
-        np.take_along_axis(at, which[..., None], 0)[0],
-        np.take_along_axis(corner, where, 0)[0],
-        sum(piece.evaluations for piece in pieces),
-    )
+    def chosen(by: str, names: Sequence[str]) -> list[Array]:
+        values = np.stack([getattr(piece, by) for piece in pieces])
+        which = np.where(np.isnan(values), -np.inf, _SENSE * values).argmax(axis=0)
+        side, function = np.indices(which.shape)
+        each = (np.stack([getattr(piece, name) for piece in pieces]) for name in names)
+        return [array[which, side, function] for array in each]
+
+    taken = sum(piece.evaluations for piece in pieces)
+    (bound, at), (corner,) = chosen("bound", ("bound", "at")), chosen("corner", ("corner",))
+    return Extremes(bound, at, corner, taken)
 
 
 class _Ground:
-    """A piece as `ascent` climbs it: its functions, and its margin as the only wall."""
+    """A piece as `ascent` climbs it: its functions, and its margin as the only wall. ``deepest``:
+    the largest margin seen; ``taken``: points looked at."""
 
     def __init__(self, piece: Piece) -> None:
-        self.piece = piece
-        self.deepest = 1.0
-        """The largest margin seen."""
-        self.taken = 0
+        self.piece, self.deepest, self.taken = piece, 1.0, 0
 
     def values(self, points: Array) -> Array:
         """The functions, nan outside the piece."""
@@ -168,12 +155,8 @@ class _Ground:
     def at(self, u: Array, guess: Array) -> tuple[Array, Array, Array, Flags]:
         """`ascent.Landscape`; there are no states."""
         values = self.values(u)
-        return (
-            guess,
-            np.where(np.isfinite(values), values, np.nan),
-            self.walls(u),
-            np.ones(len(u), bool),
-        )
+        values = np.where(np.isfinite(values), values, np.nan)
+        return guess, values, self.walls(u), np.ones(len(u), bool)
 
     def slopes(self, u: Array, x: Array) -> tuple[Array, Array, Array]:
         """`ascent.Landscape`: by central differences, one-sided at the cube's faces."""

@@ -1,14 +1,9 @@
 """Scene files with ranges: the inputs of a problem whose values are known within limits.
 
-The file is a scene's (`impact88.scene`: flat TOML by the listing's names) whose values may be texts
-such as "0.7 .. 0.9" (`uncertainty.uncertain`), with up to two further entries:
-
-- ``correlations = "UX,VX 0.5; MA,IA 0.9"``, pairs of names and their correlation;
-- for a reconstruction the six final velocities VAX VAY VBX VBY WAF WBF and MUP, the signed P_t/P_n.
-
-A reconstruction whose file has none of those takes them from the forward solution of the file's
-nominal values: how well would the initial velocities have been found again? MUP is then MU with the
-sign line 400 gives it.
+The file is a scene's (`impact88.scene`) whose values may be texts such as "0.7 .. 0.9"
+(`uncertainty.uncertain`), with ``correlations = "UX,VX 0.5; MA,IA 0.9"`` and, for a reconstruction,
+the six final velocities and MUP, the signed P_t/P_n. Without those it takes them from the forward
+solution of the nominal values: how well would the initial velocities have been found again?
 """
 
 from collections.abc import Mapping
@@ -45,11 +40,8 @@ def read_inputs(
     source: str = "scene",
 ) -> Inputs:
     """The inputs of ``problem`` (forward or reconstruction) from a file's texts by name and the
-    ``changes`` made to them; ``+- D`` in a change is around the file's value.
-
-    Raises UserError for unknown or missing names and for texts that are no value or range, naming
-    ``source`` and the entry.
-    """
+    ``changes`` made to them; ``+- D`` in a change is around the file's value. Raises UserError for
+    unknown or missing names and for texts that are no value or range."""
     entries = {"M": DEFAULT_M, **texts}
     entries.pop("title", None)
     correlations = read_correlations(entries.pop("correlations", ""), source)

@@ -217,12 +217,13 @@ class Measured(NamedTuple):
             return []
         rows = []
         for a in self.solution.adjusted:
-            factor = units.factor(a.name)
             item = self.solution.system.known[a.name]
             half = math.nan if item.kind == "normal" else a.tolerance
-            sizes = [number(factor * size, 3) for size in (half, item.standard_deviation)]
-            cells = [a.name, number(factor * a.measured), *sizes, number(factor * a.adjusted)]
-            rows.append([*cells, f"{a.moved + 0.0:.2f}", units.label(quantity(a.name).unit)])
+            sizes = [(a.measured, 6), (half, 3), (item.standard_deviation, 3)]
+            cells = [number(units.factor(a.name) * x, n) for x, n in (*sizes, (a.adjusted, 6))]
+            rows.append(
+                [a.name, *cells, f"{a.moved + 0.0:.2f}", units.label(quantity(a.name).unit)]
+            )
         heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
         return [
             *table(rows, heading, left=(0, 6)),
@@ -255,9 +256,8 @@ class Measured(NamedTuple):
     def _connections(self) -> list[list[str]]:
         """Correlations, and what makes results uncertain."""
         names = self.spread.names
-        # the unknowns themselves first, courses and speeds are made of them
-        at = [i for i, n in enumerate(names) if n not in SPEEDS and n not in COURSES]
-        at = at[:MOST_CORRELATED]
+        # the unknowns themselves: courses and speeds are made of them
+        at = [i for i, n in enumerate(names) if n not in (*SPEEDS, *COURSES)][:MOST_CORRELATED]
         matrix = self.spread.correlations
         rows = [[names[i], *(f"{matrix[i, k]:.2f}" for k in at if k <= i)] for i in at]
         correlations = table(rows, ["correlation", *(names[i] for i in at)])
@@ -277,13 +277,14 @@ class Measured(NamedTuple):
                 **numbers(self.values, solution.system.known, self.warnings(units), units),
                 "undetermined": solution.undetermined,
                 "adjusted": [
-                    {
-                        "name": a.name,
-                        "measured": a.measured * units.factor(a.name),
-                        "tolerance": a.tolerance * units.factor(a.name),
-                        "adjusted": a.adjusted * units.factor(a.name),
-                        "moved": a.moved,
-                    }
+                    dict(
+                        zip(
+                            a._fields,
+                            (a.name, *(units.factor(a.name) * x for x in a[1:])),
+                            strict=True,
+                        )
+                    )
+                    | {"moved": a.moved}
                     for a in solution.adjusted
                 ],
                 "redundancy": solution.redundancy,

@@ -138,11 +138,8 @@ class Uncertain:
             return np.asarray(np.log(np.clip(1 - np.abs(off) / np.where(off == 0, 1, side), 0, 1)))
 
     def from_normal(self, variates: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The value at the quantile each standard normal variate stands at.
-
-        Linear interpolation in a table of the quantiles; its error, below 1e-6 of the spread, is a
-        thousandth of what a million samples resolve.
-        """
+        """The value at the quantile each standard normal variate stands at, by a table: its error,
+        below 1e-6 of the spread, is a thousandth of what a million samples resolve."""
         import numpy as np
 
         if self.kind == "normal" and math.isinf(self.low) and math.isinf(self.high):
@@ -180,10 +177,9 @@ def fixed(value: float) -> Uncertain:
 def read(text: str, name: str, center: float | None = None, units: str | None = None) -> Uncertain:
     """What ``text`` says about the quantity ``name``; see the notation above.
 
-    ``center`` is the value ``+- D`` is taken around, and a range's nominal value where it lies
-    inside; ``units`` the system whose base units the numbers are in, which a speed after the impact
-    given as a skid needs (`skid`). Raises UserError naming ``name`` when the text is none of the
-    forms, its limits are in the wrong order, or a number overflows.
+    ``center``: the value ``+- D`` is taken around, and a range's nominal value where it lies
+    inside; ``units``: the system the numbers are in, which a `skid` needs. Raises UserError for a
+    text of none of the forms, limits in the wrong order, and a number too large.
     """
     if text.lstrip().startswith("skid") and name.endswith(("SAF", "SBF")):
         return skid(text, name, units)
@@ -240,13 +236,9 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
 
 
 def _of_kind(
-    kind: str,
-    numbers: Sequence[float],
-    center: float | None,
-    share: bool,
-    text: str,
-    name: str,
+    kind: str, numbers: Sequence[float], center: float | None, share: bool, text: str, name: str
 ) -> Uncertain:
+    deviation = 0.0
     if kind == "around":
         middle = numbers[0] if len(numbers) == 2 else center
         if middle is None:
@@ -254,45 +246,34 @@ def _of_kind(
         half = numbers[-1] * (abs(middle) / 100 if share else 1)
         if half < 0:
             raise UserError(f"{text!r} has a negative half width", name)
-        return _range(middle - half, middle, middle + half, "uniform", text, name)
-    if kind == "triangular":
-        return _range(numbers[0], numbers[1], numbers[2], "triangular", text, name)
-    if kind == "normal":
-        return _normal(numbers, text, name)
-    low, high = numbers
-    return _range(low, low + (high - low) / 2, high, "uniform", text, name)
-
-
-def _range(low: float, nominal: float, high: float, kind: str, text: str, name: str) -> Uncertain:
-    if not math.isfinite(high - low):
+        kind, low, nominal, high = "uniform", middle - half, middle, middle + half
+    elif kind == "triangular":
+        low, nominal, high = numbers
+    elif kind == "normal":
+        nominal, deviation = numbers[:2]
+        low, high = numbers[2:] or (-math.inf, math.inf)
+        if deviation < 0:
+            raise UserError(f"{text!r} has a negative standard deviation", name)
+        if not low <= nominal <= high:
+            raise UserError(f"{text!r} has its mean outside its limits", name)
+        low, high = (low, high) if deviation else (nominal, nominal)
+    else:
+        kind, (low, high) = "uniform", numbers
+        nominal = low + (high - low) / 2
+    if kind != "normal" and not math.isfinite(high - low):
         raise UserError(f"{text!r} is wider than the range of doubles", name)
     if not low <= nominal <= high:
         raise UserError(f"{text!r} is out of order; expected the lower limit first", name)
-    return Uncertain(kind, nominal, low, high) if low < high else fixed(nominal)
-
-
-def _normal(numbers: Sequence[float], text: str, name: str) -> Uncertain:
-    mean, deviation = numbers[:2]
-    low, high = numbers[2:] or (-math.inf, math.inf)
-    if deviation < 0:
-        raise UserError(f"{text!r} has a negative standard deviation", name)
-    if not low <= mean <= high:
-        raise UserError(f"{text!r} has its mean outside its limits", name)
-    if deviation == 0 or low == high:
-        return fixed(mean)
-    return Uncertain("normal", mean, low, high, deviation)
+    return Uncertain(kind, nominal, low, high, deviation) if low < high else fixed(nominal)
 
 
 def correlation_root(
     pairs: Mapping[tuple[str, str], float], inputs: Mapping[str, Uncertain]
 ) -> tuple[list[str], NDArray[np.float64]]:
     """The correlated names, n of them, and an n x n matrix that makes independent standard normal
-    variates (rows) correlated: ``variates @ root``.
-
-    Raises UserError for a name that does not vary, a correlation outside -1 ... 1, two different
-    values for one pair, and correlations that contradict one another (matrix not positive
-    semidefinite).
-    """
+    variates (rows) correlated: ``variates @ root``. Raises UserError for a name that does not vary,
+    a correlation outside -1 ... 1, two values for one pair, and correlations that contradict one
+    another (matrix not positive semidefinite)."""
     import numpy as np
 
     given: dict[frozenset[str], float] = {}
