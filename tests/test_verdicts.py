@@ -74,7 +74,7 @@ class TestFriction:
         [(False, False, 0.32), (True, False, 0.32), (False, True, 0.25), (True, True, 0.0)],
     )
     def test_random_scenes(self, straight, central, share):
-        count = int(os.environ.get("IMPACT88_FRICTION", "20000"))
+        count = int(os.environ.get("IMPACT88_FRICTION", "10000"))
         scene = head_ons(count, 5, straight, central)
         found = solve(scene, ("STATUS", "MUP"))
         approaching, possible = judged(scene, found["MUP"])
