@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -11,9 +12,11 @@ from fiftydigits import exact, relative_error
 from impact88.bench import figure, measure, tables
 from impact88.bench.measure import COMPONENTS
 from impact88.bench.methods import METHODS, reference, relative_errors
-from impact88.bench.populations import BENCHMARK, POPULATIONS, scenes, texts
+from impact88.bench.populations import BENCHMARK, POPULATIONS, enlarged, scenes, texts
 from impact88.cli import main
+from impact88.closedform.solve import solve
 from impact88.figures import canvas
+from impact88.names import FINAL_VELOCITIES
 from impact88.progress import progress
 
 
@@ -117,7 +120,13 @@ def test_command(tmp_path, capsys):
 
 def test_sizes():
     grown = measure.sizes([1, 50_000], 1)
-    assert grown[1]["extra_mib"] < 16  # working arrays, not the scenes
+    assert all(row["nanoseconds"] > 0 < row["memory"] for row in grown)
+    columns = enlarged(scenes("casework", 100, 1), 50_000)
+    room = {name: np.empty(50_000) for name in FINAL_VELOCITIES}
+    tracemalloc.start()
+    solve(columns, out=room, threads=1)
+    assert tracemalloc.get_traced_memory()[1] < 2**20  # working arrays, not the scenes
+    tracemalloc.stop()
     assert "50,000" in tables.listing(grown)
 
 
@@ -127,13 +136,3 @@ def test_populations_of_the_table_can_be_typed():
         columns = scenes(name, 20, 1)
         for key, column in texts(columns).items():
             assert [float(text) for text in column] == columns[key].tolist()
-
-
-def test_files_are_timed_beside_the_computation(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr("impact88.commands.bench_command.FILE_ROWS", 300)
-    assert main(["bench", "--files", "--json"]) == 0
-    doors = json.loads(capsys.readouterr().out)["files"]
-    assert doors[0]["name"] == "computation alone"
-    assert any(door["name"].startswith("CSV to CSV") for door in doors)

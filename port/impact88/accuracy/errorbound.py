@@ -1,10 +1,7 @@
-"""How far rounding alone may move a result: a bound from the condition of the equations.
-
-The final velocities' error, relative to the largest velocity about, stays below `FACTOR` times
-condition (`COND`, of the equilibrated equations) times unit roundoff, in the closed form always and
-in the listing's elimination as long as no pivot falls to its absolute 1E-9. Spins are measured
-against the larger of the spins and of that velocity over the longer lever arm.
-"""
+"""How far rounding alone may move a result: `FACTOR` times condition (`COND`) times unit
+roundoff, relative to the largest velocity about, in the closed form always and in the listing's
+elimination as long as no pivot falls to its absolute 1E-9. Spins are measured against the larger
+of the spins and of that velocity over the longer lever arm."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

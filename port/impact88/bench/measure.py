@@ -1,17 +1,14 @@
-"""One run of the benchmark: every method on every population, errors and times together; growth
-with the number of scenes; and files beside the computation alone.
+"""One run of the benchmark: every method on every population, errors and times together; and
+growth with the number of scenes.
 
 All by processor time, which other programs do not lengthen; of several threads by the clock's. Rows
 are dicts of numbers and names.
 """
 
-import csv
 import os
 import platform
 import statistics
-import tempfile
 import time
-import tracemalloc
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -27,7 +24,6 @@ from ..native.formulas import ExpressionTable
 from ..native.program import Program, addresses
 from ..processors import processors
 from ..progress import Meter
-from ..tables import arrow
 from ..version import __version__
 from .methods import APPLESOFT, DOUBLE, METHODS, Method, reference, relative_errors
 from .populations import BENCHMARK, POPULATIONS, enlarged, scenes
@@ -205,8 +201,7 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
 
 def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
     """The six velocities for growing numbers of scenes: nanoseconds a scene, the same into arrays
-    given again and again (``out``), what memory alone takes, and MiB allocated beside the
-    results."""
+    given again and again (``out``), and what memory alone takes."""
     rows = []
     for count in counts:
         room = {name: np.zeros(count) for name in ORDER}
@@ -225,44 +220,7 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
         row: Row = {"scenes": count, "seconds": times[0] / calls}
         for key, taken in zip(("nanoseconds", "nanoseconds_out", "memory"), times, strict=True):
             row[key] = 1e9 * taken / calls / count
-        tracemalloc.start()
-        solve(columns, ORDER, threads=1)
-        extra = tracemalloc.get_traced_memory()[1] - 6 * 8 * count
-        row["extra_mib"] = max(0, extra) / 2**20  # results may take the place of earlier ones
-        tracemalloc.stop()
         rows.append(row)
-    return rows
-
-
-def doors(count: int, solve_file: Callable[[str, str], object]) -> list[Row]:
-    """``count`` scenes with every result, in memory and by ``solve_file(from, to)``: seconds of
-    wall and of processor time, and how many times the computation alone."""
-    columns = scenes(BENCHMARK[0], count, 1988)
-    with tempfile.TemporaryDirectory() as folder:
-
-        def door(ending: str) -> Callable[[], object]:
-            return lambda: solve_file(f"{folder}/t.{ending}", f"{folder}/o.{ending}")
-
-        with open(f"{folder}/t.csv", "w", encoding="utf-8", newline="") as file:
-            lines = csv.writer(file, lineterminator="\n")
-            lines.writerow(SCENE)
-            lines.writerows(zip(*(columns[name].tolist() for name in SCENE), strict=True))
-        parser = "pyarrow" if arrow.available() else "csv of the standard library"
-        works: dict[str, Callable[[], object]] = {
-            "computation alone": lambda: solve(columns),
-            f"CSV to CSV ({parser})": door("csv"),
-        }
-        if arrow.available():
-            solve_file(f"{folder}/t.csv", f"{folder}/t.parquet")
-            works["Parquet to Parquet"] = door("parquet")
-        rows: list[Row] = []
-        for name, work in works.items():
-            wall, processor = time.perf_counter(), time.process_time()
-            work()
-            wall, processor = time.perf_counter() - wall, time.process_time() - processor
-            alone = rows[0]["processor"] if rows else processor
-            taken = {"seconds": wall, "processor": processor, "times": processor / alone}
-            rows.append({"name": name, **taken})
     return rows
 
 

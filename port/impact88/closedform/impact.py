@@ -16,17 +16,16 @@ sigma_i sigma_j and kappa_i = a_i/Ia - b_i/Ib, the restitution equation (15), no
     em Ired kappa·P + z H         = -em Ired (omega_a - omega_b)
 
 Friction has Pt = mu Pn for the middle line. Every unknown, the final mean spin too, is found by
-Cramer's rule with the factor z cancelled: no term becomes infinite at em = 1/2, and for
--1 <= em <= 0 the pivot's determinant is a sum of terms of one sign. None is found from another, nor
-from both spins apart: where an arm is far longer than a radius of gyration, or one body far lighter
-than the other, such differences would lose their digits. What of the spins is left then are the
-products Ired X = Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired sigma
-x kappa. H has the factor em, so that at em = 0 the final spins are the same bits, and the moment
-impulse is (1 - em) H/em by Equation 18.
+Cramer's rule with the factor z cancelled: no term becomes infinite at em = 1/2, and for -1 <= em <=
+0 the pivot's determinant is a sum of terms of one sign. None is found from another, nor from both
+spins apart: such differences would lose their digits where an arm is far longer than a radius of
+gyration, or one body far lighter than the other. What of the spins is left are the products Ired X
+= Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired sigma x kappa. H has
+the factor em, so that at em = 0 the final spins are the same bits, and the moment impulse is (1 -
+em) H/em by Equation 18.
 
 Axes: n = (cos GA, sin GA), t = (-sin GA, cos GA), A on the +n side; P acts on A, -P on B. Every
-quantity below is an `Expression`; its formula is made when first asked for, so that what no wanted
-result needs is never computed.
+quantity is an `Expression`; its formula is made when first asked for.
 """
 
 import math
@@ -385,12 +384,9 @@ class Impact:
         return c * pn - s * pt, s * pn + c * pt
 
     def _velocity(self, body: str, i: int) -> Expression:
-        """A final velocity of the center along x (0) or y (1).
-
-        A light body that hardly rebounds from a heavy one keeps little of its velocity, and its
-        change has rounding errors of the size of what it lost; the common velocity and a share of
-        the final relative one have not. Where arms are long, they would spoil a small change.
-        """
+        """A final velocity of the center along x (0) or y (1). Of a light body that keeps little of
+        its velocity the change has rounding errors of the size of what it lost; the common velocity
+        and a share of the final relative one have not, but spoil a small change by long arms."""
         ux, vx = (self.UX, self.VX) if i == 0 else (self.UY, self.VY)
         own = ux if body == "A" else vx
 
@@ -475,10 +471,8 @@ class Impact:
 
     @cached_property
     def _lost(self) -> Expression:
-        """Twice the energy lost: the work of P and M at the mean relative velocities, negated.
-
-        KI - KF would lose digits when little is lost; this does not.
-        """
+        """Twice the energy lost: the work of P and M at the mean relative velocities, negated. KI -
+        KF would lose digits when little is lost."""
         normal = ((1.0 - self.E) * self.gn) * self.PN
         sliding = self.PT * (self.gt + self.Gt)
         turning = self.PM * (self.gw + self._spins * self.H)
@@ -504,14 +498,11 @@ class Impact:
 
     @cached_property
     def COND(self) -> Expression:
-        """An estimate of the condition number of the 6x6 equations, rows and columns scaled best.
-
-        The determinant with every sum in it replaced by the sum of the absolute values, divided by
-        the determinant, times 3: the typical ratio to Bauer's number, the spectral radius of
-        |A^-1||A|. Measured over 10^4 scenes of each of the benchmark's populations: within a factor
-        5 of it for 98 % of the scenes and within 55 always; where EM is within 1e-1 to 1e-16 of
-        1/2, within a factor 5 for 91 % and 400 at most.
-        """
+        """An estimate of the condition number of the 6x6 equations, rows and columns scaled best:
+        the determinant with every sum in it replaced by the sum of the absolute values, divided by
+        the determinant, times 3, the typical ratio to Bauer's number, the spectral radius of
+        |A^-1||A|. Over 10^4 scenes of each of the benchmark's populations within a factor 5 of it
+        for 98 % and within 55 always; for EM within 1e-1 to 1e-16 of 1/2, for 91 % and 400."""
         absolute = self.table.absolute
         an, at, bn, bt = (absolute(arm) for arm in (*self._a, *self._b))
         sn, st = an + bn, at + bt

@@ -59,14 +59,12 @@ def solve(
             what they need is computed.
         threads: how many to use; by default as many as there are processors and work.
         out: result name -> array to write it into, of the broadcast shape, contiguous, float64
-            (STATUS: uint16), apart from all columns; results not in it get arrays of their own. A
-            loop that gives the same arrays again is spared the paging in of fresh memory. Where
-            ``outputs`` is left out, its names are the results wanted.
+            (STATUS: uint16), apart from all columns; given again and again it spares the paging in
+            of fresh memory. Where ``outputs`` is left out, its names are the results wanted.
 
     Returns:
-        name -> array of the broadcast shape, float64 (STATUS: uint16), in the order asked. Of one
-        scene, given as plain numbers, the results are numbers too (numpy's float64, which is a
-        float): a few microseconds, the same bits.
+        name -> array of the broadcast shape, float64 (STATUS: uint16), in the order asked; of one
+        scene, given as plain numbers, numbers (numpy's float64, which is a float), the same bits.
 
     M = 4 is the point-mass impact: DA and DB count as 0; EM, angles other than GA and inertias are
     not looked at, spins pass through and stay out of the energies. An infinite body must be at
@@ -76,14 +74,13 @@ def solve(
     that is not positive, a barrier that moves, two barriers) is NaN in every result and has
     NOT_FINITE alone in STATUS; a scene without solution is NaN in what depends on it, and so are
     ratios of zeros (LOSS and MUC where nothing moves) and what overflows; NOT_FINITE says so of all
-    but MUC, which other results seldom need. None disturbs another scene: every scene gets the bits
-    it would get alone, unless something overflows on the way (where numbers reach 1e±150): a term
-    that is known to be 0 is left out, and beside scenes where it is not, 0 times infinity is NaN.
-    A zero is +0.0 always.
+    but MUC. Every scene gets the bits it would get alone, unless something overflows on the way
+    (where numbers reach 1e±150): a term that is known to be 0 is left out, and beside scenes where
+    it is not, 0 times infinity is NaN. A zero is +0.0 always.
 
-    Where the listing does not solve its own equations, the equations are solved: an MU below -10,
-    or MU = 10 that the sign rule makes -10 (there line 510 zeroes a right-hand side that is not a
-    pivot's), is taken as the friction coefficient it is, with MU_OUT_OF_RANGE in STATUS.
+    Where the listing does not solve its own equations (line 510 zeroes a right-hand side), the
+    equations are solved: an MU below -10, or MU = 10 that the sign rule makes -10, is taken as the
+    friction coefficient it is, with MU_OUT_OF_RANGE in STATUS.
 
     SINGULAR in STATUS means COND >= 2**26 (half of a double's digits may be lost), ENERGY_GAINED
     more than 1e-12 of KI, the FRICTION bits that P_t/P_n does not lie between 0 and MUC

@@ -1,8 +1,5 @@
-"""STATUS: one rule a bit of `impact88.status.Status`, for every solver.
-
-The rules are comparisons joined by & | ~, so that one text serves numpy's arrays and the
-`Expression`s of a plan. A comparison with NaN is false: what cannot be decided stays clear.
-"""
+"""STATUS: one rule a bit of `impact88.status.Status`: comparisons joined by & | ~, one text for
+arrays and `Expression`s. A comparison with NaN is false: what cannot be decided stays clear."""
 
 from math import inf
 from typing import Any

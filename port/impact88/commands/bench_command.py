@@ -10,7 +10,6 @@ examples:
   impact88 bench                             the table, about two minutes
   impact88 bench --scenes 300 --quick        a quick look
   impact88 bench --figure work-precision.pdf --json -o bench.json
-  impact88 bench --files                     a million rows from file to file
   impact88 bench --sizes                     to ten million scenes (takes 2 GB)
 
 exit status: 0 done; 2 bad input
@@ -32,8 +31,6 @@ __doc__ = (__doc__ or "").format(
 
 QUICK = 0.05
 """The share of the scenes that --quick times."""
-FILE_ROWS = 1_000_000
-"""Rows of --files."""
 COMPONENT_SCENES = 300
 """Scenes of which every result is compared with 50 digits: two milliseconds each."""
 SIZES = (1, 60, 1_000, 10_000, 100_000, 1_000_000, 10_000_000)
@@ -46,7 +43,6 @@ ARGUMENTS = (
     options.count("--repeats", 1, 1000, "times are medians of so many (%(default)s)", default=5),
     options.flag("--quick", "time a twentieth of the scenes: rougher, sooner"),
     options.flag("--sizes", "growth with the scenes, instead"),
-    options.flag("--files", "tables from file to file, instead"),
     options.json_option("JSON instead of tables"),
     options.OUTPUT,
     options.writes("--figure", "FILE", "draw error against time: .svg .png .pdf"),
@@ -64,7 +60,7 @@ def main(arguments: argparse.Namespace) -> int:
 
     for picture in filter(None, (arguments.figure, arguments.errors_figure)):
         check_ending(picture)
-    if arguments.sizes or arguments.files:
+    if arguments.sizes:
         return _growth(arguments)
     from ..bench import figure, measure, tables
     from ..progress import progress
@@ -99,20 +95,11 @@ def main(arguments: argparse.Namespace) -> int:
 def _growth(arguments: argparse.Namespace) -> int:
     from ..bench import measure, tables
 
-    record: dict[str, Any] = {}
-    if arguments.files:
-        from ..cli import main as command_line
-
-        record["files"] = measure.doors(
-            FILE_ROWS, lambda path, to: command_line(["solve", path, "-o", to])
-        )
-    if arguments.sizes:
-        record["sizes"] = measure.sizes(SIZES, arguments.repeats)
-    machine = measure.machine()
+    sizes, machine = measure.sizes(SIZES, arguments.repeats), measure.machine()
     if arguments.json:
-        _print_json({"machine": machine, **record})
+        _print_json({"machine": machine, "sizes": sizes})
     else:
-        print("\n\n".join([tables.machine(machine), *map(tables.listing, record.values())]))
+        print(f"{tables.machine(machine)}\n\n{tables.listing(sizes)}")
     return 0
 
 

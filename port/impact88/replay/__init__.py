@@ -30,13 +30,10 @@ def replay(columns: Mapping[str, Any], fields: bool = False, threads: int | None
     as its text, or a stored real: a uint64 of its five bytes (14.5 is 0x8468000000). Floats are
     refused: the digits that were typed count.
 
-    Returns a `Replay`: final velocities and spins, contact velocities before and after, energies
-    and the friction coefficient as printed, as stored reals and as floats; each scene's error and
-    line; and on request the printed fields (``fields``: write them all now, else when asked for).
-    ``threads``: how many to use, by default as many as help.
-
-    Every bit is the listing's (lines 280-760 and 1000-1170). Raises UserError for columns it cannot
-    use; a scene that fails on the machine fails here, alone, and never spoils another.
+    Returns a `Replay`: every result as printed, as stored reals and as floats; each scene's error
+    and line. ``fields``: write all printed fields now, else when asked for; ``threads``: how many
+    to use, by default as many as help. Every bit is the listing's (lines 280-760 and 1000-1170).
+    Raises UserError for columns it cannot use; a scene that fails on the machine fails here, alone.
 
     >>> impact88.replay(impact88.sample(1)).printed("XB").tolist()
     ['14.51']
