@@ -38,6 +38,8 @@ Device = Callable[[str], object]
 Read = Callable[[str, int], "tuple[Any, int]"]
 
 _SLOT_COMMAND = r" *[Pp][Rr] *# *([0-7])"
+_END = ("", ":")
+"""Of a reply: a colon ends it as it ends a statement."""
 
 
 class Keys(str):
@@ -233,7 +235,7 @@ class Console:
             if not reply.refused:
                 break
             self.put("?REENTER\n")
-        if reply.has_more:
+        if reply.left:
             self.put("?EXTRA IGNORED\n")
 
 
@@ -256,7 +258,7 @@ class Reply:
         line before. Raises ApplesoftError OVERFLOW and EndOfInput."""
         if not self.refused:
             self.begun += 1
-            if self.begun > 1 and not self._at_end():
+            if self.begun > 1 and self.left[:1] not in _END:
                 self._position += 1  # the comma
             elif self.begun > 1:
                 self._console.put("??")
@@ -267,17 +269,13 @@ class Reply:
         value, self._position = self._read(self._line, self._position)
         while self._line.startswith(" ", self._position):
             self._position += 1
-        self.refused = not (self._at_end() or self._line[self._position] == ",")
+        self.refused = self.left[:1] not in (*_END, ",")
         return value
 
-    def _at_end(self) -> bool:
-        """A colon ends a reply as it ends a statement."""
-        return self._line[self._position : self._position + 1] in ("", ":")
-
     @property
-    def has_more(self) -> bool:
-        """Whether anything was typed beyond the values asked for."""
-        return self._position < len(self._line)
+    def left(self) -> str:
+        """What was typed beyond the values read."""
+        return self._line[self._position :]
 
 
 def keyed(text: str) -> str:

@@ -28,7 +28,7 @@ from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
 from . import agreement
 from .agreement import Case
-from .diagnosis import UNKNOWN, Cause, diagnose
+from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, diagnose
 from .trials import Program
 from .vectors import FAILURE
 
@@ -36,8 +36,6 @@ Bools = NDArray[np.bool_]
 
 WORST = 20
 """Rows that are shown of those that disagree most, and of those not compared."""
-LOOKED_INTO = 4000
-"""Rows that agree, and must bear a cause out: with twice as many the same causes stand."""
 NOT_COMPARED = ("STATUS", "COND")
 CARRIED = ("id", "class", "label", "expect", "flags", "comment")
 """Columns of test vectors that say which row it is."""

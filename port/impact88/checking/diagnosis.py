@@ -40,20 +40,23 @@ IN_THESE_ROWS = ", in these rows only"
 """Behind a cause that rows that agree refute."""
 
 _WRONG_SAMPLE, _RIGHT_SAMPLE = 45, 30
+"""Rows that the search looks at: of ten kinds of scene some three each."""
 _DEEPER = 2
-"""Mistakes that are looked for in what others leave, one after the other."""
+"""Mistakes that are looked for in what others leave, one after the other: pycrash has three."""
 _MOST = 0.5
 """The share of what is left that such a one explains; one row is enough for a known convention."""
 _SEVERAL = 3
 """Causes that a table of several programs' rows may have."""
 _LARGE = 1e-5
-"""Differences below this share of their size are no pair of mistakes."""
+"""Differences below this share of their size are no pair of mistakes, but coarse arithmetic."""
 _NEED, _NEED_NAMED, _NEED_PAIR = 22.0, 10.0, 32.0
 """Bits that a cause must get right: some ten more than one of 30,000 edits, one less than one of
 500 known alternatives, and as many as one pair of 30,000 edits in different equations."""
 _BITS_A_ROW = 40.0
+"""What one row counts for at most: more than any need, so that two rows of doubles are enough."""
 _CLOSE = 1e-9
-"""Results this close, as a share of their size, are the same program's."""
+"""Results this close, as a share of their size, are the same program's: more than another way to
+compute them rounds, no more than 3.14159265 for pi does."""
 _EXPLAINED = 0.1
 """A cause leaves at most this share of a row's difference."""
 _WIDESPREAD = 0.5
@@ -67,8 +70,9 @@ _BRANCHES = ("MU's sign rule inverted", "the critical ratio used in place of MU"
 """Models that take the other branch, of friction's sign or of the pivot, in every row."""
 _EQUIVALENTS = 4
 """Other ways to say a cause that are listed."""
-_REPLAYED = 4000
-"""Rows that the 1988 program is run on."""
+LOOKED_INTO = 4000
+"""Rows that agree, and must bear a cause out, and rows that the 1988 program is run on: they bound
+time and memory of large tables."""
 
 
 class Cause(NamedTuple):
@@ -238,7 +242,7 @@ def _are_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
 def _as_printed(case: Case, wrong: Bools) -> Bools:
     """Rows that are the 1988 program's own digits; beyond so many, where those are, floored."""
     rows = np.zeros(wrong.size, bool)
-    places, more = np.split(np.flatnonzero(wrong), [_REPLAYED])
+    places, more = np.split(np.flatnonzero(wrong), [LOOKED_INTO])
     if not all(name in FIELDS for name in case.names):
         return rows
     columns = zip(SCENE, case.scene[:, places].tolist(), strict=True)

@@ -34,8 +34,9 @@ Bools = NDArray[np.bool_]
 BORNE_OUT = 0.9
 """The share of the rows, of those that disagree as of those that agree, that a cause must fit."""
 _KEPT = 60
-"""Programs that are run over the larger sample."""
+"""Programs that are run over the larger sample: equivalents in nine spellings, and to spare."""
 _FIRST_WRONG, _FIRST_RIGHT = 10, 5
+"""Rows that all edits are run over: the time of the search grows with them."""
 _FEW = 8
 """Rows that disagree on which pairs are looked for, and half as many for pairs of readings."""
 _SHARE = 0.1
@@ -44,7 +45,7 @@ a result is wrong in that is explained apart."""
 _FIRSTS = 4
 """Mistakes on top of which another is looked for."""
 _PRECISION = 1e-11
-"""Of residuals."""
+"""Of residuals, beside what the digits written allow: their terms round by some 1e-13."""
 
 
 class Program(NamedTuple):

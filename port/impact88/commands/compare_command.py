@@ -3,7 +3,7 @@ named as the scene's (impact88 scene lists them; M may be missing) and any of th
 VBX VBY WAF WBF, contact velocities XA YA XB YB before and XAF YAF XBF YBF after, VC VS KI KF LOSS
 DVA DVB PN PT PM MUP MUC. Each result agrees to the double, to the digits it is written with, as
 closely as plain elimination in double precision can in that scene, or not. Rows that disagree are
-explained: every small mistake in the equations, some 26,000 in seven spellings of them, and other
+explained: every small mistake in the equations, some 38,000 in nine spellings of them, and other
 conventions are made here too, alone and two together, and the one that gives their numbers is
 named, with the rows that bear it out. What could not be compared is listed on standard error.
 
