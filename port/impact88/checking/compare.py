@@ -307,7 +307,6 @@ def _compare_block(
 
 
 def _skipped(rows: Rows, readable: Bools, case: Case) -> Iterator[tuple[str, Bools]]:
-    """Why rows may not be compared, and which."""
     solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
     kinds = rows.others.get("class")
     may = np.array([str(kind) == FAILURE for kind in kinds], bool) if kinds is not None else False
@@ -321,7 +320,6 @@ def _skipped(rows: Rows, readable: Bools, case: Case) -> Iterator[tuple[str, Boo
 def _differing(
     rows: Rows, places: NDArray[np.intp], worst: Any, relative: Any, case: Case
 ) -> Iterator[Row]:
-    """The rows that disagree, each by its worst result."""
     ids = rows.one_per_row("id") if "id" in rows.others else None
     written = [rows.one_per_row(name) for name in case.names]
     for index in places.tolist():
@@ -339,7 +337,6 @@ def _differing(
 
 
 def _explain(kept: Sequence[tuple[Case, Bools]], comparison: Comparison) -> None:
-    """Find the causes, over the whole table at once."""
     wrong = np.concatenate([wrong for _, wrong in kept])
     places = np.concatenate([np.flatnonzero(wrong), np.flatnonzero(~wrong)[:LOOKED_INTO]])
     found = diagnose(agreement.joined([case for case, _ in kept]).part(places), wrong[places])

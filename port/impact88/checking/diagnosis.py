@@ -131,7 +131,6 @@ class Diagnosis:
         return np.asarray(self._causes == UNKNOWN)
 
     def _by_search(self) -> None:
-        """Name programs that give their numbers."""
         case = self._case
         searched = [name for name in case.names if name != "MUC"]
         theirs, limits, ours = (

@@ -118,7 +118,6 @@ def workbook(found: Sequence[dict[str, Any]]) -> bytes:
 
 
 def _formula(node: Expression, cells: Mapping[str, str]) -> str:
-    """An expression in a spreadsheet's language."""
     if isinstance(node, str):
         return "PI()" if node == "pi" else cells[node]
     if not isinstance(node, tuple):

@@ -245,7 +245,6 @@ def _second(judge: Judge, unexplained: Bools, first: Program) -> list[Program]:
 
 
 def _two_readings(judge: Judge) -> Iterator[Program]:
-    """Programs with two of the commoner readings."""
     common = [one for one in readings() if one.rank == CONVENTION]
     first = [one for one in common if not one.shows]
     spelling = spellings()[IMPULSES]

@@ -43,7 +43,6 @@ def vectors(
 
 
 def _asked(kind: str, label: str, answer: dict[str, Any]) -> dict[str, Any]:
-    """What is asked of a program by a vector, its flags, and a comment."""
     solvable = all(answer["results"][name]["double"] is not None for name in FINAL_VELOCITIES)
     ending = answer["ending"]
     return {

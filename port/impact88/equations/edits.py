@@ -107,7 +107,6 @@ def variations(node: Expression, kin: Kin, whole: bool = True) -> Iterator[tuple
 
 @cache
 def _rules() -> dict[object, list[tuple[int, Expression, list[Expression]]]]:
-    """The rules of ``rules.txt`` by the kind of node they are for."""
     rules: dict[object, list[tuple[int, Expression, list[Expression]]]] = {}
     rank = LIKELY
     for line in table("rules.txt"):

@@ -222,8 +222,6 @@ class Run:
 
 
 class _Row(dict[str, Any]):
-    """The names as one edit sees them."""
-
     def __init__(self, names: Columns, k: int) -> None:
         super().__init__()
         self._names, self._k = names, k

@@ -80,7 +80,6 @@ def _read_float(text: str, start: int) -> tuple[float, int]:
 
 
 def _write_float(x: float) -> str:
-    """The double to nine digits, laid out as Applesoft lays out its own."""
     if not math.isfinite(x):
         raise overflow()
     if x == 0:

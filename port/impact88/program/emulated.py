@@ -136,7 +136,6 @@ class ListingCopy:
             yield from filter(None, (_items(statement, verb) for statement in _split(text)))
 
     def _with(self, scene: Mapping[str, str]) -> Iterator[str]:
-        """The program's lines with the scene's values in place of its own."""
         names = chain.from_iterable(self._lists("READ"))
         for number, text in sorted(self._source.items()):
             statements = []
@@ -153,7 +152,6 @@ class ListingCopy:
 
 
 def _items(statement: str, verb: str) -> list[str]:
-    """The items of a READ, INPUT or DATA; none of another statement."""
     match = _LIST.fullmatch(statement)
     found = match and match["verb"].upper() == verb
     return [item.strip() for item in match["items"].split(",")] if match and found else []
@@ -172,7 +170,6 @@ def _listed(text: str) -> dict[int, str]:
 
 
 def _split(text: str) -> Iterator[str]:
-    """The statements of a line."""
     place = 0
     while place <= len(text) and (match := _STATEMENT.match(text, place)):
         yield match[0]

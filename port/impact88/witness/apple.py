@@ -115,7 +115,6 @@ class Apple:
         return int(cpu.pc)
 
     def _wait(self, limit: int) -> None:
-        """Run until the ROM waits for a key that has not been typed."""
         cpu, memory = self.cpu, self.memory
         memory.waiting = False
         last = self.instructions + limit

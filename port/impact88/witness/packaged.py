@@ -44,7 +44,6 @@ def cases(count: int | None, seed: int = 0) -> list[Case]:
 
 @cache
 def _decks() -> list[list[Case]]:
-    """All packaged captures: scenes, programs, and each routine's calls."""
     golden = captured.golden()
     scenes = [Case(SCENES, row["id"], row) for row in captured.rows(golden, SCENES)]
     programs = [Case(PROGRAMS, *one) for one in captured.programs(golden).items()]

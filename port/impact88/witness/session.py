@@ -49,7 +49,6 @@ class Session:
 
     @cached_property
     def _with_listing(self) -> State:
-        """The machine with the restored listing typed in."""
         self.apple.restore(self._fresh)
         program = packaged_text("impact88.legacy", LISTING)
         lines = program.splitlines()
