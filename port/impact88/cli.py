@@ -1,11 +1,8 @@
-"""The command line: which command, and what happens to errors.
+"""The command line: which command, imported only then, and what happens to errors.
 
-Exit status: 0 done (``ZERO DETERMINANT`` is a normal END), 1 done with an adverse result (an
-Applesoft error, a bad row, a printout that differs), 2 unusable input, 3 a bug of this project.
-Control-C, a broken pipe and a signal to leave end with the shell's usual 130, 141 and 128 + signal.
-There is never a traceback, unless IMPACT88_DEBUG=1 asks for a bug's.
-
-A command is imported only when it is asked for.
+Exit status: 0 done (``ZERO DETERMINANT`` is a normal END), 1 done with an adverse result, 2
+unusable input, 3 a bug of this project; control-C, a broken pipe and a signal to leave end with the
+shell's 130, 141 and 128 + signal. There is no traceback, unless IMPACT88_DEBUG=1 asks for a bug's.
 """
 
 from __future__ import annotations

@@ -1,21 +1,18 @@
 """Yaw inertia where none is known, estimated from the weight, or from mass, length and width.
 
-In a scene or a reconstruction file ``IA = "estimate"`` (``"estimate +- 15%"`` where tolerances are
-taken) stands for one of two estimates, and the result is always marked as one:
+``IA = "estimate"`` (``"estimate +- 15%"`` where tolerances are taken) stands for one of two
+estimates, and the result is marked as one:
 
-- with the length and width of the vehicle given as LA BA (LB BB), the inertia of a uniform
-  rectangle, m (L² + W²)/12, in any consistent units. Cars carry less of their mass at the corners
-  than a rectangle does: expect it 5 to 20 % high.
-- from the weight alone, by the straight line fitted to passenger cars that NHTSA measured:
-  1.03 W - 1206 in lb-ft-s², W in lb (Garrott, Monk and Chrstos, "Vehicle Inertial Parameters -
-  Measured Values and Approximations", SAE paper 881767, 1988; its two numbers as later texts quote
-  them, the paper itself was not at hand). Beside the inertias of the 22 vehicles of the chapter's
-  Table 1, which were assigned by class of size, it is 13 % low to 37 % high. It is for cars: sport
-  utilities and light trucks lie lower, and outside `CARS` it is refused.
+- with the vehicle's length and width given as LA BA (LB BB), a uniform rectangle's, m (L² + W²)/12.
+  Cars carry less of their mass at the corners than a rectangle does: expect it 5 to 20 % high.
+- from the weight alone, the straight line fitted to passenger cars that NHTSA measured: 1.03 W -
+  1206 in lb-ft-s², W in lb (Garrott, Monk and Chrstos, "Vehicle Inertial Parameters - Measured
+  Values and Approximations", SAE paper 881767, 1988; its two numbers as later texts quote them, the
+  paper itself was not at hand). Beside the 22 inertias of the chapter's Table 1, assigned by class
+  of size, it is 13 % low to 37 % high. Sport utilities and light trucks lie lower; outside `CARS`
+  it is refused.
 
-Beside a known inertia LA BA are the outline that is drawn.
-
-The mass needs no estimate: "3091 lb" is a weight, and becomes the mass it has (`impact88.units`).
+Beside a known inertia LA BA are the outline that is drawn. A weight needs no estimate of its mass.
 """
 
 from collections.abc import Mapping

@@ -1,8 +1,7 @@
-"""How a command may be ended from outside: control-C, and the signals that ask it to leave.
+"""How a command may be ended from outside: control-C, SIGTERM and SIGHUP.
 
-SIGTERM (kill, a shutdown) and SIGHUP (the terminal went away) would end Python on the spot, with
-half-written files left beside their names. Here they become exceptions, so that unfinished
-work is undone. A second control-C while that happens changes nothing.
+These would end Python on the spot, with half-written files left beside their names. Here they
+become exceptions, so that unfinished work is undone; a second control-C then changes nothing.
 """
 
 from __future__ import annotations

@@ -1,13 +1,10 @@
 """Units: their sizes, the systems they belong to, and what values are shown in.
 
-The mechanics takes any consistent units, so an amount with a unit ("-25 mph", "3,091 lb",
-"6 ft 6 in", see `impact88.amounts`) is converted once, by exact fractions, to its system's base:
-ft, slug and s, or m, kg and s. Angles are in degrees and spins in radians per second in both.
-
-A unit is an expression of symbols ("slug ft2", "kg·m²", "lb-ft-s2", "miles per hour"), whose
-dimension is worked out and compared with what a quantity measures. So "lb" needs no list of cases:
-in "lb ft2" only the mass gives an inertia, in "lb-ft-s2" only the force. A units library would
-bring a dependency, an import of a quarter of a second, and one meaning of "lb".
+An amount with a unit ("-25 mph", see `impact88.amounts`) is converted once, by exact fractions, to
+its system's base: ft, slug and s, or m, kg and s; angles are in degrees, spins in radians a second.
+A unit is an expression of symbols ("slug ft2", "lb-ft-s2"), whose dimension is worked out and
+compared with what a quantity measures: in "lb ft2" only the mass gives an inertia, in "lb-ft-s2"
+only the force. A units library would take a quarter of a second to import, and has one "lb".
 """
 
 import re

@@ -1,8 +1,6 @@
 """The arguments that several commands take, and what they print as JSON, each in one place.
 
-A command declares ``ARGUMENTS``, which `declare` adds to its parser. ``--set NAME=VALUE``, a scene
-by file or ``--sample``, names of results, ``-o FILE`` and ``--json`` mean the same everywhere, and
-errors have the same words.
+A command declares ``ARGUMENTS``, which `declare` adds to its parser.
 """
 
 from __future__ import annotations

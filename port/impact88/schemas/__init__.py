@@ -1,12 +1,9 @@
 """The forms of what the commands print with --json: a JSON Schema each, with a number.
 
-Every object carries ``schema`` (``impact88/NAME/NUMBER``) and the package's ``version``.
-
-The rule for changes. A field that is added leaves the number as it is: a reader ignores fields it
-does not know. A field that is removed or renamed, that changes its type, its unit or its meaning,
-or that may be null where it could not, raises the number by one; so does a word added to an
-enumeration. The schema and the number in `NUMBERS` change together, in the same commit as the
-output. Digits that become more accurate are no change of form.
+The rule for changes: a field that is added leaves the number as it is; one that is removed or
+renamed, that changes its type, unit or meaning, or may be null where it could not, raises the
+number by one, and so does a word added to an enumeration. Schema, number and output change in the
+same commit. Digits that become more accurate are no change of form.
 """
 
 from __future__ import annotations

@@ -1,12 +1,9 @@
 """Comma-separated values: a header of names, a row for each scene.
 
-Fields may be separated by commas, semicolons or tabs (detected in the header) and quoted as usual.
-Every field is passed through as it stands; floats are written with the fewest digits that read back
-to the same double.
-
-With pyarrow the file is read in blocks of bytes, as csv would read them, while these are plain:
-what is quoted is quoted from a field's begin to its end (RFC 4180), every record has as many fields
-as the header, and none is empty. From the first block that is not, it is read line by line.
+Fields are separated by commas, semicolons or tabs (detected in the header), quoted as usual, and
+passed through as they stand. With pyarrow the file is read in blocks while these are plain: what is
+quoted is quoted from a field's begin to its end (RFC 4180), and every record has as many fields as
+the header. From the first block that is not, it is read line by line.
 """
 
 import csv

@@ -1,10 +1,8 @@
-"""JSON Lines: a scene is an object on a line of its own.
+"""JSON Lines: a scene is an object on a line of its own; a number is its text as written.
 
-A number, or a string that holds one, is taken as the decimal text it is written as. A column that
-is written has one type from the first line to the last: a scene's values are doubles with their own
-digits (``1`` is written 1.0), results doubles with the fewest digits that read back to the same;
-NaN, which JSON does not have, is null, and infinity 1e999, which readers take for it. Other columns
-have the type that they came with: texts from a CSV.
+A column that is written has one type from the first line to the last: a scene's values are doubles
+with their own digits (``1`` is written 1.0), results doubles with the fewest digits that read back
+to the same, NaN is null, and infinity 1e999, which readers take for it.
 """
 
 import json

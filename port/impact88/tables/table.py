@@ -1,8 +1,7 @@
-"""Tables of scenes: CSV, JSON Lines and .npz, read and written a block of rows at a time.
+"""Tables of scenes: CSV, JSON Lines, .npz and others, read and written a block of rows at a time.
 
-A reader yields `tables.rows.Rows`; a writer takes the same rows back with the results found for
-them, so that what the file held is passed through as it stood. Memory does not grow with the file
-(.npz excepted, which is arrays as a whole).
+A reader yields `tables.rows.Rows`; a writer takes them back with their results. Memory does not
+grow with the file (but for .npz and .xlsx).
 """
 
 import sys
