@@ -27,8 +27,6 @@ LABELS_EXCHANGED, LABEL_WRONG = "labels exchanged", "another label"
 NOT_APPLESOFT = "then this program on an Apple II did not print it"
 _ALL_BUT = 0.15
 """A cause that leaves more than this part of what differs is none."""
-_FAR = 0.1
-"""What a result counts at most that is far off, relatively."""
 _ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
 """The kinetic energy is printed to so many digits; other arithmetics end within so many units of
 the last of them."""
@@ -123,13 +121,13 @@ class PageEvidence:
         return decimals_of(self.texts.get(name, ""))
 
     def far(self, found: Mapping[str, Any], count: int) -> Any:
-        """How far off results are, arrays of ``count`` by name: relatively and on average."""
+        """How far off results are, arrays of ``count`` by name: relatively, their median."""
         rows = [
             np.nan_to_num(np.abs(column - number) / (abs(number) + 0.1), nan=1.0)
             for name, column in found.items()
             for number in self.results.get(name, [])[:1]
         ]
-        return np.minimum(rows, _FAR).mean(axis=0) if rows else np.zeros(count)
+        return np.median(rows, axis=0) if rows else np.zeros(count)
 
     def fits(self, found: Mapping[str, Any], count: int, units: float, part: float) -> Any:
         """Where so few results, arrays of ``count`` by name in double precision, are off by more

@@ -48,15 +48,14 @@ _WORSE = 15.0
 _ENOUGH = 26.0
 """Causes that take longer are tried where none asks for so few bits: two slips (21 to 25)."""
 _MOST_BITS = 50.0
-"""What asks for more is no explanation: four slips of the likelier kinds."""
+"""What asks for more is no explanation: four slips of the likelier kinds. Twice as much names slips
+on a page that nothing explains."""
 _BY_COPY = 12
 """Slips, of each kind of ranking, that are tried in a copy of the listing."""
-_EACH = 1.0
-"""Bits of each slip after the first, besides its own."""
 _LAST_PLACE = 8.0
 """Bits more for a result misread by one in its last place, where another arithmetic is likelier;
 and for misread inputs on a page on which nothing worse is wrong."""
-_SLIP = min(slips.BITS.values()) + _EACH
+_SLIP = min(slips.BITS.values())
 """Bits of a slip besides, at least."""
 _ANOTHER_ARITHMETIC = 17.0
 """Bits of an arithmetic that is not among those tried: less than two last places misread (37)."""
@@ -157,7 +156,7 @@ def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading)
         texts = {change.field: change.would_be for change in exchanged}
         for one in rereading.best(1, texts):
             changes = (*exchanged, *one.changes)
-            bits = row.bits + sum(map(_believed, one.changes)) + _EACH
+            bits = row.bits + sum(map(_believed, one.changes))
             cause = _slipped(page, changes, _wrong(page, one, changes))
             yield cause._replace(bits=bits, note=row.note)
 
@@ -212,7 +211,7 @@ def _slipped(
     """Slips as a cause; ``outcome``: what is then printed, in which may be slips, too."""
     if outcome and len(wrong - page.base) <= page.most_left:
         changes = (*changes, *_slips(page, wrong & page.base, outcome))
-    bits = sum(map(_believed, changes)) + _EACH * (len(changes) - 1)
+    bits = sum(map(_believed, changes))
     if all(change.field in INPUTS for change in changes) and page.only_last_places:
         bits += _LAST_PLACE
     note = ""

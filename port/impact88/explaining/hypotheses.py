@@ -7,7 +7,7 @@ it may have been computed with several; they are searched for the nearest rows.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from itertools import combinations, islice
+from itertools import combinations
 from math import isfinite
 from typing import Any, NamedTuple
 
@@ -34,14 +34,10 @@ from .causes import (
     digits_of,
 )
 
-_NEAR = 0.03
-"""How far a unit may be off on average to be searched: 88 for 88.4 is off by 0.005."""
 _ANY_TWO = 20.0
 """Bits of any two numbers exchanged: then no slip is looked for besides."""
-_SEARCHED, _LAST = 3, 24
-"""Units that are searched, and combinations of each that are replayed."""
-_CANDIDATES, _COMBINATIONS = 40, 60_000
-"""Numbers that may have been computed with: of one input, and of all together."""
+_COMBINATIONS = 60_000
+"""Numbers that may have been computed with, of all inputs together."""
 _ROUGH = 1e-6
 """Relative error of the Apple's arithmetic, and of a factor that is known to seven digits."""
 
@@ -131,21 +127,21 @@ class Rows:
                     yield row, changes
 
     def searched(self) -> Iterator[Cause]:
-        """The units that nearly explain the page, with the numbers that explain it best."""
-        units: dict[tuple[str, str], Hypothesis] = {}
+        """The unit that comes nearest, with the numbers that explain the page best."""
         far = self._page.far(self._found, len(self._every))
-        for index in np.argsort(far, kind="stable") if self._scene["M"] == "6" else ():
-            one = self._every[index]
-            if one.within and not one.row.results and far[index] <= _NEAR:
-                units.setdefault((one.row.note, " ".join(one.row.inputs)), one)
+        units = [
+            (distance, index)
+            for index, (one, distance) in enumerate(zip(self._every, far, strict=True))
+            if one.within and not one.row.results and one.scene["M"] == "6"
+        ]
+        if not units:
+            return self._tested([])
+        unit = self._every[min(units)[1]]
+        columns = list(self._columns(unit))
         search = self._page.recovered.search
-        found = []
-        for unit in islice(units.values(), _SEARCHED):
-            columns = list(self._columns(unit))
-            picks = search.promising(columns, _COMBINATIONS, _LAST)
-            best = min(search.replayed(columns, picks), key=lambda one: one.cost)
-            found.append(unit._replace(scene=best.scene))
-        return self._tested(found)
+        picks = search.promising(columns, _COMBINATIONS)
+        best = min(search.replayed(columns, picks), key=lambda one: one.cost)
+        return self._tested([unit._replace(scene=best.scene)])
 
     # --- the scene that a row means ---
 
@@ -204,7 +200,7 @@ class Rows:
 
     def _columns(self, unit: Hypothesis) -> Iterator[Column]:
         """For the converted inputs every number that may have been computed with."""
-        most = min(_CANDIDATES, int(_COMBINATIONS ** (1 / len(unit.within))))
+        most = int(_COMBINATIONS ** (1 / max(3, len(unit.within))))
         for name in INPUTS:
             own = scene_name(name)
             same = unit.scene[own] == self._scene[own] and name in self._printed

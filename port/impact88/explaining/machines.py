@@ -38,9 +38,8 @@ _CUT = 13.0
 """Bits for results rounded or truncated by the program itself; one more by another machine."""
 _DECIMALS = 14.5
 """Bits for results to other decimals: as for another unit."""
-_SINGLE, _NO_EVIDENCE = 14.5, 4.0
-"""Bits for single precision, and more where the kinetic energy has no more digits in double
-precision either."""
+_SINGLE = 14.5
+"""Bits for single precision."""
 _SHAKEN = 6
 """Runs in single precision; with twice as many the ranges grow by a tenth."""
 _OPEN_UNITS, _OPEN = 12, 3e-4
@@ -239,9 +238,8 @@ def _single_precision(
                 fits[how] += low <= float(text) <= high
     how = max(fits, key=fits.__getitem__)
     kind = "single-precision arithmetic" + ("" if how == "floored" else f", {how}, not floored")
-    bits = _SINGLE + _NO_EVIDENCE * (digits_of(exact.fields.get("KI")) <= _SINGLE_DIGITS)
     run = _Run(page, scene, single(0), spared)
-    yield run.cause(kind, "as in GW-BASIC and similar BASICs", bits, ranges)
+    yield run.cause(kind, "as in GW-BASIC and similar BASICs", _SINGLE, ranges)
 
 
 def _left_open(name: str, numbers: list[float]) -> Range | None:
