@@ -30,10 +30,8 @@ class Applesoft:
     ``keyboard`` is asked for a line when what `feed` queued is used up; ``screen`` and ``printer``
     take what is sent to them, which `take_output` collects when no screen is given. ``dos``:
     whether a disk system takes control-D lines; ``echo``: whether typed lines are part of the
-    output; ``blanks``: whether columns skipped by comma zones and HTAB come out as blanks.
-
-    `machine` is the machine itself; its ``after_line``, ``statements_left`` and ``interrupted`` are
-    there to be set.
+    output; ``blanks``: whether skipped columns come out as blanks. ``after_line``,
+    ``statements_left`` and ``interrupted`` of `machine` are there to be set.
 
     >>> apple = impact88.Applesoft()
     >>> apple.enter("PRINT INT (100 * 14.52)")
@@ -170,8 +168,8 @@ class Applesoft:
                 self.machine.console.put("\n")
 
     def value(self, name: str) -> Any:
-        """A simple variable: five stored bytes in hexadecimal, text for a string, None if it was
-        never assigned. ``name`` as in BASIC: ``A``, ``N%``, ``A$``."""
+        """A simple variable, named as in BASIC: stored bytes in hexadecimal, text for a string,
+        None if it was never assigned."""
         key = _key(name)
         address = self.machine.simple.get(key)
         return None if address is None else self._shown(key, address)

@@ -76,7 +76,7 @@ class Screen(Editor):
                 self._step_back()
 
     def _fill(self, address: int, codes: bytes | bytearray) -> None:
-        """Bytes from an address on; nothing is written behind the screen, where the program is."""
+        """Bytes from an address on, none behind the screen, where the program is."""
         codes = codes[: max(END - address, 0)]
         self._ram[address : address + len(codes)] = codes
 
@@ -86,15 +86,13 @@ class Screen(Editor):
     def _line_feed(self) -> None:
         row = self.row + 1 & 0xFF
         if row < self.bottom:
-            self.row = row
-            self._go_to_row(row)
+            self.move_to_row(row)
         else:
             self._scroll()
 
     def _step_up(self) -> None:
         if self.row > self.top:
-            self.row -= 1
-            self._go_to_row(self.row)
+            self.move_to_row(self.row - 1)
 
     def _scroll(self) -> None:
         ram, bottom = self._ram, max(self.bottom, self.top + 1)
@@ -129,8 +127,7 @@ class Screen(Editor):
 
     def home(self) -> None:
         """HOME: clear the window; the cursor at its top left."""
-        self.row = self.top
-        self.column = 0
+        self.row, self.column = self.top, 0
         self._clear_rows(self.top, 0)
 
     def _step_back(self) -> None:

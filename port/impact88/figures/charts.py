@@ -61,11 +61,8 @@ def _begun(result: Bounds, outputs: Sequence[str] | None, title: str) -> tuple[l
 
 
 def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
-    """The draws of up to twelve results, with quantiles, nominal value and bounds.
-
-    ``result`` must have been made with ``keep_draws=True``. Raises UserError for a result it lacks
-    and for more than fit.
-    """
+    """The draws of up to twelve results, with quantiles, nominal value and bounds. ``result`` must
+    have been made with ``keep_draws=True``. Raises UserError for a result it lacks, or too many."""
     names, drawing = _begun(result, outputs, "Results of the draws")
     units = system_of(result.units)
     columns = 1 if len(names) == 1 else 2
@@ -105,11 +102,9 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
 
 
 def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
-    """How far each input alone takes each result, longest first; one panel a result.
-
-    Bars end at the results of the input's limits, whiskers where the result goes in between.
-    Raises UserError for a result it lacks.
-    """
+    """How far each input alone takes each result, longest first; one panel a result. Bars end at
+    the results of the input's limits, whiskers where the result goes in between. Raises UserError
+    for a result it lacks."""
     names, drawing = _begun(result, outputs, "What drives the results")
     units = system_of(result.units)
     bars = min(len(result.inputs), MOST_BARS)
@@ -144,12 +139,9 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
 
 
 def friction_sweep(scene: Any) -> Drawing:
-    """Energy loss and both ΔV against the size of friction that opposes the sliding, all else as in
-    ``scene``: from none to beyond the critical coefficient, at which the sliding ends.
-
-    More friction than that would reverse the sliding, which friction cannot do: shaded. Raises
-    UserError when a value of the scene is no number.
-    """
+    """Energy loss and both ΔV against the friction that opposes the sliding, from none to beyond
+    the critical coefficient, at which the sliding ends; more would reverse it, which friction
+    cannot do: shaded. Raises UserError when a value of the scene is no number."""
     from ..closedform.solve import solve
 
     values: dict[str, Any] = numbers_of(scene)
@@ -162,22 +154,16 @@ def friction_sweep(scene: Any) -> Drawing:
     reach = min(max(1.0, 1.3 * limit, 1.2 * own), WIDEST_SWEEP)
     low = min(0.0, 1.2 * own)  # a scene whose friction drives the sliding shows itself
     faults = Status.FRICTION_ABOVE_CRITICAL | Status.FRICTION_WRONG_DIRECTION
-    return _along(
-        scene,
-        "MU",
-        np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP),
-        [["LOSS"], ["DVA", "DVB"]],
-        own,
-        faults,
-        ("Energy loss and ΔV against friction", "friction coefficient as typed (MU)"),
-        ("pivot" if values["MU"] == PIVOT else "this scene", "not admissible"),
-        limit,
-    )
+    axis = np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP)
+    groups = [["LOSS"], ["DVA", "DVB"]]
+    titles = ("Energy loss and ΔV against friction", "friction coefficient as typed (MU)")
+    words = ("pivot" if values["MU"] == PIVOT else "this scene", "not admissible")
+    return _along(scene, "MU", axis, groups, own, faults, titles, words, limit)
 
 
 def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]) -> Drawing:
-    """Results of a scene along one of its values, one panel each; shaded where a bit of STATUS says
-    that the impact is unphysical. Raises UserError for more results than fit a page."""
+    """Results of a scene along one of its values, a panel each; shaded where STATUS says that the
+    impact is unphysical. Raises UserError for more results than fit a page."""
     _check_count(outputs)
     units = system_of(getattr(scene, "units", None))
     titles = (f"Results against {quantity(name).meaning}", _label(name, units))
@@ -220,11 +206,9 @@ def _along(
         box = Box(_LEFT, top - 27, d.COLUMN - 3, top)
         values = {output: found[output] * factors[output] for output in group}
         y = span([x for output in group for x in (*values[output], here[output])])
-        if len(group) > 1:  # sizes
-            y = (0.0, y[1])
         label = _label(group[0], units)
-        if len(group) > 1:
-            label = f"ΔV,{label.rpartition(',')[2]}"
+        if len(group) > 1:  # sizes
+            y, label = (0.0, y[1]), f"ΔV,{label.rpartition(',')[2]}"
         below = titles[1] if group == groups[-1] else ""
         panel = Panel(drawing, box, (float(axis[0]), float(axis[-1])), y, below, label)
         if y[0] < 0 < y[1]:
@@ -260,13 +244,10 @@ def figure_5() -> Drawing:
     series = {"impact equations": [], "Equation 19": []}
     for collision in collisions():
         measured = experimental(collision)
-        computed, rule = forward(collision), predicted(collision)
         for name, printed in (("DVA", "dVa_exp"), ("DVB", "dVb_exp")):
-            x = measured[name]
-            if not math.isfinite(x):
-                x = collision.table2[printed]
-            series["impact equations"].append((x, float(computed[name]), name[-1]))
-            series["Equation 19"].append((x, float(rule[name]), name[-1]))
+            x = measured[name] if math.isfinite(measured[name]) else collision.table2[printed]
+            for points, rule in zip(series.values(), (forward, predicted), strict=True):
+                points.append((x, float(rule(collision)[name]), name[-1]))
     drawing = Drawing(
         d.COLUMN,
         "Staged collisions: calculated against experimental ΔV",
@@ -304,19 +285,16 @@ def force_and_impulse() -> Drawing:
     force /= force.max()
     mean = float(((force[1:] + force[:-1]) / 2 * np.diff(time)).sum())
     top = drawing.heading() - 2 * d.ROW
-    for column, (level, name, title, shape) in enumerate(
-        (
-            (1.0, "F_M", "a. typical force", (time, force)),
-            (mean, "F_A", "b. average force", ([0, 0, 1, 1], [0, mean, mean, 0])),
-        )
+    for left, level, name, title, xs, ys in (
+        (9.0, 1.0, "F_M", "a. typical force", time, force),
+        (50.0, mean, "F_A", "b. average force", [0, 0, 1, 1], [0, mean, mean, 0]),
     ):
-        left = 9 + 41.0 * column
         panel = Panel(
             *(drawing, Box(left, top - 28, left + 33, top), (0, 1.15), (0, 1.18), "time", title),
             x_ticks=[(0, "0"), (1, "t_f")],
             y_ticks=[(level, name)],
         )
-        panel.line(*shape, d.BLUE, fill=_PALE, role="force")
+        panel.line(xs, ys, d.BLUE, fill=_PALE, role="force")
         panel.line([0, 1], [level] * 2, d.GREY, 0.2, _DASHED)
         at = panel.at(0.4, 0.35 * mean)
         drawing.add(Text(at, "impulse", anchor="middle"))

@@ -17,8 +17,7 @@ def as_rows(tables: Sequence[Table]) -> Iterator[Sequence[str]]:
 
 
 def write_workbook(path: str, tables: Sequence[Table]) -> None:
-    """Write a sheet for each table; cells that are numbers are numbers. Raises UserError where
-    openpyxl is not installed or the place cannot be written to."""
+    """Write a sheet for each table; cells that are numbers are numbers. Raises UserError."""
     try:
         import openpyxl
     except ImportError:

@@ -66,18 +66,17 @@ def judged(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
     """The verdict on one printout of a page, whose cells were held against its scene."""
     differing = [cell for cell in cells if state(cell) == "differs"]
     doubtful = [cell for cell in cells if state(cell) == "doubtful"]
-    if not sheet.whole:
-        return Judged(
-            Verdict.INCOMPLETE, differing, doubtful, "lines of the printout were not found"
-        )
-    if len(differing) + len(doubtful) > MOST_DIFFERING + MOST_DOUBTFUL:
-        return Judged(Verdict.INCOMPLETE, differing, doubtful, "too little was read for certain")
     spins = "WAF" in candidate.outcome.fields
-    if candidate.outcome.ending is not None or spins is not (13 in sheet.rows):
-        return Judged(Verdict.INCOMPLETE, differing, doubtful, "the final spins were not found")
-    told = [cell for cell in differing if not _retyped(cell, [*differing, *doubtful])]
-    if differing and not told:
+    reason = ""
+    if not sheet.whole:
+        reason = "lines of the printout were not found"
+    elif len(differing) + len(doubtful) > MOST_DIFFERING + MOST_DOUBTFUL:
+        reason = "too little was read for certain"
+    elif candidate.outcome.ending is not None or spins is not (13 in sheet.rows):
+        reason = "the final spins were not found"
+    elif differing and all(_retyped(cell, [*differing, *doubtful]) for cell in differing):
         reason = "a reply is typed otherwise than was expected"
+    if reason:
         return Judged(Verdict.INCOMPLETE, differing, doubtful, reason)
     if not differing:
         if not doubtful:
@@ -131,8 +130,7 @@ def _slight(cell: Cell) -> bool:
         return True
     if not cell.name or cell.predicted == BLANK:
         return cell.margin < 0.5
-    marks = cell.predicted in _MARKS and cell.other in _MARKS
-    if marks and cell.margin < 0.5:
+    if cell.predicted in _MARKS and cell.other in _MARKS and cell.margin < 0.5:
         return True
     near = cell.predicted in _MARKS or cell.distance < THRESHOLDS.foreign
     return near and not cell.hand and cell.margin < THRESHOLDS.holds

@@ -29,8 +29,8 @@ printouts that got a verdict the least had .85."""
 
 @dataclass
 class Leaf:
-    """One printout of a page: the grid it stands on and where, what was read, the scene found
-    (None: none), its cells held against the program's page, and the verdict."""
+    """One printout of a page: the grid it stands on and where, what was read, the scene found, its
+    cells held against the program's page, and the verdict."""
 
     grid: Grid
     sheet: Sheet
@@ -106,15 +106,14 @@ def _judged(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
     if any(one is not before for one, (*_, before) in zip(as_shown, known, strict=True)):
         known = [(sheet, read, one) for (sheet, read, _), one in zip(known, as_shown, strict=True)]
         cells = held(grid, *zip(*known, strict=True))
-    leaves, which = [], 0
+    leaves, left = [], enumerate(known)
     for sheet, read, first in zip(sheets, reads, found, strict=True):
-        one = first and known[which][2]
-        if one is None:
+        if first is None:
             unread = Judged(Verdict.INCOMPLETE, reason="no scene was found")
             leaves.append(Leaf(grid, sheet, read, None, [], unread))
             continue
+        which, (*_, one) = next(left)
         own = [cell for cell in cells if cell.sheet == which]
-        which += 1
         leaves.append(Leaf(grid, sheet, read, one, own, judged(sheet, one, own)))
     return leaves
 
