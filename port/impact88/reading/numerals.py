@@ -290,7 +290,7 @@ def _candidates(region: Glyphs, most: int, sign_free: bool) -> tuple[tuple[str, 
         for text, cost in ways.items():
             parted = gap and text
             blank = _SLIGHT if parted else 0.0
-            some = [(text + one, cost + blank + price) for one, price in may_be]
+            some = [(text + one, cost + blank + price) for one, price in may_be.items()]
             if parted and gap is Gap.BLANK and char.isdigit() and "." not in text:
                 some.append((f"{text}.{char}", cost + _FOREIGN))
             if char in "-.+" or (char == "0" and text in ("", "-")):
@@ -316,17 +316,16 @@ def _candidates(region: Glyphs, most: int, sign_free: bool) -> tuple[tuple[str, 
     return tuple(sorted(printed.items(), key=lambda way: way[1])[:most])
 
 
-def _may_be(region: Glyphs, index: int, wild: bool) -> list[tuple[str, float]]:
-    """The characters a glyph may be."""
+def _may_be(region: Glyphs, index: int, wild: bool) -> dict[str, float]:
+    """The characters a glyph may be, with what each costs."""
     char = region[index][0]
     if char in NUMERIC:
-        other = "-" if char == "+" else "."
-        may = char == "+" or (char == "-" and _between_digits(region, index))
-        return [(char, 0.0), (other, _MARK)][: 1 + may]
+        dash = char == "-" and _between_digits(region, index)
+        return {char: 0.0} | ({"-": _MARK} if char == "+" else {".": _MARK} if dash else {})
     if wild:
         price = _MARK if char == ILLEGIBLE else _FOREIGN
-        return [(one, price) for one in ".0123456789".replace(".", "." if index else "-")]
-    return list(printed_for(char).items()) if char != ILLEGIBLE else []
+        return dict.fromkeys(".0123456789" if index else "-0123456789", price)
+    return printed_for(char)
 
 
 # --- the row of angles ---------------------------------------------------------------------------

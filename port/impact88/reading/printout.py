@@ -585,16 +585,12 @@ def _reading(page: Page, region: Region, sign_free: bool = False) -> Reading | N
 def _reply_parts(region: Region) -> list[Region]:
     """The glyphs of a reply, parted at its commas, or where INPUT asked for more; after what it
     refused, before what it ignored."""
-    text = letters(region)
-    begin = max(text.rfind("REENTER") + len("REENTER"), 0) if "REENTER" in text else 0
-    stops = (text.find(word, begin) for word in ("?EXTRAIGNORED", "PR#"))
-    region = region[begin : min([stop for stop in stops if stop >= 0], default=len(text))]
-    while region and region[0].char == "?":
-        region = region[1:]
+    asked = re.search(r"(?:.*REENTER)?\?*(.*?)(?:\?EXTRAIGNORED|PR#|$)", letters(region))
+    region = region[slice(*asked.span(1))] if asked else ()
     parts: list[Region] = [()]
     for place, glyph in enumerate(region):
-        asked = glyph.char == "?" and letters(region[place : place + 2]) == "??"
-        if glyph.char in ",;" or (asked and glyph.gap is Gap.LINE):
+        more = glyph.gap is Gap.LINE and letters(region[place : place + 2]) == "??"
+        if glyph.char in ",;" or more:
             parts.append(())
         elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
             parts[-1] += (glyph,)

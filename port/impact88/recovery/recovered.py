@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 
 from ..fields import ANGLES, FINAL_SPINS, INPUTS, scene_name
 from ..names import SCENE
-from ..reading.glyphs import ILLEGIBLE
 from ..reading.numerals import candidates, value_of
 from ..reading.printout import Printout, Reading
 from ..scene import VALUE_LIMIT
@@ -75,7 +74,7 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
         lost |= {
             scene_name(name)
             for name in set(INPUTS) & set(shown.fields)
-            if all(glyph.char == ILLEGIBLE for glyph in shown.fields[name].region)
+            if set(shown.fields[name].text) == {"?"}
         } - set(given)
     missing = [name for name in map(scene_name, INPUTS) if name in lost]
     outcome = _independent_of(missing, best.scene, best.outcome) if missing else best.outcome

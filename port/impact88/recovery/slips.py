@@ -185,7 +185,9 @@ def _slips_of(text: str) -> Iterator[tuple[str, str]]:
     yield SIGN, opposite(text)
     if "E" in text:
         yield SIGN, re.sub("E.", "E+" if "E-" in text else "E-", text)
-    sign, size, exponent = _parts(text)
+    sign = "-" * text.startswith("-")
+    size, mark, exponent = text.removeprefix("-").partition("E")
+    exponent = mark + exponent
     figures = size.replace(".", "")
     yield POINT, sign + figures + exponent
     for place in range(len(figures)):
@@ -203,9 +205,3 @@ def _slips_of(text: str) -> Iterator[tuple[str, str]]:
             for second in "0123456789".replace(text[two], ""):
                 other = text[:one] + first + text[one + 1 : two] + second + text[two + 1 :]
                 yield TWO_DIGITS, other
-
-
-def _parts(text: str) -> tuple[str, str, str]:
-    sign = "-" if text.startswith("-") else ""
-    size, mark, exponent = text[len(sign) :].partition("E")
-    return sign, size, mark + exponent
