@@ -19,7 +19,7 @@ LABEL = re.compile("(INITIAL KE|KE LOSS|VAX|VAY|VBX|VBY|[MIDWXY][AB]|[UV][XY]|MU
 LABELS = tuple(dict.fromkeys(LABEL.findall(SAMPLE)))
 HEADING = "PA PB TA TB GA"
 ACROSS = {"A": "B", "B": "A", "U": "V"}
-PAGES = printouts.SWEEP or 6
+PAGES = printouts.SWEEP or 4
 """Pages of every kind; the whole 2,000 in a sweep of 400."""
 
 
@@ -153,6 +153,12 @@ def test_a_line_that_is_none_of_the_programs_is_told_whole(
     assert result.verdict is (Verdict.IDENTICAL_AS_READ if bars else Verdict.IDENTICAL)
     assert [piece.text for piece in result.left_over if piece.whole] == [text]
     assert text in "\n".join(lines(result))
+
+
+def test_figures_at_the_place_of_the_asterisks_are_told() -> None:
+    result = one(SAMPLE.replace("*****", "x= 5\n*****", 1))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert "x= 5" in "\n".join(lines(result))
 
 
 def test_what_follows_a_page_on_its_last_line_is_told() -> None:

@@ -548,9 +548,9 @@ def test_damaged_words_with_places_are_refused(text: str) -> None:
 
 def test_reading_ends_where_there_is_too_much_text() -> None:
     """Told with the place, and never settled; without a page before it, the file is refused."""
-    junk = "VAX VBX MA= " * 4000
+    junk = "VAX VBX MA= " * 3100
     with pytest.raises(UserError, match="was not read"):
-        read_printouts("VAX VBX MA " * 4000)
+        read_printouts("VAX= 1.2 " * 4100)
     result = verify(read_printouts(f"{SAMPLE}\n{junk}")[0])
     assert result.verdict is not Verdict.IDENTICAL
     prose = "the quick brown fox jumps over the lazy dog\n" * 3000

@@ -113,8 +113,7 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
     absent = [COSTS["line may be missing" if n in OPTIONAL else "line"] for n in range(len(LINES))]
     skipped = np.where(np.eye(size), 0, _MOST)
     for number, start in enumerate(between):
-        within = COSTS["begins with angles"] * (number in (HEADING, ANGLE_ROW))
-        skipped[0, start] = COSTS["begins"] + within
+        skipped[0, start] = COSTS["begins"]
         for stop in range(number, len(between)):
             skipped[start, between[stop]] = sum(absent[number:stop])
     ends = np.array([COSTS["ends"] if _closes(one) else _MOST for one in STATES])
@@ -212,8 +211,6 @@ _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
 _EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
 _ASIDE = 1000
 """Glyphs that may stand between two parts of a page: half a page of text."""
-_FEW_LABELS = 4
-"""Fewer labels and equals signs in a window than these, and no printout is in it."""
 
 
 @dataclass
@@ -235,7 +232,7 @@ def align(
         window = glyphs[start : min(start + WINDOW, stop)]
         last = start + len(window) >= stop
         text = letters(window)
-        if len(_LABELS.findall(text)) < _FEW_LABELS:
+        if len(_LABELS.findall(text)) < 4:  # no printout is in it
             start += len(window)
             continue
         if budget.left <= 0:

@@ -74,7 +74,7 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
         lost |= {
             scene_name(name)
             for name in set(INPUTS) & set(shown.fields)
-            if set(shown.fields[name].text) == {"?"}
+            if {glyph.char for glyph in shown.fields[name].region} == {"?"}
         } - set(given)
     missing = [name for name in map(scene_name, INPUTS) if name in lost]
     outcome = _independent_of(missing, best.scene, best.outcome) if missing else best.outcome

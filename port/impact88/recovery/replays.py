@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from ..program.arithmetics import Arithmetic
     from ..program.run import Run
 
-_FEW = 6
-"""Up to this many scenes the port is as quick as the replay, and needs no numpy."""
-
 
 class Outcome(NamedTuple):
     """What a run prints: the fields by name, and the error or ``ZERO DETERMINANT`` that ended it
@@ -46,7 +43,7 @@ def run_whole(
 
 def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
     """The outcome of each scene, in order."""
-    if len(scenes) <= _FEW:
+    if len(scenes) <= 6:  # the port is as quick as the replay, and needs no numpy
         return [run_once(scene) for scene in scenes]
     endings, columns = run_columns(scenes, tuple(FIELDS))
     outcomes = [Outcome({}, ending or None) for ending in endings]

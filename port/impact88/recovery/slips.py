@@ -32,16 +32,9 @@ BITS = {SIGN: 9.5, DIGIT: 10.0, POINT: 10.5, SWAP: 11.0, COUNT: 12.5, TWO_DIGITS
 the other kinds about as likely by their number; chosen so that the given slips are named first."""
 _UNLIKE = 0.4
 """Bits more for each rank in the likeness of two digits' shapes."""
-_BITS_A_UNIT, _ALWAYS = 5.0, 0.7
-"""Bits of a unit of cost in the search, and the cost of no bits: one slip (2.7) is cheaper than a
-result that differs (3.0), two slips dearer."""
 _TWO_SLIPS = 6.05
 """What two slips may cost: two digits misread as those least like them (3.02 each)."""
-_FULL_TURN, _TURNED = 360.0, 10.0
-"""Beyond it nobody types an angle, and the bits it takes to believe that somebody did."""
-_ROOM, _REPLAYED = 100_000, 60
-_FIGURES = 9
-"""Of a number the Apple keeps so many."""
+_REPLAYED = 60
 _ALIKE = {
     text[0]: text[1:]
     for text in "0869 1742 2713 3859 4917 5638 6805 7129 83069 94807".split()
@@ -69,8 +62,8 @@ def bits_of(kind: str, field: str, printed: str, would_be: str) -> float:
     bits = BITS.get(kind, 0.0)
     if kind == DIGIT:
         bits += _UNLIKE * _unlikeness(printed, would_be)
-    if bits and field in ANGLES and abs(double(would_be)) > _FULL_TURN:
-        bits += _TURNED
+    if bits and field in ANGLES and abs(double(would_be)) > 360:
+        bits += BITS[DIGIT]  # nobody types more than a full turn
     return bits
 
 
@@ -106,7 +99,7 @@ class Rereading:
             picks = search.screened(columns, one_each(columns), 2 if exchanged else _REPLAYED)
         else:
             wrong = self._recovered.wrong
-            picks = search.promising(columns, _ROOM, _REPLAYED, _TWO_SLIPS, wrong)
+            picks = search.promising(columns, 100_000, _REPLAYED, _TWO_SLIPS, wrong)
         rereads = [
             Reread(tuple(self._changes(pick)), scored)
             for pick, scored in zip(picks.tolist(), search.replayed(columns, picks), strict=True)
@@ -131,12 +124,13 @@ class Rereading:
 
     @cached_property
     def _ways(self) -> dict[str, list[tuple[float, str, str]]]:
-        """The slips of every input: what each costs, its text and its kind, cheapest first."""
+        """The slips of every input: what each costs, its text and its kind, cheapest first.
+        One is cheaper (2.7) than a result that differs (3.0), two are dearer."""
         ways = {}
         for name, text in self._base.items():
             possible = printable if name in self._recovered.assumed else is_number
             ways[name] = sorted(
-                (_ALWAYS + bits_of(kind, name, text, other) / _BITS_A_UNIT, other, kind)
+                (0.7 + bits_of(kind, name, text, other) / 5, other, kind)
                 for other, kind in misreadings(text).items()
                 if possible(other)
             )
@@ -200,7 +194,7 @@ def _slips_of(text: str) -> Iterator[tuple[str, str]]:
             yield COUNT, sign + size[:place] + size[place + 1 :] + exponent
         for digit in "0123456789":
             yield COUNT, sign + size[:place] + digit + size[place:] + exponent
-    for one, two in combinations(places[:_FIGURES], 2):
+    for one, two in combinations(places[:9], 2):
         for first in "0123456789".replace(text[one], ""):
             for second in "0123456789".replace(text[two], ""):
                 other = text[:one] + first + text[one + 1 : two] + second + text[two + 1 :]
