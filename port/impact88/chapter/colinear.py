@@ -59,9 +59,8 @@ def colinear_inverse(known: Mapping[str, Any]) -> dict[str, Array]:
             "E = 0: the vehicles move on together however fast they approached (Equation 7), and "
             "the final velocities do not determine the initial ones; expected E above 0"
         )
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        initial = _equations_9_to_12(ma, mb, 1 / np.where(e == 0, np.nan, e), mu, *final)
-        return report(ma, mb, e, mu, initial, final)
+    initial = _equations_9_to_12(ma, mb, 1 / np.where(e == 0, np.nan, e), mu, *final)
+    return report(ma, mb, e, mu, initial, final)
 
 
 def _equations_9_to_12(
@@ -80,28 +79,19 @@ def report(
     Van, Vat, Vbn, Vbt = final
     ki = 0.5 * (ma * (van**2 + vat**2) + mb * (vbn**2 + vbt**2))
     kf = 0.5 * (ma * (Van**2 + Vat**2) + mb * (Vbn**2 + Vbt**2))
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        pn, critical = ma * (Van - van), (vat - vbt) / ((1 + e) * (van - vbn))
-        values = (
-            *initial,
-            *final,
-            pn,
-            ma * (Vat - vat),
-            np.hypot(Van - van, Vat - vat),
-            np.hypot(Vbn - vbn, Vbt - vbt),
-            ki,
-            kf,
-            100 * (ki - kf) / ki,
-            mu,
-            critical,
-        )
-        names = (*INITIAL, *FINAL, "PN", "PT", "DVA", "DVB", "KI", "KF", "LOSS", "MUP", "MUC")
-        shape = np.broadcast_shapes(*(np.shape(value) for value in values))
-        none, total = np.zeros(()), final[0] + final[1] + final[2] + final[3]
-        lost, pivot = ki - kf, (pn, critical * pn)
-        # no arms and no moment; mu is signed here, and -10 is no pivot
-        before, arms = van - vbn, (none, none, none, none)
-        found = findings(before, pn, *arms, 2 * lost, ki, e, none, mu, *pivot, none, total)
+    pn, critical = ma * (Van - van), (vat - vbt) / ((1 + e) * (van - vbn))
+    change_a, change_b = np.hypot(Van - van, Vat - vat), np.hypot(Vbn - vbn, Vbt - vbt)
+    values = (
+        *(*initial, *final, pn, ma * (Vat - vat), change_a, change_b),
+        *(ki, kf, 100 * (ki - kf) / ki, mu, critical),
+    )
+    names = (*INITIAL, *FINAL, "PN", "PT", "DVA", "DVB", "KI", "KF", "LOSS", "MUP", "MUC")
+    shape = np.broadcast_shapes(*(np.shape(value) for value in values))
+    none, total = np.zeros(()), final[0] + final[1] + final[2] + final[3]
+    # no arms and no moment; mu is signed here, and -10 is no pivot
+    arms, pivot = (none, none, none, none), (pn, critical * pn)
+    lost = 2 * (ki - kf)
+    found = findings(van - vbn, pn, *arms, lost, ki, e, none, mu, *pivot, none, total)
     named = dict(zip(names, values, strict=True)) | {"STATUS": bits(found)}
     return {name: np.broadcast_to(value, shape) for name, value in named.items()}
 

@@ -1,10 +1,8 @@
 """ΔV without solving the impact: Equation 19 (chapter, Section VI), an empirical estimate.
 
 As printed,  ΔV_i = (ΔT)^(1/2) [(m_a v_a)² + (m_b v_b)²]^(1/2) / m_i,  with ΔT the *fraction* of
-kinetic energy lost and v the initial speeds. That is not what the chapter computed: all 22
-predicted values of Table 2 and both of Section VII carry a further factor 2/3. The default here
-is the equation *with the factor 2/3*, which reproduces Table 2; ``factor=AS_PRINTED`` gives the
-printed equation, half as much again.
+kinetic energy lost and v the initial speeds. All 22 predicted values of Table 2 and both of Section
+VII carry a further factor 2/3, the default here; ``factor=AS_PRINTED`` gives the printed equation.
 
 The chapter's own caution: fitted to eleven staged collisions up to about 40 mph and compared with
 no other data; expect an error of a few ft/s.
@@ -27,10 +25,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 AS_USED = 2 / 3
-"""The factor with which the chapter computed Table 2 and Section VII; the default."""
+"""The factor with which the chapter computed Table 2 and Section VII."""
 AS_PRINTED = 1.0
-"""The factor of Equation 19 as printed: none."""
-
 
 GIVEN = ("MA", "MB", "SA", "SB", "LOSS")
 """What Equation 19 asks for."""
@@ -96,12 +92,9 @@ def loss_of_energy(known: Mapping[str, float]) -> float:
 
 
 def initial_velocity(change: float, along: float, across: float) -> float:
-    """Equations 20 and 21 solved for the initial velocity of a vehicle that did not swerve.
-
-    ``change``: the size of its velocity change; ``along`` and ``across``: its final velocity along
-    the way it came and across it. Of the two roots the faster. Raises UserError when the final
-    velocity across is larger than the whole change.
-    """
+    """Equations 20 and 21 solved for the initial velocity of a vehicle that did not swerve, the
+    faster of two roots, from the size of its velocity change and its final velocity along and
+    across the way it came. Raises UserError where that across is larger than the whole change."""
     square = (change - across) * (change + across)
     if square < 0:
         raise UserError(

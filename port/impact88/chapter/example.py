@@ -5,6 +5,7 @@ A 90° front-to-side collision whose truth is Table 3. The analyst knows the veh
 Every number comes from the modules of this package; what the chapter prints stands beside it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import hypot, sqrt
@@ -23,7 +24,7 @@ from .deltav import AS_PRINTED, AS_USED, delta_v
 ESTIMATES = {"VAX": -10.0, "VAY": 20.0, "VBX": -20.0, "VBY": 45.0}
 """The analyst's final velocities, ft/s."""
 BOTH_SPINS = {"WAF": -2.9, "WBF": -0.9}
-"""Both final spins, Table 3's to one digit after the point."""
+"""Table 3's to one digit after the point."""
 TOLERANCES = {"velocity": 2.0, "spin": 0.3}
 """Of the analyst's final velocities (ft/s) and spins (rad/s) where they are adjusted."""
 NO_SWERVING = {"UY": 0.0, "VX": 0.0}
@@ -90,20 +91,27 @@ def steps() -> tuple[Step, ...]:
     )
 
 
+def _of_both(
+    names: str, meaning: str, values: Sequence[float], printed: str = ""
+) -> tuple[Number, ...]:
+    """Two velocities, of A and B."""
+    rows = zip(names.split(), "AB", values, printed.split() or (None, None), strict=True)
+    return tuple(Number(n, f"{meaning} of {v}", value, "ft/s", p) for n, v, value, p in rows)
+
+
 def _truth(scene: dict[str, float], truth: dict[str, float]) -> Step:
     velocities = (
         Number(name, "", truth[name], "rad/s" if name.startswith("W") else "ft/s")
         for name in FINAL_VELOCITIES
     )
+    changes = (truth["DVA"], truth["DVB"])
     return Step(
         "What really happened, unknown to the analyst (Table 3)",
         "Equations 13-18",
         (
-            Number("UX", "initial velocity of A", scene["UX"], "ft/s"),
-            Number("VY", "initial velocity of B", scene["VY"], "ft/s"),
+            *_of_both("UX VY", "initial velocity", (scene["UX"], scene["VY"])),
             *velocities,
-            Number("DVA", "true velocity change of A", truth["DVA"], "ft/s", "39.1"),
-            Number("DVB", "true velocity change of B", truth["DVB"], "ft/s", "25.9"),
+            *_of_both("DVA DVB", "true velocity change", changes, "39.1 25.9"),
             Number("LOSS", "energy lost", truth["LOSS"], "percent", "37.4"),
         ),
     )
@@ -111,13 +119,11 @@ def _truth(scene: dict[str, float], truth: dict[str, float]) -> Step:
 
 def _momentum(vehicles: dict[str, float]) -> Step:
     (solution,) = solve_for({**vehicles, **ESTIMATES, **NO_SWERVING}, ["UX", "VY"])
+    velocities = (float(solution["UX"]), float(solution["VY"]))
     return Step(
         "Initial velocities from the estimated final ones, v_ay = v_bx = 0",
         "Equations 13 and 14",
-        (
-            Number("UX", "initial velocity of A", float(solution["UX"]), "ft/s", "-40.21"),
-            Number("VY", "initial velocity of B", float(solution["VY"]), "ft/s", "58.24"),
-        ),
+        _of_both("UX VY", "initial velocity", velocities, "-40.21 58.24"),
         "Conservation of momentum alone: no coefficient and no spin is needed. The final "
         "velocities are estimates: VAX -10, VAY 20, VBX -20, VBY 45 ft/s.",
     )
@@ -129,21 +135,18 @@ def _velocity_changes(initial: dict[str, float]) -> Step:
     return Step(
         "Velocity changes from them",
         "Equations 20 and 21",
-        (
-            Number("DVA", "velocity change of A", a, "ft/s", "36.2"),
-            Number("DVB", "velocity change of B", b, "ft/s", "24.0"),
-        ),
+        _of_both("DVA DVB", "velocity change", (a, b), "36.2 24.0"),
     )
 
 
 def _equation_19(
     scene: dict[str, float], truth: dict[str, float], initial: dict[str, float]
 ) -> tuple[Step, Step]:
-    """Equation 19, with what gives the printed numbers beside what the text says."""
+    """With what gives the printed numbers beside what the text says."""
 
     def changes(speeds: tuple[float, float], loss: float, factor: float) -> tuple[float, float]:
-        speed_a, speed_b = speeds
-        estimate = delta_v({**scene, "SA": speed_a, "SB": speed_b, "LOSS": loss}, factor)
+        speeds_of = dict(zip(("SA", "SB"), speeds, strict=True))
+        estimate = delta_v({**scene, **speeds_of, "LOSS": loss}, factor)
         return float(estimate["DVA"]), float(estimate["DVB"])
 
     true_speeds = (abs(scene["UX"]), abs(scene["VY"]))
@@ -162,11 +165,7 @@ def _equation_19(
     estimate = Step(
         "Velocity changes without the impact equations",
         "Equation 19 with the factor 2/3",
-        (
-            Number("DVA", "velocity change of A", used[0], "ft/s", "39.1"),
-            Number("DVB", "velocity change of B", used[1], "ft/s", "25.9"),
-            *others,
-        ),
+        (*_of_both("DVA DVB", "velocity change", used, "39.1 25.9"), *others),
         "The printed 39.1 and 25.9 need the factor 2/3 (which Equation 19 lacks as printed) and "
         "Table 3's own loss (ΔT = .374) and speeds; with the stated ΔT = 0.4 they would be "
         "larger (below). An analyst has only the last step's speeds.",
@@ -181,10 +180,7 @@ def _equation_19(
     back = Step(
         "Initial velocities from those velocity changes and the estimated final velocities",
         "Equations 20 and 21, solved for v_ax and v_by",
-        (
-            Number("UX", "initial velocity of A", a, "ft/s", "-43.6"),
-            Number("VY", "initial velocity of B", b, "ft/s", "61.5"),
-        ),
+        _of_both("UX VY", "initial velocity", (a, b), "-43.6 61.5"),
         "From the velocity changes rounded to one decimal, as the chapter must have done: "
         f"unrounded, VY is {unrounded:.2f}.",
     )
@@ -194,8 +190,7 @@ def _equation_19(
 def _coefficients(vehicles: dict[str, float]) -> Step:
     known = {**vehicles, **ESTIMATES, **NO_SWERVING, **NO_TURNING, **SPIN_ESTIMATE}
     (solution,) = solve_for(known)
-    worst = float(solution.amplification["EM"])
-    em = float(solution["EM"])
+    worst, em = float(solution.amplification["EM"]), float(solution["EM"])
     ratio = float(moment_ratio(em))
     return Step(
         "Coefficients, given a final spin of A of -2.9 rad/s and no initial spins",
@@ -228,14 +223,8 @@ def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
     pt = ma * float(-ax * here.sine + ay * here.cosine)
     pn = ma * float(ax * here.cosine + ay * here.sine)
     spin = whole["WBF"] - whole["WAF"]
-    bracket = float(
-        wa
-        - ma * here.d3 * ax / ia
-        + ma * here.d4 * ay / ia
-        - wb
-        - mb * here.d1 * bx / ib
-        + mb * here.d2 * by / ib
-    )
+    on_a = wa - ma * here.d3 * ax / ia + ma * here.d4 * ay / ia
+    bracket = float(on_a - wb - mb * here.d1 * bx / ib + mb * here.d2 * by / ib)
     missed = float(
         ib * wb + ia * wa + mb * (here.d1 + here.d3) * bx + ma * (here.d2 + here.d4) * ay
     )

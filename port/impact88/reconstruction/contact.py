@@ -56,10 +56,8 @@ def moved(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def moved_texts(texts: Mapping[str, str], dx: float, dy: float) -> dict[str, str]:
-    """What a move of the contact point changes in a scene's texts: DA PA DB PB.
-
-    Raises UserError where a number of it lies beyond the range of doubles.
-    """
+    """What a move of the contact point changes in a scene's texts: DA PA DB PB. Raises UserError
+    where a number of it lies beyond the range of doubles."""
     names = [kind + vehicle for vehicle in "AB" for kind in "DPT"]
     values = moved({**{name: double(texts[name]) for name in names}, "CX": dx, "CY": dy})
     changed = {name: float(values[name]) for name in ("DA", "PA", "DB", "PB")}

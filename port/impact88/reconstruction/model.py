@@ -38,11 +38,9 @@ Model = Callable[[Mapping[str, Any], Sequence[str], float | None], Divided]
 def initial_impact(columns: Mapping[str, Any]) -> State:
     """The impact of six final velocities, with the velocities before and the impulses PN PT PM.
 
-    ``columns``: numbers or arrays that broadcast: DA DB GA PA PB TA TB MA MB IA IB, M (6 where left
-    out), the coefficients E, EM and MUP (the *signed* P_t/P_n, as printed; line 400's rule needs
-    initial velocities) and VAX VAY VBX VBY WAF WBF. Units are the scene's, angles in degrees.
-    Where there is no solution (e = 0, e_m = 0, the pivot's -10, singular friction) the values are
-    NaN or infinite. Point masses (M = 4) keep their spins and need no e_m.
+    ``columns``: numbers or arrays that broadcast: the geometry, the coefficients E, EM and MUP (the
+    *signed* P_t/P_n) and VAX VAY VBX VBY WAF WBF. Where there is no solution (e = 0, e_m = 0, the
+    pivot's -10, singular friction) the values are NaN or infinite. Point masses keep their spins.
     """
     values = {name: np.asarray(value, np.float64) for name, value in columns.items()}
     geometry = Geometry.of(columns)
@@ -55,8 +53,7 @@ def initial_impact(columns: Mapping[str, Any]) -> State:
         turned = (geometry.an * a - geometry.bn * b) * moment
         pn = ((1 + 1 / e) * normal - turned) / _along_impulse(geometry, mu)
         impulse = {"PN": pn, "PT": mu * pn, "PM": moment}
-        state = State({**values, **impulse}, geometry, from_after=VELOCITIES)
-    return state
+        return State({**values, **impulse}, geometry, from_after=VELOCITIES)
 
 
 def _along_impulse(geometry: Geometry, mu: Array) -> Array:
@@ -64,8 +61,7 @@ def _along_impulse(geometry: Geometry, mu: Array) -> Array:
     a, b = geometry.inverse_ia, geometry.inverse_ib
     snn = geometry.an * geometry.an * a + geometry.bn * geometry.bn * b
     snt = geometry.an * geometry.at * a + geometry.bn * geometry.bt * b
-    result: Array = geometry.inverse_mass + snn + mu * snt
-    return result
+    return np.asarray(geometry.inverse_mass + snn + mu * snt)
 
 
 def forward_model(

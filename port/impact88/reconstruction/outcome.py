@@ -24,13 +24,9 @@ _TOLD = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
 
 
 def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
-    """The consequences of ``values``: geometry, velocities, coefficients, PN and PT, by name.
-
-    CAX CAY CBX CBY and STATUS always; PDOFA PDOFB and P where PN and PT are given; contact
-    velocities XA ... YBF, KI, KF, LOSS, DVA, DVB (with their components in vehicle axes), speeds
-    and courses where the velocities they need are; MUC where all initial velocities and
-    coefficients are (MU as the listing's line 280 would hold it).
-    """
+    """The consequences of ``values`` (geometry, velocities, coefficients, PN and PT, by name), as
+    far as what they need is known: contact point, STATUS, direction of force, contact velocities,
+    energies, velocity changes, speeds and courses, and MUC."""
     whole = with_point_masses(values)
     given = {name: np.asarray(value, np.float64) for name, value in whole.items()}
     if (given.get("M", np.array(6.0)) == 4).all():
@@ -64,7 +60,7 @@ def moment_ratio(em: Any) -> Any:
 
 
 def _pivot_impulse(given: Mapping[str, Array]) -> tuple[Array, Array]:
-    """PN and PT of the same impact if the sliding ended at separation, where that can be told."""
+    """PN and PT of the same impact if the sliding ended at separation."""
     scene = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
     if not all(name in scene for name in SCENE if name != "M"):
         return np.array(np.nan), np.array(np.nan)
