@@ -161,7 +161,7 @@ class TestSignOfFriction:
     # IMPACT88_BRUTE_SCENES sets how many scenes (20: five minutes)
     SETS = (("UX", "UY"), ("GA", "MU"), ("UX", "VY", "GA"), ("WA", "WB", "UY"), ("PA", "TB", "MA"))
 
-    @pytest.mark.parametrize("names", SETS if BRUTE_SCENES > 1 else SETS[::2], ids=" ".join)
+    @pytest.mark.parametrize("names", SETS if BRUTE_SCENES > 1 else SETS[2::2], ids=" ".join)
     def test_no_scene_tried_lies_outside(self, names):
         """Against forty thousand scenes, half of them on faces, and steps towards better ones: no
         more than a thousandth of the range is missing."""
@@ -354,7 +354,7 @@ RANGES = {"MU": "0.6 .. 1.2", "GA": "+- 10", "UX": "+- 10%"}
 
 @pytest.fixture(scope="module")
 def found():
-    return bounds(values(1, **RANGES), samples=20_000, seed=3, keep_draws=True)
+    return bounds(values(1, **RANGES), samples=10_000, seed=3, keep_draws=True)
 
 
 class TestForward:
