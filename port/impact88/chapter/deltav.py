@@ -2,7 +2,8 @@
 
 As printed,  ΔV_i = (ΔT)^(1/2) [(m_a v_a)² + (m_b v_b)²]^(1/2) / m_i,  with ΔT the *fraction* of
 kinetic energy lost and v the initial speeds. All 22 predicted values of Table 2 and both of Section
-VII carry a further factor 2/3, the default here; ``factor=AS_PRINTED`` gives the printed equation.
+VII carry a further factor 2/3. The default here is the equation
+*with the factor 2/3*, which reproduces Table 2; ``factor=AS_PRINTED`` gives the printed equation.
 
 The chapter's own caution: fitted to eleven staged collisions up to about 40 mph and compared with
 no other data; expect an error of a few ft/s.

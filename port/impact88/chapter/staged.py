@@ -203,8 +203,7 @@ def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
 def forward(
     collision: Collision, coefficients: Mapping[str, Any] | None = None
 ) -> dict[str, Array]:
-    """The impact solved from the initial velocities, with Table 2's E, EM and MUP unless others
-    are given: all results of `impact88.solve`."""
+    """All results of `impact88.solve`, with Table 2's E, EM and MUP unless others are given."""
     given = dict(collision.coefficients if coefficients is None else coefficients)
     mu = typed_friction(collision.scene, given.pop("MUP"))
     return solve({**collision.scene, **given, "MU": mu})
@@ -263,11 +262,8 @@ class Fit:
 
 
 def fit(collision: Collision, em: float | None = None, spin_weight: float = SPIN_WEIGHT) -> Fit:
-    """The least-squares fit: E, MUP and EM, or E and MUP with EM held at ``em``.
-
-    Velocities Table 1 lacks (8/A) are left out of the sum. Raises LinAlgError where doubles do not
-    hold the equations.
-    """
+    """The least-squares fit: E, MUP and EM, or E and MUP with EM held at ``em``. Velocities that
+    are lost are left out. Raises LinAlgError where doubles do not hold the equations."""
     best_at = _fitter(collision, spin_weight)
     if em is not None:
         return best_at(em)

@@ -270,7 +270,7 @@ def _decomposed(matrix: Floats) -> tuple[Floats, Floats, Floats, Floats]:
 
 
 class Adjusted(NamedTuple):
-    """One known value: as measured, its tolerance, as adjusted, and by how many tolerances."""
+    """One known value; ``moved``: by how many tolerances."""
 
     name: str
     measured: float
@@ -351,10 +351,8 @@ class Reconstruction:
         count = len(self.system.conditions)
         _, free = pseudo_inverse(jacobian[:count])
         narrowed, _ = pseudo_inverse(jacobian[count:] @ free)
-        responses: Floats = free @ narrowed
-        if self.assumed and self.redundancy:
-            responses = responses * np.sqrt(self.squares / self.redundancy)
-        return responses
+        fits = self.assumed and self.redundancy
+        return np.asarray(free @ narrowed * (np.sqrt(self.squares / fits) if fits else 1.0))
 
     @within_doubles
     def responses(self, names: Sequence[str]) -> Floats:
@@ -362,8 +360,7 @@ class Reconstruction:
         (rows), to first order."""
         rows = np.array([self.system.gradient(self.x, name) for name in names])
         # not -1: where nothing is uncertain there are no rows to tell the columns from
-        product: Floats = rows.reshape(len(names), len(self._responses)) @ self._responses
-        return product
+        return np.asarray(rows.reshape(len(names), len(self._responses)) @ self._responses)
 
     @within_doubles
     def deviations(self, names: Sequence[str]) -> dict[str, float]:
@@ -376,15 +373,12 @@ class Reconstruction:
         """First-order correlations; nan where a quantity does not vary."""
         responses = self.responses(names)
         units = responses / np.sqrt(np.square(responses).sum(axis=1, keepdims=True))
-        matrix: Floats = units @ units.T
-        return matrix
+        return np.asarray(units @ units.T)
 
     @within_doubles
     def scene(self) -> dict[str, float]:
-        """The impact as a scene's values, MU as line 280 would hold it.
-
-        Raises UnsolvableError naming what is not determined.
-        """
+        """The impact as a scene's values, MU as line 280 would hold it. Raises UnsolvableError
+        naming what is not determined."""
         names = [n for n in ("E", "EM", *VELOCITIES) if not (self.system.point and n == "EM")]
         missing = [n for n in (*names, "MUP") if n not in self.values]
         if missing:
@@ -418,11 +412,11 @@ def reconstruct(
 ) -> list[Reconstruction]:
     """Every impact found that agrees with what is ``known`` (`KNOWABLE` names; M 6 where left out).
 
-    A number is exact, an `Uncertain` known within its tolerance. MU is known in size only: friction
-    opposes the sliding (line 400), and each solution that agrees with its own sign is returned; MUP
-    is signed. Where exact values contradict one another and none has a tolerance, all known
-    velocities are given the same one (spins divided by the radius of gyration). ``progress`` is
-    told the impacts looked at.
+    A number is exact, an `Uncertain` known within its tolerance. MU is known in size only: each
+    solution that agrees with the sign line 400 gives it is returned; MUP is signed. Where exact
+    values contradict one another and none has a tolerance, all known velocities are given the same
+    one (spins divided by the radius of gyration). ``progress`` is called with the impacts looked
+    at.
 
     Raises UserError for names and numbers that cannot be used and for exact values that contradict
     one another beside others with a tolerance, UnsolvableError where nothing unknown is determined.

@@ -84,8 +84,8 @@ def tables(
     unknown: Sequence[str] | None = None,
     helpful: Sequence[str] = (),
 ) -> str:
-    """The answer, the impact in tables, ``further`` tables and remarks; ``spreads`` of SA SB DVA
-    DVB; ``unknown``: what is not determined (by default the velocities without a value), and
+    """The answer, tables, ``further`` tables and remarks; ``spreads`` of SA SB DVA DVB;
+    ``unknown``: what is not determined (by default the velocities without a value), and
     ``helpful``: further values that would determine it."""
     values = _without_noise(values)
     if unknown is None:

@@ -200,6 +200,5 @@ class System:
     def gradient(self, x: Array, name: str) -> Floats:
         """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
         if name in self.variables and name not in QUANTITIES:
-            result: Floats = self.scales * (np.array(self.variables) == name)
-            return result
+            return np.asarray(self.scales * (np.array(self.variables) == name))
         return self.linearized(x, lambda state, _: np.asarray(state[name])[None])[1][0, :, 0]

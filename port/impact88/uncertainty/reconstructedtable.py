@@ -59,10 +59,8 @@ def uncertainty(
     wanted: Sequence[str] | None = None,
     progress: Callable[[int], object] = lambda draws: None,
 ) -> Uncertainty:
-    """How uncertain a reconstruction's results are: ``wanted``, or those that were not known.
-
-    Draws and bounds only for ``samples`` above 0 and tolerances that were given.
-    """
+    """How uncertain a reconstruction's results are: ``wanted``, or those that were not known. Draws
+    and bounds only for ``samples`` above 0 and tolerances that were given."""
     known = solution.system.known
     results = wanted or [
         n for n in _RESULTS if n not in known or (n in _ANSWERS and known[n].varies)
@@ -137,21 +135,23 @@ class Measured(NamedTuple):
                 "neither sign of MU is the one that line 400 gives it: no friction that opposes "
                 "the sliding before the impact joins what is known"
             )
-        far = [a for a in solution.adjusted if abs(a.moved) > TOO_FAR]
+        moved = [
+            f"{a.name} by {number(a.moved, 2)}" for a in solution.adjusted if abs(a.moved) > TOO_FAR
+        ]
         if solution.assumed:
+            unit = f" {units.label('length')}" if units is not RULES else ""
             lines.append(
                 "the known values contradict one another and none has a tolerance: all known "
                 "velocities were given the same one (spins that divided by the radius of gyration, "
-                f"{number(units.shown('length', solution.system.gyration), 4)}"
-                f"{' ' + units.label('length') if units is not RULES else ''}); "
+                f"{number(units.shown('length', solution.system.gyration), 4)}{unit}); "
                 "deviations are those of the misfit"
             )
-        elif far:
-            moved = ", ".join(f"{a.name} by {number(a.moved, 2)}" for a in far)
-            lines.append(f"the measured values contradict one another: moved, tolerances: {moved}")
+        elif moved:
+            lines.append(
+                f"the measured values contradict one another: moved, tolerances: {', '.join(moved)}"
+            )
         lines += self._ill_posed(units)
-        bounds = self.spread.ranges
-        if any(math.isnan(bound.lower) for bound in bounds.values()):
+        if any(math.isnan(bound.lower) for bound in self.spread.ranges.values()):
             lines.append(
                 "no impact was found that lies within the limits of all known values at once: the "
                 "draws are those of normal values with the same standard deviations"

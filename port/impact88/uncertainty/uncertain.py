@@ -11,10 +11,8 @@ Wherever a scene for ``impact88 bounds`` has a value, it may have one of these t
     normal 0.8 0.05                   mean and standard deviation
     normal 0.8 0.05 within 0.7 .. 1   the same, cut off at limits
 
-Bounds are taken over the limits; a normal without limits has them at so many standard deviations.
 Values that depend on each other are drawn through a Gaussian copula: the correlation given is that
-of the underlying normal variates, so between two normal inputs it is the linear correlation itself
-(their rank correlation is then 6/π·asin(ρ/2)).
+of the underlying normal variates (the rank correlation is then 6/π·asin(ρ/2)).
 """
 
 from __future__ import annotations
@@ -44,10 +42,9 @@ TABLE_STEPS = 8192
 class Uncertain:
     """A value known within limits, in the unit of the quantity it stands for.
 
-    ``kind`` is fixed, uniform, triangular or normal; ``nominal`` the value taken where a single one
-    is needed (the mode of a triangle, the mean of a normal, the middle of a range); ``low`` and
-    ``high`` the limits, infinite for a normal without any; ``deviation`` a normal's standard
-    deviation, else 0; ``share``: all of them are shares of the critical friction (MU = "85 %").
+    ``kind`` is fixed, uniform, triangular or normal; ``nominal`` the mode, mean or middle; ``low``
+    and ``high`` are infinite for a normal without limits; ``deviation`` a normal's, else 0;
+    ``share``: all of them are shares of the critical friction (MU = "85 %").
 
     >>> impact88.Uncertain("uniform", 0.8, 0.7, 0.9).varies
     True
@@ -67,7 +64,6 @@ class Uncertain:
 
     @property
     def varies(self) -> bool:
-        """Whether there is anything uncertain about it."""
         return self.kind != "fixed"
 
     @property
