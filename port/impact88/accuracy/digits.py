@@ -1,9 +1,8 @@
 """Every result of a scene to 30 digits.
 
-The impulse comes from Equations 15, 16 (or no slip) and 18, and everything else from the impulse:
-velocities by adding what it changes (Equations 13, 14 and 17), the energy lost as its work. So none
-is a difference of numbers that have lost it already, and what is zero is written as 0. For point
-masses (M = 4) the arms count as 0 and the spins stay out of the energies.
+The impulse comes from Equations 15, 16 (or no slip) and 18, and everything else from the impulse,
+so that none is a difference of numbers that have lost it already, and what is zero is written as 0.
+For point masses (M = 4) the arms count as 0 and the spins stay out of the energies.
 """
 
 from collections.abc import Mapping
@@ -80,14 +79,12 @@ def _energies(t: Any, P: Any, after: list[Any]) -> dict[str, Any]:
     """Lines 320, 580, 590 and 690; the percentage by the work of the impulse at the mean of the
     relative velocities before and after."""
     g, before = t.g, t.before()
-    bodies = [("MA", 0), ("MA", 1), ("MB", 2), ("MB", 3)]
-    if not t.point:
-        bodies += [("IA", 4), ("IB", 5)]
+    bodies = ["MA", "MA", "MB", "MB", *([] if t.point else ["IA", "IB"])]
 
     def energy(velocities: list[Any]) -> Any:
+        pairs = zip(bodies, velocities, strict=False)
         # an infinite body is at rest
-        moving = [g[x] * velocities[i] ** 2 for x, i in bodies if not mpmath.isinf(g[x])]
-        return mpmath.fsum(moving) / 2
+        return mpmath.fsum(g[x] * v**2 for x, v in pairs if not mpmath.isinf(g[x])) / 2
 
     initial = energy(before)
     values = {"KI": initial, "KF": energy(after)}

@@ -1,8 +1,7 @@
 """The listing's 6x6 equations in double precision, for comparison with the closed form.
 
-`fill` sets up for many scenes the matrices that lines 370 to 560 set up for one, entry by entry;
-`lapack` solves them with ``numpy.linalg.solve``; `eliminate` is the listing's own subroutine
-(lines 1000 to 1170) for one scene in whatever arithmetic its numbers have.
+`fill` sets up for many scenes the matrices of lines 370 to 560; `eliminate` is the listing's own
+subroutine (lines 1000 to 1170) for one scene in whatever arithmetic its numbers have.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -153,10 +152,10 @@ def lapack(A: Array, b: Array) -> Array:
 def eliminate(A: list[list[Any]], smallest: Any) -> list[Any] | None:
     """The listing's elimination, statement by statement, on the rows ``A`` (M rows of M + 1).
 
-    ``smallest`` is line 1080's 1E-9 in the arithmetic of the rows. Returns the solution, or None
-    for ZERO DETERMINANT. The listing's ways are kept: no scaling, ties and the last pivot take the
-    later row, the pivot is tested against an absolute 1E-9, and RX keeps its last value when a
-    whole column is smaller than that, so that a row already used may be taken again.
+    ``smallest``: line 1080's 1E-9. Returns the solution, None for ZERO DETERMINANT. The listing's
+    ways are kept: no scaling, ties and the last pivot take the later row, the pivot is tested
+    against an absolute 1E-9, and RX keeps its last value when a whole column is smaller, so that a
+    row already used may be taken again.
     """
     A = [list(row) for row in A]
     M = len(A)

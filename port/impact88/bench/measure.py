@@ -18,7 +18,8 @@ import numpy as np
 from .. import native
 from ..accuracy.errorbound import scales
 from ..accuracy.sensitivity import movements, sensitivity
-from ..closedform.solve import solve
+from ..closedform.plan import Plan
+from ..closedform.solve import TILE, solve
 from ..names import FINAL_VELOCITIES, SCENE
 from ..native.formulas import ExpressionTable
 from ..native.program import Program, addresses
@@ -39,8 +40,7 @@ COMPONENTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "PN", "PT", "PM", "LOSS"
 
 
 def machine() -> Row:
-    """What the run ran on; ``load``: how many processes wanted a core in the minute before;
-    ``memory_roof``: see `memory_roof`."""
+    """What the run ran on; ``load``: how many processes wanted a core in the minute before."""
     name = platform.processor() or platform.machine()
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as file:
@@ -61,21 +61,14 @@ def machine() -> Row:
 
 def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[], object]:
     """Work that reads ``columns`` and writes ``results`` strip by strip as the compiled machine
-    does, their sum in place of the mechanics; by numpy a column at a time."""
+    or numpy does, their sum in place of the mechanics."""
     count = len(next(iter(results.values())))
-    if native.library is None:
-
-        def move() -> None:
-            for column in columns.values():
-                column.max()
-            for result in results.values():
-                result.fill(1.0)
-
-        return move
     table = ExpressionTable()
     first, *others = (table.column(name, varies=True) for name in columns)
-    program = Program(dict.fromkeys(results, sum(others, first)), ["COPY"] * len(results))
+    program = Program(dict.fromkeys(results, sum(others, first)), ["RESULT"] * len(results))
     read = [columns[name] for name in program.columns]
+    if native.library is None:
+        return partial(Plan(program).run, read, results, {}, TILE)
     return lambda: program.run(addresses(read), addresses(results.values()), count)
 
 
@@ -188,14 +181,10 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
                 told = np.isfinite(error) & (true != 0)
                 relative = error[told] / np.abs(true[told])
                 over = error[told] / (DOUBLE * (moved[result] + np.abs(true))[told])
-                sizes = [relative.max(initial=0.0), over.max(initial=0.0)]
-                rows.append(
-                    {
-                        **{"population": label, "result": result},
-                        "median": float(np.median(relative)) if told.any() else 0.0,
-                        **dict(zip(("largest", "over_rounding"), map(float, sizes), strict=True)),
-                    }
-                )
+                row: Row = {"population": label, "result": result}
+                row["median"] = float(np.median(relative)) if told.any() else 0.0
+                row["largest"] = float(relative.max(initial=0.0))
+                rows.append({**row, "over_rounding": float(over.max(initial=0.0))})
     return rows
 
 

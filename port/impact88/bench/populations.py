@@ -1,8 +1,5 @@
-"""Populations of scenes to measure on: seeded, named, each with what makes it hard.
-
-Numbers have six significant decimal digits (a few that must be exact to be hard have more), so that
-`texts` can be typed into the 1988 program.
-"""
+"""Populations of scenes to measure on: seeded, named, each with what makes it hard. Numbers have
+six significant digits, as typed (a few that must be exact to be hard have more)."""
 
 import csv
 from collections.abc import Callable

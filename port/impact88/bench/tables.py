@@ -79,10 +79,8 @@ def results(rows: Sequence[Row]) -> str:
 
 def components(rows: Sequence[Row]) -> str:
     """The closed form's errors, result by result."""
-    return (
-        "closed form, each result's error relative to itself; /rounding: the largest, relative to\n"
-        "what rounding every number of the scene to a double does to the result\n" + listing(rows)
-    )
+    heading = "closed form, each result's error relative to itself; /rounding: the largest, by what"
+    return f"{heading}\nrounding the scene's numbers does to the result\n{listing(rows)}"
 
 
 _RATIOS = (

@@ -46,13 +46,11 @@ def part(source: Source, start: int, stop: int) -> Floats:
 
 
 def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int, ...]]:
-    """Check ``columns`` and return name -> source for every scene name, in the table's order, and
-    the common shape.
+    """Name -> source for every scene name, in the table's order, and the common shape.
 
-    Raises UserError for an unknown or missing name, a column that holds no numbers, and shapes
-    that do not broadcast together. M may be missing (it is 6 in the published listing); when it is
-    4 throughout, so may be what a point mass does not look at. Where it is 4 in some scenes, these
-    may have anything there, such as NaN or None.
+    Raises UserError for an unknown or missing name, a column that holds no numbers, and shapes that
+    do not broadcast together. M may be missing; when it is 4 throughout, so may be what a point
+    mass does not look at. Scenes of M = 4 may have anything there, such as NaN or None.
     """
     columns = in_base(columns)
     unknown = [name for name in columns if name not in SCENE]
@@ -86,17 +84,13 @@ def _source(array: Array, shape: tuple[int, ...]) -> Source:
 
 
 class Block(NamedTuple):
-    """A block of scenes made ready: ``fixed`` columns have length 1, ``varying`` its length.
+    """A block of scenes made ready: ``fixed`` columns have length 1, ``varying`` its length;
+    ``refused``: True where the numbers cannot be used, or None if nowhere.
 
-    ``kinds`` says of each scene name what a plan may rely on:
-
-    - ``array``, ``scalar``, ``0`` or ``1`` (for all scenes of the block);
-    - MA MB IA IB: also ``array with infinities`` and ``inf``;
-    - MU: ``pivot`` or ``mixed`` (some pivots), else no pivot is in it;
-    - M: ``6``, ``4`` or ``mixed``;
-    - ``unused`` where all scenes are point masses and do not look at it.
-
-    ``refused``: a boolean array, True where the numbers cannot be used, or None if nowhere.
+    ``kinds`` says of each scene name what a program may rely on: ``array``, ``scalar``, ``0`` or
+    ``1`` (for all scenes), of MA MB IA IB also ``array with infinities`` and ``inf``; of MU
+    ``pivot`` or ``mixed`` (some pivots), else no pivot is in it; of M ``6``, ``4`` or ``mixed``;
+    ``unused`` where all scenes are point masses and do not look at it.
     """
 
     fixed: dict[str, Floats]
@@ -200,9 +194,8 @@ class Refusal(NamedTuple):
 
 
 def refusals(columns: Mapping[str, Floats]) -> Iterator[Refusal]:
-    """What cannot be used in ``columns`` (every scene name -> array of one length, or of length 1):
-    a number not finite, M neither 4 nor 6, a mass or inertia not above 0, an infinite body that
-    moves, two infinite bodies. A point-mass scene is not asked for what it does not look at."""
+    """What cannot be used in ``columns`` (every scene name -> array of one length, or of length 1).
+    A point-mass scene is not asked for what it does not look at."""
     point = columns["M"] == 4
     yield Refusal("M", "is neither 4 nor 6", ~(point | (columns["M"] == 6)))
     for name, column in columns.items():

@@ -1,13 +1,10 @@
-"""Sine and cosine of angles in degrees, over arrays, the same bits on every machine.
+"""Sine and cosine of angles in degrees, over arrays, the same bits on every machine: an angle is
+split exactly into the nearest multiple of 45/256 degree, whose sine and cosine come from a table,
+and a remainder, whose come from two short polynomials; the addition theorem joins them.
 
-numpy's ``sin`` and ``cos`` take radians, so that a right angle is never right, and they round as
-the machine's mathematical library pleases. Here an angle is split exactly into the nearest multiple
-of 45/256 degree, whose sine and cosine come from a table, and a remainder, whose come from two
-short polynomials; the addition theorem joins them, by IEEE additions and multiplications.
-
-Error: below 3 units in the last place of the result (2.7 seen, close to multiples of 90 degrees,
-where the table's entry is larger than the result; 1 elsewhere); quarter turns give exactly 0, 1
-and -1.
+Error: below 3 units in the last place (2.7 seen, close to multiples of 90 degrees; 1 elsewhere);
+quarter turns give exactly 0, 1 and -1. numpy's functions take radians, so that a right angle is
+never right, and round as the machine's mathematical library pleases.
 """
 
 from functools import cache

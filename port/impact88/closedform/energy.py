@@ -8,11 +8,8 @@ from typing import Any
 
 
 def kinetic_energy(inertias: Sequence[Any], velocities: Sequence[Any]) -> Any:
-    """Lines 320, 580 and 590 of the listing.
-
-    ``inertias``: MA MB IA IB, an infinite one (a barrier, at rest) given as 0; ``velocities``: in
-    the order of ``names.VELOCITIES``, spins 0 for point masses.
-    """
+    """Lines 320, 580 and 590 of the listing. ``inertias``: MA MB IA IB, an infinite one (at rest)
+    given as 0; ``velocities``: in the order of ``names.VELOCITIES``, spins 0 for point masses."""
     ma, mb, ia, ib = inertias
     ax, ay, wa, bx, by, wb = velocities
     moving = ma * (ax * ax + ay * ay)

@@ -42,9 +42,9 @@ def in_order(columns: Mapping[str, object]) -> tuple[Any, ...]:
 def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any] | None:
     """The results ``wanted`` of one scene (`in_order`), numpy's float64 (STATUS: uint16), which are
     floats; None where the arrays have to look at it."""
+    if not PLAIN.issuperset(map(type, values)):
+        return None
     try:
-        if not PLAIN.issuperset(map(type, values)):
-            values = tuple(map(_plain, values))
         M, MU = values[_M], values[_MU]
         if M != 6 and M != 4:
             return None
@@ -105,14 +105,6 @@ def by_machine(
     if len(names) == len(wanted):
         return by_name
     return {name: status if name == "STATUS" else by_name[name] for name in wanted}
-
-
-def _plain(value: Any) -> float:
-    """A plain number, or an array without dimensions of one. Raises ArithmeticError."""
-    array = type(value) is np.ndarray and value.ndim == 0 and value.dtype == np.float64
-    if not (array or type(value) in PLAIN):
-        raise ArithmeticError
-    return float(value)
 
 
 @lru_cache(maxsize=256)

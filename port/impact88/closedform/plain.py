@@ -27,12 +27,11 @@ FEW = 2048
 """Scenes up to which copying their columns is cheaper than looking at each; and as many show of
 what kind the next ones are."""
 TOGETHER = 1 << 28
-"""Bytes up to which results are rows of one array, which is had sooner than arrays of their own (6
-instead of 12 ns a scene for the six velocities of a million) but is kept as long as one of them."""
+"""Bytes up to which results are rows of one array, which is paged in twice as fast as arrays of
+their own but is kept as long as one of them."""
 KEPT = 1 << 26
 """Bytes up to which the memory of results is used again once nobody holds any of them: paging in
-fresh memory takes 6 of 26 ns a scene for the six velocities of a million, and more for all results.
-Half of it spares that to half as many scenes."""
+fresh memory takes 6 of 26 ns a scene for the six velocities of a million."""
 WORTH_KEEPING = 1 << 17
 """Bytes from which fresh memory has to be paged in; less is had from what was freed."""
 WORTH_A_THREAD = 32768

@@ -83,23 +83,24 @@ class Plan:
         """Place, whether as conditions, whether of one value for all scenes -> index."""
         conditions: set[int] = set()
         single = {program.moving + number for number in range(len(program.scalars))}
+
+        def seen(*view: Any) -> int:
+            return self._views.setdefault(view, len(self._views))
+
         self._steps: list[tuple[Callable[..., object], tuple[int, ...]]] = []
         self.passes = 0
         for number, (name, places) in enumerate(program.steps):
             once = number < program.once
             operation, work, passes = OPERATIONS[name]
             made = 2 if name == "SINE_AND_COSINE" else 1
-            views = [self._view(p, p in conditions, p in single) for p in places[:-made]]
+            views = [seen(p, p in conditions, p in single) for p in places[:-made]]
             for place in places[-made:]:
                 (conditions.add if name in CONDITIONS else conditions.discard)(place)
                 (single.add if once else single.discard)(place)
-                views.append(self._view(place, place in conditions, once))
-            views += [self._view(program.places + k, False, once) for k in range(work)]
+                views.append(seen(place, place in conditions, once))
+            views += [seen(program.places + k, False, once) for k in range(work)]
             self._steps.append((operation, tuple(views)))
             self.passes += 0 if once else passes
-
-    def _view(self, *view: Any) -> int:
-        return self._views.setdefault(view, len(self._views))
 
     def run(
         self,

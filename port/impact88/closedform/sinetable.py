@@ -47,24 +47,12 @@ def _series(term: Decimal, x: Decimal, first: int) -> Decimal:
     return total
 
 
-def _polynomials() -> tuple[float, float, float, float, float]:
-    """Coefficients of sin r = r·(s0 + s1·r² + s2·r⁴) and cos r - 1 = r²·(c1 + c2·r²), r in degrees.
-
-    The series themselves: the first term left out is, at |r| = STEP/2, below 3e-21 of the sine
-    and 2e-20 of the cosine.
-    """
-    with localcontext(Context(prec=40)):
-        radian = _PI / 180
-        return (
-            float(radian),
-            float(-(radian**3) / 6),
-            float(radian**5 / 120),
-            float(-(radian**2) / 2),
-            float(radian**4 / 24),
-        )
-
-
-POLYNOMIALS = _polynomials()
+with localcontext(Context(prec=40)):
+    _r = _PI / 180
+    POLYNOMIALS = tuple(map(float, (_r, -(_r**3) / 6, _r**5 / 120, -(_r**2) / 2, _r**4 / 24)))
+"""Coefficients of sin r = r·(s0 + s1·r² + s2·r⁴) and cos r - 1 = r²·(c1 + c2·r²), r in degrees: the
+series themselves. The first term left out is, at |r| = STEP/2, below 3e-21 of the sine and 2e-20 of
+the cosine."""
 
 
 def sine_and_cosine(

@@ -62,7 +62,7 @@ def findings(
     condition: Any,
     sum_of_velocities: Any,
 ) -> dict[Status, Any]:
-    """Bit -> the condition under which it is set. Only NOT_FINITE and SINGULAR are set for a NaN.
+    """Bit -> the condition under which it is set; only NOT_FINITE and SINGULAR for a NaN.
 
     ``gn``: normal relative velocity at the contact point, A minus B; ``pn``: normal impulse on A;
     ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances of A's and B's center from

@@ -29,8 +29,8 @@ _FORMULAS = {
 
 
 def written(schedule: Schedule, unless: str = "") -> Callable[..., tuple[float, ...]]:
-    """The function of a scene's values, in the table's order, that gives the results; it raises
-    ArithmeticError where it divides by zero, overflows, or the condition ``unless`` holds."""
+    """The function of a scene's values, in the table's order, that gives the results. Raises
+    ArithmeticError for a division by zero, an overflow, or where ``unless`` holds."""
     lines = [f"def results({', '.join(NAMES)}):"]
     if unless:
         lines.append(f"    if {unless}: raise ArithmeticError")

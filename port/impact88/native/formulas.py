@@ -7,8 +7,8 @@ computed, and leave out on the spot what need not be:
 - an operand known to be exactly 0, 1 or infinite disappears: x + 0, x · 1, 0 · x, sin 0, 1/inf;
 - signs go into sums: a + (-b) · c becomes a - b · c.
 
-None of these changes a bit of a result (but the sign of a zero, which a plan clears), and no other
-rearrangement is made: a scene gets the same digits alone, in a column, and on every path.
+None of these changes a bit of a result (but the sign of a zero, which RESULT clears): a scene gets
+the same digits alone, in a column, and on every path.
 """
 
 from __future__ import annotations

@@ -59,13 +59,10 @@ class Program(Schedule):
         checked: Addresses | None = None,
         limits: Array | None = None,
     ) -> int:
-        """Run it over ``count`` scenes. ``columns``, ``results``: of float64 columns (of uint16 for
-        bits), in the program's order; ``fixed``: the columns that do not vary; ``circle``: where
-        sines come from, see `closedform.fused`.
-
-        Returns how many scenes were done: all, or those before the strips among which one of the
-        columns ``checked`` leaves its ``limits``, an array of the least and the most of each.
-        """
+        """Run it over ``count`` scenes of float64 columns and results (uint16: bits), in the
+        program's order; ``fixed``: the columns that do not vary; ``circle``: see
+        `closedform.fused`. Returns how many scenes were done: all, or those before the strips among
+        which one of the columns ``checked`` leaves its ``limits`` (the least and most of each)."""
         assert native.library is not None
         room = self._rooms.pop() if self._rooms else Room(self)
         room.moving[: len(columns)] = columns

@@ -16,12 +16,9 @@ from .unit import NEVER, Bools, Ints, Unit, stamp
 
 Computed = tuple[Mapping[str, Floats], Ints, Any]
 """Results by name, the record of failures (`Unit.first`), and which scenes are left (True)."""
-BLOCK = 8192
-"""Scenes computed at a time by one thread: fewer make numpy's calls dear, more fall out of the
-cache."""
-SHARED_BLOCK = 16384
-"""The same when threads share the work: a thread holds the interpreter between numpy's calls, so
-the calls should be long."""
+BLOCK, SHARED_BLOCK = 8192, 16384
+"""Scenes computed at a time by one thread (fewer make numpy's calls dear, more fall out of the
+cache), and by threads that share the work and hand the interpreter over between numpy's calls."""
 WORTH_SHARING = 32768
 """Scenes from which it pays to note a program for just these columns, which computes once what the
 scenes share."""
@@ -100,7 +97,7 @@ def _compiled(
     if not sharing:
         columns = {name: np.broadcast_to(v, first.size) for name, v in columns.items()}
     varying = frozenset(name for name in compiled.NAMES if columns[name].size > 1)
-    program = compiled.program(kind, varying, tuple(statements.ASSIGNED))
+    program = compiled.program(kind, varying)
     results, odd = compiled.computed(program, columns, first.size)
     return results, first, odd | (first != NEVER)
 

@@ -145,12 +145,12 @@ class _Notes(Unit):
 
 
 @lru_cache(maxsize=64)
-def program(kind: statements.Kind, varying: frozenset[str], names: tuple[str, ...]) -> Program:
-    """The program for a kind of scenes: of ``varying`` columns the results ``names``, and `ODD`."""
+def program(kind: statements.Kind, varying: frozenset[str]) -> Program:
+    """The program for a kind of scenes: of ``varying`` columns the results, and `ODD`."""
 
     def make(unit: Unit, scene: Mapping[str, Noted]) -> Mapping[str, Reals]:
         results = statements.run(unit, scene, kind)
-        return {name: results[name] for name in names if name in results}
+        return {name: results[name] for name in statements.ASSIGNED if name in results}
 
     return traced(make, NAMES, varying)
 

@@ -21,8 +21,8 @@ PLACES = {
 
 
 class Scenes(NamedTuple):
-    """The scenes read: each name's values, of length 1 where all scenes share one; the number of
-    scenes; and what reading recorded, see `Unit.first`."""
+    """Each name's values, of length 1 where all scenes share one; the number of scenes; and what
+    reading recorded, see `Unit.first`."""
 
     values: dict[str, Floats]
     size: int

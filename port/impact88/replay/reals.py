@@ -3,13 +3,10 @@
 A 40-bit real, extension included, is exactly a float64: 40 bits of 53, and an exponent between
 -128 and 126 of +-1022. So an array of reals is a float64 array whose low 13 bits are clear, and
 
-    rounding to 32 bits   is integer arithmetic on its bits (a carry runs into the exponent, as it
-                          should),
+    rounding to 32 bits   is integer arithmetic on its bits (a carry runs into the exponent),
     a sum                 is exact once the smaller operand is cut off at the larger one's 40th bit,
     a product             is built of whole numbers, as the ROM does, and
     a quotient            is the processor's, corrected where that rounded up across a bit.
-
-The values are always exactly the ROM's; float64 only carries them. Zero may be -0.0.
 
     bit 63 sign | 52-62 exponent byte + 894 | 21-51 mantissa without its top bit | 13-20 extension
 
@@ -205,11 +202,8 @@ class Reals:
         return self
 
     def fails(self, failed: Any, code: int) -> bool:
-        """`Unit.fails`, of the block they belong to."""
-        return self._unit().fails(failed, code)
-
-    def _unit(self) -> Unit:
-        return self.unit or Unit(1)  # constants cannot fail
+        """`Unit.fails`, of the block they belong to; constants cannot fail."""
+        return (self.unit or Unit(1)).fails(failed, code)
 
     def _of(self, unit: Unit | None) -> Reals:
         """The same; a constant becomes a value of the block it was combined with, so that an error

@@ -59,7 +59,8 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
     """
 
     def together(rows: Sequence[int], part: Reals) -> Reals:
-        return _read_together([texts[i] for i in rows], part._unit(), lambda i: where(rows[i]))
+        unit = part.unit or Unit(1)
+        return _read_together([texts[i] for i in rows], unit, lambda i: where(rows[i]))
 
     try:
         data = ("\n".join(texts) + "\n").encode("ascii")
@@ -143,7 +144,7 @@ def _written_together(x: Reals) -> Strings:
     """`write`, without the compiled machine."""
     number, d, failed = _nine_digits(x)
     if failed.any():
-        x._unit().fails(failed, OVERFLOW)
+        x.fails(failed, OVERFLOW)
     signs = np.where(x.v < 0, "-", "").tolist()
     texts = [
         scalar.lay_out(sign, str(nine), power) if nine else "0"

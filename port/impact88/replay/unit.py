@@ -29,8 +29,7 @@ def stamp(line: int, position: int = 0) -> int:
 
 
 def key(line: int, position: int = 0, order: int | None = None) -> int:
-    """A place as records hold it: with the line a message names, and ``order`` where that line
-    comes in the program if not by its number."""
+    """A place as records hold it, with the line a message names; ``order``: its own stamp."""
     return ((stamp(line, position) if order is None else order) << _ORDER) + (line << _LINE)
 
 
