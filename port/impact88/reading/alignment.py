@@ -106,18 +106,21 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
     """What it costs that a glyph belongs to another state than the one before it: ``(gap, from,
     to)``; that one more glyph of a number follows a gap, ``(gap, state)``; that the text ends after
     a state."""
-    missed = np.cumsum([_missing(one) for one in STATES])
+    missed = np.cumsum([_missing(one) for one in STATES], dtype=np.int32)
     size = len(STATES)
     between = [place for place, one in enumerate(STATES) if one.kind == "between"]
-    passed = np.triu(missed[None] - missed[:, None]) + np.tril(np.full((size, size), _MOST), -1)
+    passed = np.triu(missed[None] - missed[:, None]) + np.tril(
+        np.full((size, size), _MOST, np.int32), -1
+    )
     absent = [COSTS["line may be missing" if n in OPTIONAL else "line"] for n in range(len(LINES))]
-    skipped = np.where(np.eye(size), 0, _MOST)
+    skipped = np.where(np.eye(size), 0, _MOST).astype(np.int32)
     for number, start in enumerate(between):
         skipped[0, start] = COSTS["begins"]
         for stop in range(number, len(between)):
             skipped[start, between[stop]] = sum(absent[number:stop])
     ends = np.array([COSTS["ends"] if _closes(one) else _MOST for one in STATES])
-    ways = _then(_then(passed, skipped), passed)
+    skips = _then(passed[:, [0, *between]], skipped[[0, *between]][:, between])
+    ways = np.minimum(passed, _then(skips, passed[between]))
     ways = np.minimum(ways, ends[:, None] + ways[0])
     ways[:, 0] = np.minimum(ways[:, 0], ends)
     closing = [place for place, one in enumerate(STATES) if _closes(one) or not place]
@@ -146,7 +149,7 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
     return np.minimum(jumps, _MOST).astype(np.int16), staying, ending.astype(np.int16)
 
 
-def _then(first: NDArray[np.int_], second: NDArray[np.int_]) -> NDArray[np.int_]:
+def _then(first: NDArray[np.int32], second: NDArray[np.int32]) -> NDArray[np.int32]:
     """What one step and another cost, from state to state."""
     least = [(row[:, None] + second).min(axis=0) for row in first]
     return np.array(np.minimum(least, _MOST))
