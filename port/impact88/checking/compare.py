@@ -27,12 +27,10 @@ from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
 from . import agreement
-from .agreement import Case
+from .agreement import Bools, Case
 from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, diagnose
 from .trials import Program
 from .vectors import FAILURE
-
-Bools = NDArray[np.bool_]
 
 WORST = 20
 """Rows that are shown of those that disagree most, and of those not compared."""

@@ -24,11 +24,8 @@ from ..fields import FIELDS
 from ..names import FINAL_VELOCITIES, SCENE
 from ..progress import progress
 from ..replay import replay
-from .agreement import Case, violated
+from .agreement import Bools, Case, Floats, violated
 from .trials import BORNE_OUT, Found, Judge, Program, pairs, ranked, run, singles, spread
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 PRINTED = "digits of the 1988 printout, which floors"
 FLOORED = "floored to the digits given, not rounded"

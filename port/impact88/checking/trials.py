@@ -27,9 +27,7 @@ from ..equations.spelling import (
     spellings,
 )
 from ..names import FINAL_VELOCITIES
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+from .agreement import Bools, Floats
 
 BORNE_OUT = 0.9
 """The share of the rows, of those that disagree as of those that agree, that a cause must fit."""
