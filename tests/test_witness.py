@@ -19,9 +19,8 @@ from impact88.program.emulated import LISTING
 from impact88.program.run import run
 from impact88.scene import sample
 from impact88.witness import basic
-from impact88.witness.apple import Apple, Lost
+from impact88.witness.apple import APPLE_II_PLUS, Apple, Lost, read_image
 from impact88.witness.hearing import hear, hear_sample, hear_scene
-from impact88.witness.image import APPLE_II_PLUS, read_image
 from impact88.witness.packaged import Case, cases, own_programs
 from impact88.witness.session import Session
 from installed import impact88

@@ -30,8 +30,8 @@ from . import options
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from ..witness.apple import Image
     from ..witness.hearing import Heard
-    from ..witness.image import Image
     from ..witness.session import Session
 
     Job = Callable[[Session], Heard]
@@ -63,8 +63,8 @@ ARGUMENTS = (
 def main(args: argparse.Namespace) -> int:
     """Hear the witness, and print what it says."""
     jobs = _jobs(args)
+    from ..witness.apple import read_image
     from ..witness.hearing import record, save
-    from ..witness.image import read_image
     from ..witness.session import Session
 
     image = read_image(args.rom, args.any_rom)

@@ -26,8 +26,7 @@ from ..program import emulated
 from ..program.run import Run, run
 from ..reporting import provenance
 from ..scene import Scene, sample
-from .apple import Lost
-from .image import Image
+from .apple import Image, Lost
 from .packaged import OWN, Case
 from .session import Finished, Session
 
