@@ -135,6 +135,11 @@ def _with(**values: str | _Range) -> Case:
     }
 
 
+def _drawn(names: str, text: Callable[[Random], str]) -> Case:
+    """Columns with a text drawn for each."""
+    return lambda rng, scene: {name: text(rng) for name in names.split()}
+
+
 def _negative(name: str) -> Case:
     return lambda rng, scene: {name: f"-{scene[name]}"}
 
@@ -175,9 +180,7 @@ EDGES: dict[str, Case] = {
     "no moment": _with(EM="1"),
     "equal final spins": _with(EM="0"),
     "contact at both centers": _with(DA="0", DB="0"),
-    "right angles": lambda rng, scene: {
-        name: str(90 * rng.randint(-4, 4)) for name in ("GA", "PA", "PB", "TA", "TB")
-    },
+    "right angles": _drawn("GA PA PB TA TB", lambda rng: str(90 * rng.randint(-4, 4))),
     "angles past a full turn": lambda rng, scene: {
         name: str(round(float(scene[name]) + 360 * rng.choice((-2, 2)), 1)) for name in ("GA", "TB")
     },
@@ -189,12 +192,8 @@ EDGES: dict[str, Case] = {
     "SI units": _with(MA=(800, 3000, 1), MB=(800, 3000, 1)),
     "separating": _with(UX="VX", UY="VY", VX="UX", VY="UY"),
     "friction beyond critical": _with(MU=(1.5, 3, 2)),
-    "ten digits typed": lambda rng, scene: {
-        name: f"{rng.uniform(1000, 99999):.5f}" for name in ("IA", "IB")
-    },
-    "masses below 1": lambda rng, scene: {
-        name: f"{rng.uniform(0.05, 0.95):.4f}" for name in ("MA", "MB", "IA", "IB")
-    },
+    "ten digits typed": _drawn("IA IB", lambda rng: f"{rng.uniform(1000, 99999):.5f}"),
+    "masses below 1": _drawn("MA MB IA IB", lambda rng: f"{rng.uniform(0.05, 0.95):.4f}"),
     "point mass without inertias": _with(M="4", DA="0", DB="0", WA="0", WB="0", IA="0", IB="0"),
 }
 """Label -> what makes a casework scene that edge."""
@@ -204,7 +203,7 @@ FAILURES: dict[str, Case] = {
     "IA is zero": _with(IA="0"),
     "IB is zero": _with(IB="0"),
     "MA is zero": _with(MA="0"),
-    "overflow": lambda rng, scene: {"UX": f"1E{rng.randint(20, 38)}"},
+    "overflow": _drawn("UX", lambda rng: f"1E{rng.randint(20, 38)}"),
     "tiny units": lambda rng, scene: {
         name: _between(rng, 1, 9, 1) + power
         for name, power in (("MA", "E-12"), ("MB", "E-12"), ("IA", "E-11"), ("IB", "E-11"))
