@@ -6,6 +6,7 @@ test_native checks that the file is what the formulas say; ``--force-regen`` wri
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterator
 
 from impact88.closedform.fused import KERNELS, program_for
@@ -13,6 +14,10 @@ from impact88.native.program import Program
 
 HEAD = """\
 /* Made from the formulas of closedform/impact.py by tests/kernels.py: not to be edited. */
+
+#define COLUMN(name, p) const double *restrict name = place[p];
+#define RESULTS(name, p) double *restrict to_##name = place[p];
+#define STATUSES(name, p) uint16_t *restrict to_##name = (uint16_t *)place[p];
 """
 CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
 
@@ -31,7 +36,7 @@ def _kernel(name: str, program: Program) -> str:
             f"static CLONES void {name}(",
             "    double *const *place, const circle *circle, int64_t eights)",
             "{",
-            *(f"    {line}" for line in _pointers(program)),
+            *(f"    {line}".replace("~", " ") for line in _pointers(program)),
             "    EACH_OF_EIGHTS {",
             *(f"        {line}" for line in _lines(program)),
             "    }",
@@ -40,12 +45,11 @@ def _kernel(name: str, program: Program) -> str:
     )
 
 
-def _pointers(program: Program) -> Iterator[str]:
-    for place, column in enumerate(program.columns):
-        yield f"const double *restrict {column} = place[{place}];"
+def _pointers(program: Program) -> list[str]:
+    columns = [f"COLUMN({column}, {place})" for place, column in enumerate(program.columns)]
     for place, result in enumerate(program.results, len(program.columns)):
-        kind = "uint16_t" if result == "STATUS" else "double"
-        yield f"{kind} *restrict to_{result} = ({kind} *)place[{place}];"
+        columns.append(f"{'STATUSES' if result == 'STATUS' else 'RESULTS'}({result}, {place})")
+    return textwrap.wrap("@".join(columns).replace(", ", ",~").replace("@", " "), 96)
 
 
 def _lines(program: Program) -> Iterator[str]:

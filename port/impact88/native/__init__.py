@@ -38,7 +38,7 @@ def _declared(found: ctypes.CDLL) -> ctypes.CDLL:
     found.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
     found.write_numbers.argtypes = [address, number, address, address]
     found.instructions.restype = found.operations.restype = ctypes.c_char_p
-    for counts in (found.strip, found.most_places, found.text_width, found.run_program):
+    for counts in (found.strip, found.most_places, found.run_program):
         counts.restype = number
     return found
 

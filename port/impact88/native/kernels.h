@@ -1,34 +1,17 @@
 /* Made from the formulas of closedform/impact.py by tests/kernels.py: not to be edited. */
 
+#define COLUMN(name, p) const double *restrict name = place[p];
+#define RESULTS(name, p) double *restrict to_##name = place[p];
+#define STATUSES(name, p) uint16_t *restrict to_##name = (uint16_t *)place[p];
+
 static CLONES void friction_6(
     double *const *place, const circle *circle, int64_t eights)
 {
-    const double *restrict UX = place[0];
-    const double *restrict MA = place[1];
-    const double *restrict GA = place[2];
-    const double *restrict EM = place[3];
-    const double *restrict DA = place[4];
-    const double *restrict TA = place[5];
-    const double *restrict PA = place[6];
-    const double *restrict IA = place[7];
-    const double *restrict DB = place[8];
-    const double *restrict TB = place[9];
-    const double *restrict PB = place[10];
-    const double *restrict IB = place[11];
-    const double *restrict WA = place[12];
-    const double *restrict WB = place[13];
-    const double *restrict E = place[14];
-    const double *restrict VX = place[15];
-    const double *restrict UY = place[16];
-    const double *restrict VY = place[17];
-    const double *restrict MB = place[18];
-    const double *restrict MU = place[19];
-    double *restrict to_VAX = (double *)place[20];
-    double *restrict to_VAY = (double *)place[21];
-    double *restrict to_VBX = (double *)place[22];
-    double *restrict to_VBY = (double *)place[23];
-    double *restrict to_WAF = (double *)place[24];
-    double *restrict to_WBF = (double *)place[25];
+    COLUMN(UX, 0) COLUMN(MA, 1) COLUMN(GA, 2) COLUMN(EM, 3) COLUMN(DA, 4) COLUMN(TA, 5)
+    COLUMN(PA, 6) COLUMN(IA, 7) COLUMN(DB, 8) COLUMN(TB, 9) COLUMN(PB, 10) COLUMN(IB, 11)
+    COLUMN(WA, 12) COLUMN(WB, 13) COLUMN(E, 14) COLUMN(VX, 15) COLUMN(UY, 16) COLUMN(VY, 17)
+    COLUMN(MB, 18) COLUMN(MU, 19) RESULTS(VAX, 20) RESULTS(VAY, 21) RESULTS(VBX, 22)
+    RESULTS(VBY, 23) RESULTS(WAF, 24) RESULTS(WBF, 25)
     EACH_OF_EIGHTS {
         double v0 = DIVIDE(0x1.0000000000000p+0, MA[i]);
         double s1, c1;
@@ -114,54 +97,15 @@ static CLONES void friction_6(
 static CLONES void friction_28(
     double *const *place, const circle *circle, int64_t eights)
 {
-    const double *restrict UX = place[0];
-    const double *restrict MA = place[1];
-    const double *restrict GA = place[2];
-    const double *restrict EM = place[3];
-    const double *restrict DA = place[4];
-    const double *restrict TA = place[5];
-    const double *restrict PA = place[6];
-    const double *restrict IA = place[7];
-    const double *restrict DB = place[8];
-    const double *restrict TB = place[9];
-    const double *restrict PB = place[10];
-    const double *restrict IB = place[11];
-    const double *restrict WA = place[12];
-    const double *restrict WB = place[13];
-    const double *restrict E = place[14];
-    const double *restrict VX = place[15];
-    const double *restrict UY = place[16];
-    const double *restrict VY = place[17];
-    const double *restrict MB = place[18];
-    const double *restrict MU = place[19];
-    double *restrict to_VAX = (double *)place[20];
-    double *restrict to_VAY = (double *)place[21];
-    double *restrict to_VBX = (double *)place[22];
-    double *restrict to_VBY = (double *)place[23];
-    double *restrict to_WAF = (double *)place[24];
-    double *restrict to_WBF = (double *)place[25];
-    double *restrict to_XA = (double *)place[26];
-    double *restrict to_YA = (double *)place[27];
-    double *restrict to_XB = (double *)place[28];
-    double *restrict to_YB = (double *)place[29];
-    double *restrict to_XAF = (double *)place[30];
-    double *restrict to_YAF = (double *)place[31];
-    double *restrict to_XBF = (double *)place[32];
-    double *restrict to_YBF = (double *)place[33];
-    double *restrict to_VC = (double *)place[34];
-    double *restrict to_VS = (double *)place[35];
-    double *restrict to_KI = (double *)place[36];
-    double *restrict to_KF = (double *)place[37];
-    double *restrict to_LOSS = (double *)place[38];
-    double *restrict to_DVA = (double *)place[39];
-    double *restrict to_DVB = (double *)place[40];
-    double *restrict to_PN = (double *)place[41];
-    double *restrict to_PT = (double *)place[42];
-    double *restrict to_PM = (double *)place[43];
-    double *restrict to_MUP = (double *)place[44];
-    double *restrict to_MUC = (double *)place[45];
-    double *restrict to_COND = (double *)place[46];
-    uint16_t *restrict to_STATUS = (uint16_t *)place[47];
+    COLUMN(UX, 0) COLUMN(MA, 1) COLUMN(GA, 2) COLUMN(EM, 3) COLUMN(DA, 4) COLUMN(TA, 5)
+    COLUMN(PA, 6) COLUMN(IA, 7) COLUMN(DB, 8) COLUMN(TB, 9) COLUMN(PB, 10) COLUMN(IB, 11)
+    COLUMN(WA, 12) COLUMN(WB, 13) COLUMN(E, 14) COLUMN(VX, 15) COLUMN(UY, 16) COLUMN(VY, 17)
+    COLUMN(MB, 18) COLUMN(MU, 19) RESULTS(VAX, 20) RESULTS(VAY, 21) RESULTS(VBX, 22)
+    RESULTS(VBY, 23) RESULTS(WAF, 24) RESULTS(WBF, 25) RESULTS(XA, 26) RESULTS(YA, 27)
+    RESULTS(XB, 28) RESULTS(YB, 29) RESULTS(XAF, 30) RESULTS(YAF, 31) RESULTS(XBF, 32)
+    RESULTS(YBF, 33) RESULTS(VC, 34) RESULTS(VS, 35) RESULTS(KI, 36) RESULTS(KF, 37)
+    RESULTS(LOSS, 38) RESULTS(DVA, 39) RESULTS(DVB, 40) RESULTS(PN, 41) RESULTS(PT, 42)
+    RESULTS(PM, 43) RESULTS(MUP, 44) RESULTS(MUC, 45) RESULTS(COND, 46) STATUSES(STATUS, 47)
     EACH_OF_EIGHTS {
         double v0 = DIVIDE(0x1.0000000000000p+0, MA[i]);
         double s1, c1;
@@ -498,31 +442,11 @@ static CLONES void friction_28(
 static CLONES void pivot_6(
     double *const *place, const circle *circle, int64_t eights)
 {
-    const double *restrict EM = place[0];
-    const double *restrict IA = place[1];
-    const double *restrict IB = place[2];
-    const double *restrict DA = place[3];
-    const double *restrict TA = place[4];
-    const double *restrict PA = place[5];
-    const double *restrict DB = place[6];
-    const double *restrict TB = place[7];
-    const double *restrict PB = place[8];
-    const double *restrict MA = place[9];
-    const double *restrict MB = place[10];
-    const double *restrict UX = place[11];
-    const double *restrict VX = place[12];
-    const double *restrict WA = place[13];
-    const double *restrict WB = place[14];
-    const double *restrict GA = place[15];
-    const double *restrict E = place[16];
-    const double *restrict UY = place[17];
-    const double *restrict VY = place[18];
-    double *restrict to_VAX = (double *)place[19];
-    double *restrict to_VAY = (double *)place[20];
-    double *restrict to_VBX = (double *)place[21];
-    double *restrict to_VBY = (double *)place[22];
-    double *restrict to_WAF = (double *)place[23];
-    double *restrict to_WBF = (double *)place[24];
+    COLUMN(EM, 0) COLUMN(IA, 1) COLUMN(IB, 2) COLUMN(DA, 3) COLUMN(TA, 4) COLUMN(PA, 5)
+    COLUMN(DB, 6) COLUMN(TB, 7) COLUMN(PB, 8) COLUMN(MA, 9) COLUMN(MB, 10) COLUMN(UX, 11)
+    COLUMN(VX, 12) COLUMN(WA, 13) COLUMN(WB, 14) COLUMN(GA, 15) COLUMN(E, 16) COLUMN(UY, 17)
+    COLUMN(VY, 18) RESULTS(VAX, 19) RESULTS(VAY, 20) RESULTS(VBX, 21) RESULTS(VBY, 22)
+    RESULTS(WAF, 23) RESULTS(WBF, 24)
     EACH_OF_EIGHTS {
         double v0 = ADD(EM[i], EM[i]);
         double v1 = SUBTRACT(0x1.0000000000000p+0, v0);
@@ -646,53 +570,15 @@ static CLONES void pivot_6(
 static CLONES void pivot_28(
     double *const *place, const circle *circle, int64_t eights)
 {
-    const double *restrict EM = place[0];
-    const double *restrict IA = place[1];
-    const double *restrict IB = place[2];
-    const double *restrict DA = place[3];
-    const double *restrict TA = place[4];
-    const double *restrict PA = place[5];
-    const double *restrict DB = place[6];
-    const double *restrict TB = place[7];
-    const double *restrict PB = place[8];
-    const double *restrict MA = place[9];
-    const double *restrict MB = place[10];
-    const double *restrict UX = place[11];
-    const double *restrict VX = place[12];
-    const double *restrict WA = place[13];
-    const double *restrict WB = place[14];
-    const double *restrict GA = place[15];
-    const double *restrict E = place[16];
-    const double *restrict UY = place[17];
-    const double *restrict VY = place[18];
-    double *restrict to_VAX = (double *)place[19];
-    double *restrict to_VAY = (double *)place[20];
-    double *restrict to_VBX = (double *)place[21];
-    double *restrict to_VBY = (double *)place[22];
-    double *restrict to_WAF = (double *)place[23];
-    double *restrict to_WBF = (double *)place[24];
-    double *restrict to_XA = (double *)place[25];
-    double *restrict to_YA = (double *)place[26];
-    double *restrict to_XB = (double *)place[27];
-    double *restrict to_YB = (double *)place[28];
-    double *restrict to_XAF = (double *)place[29];
-    double *restrict to_YAF = (double *)place[30];
-    double *restrict to_XBF = (double *)place[31];
-    double *restrict to_YBF = (double *)place[32];
-    double *restrict to_VC = (double *)place[33];
-    double *restrict to_VS = (double *)place[34];
-    double *restrict to_KI = (double *)place[35];
-    double *restrict to_KF = (double *)place[36];
-    double *restrict to_LOSS = (double *)place[37];
-    double *restrict to_DVA = (double *)place[38];
-    double *restrict to_DVB = (double *)place[39];
-    double *restrict to_PN = (double *)place[40];
-    double *restrict to_PT = (double *)place[41];
-    double *restrict to_PM = (double *)place[42];
-    double *restrict to_MUP = (double *)place[43];
-    double *restrict to_MUC = (double *)place[44];
-    double *restrict to_COND = (double *)place[45];
-    uint16_t *restrict to_STATUS = (uint16_t *)place[46];
+    COLUMN(EM, 0) COLUMN(IA, 1) COLUMN(IB, 2) COLUMN(DA, 3) COLUMN(TA, 4) COLUMN(PA, 5)
+    COLUMN(DB, 6) COLUMN(TB, 7) COLUMN(PB, 8) COLUMN(MA, 9) COLUMN(MB, 10) COLUMN(UX, 11)
+    COLUMN(VX, 12) COLUMN(WA, 13) COLUMN(WB, 14) COLUMN(GA, 15) COLUMN(E, 16) COLUMN(UY, 17)
+    COLUMN(VY, 18) RESULTS(VAX, 19) RESULTS(VAY, 20) RESULTS(VBX, 21) RESULTS(VBY, 22)
+    RESULTS(WAF, 23) RESULTS(WBF, 24) RESULTS(XA, 25) RESULTS(YA, 26) RESULTS(XB, 27)
+    RESULTS(YB, 28) RESULTS(XAF, 29) RESULTS(YAF, 30) RESULTS(XBF, 31) RESULTS(YBF, 32)
+    RESULTS(VC, 33) RESULTS(VS, 34) RESULTS(KI, 35) RESULTS(KF, 36) RESULTS(LOSS, 37)
+    RESULTS(DVA, 38) RESULTS(DVB, 39) RESULTS(PN, 40) RESULTS(PT, 41) RESULTS(PM, 42)
+    RESULTS(MUP, 43) RESULTS(MUC, 44) RESULTS(COND, 45) STATUSES(STATUS, 46)
     EACH_OF_EIGHTS {
         int64_t v0 = LESS_OR_EQUAL(0x0.0p+0, -0x1.4000000000000p+3);
         double v1 = MULTIPLY(v0, 0x1.0000000000000p+11);
@@ -1015,23 +901,9 @@ static CLONES void pivot_28(
 static CLONES void point_6(
     double *const *place, const circle *circle, int64_t eights)
 {
-    const double *restrict UX = place[0];
-    const double *restrict MA = place[1];
-    const double *restrict GA = place[2];
-    const double *restrict E = place[3];
-    const double *restrict VX = place[4];
-    const double *restrict UY = place[5];
-    const double *restrict VY = place[6];
-    const double *restrict MB = place[7];
-    const double *restrict MU = place[8];
-    const double *restrict WA = place[9];
-    const double *restrict WB = place[10];
-    double *restrict to_VAX = (double *)place[11];
-    double *restrict to_VAY = (double *)place[12];
-    double *restrict to_VBX = (double *)place[13];
-    double *restrict to_VBY = (double *)place[14];
-    double *restrict to_WAF = (double *)place[15];
-    double *restrict to_WBF = (double *)place[16];
+    COLUMN(UX, 0) COLUMN(MA, 1) COLUMN(GA, 2) COLUMN(E, 3) COLUMN(VX, 4) COLUMN(UY, 5) COLUMN(VY, 6)
+    COLUMN(MB, 7) COLUMN(MU, 8) COLUMN(WA, 9) COLUMN(WB, 10) RESULTS(VAX, 11) RESULTS(VAY, 12)
+    RESULTS(VBX, 13) RESULTS(VBY, 14) RESULTS(WAF, 15) RESULTS(WBF, 16)
     EACH_OF_EIGHTS {
         double v0 = DIVIDE(0x1.0000000000000p+0, MA[i]);
         double s1, c1;
@@ -1065,45 +937,14 @@ static CLONES void point_6(
 static CLONES void point_28(
     double *const *place, const circle *circle, int64_t eights)
 {
-    const double *restrict UX = place[0];
-    const double *restrict MA = place[1];
-    const double *restrict GA = place[2];
-    const double *restrict E = place[3];
-    const double *restrict VX = place[4];
-    const double *restrict UY = place[5];
-    const double *restrict VY = place[6];
-    const double *restrict MB = place[7];
-    const double *restrict MU = place[8];
-    const double *restrict WA = place[9];
-    const double *restrict WB = place[10];
-    double *restrict to_VAX = (double *)place[11];
-    double *restrict to_VAY = (double *)place[12];
-    double *restrict to_VBX = (double *)place[13];
-    double *restrict to_VBY = (double *)place[14];
-    double *restrict to_WAF = (double *)place[15];
-    double *restrict to_WBF = (double *)place[16];
-    double *restrict to_XA = (double *)place[17];
-    double *restrict to_YA = (double *)place[18];
-    double *restrict to_XB = (double *)place[19];
-    double *restrict to_YB = (double *)place[20];
-    double *restrict to_XAF = (double *)place[21];
-    double *restrict to_YAF = (double *)place[22];
-    double *restrict to_XBF = (double *)place[23];
-    double *restrict to_YBF = (double *)place[24];
-    double *restrict to_VC = (double *)place[25];
-    double *restrict to_VS = (double *)place[26];
-    double *restrict to_KI = (double *)place[27];
-    double *restrict to_KF = (double *)place[28];
-    double *restrict to_LOSS = (double *)place[29];
-    double *restrict to_DVA = (double *)place[30];
-    double *restrict to_DVB = (double *)place[31];
-    double *restrict to_PN = (double *)place[32];
-    double *restrict to_PT = (double *)place[33];
-    double *restrict to_PM = (double *)place[34];
-    double *restrict to_MUP = (double *)place[35];
-    double *restrict to_MUC = (double *)place[36];
-    double *restrict to_COND = (double *)place[37];
-    uint16_t *restrict to_STATUS = (uint16_t *)place[38];
+    COLUMN(UX, 0) COLUMN(MA, 1) COLUMN(GA, 2) COLUMN(E, 3) COLUMN(VX, 4) COLUMN(UY, 5) COLUMN(VY, 6)
+    COLUMN(MB, 7) COLUMN(MU, 8) COLUMN(WA, 9) COLUMN(WB, 10) RESULTS(VAX, 11) RESULTS(VAY, 12)
+    RESULTS(VBX, 13) RESULTS(VBY, 14) RESULTS(WAF, 15) RESULTS(WBF, 16) RESULTS(XA, 17)
+    RESULTS(YA, 18) RESULTS(XB, 19) RESULTS(YB, 20) RESULTS(XAF, 21) RESULTS(YAF, 22)
+    RESULTS(XBF, 23) RESULTS(YBF, 24) RESULTS(VC, 25) RESULTS(VS, 26) RESULTS(KI, 27)
+    RESULTS(KF, 28) RESULTS(LOSS, 29) RESULTS(DVA, 30) RESULTS(DVB, 31) RESULTS(PN, 32)
+    RESULTS(PT, 33) RESULTS(PM, 34) RESULTS(MUP, 35) RESULTS(MUC, 36) RESULTS(COND, 37)
+    STATUSES(STATUS, 38)
     EACH_OF_EIGHTS {
         double v0 = ABSOLUTE(0x1.0000000000000p+0);
         int64_t v1 = LESS(0x0.0p+0, 0x0.0p+0);

@@ -309,7 +309,6 @@ EXPORT CLONES void survey_kinds(
 
 EXPORT int64_t strip(void) { return STRIP; }
 EXPORT int64_t most_places(void) { return PLACES; }
-EXPORT int64_t text_width(void) { return TEXT_WIDTH; }
 
 EXPORT const char *instructions(void)
 {
