@@ -302,9 +302,10 @@ def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
     return given
 
 
-def _set_pairs(texts: Sequence[str], allowed: Collection[str]) -> dict[str, str]:
+def set_pairs(texts: Sequence[str], allowed: Collection[str] | None = None) -> dict[str, str]:
+    """Name -> text of ``--set``. Raises UserError for a name that is not ``allowed``."""
     given = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
-    check_names(given, allowed, "name used here", "--set")
+    check_names(given, given if allowed is None else allowed, "name used here", "--set")
     return given
 
 
@@ -314,7 +315,7 @@ def settings(
     """What ``--set`` gives of a scene: the text of a number for each name, in base units.
     ``others``: texts taken although they are not numbers; ``units``: the system of bare numbers.
     Raises UserError."""
-    given, _ = in_base_units(_set_pairs(texts, tuple(SCENE)), "--set", units)
+    given, _ = in_base_units(set_pairs(texts, tuple(SCENE)), "--set", units)
     for name, text in given.items():
         if text not in others and not (name == "MU" and is_share(text)):
             check_value(name, text, "--set")
@@ -412,7 +413,7 @@ def known_within_limits(
         for name, text in entries.values.items():
             if text and name in allowed:
                 values[name] = _within_limits(name, text, source, named)
-    given, named = changes_in_base(_set_pairs(args.set, allowed), "--set", named, args.scene)
+    given, named = changes_in_base(set_pairs(args.set, allowed), "--set", named, args.scene)
     for name, text in given.items():
         center = values[name].nominal if name in values else None
         if text:

@@ -58,20 +58,12 @@ def main(args: argparse.Namespace) -> int:
     scene = sample(args.sample).to_toml().encode() if args.sample else b""
     data = scene or read_bytes(args.scene, TOML_LIMIT)
     texts = toml_texts(decode(data, source), source)
-    for name, text in options.pairs(args.set, "--set", "NAME=VALUE, such as --set MU=.5").items():
+    for name, text in options.set_pairs(args.set).items():
         texts |= {name: text, name + SOURCE: "changed with --set"}
     entries = entries_of(texts, source, args.units)
     options.note_remarks(entries)
-    made = report(
-        entries,
-        source,
-        data,
-        samples=args.samples,
-        seed=args.seed,
-        case=args.case,
-        title=args.title,
-        paper=args.paper,
-    )
+    asked = {n: getattr(args, n) for n in ("samples", "seed", "case", "title", "paper")}
+    made = report(entries, source, data, **asked)
     with replacing(args.output) as out:
         out.write(made.page)
     if args.csv:
