@@ -169,7 +169,7 @@ class _CsvReader:
     def _block(self) -> dict[int, list[str]]:
         """The next rows by the line in which each ends."""
         rows: dict[int, list[str]] = {}
-        self._lines.begin_block()
+        self._lines.taken = 0
         while len(rows) < BLOCK_ROWS and self._lines.taken < BLOCK_CHARACTERS:
             row = self._next()
             if row is None:
@@ -179,7 +179,6 @@ class _CsvReader:
         return rows
 
     def _next(self) -> list[str] | None:
-        self._lines.begin_record()
         try:
             return next(self._rows, None)
         except csv.Error as error:

@@ -55,13 +55,12 @@ class _JsonReader:
         lines: list[int] = []
         bad: list[BadCell] = []
         names: dict[str, int] = {}  # name -> the line that has it first
-        self._lines.begin_block()
+        self._lines.taken = 0
         while (
             len(objects) < BLOCK_ROWS
             and len(objects) * len(names) < BLOCK_CELLS
             and self._lines.taken < BLOCK_CHARACTERS
         ):
-            self._lines.begin_record()
             text = next(self._lines, None)
             if text is None:
                 break

@@ -23,16 +23,14 @@ class TextFile(NamedTuple):
 
 class Lines:
     """An iterator over lines as they stand, their ends included. ``first``: lines already taken off
-    the file; ``before``: how many lines came before those. ``number``: of the line last given, from
-    1; ``taken``: the characters given since `begin_block`. Raises UserError, naming file and line,
-    for bytes that are not text, and for a line, or several since `begin_record`, longer than
-    `LONGEST_LINE` characters."""
+    the file; ``before``: how many lines came before those; ``number``: of the line last given, from
+    1; ``taken``: the characters given since a block began. Raises UserError, naming file and line,
+    for bytes that are not text, and for a line longer than `LONGEST_LINE` characters."""
 
     def __init__(self, file: TextFile, first: bytes = b"", before: int = 0) -> None:
         self.where = file.source.name
         self.number = before
         self.taken = 0
-        self._record_start = 0
         self._encoding = file.encoding
         self._open = partial(io.TextIOWrapper, encoding=file.encoding, newline="")
         self._rest = [file.binary]  # closed with what reads it: opened when its turn comes
@@ -58,19 +56,11 @@ class Lines:
             raise self.error(f"cannot be unpacked: {error}") from None
         if not line:
             raise StopIteration
+        if len(line) >= LONGEST_LINE:
+            raise self.error(f"is longer than {LONGEST_LINE:,} characters; expected a table's row")
         self.number += 1
         self.taken += len(line)
-        if self.taken - self._record_start >= LONGEST_LINE:
-            raise self.error(f"is longer than {LONGEST_LINE:,} characters; expected a table's row")
         return line
-
-    def begin_record(self) -> None:
-        """What comes next is a new record."""
-        self._record_start = self.taken
-
-    def begin_block(self) -> None:
-        """What comes next is a new block: count its characters from here."""
-        self.taken = self._record_start = 0
 
     def error(self, message: str) -> UserError:
         """A UserError about the line after the last one given."""
