@@ -139,9 +139,8 @@ def _without_noise(values: Mapping[str, float]) -> dict[str, float]:
     clean = {}
     for name, value in values.items():
         small = abs(value) < _NOISE * largest.get(quantity(name).unit, 0.0)
-        clean[name] = 0.0 if small else value
-        if name in (*COURSES, *FORCES) and value <= -180 * (1 - _NOISE):
-            clean[name] = value + 360
+        opposite = name in (*COURSES, *FORCES) and value < -179.9995  # to three decimals
+        clean[name] = 180.0 if opposite else 0.0 if small else value
     return clean
 
 
