@@ -434,7 +434,8 @@ class TestCanvas:
             around = [b for b in boxes if b.left < x < b.right and b.bottom < y < b.top]
             assert any(b.left - 0.3 < ink.x0 and ink.x1 < b.right + 0.6 for b in around)
 
-    def test_formats(self, tmp_path):
+    def test_formats(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(canvas, "DOTS_PER_INCH", 75)
         drawing = scene_drawing(sample(1))
         starts = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
         for ending, start in starts.items():
@@ -458,17 +459,13 @@ class TestCanvas:
             check=False,
         )
         assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
-        assert (tmp_path / "set.pdf").read_bytes() == (tmp_path / "usual.pdf").read_bytes()
-
-    def test_parameters_set_in_python_stay_outside(self, tmp_path):
         import matplotlib
 
-        drawing = charts.force_and_impulse()
-        canvas.save(drawing, str(tmp_path / "usual.pdf"))
         with matplotlib.rc_context({"font.size": 40, "savefig.bbox": "tight"}):
-            canvas.save(drawing, str(tmp_path / "set.pdf"))
+            assert main(line.format("own").split()) == 0
             assert matplotlib.rcParams["font.size"] == 40
-        assert (tmp_path / "set.pdf").read_bytes() == (tmp_path / "usual.pdf").read_bytes()
+        usual = (tmp_path / "usual.pdf").read_bytes()
+        assert (tmp_path / "set.pdf").read_bytes() == usual == (tmp_path / "own.pdf").read_bytes()
 
     def test_other_endings_are_refused(self, tmp_path):
         with pytest.raises(UserError, match=r"expected \.svg, \.png, \.pdf"):
