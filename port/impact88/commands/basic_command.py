@@ -102,7 +102,7 @@ class Terminal:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Run a program, or talk at the prompt."""
+    """Run a program, or open the prompt."""
     if args.prompt and not args.program:
         raise UserError("--prompt needs FILE.bas; without a file the prompt appears anyway")
     check_slot(args)

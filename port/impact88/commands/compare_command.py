@@ -76,12 +76,12 @@ def main(args: argparse.Namespace) -> int:
 
         write_junit(args.junit, args.theirs, comparison, args.strict)
     options.show(args, "compare", comparison.as_json, lambda: _lines(comparison))
-    for line in _talk(comparison):
+    for line in _notes(comparison):
         note("compare", line)
     return int(bool(comparison.differing or comparison.bad or (args.strict and comparison.silent)))
 
 
-def _talk(comparison: Comparison) -> Iterator[str]:
+def _notes(comparison: Comparison) -> Iterator[str]:
     """What is said on stderr: what could not be read or was not compared."""
     yield from map(str, comparison.bad[:SHOWN])
     if len(comparison.bad) > SHOWN:

@@ -21,10 +21,10 @@ def main(args: argparse.Namespace) -> int:
     """Run all checks and print the record."""
     results: list[Check] = []
     names = iter(CHECKS)
-    talk = args.json and sys.stderr.isatty()
+    report_on_stderr = args.json and sys.stderr.isatty()
     for check in checks():
         results.append(check)
-        if talk:
+        if report_on_stderr:
             print(f"{next(names)}: {'pass' if check.passed else 'FAIL'}", file=sys.stderr)
         elif not args.json:
             print(_line(check), flush=True)

@@ -61,7 +61,7 @@ ARGUMENTS = (
 
 
 def main(args: argparse.Namespace) -> int:
-    """Hear the witness, and print what it says."""
+    """Run the jobs on the ROM, and print what differs."""
     jobs = _jobs(args)
     from ..witness.apple import read_image
     from ..witness.hearing import record, save
