@@ -29,9 +29,9 @@ what kind the next ones are."""
 TOGETHER = 1 << 28
 """Bytes up to which results are rows of one array, which is paged in twice as fast as arrays of
 their own but is kept as long as one of them."""
-KEPT = 1 << 26
-"""Bytes up to which the memory of results is used again once nobody holds any of them: paging in
-fresh memory takes 6 of 26 ns a scene for the six velocities of a million."""
+KEPT = 1 << 28
+"""Bytes up to which the memory of results is used again once nobody holds any of them: all results
+of a million scenes, which take 70 instead of 250 to 500 ns a scene. A quarter does not hold them."""
 WORTH_KEEPING = 1 << 17
 """Bytes from which fresh memory has to be paged in; less is had from what was freed."""
 WORTH_A_THREAD = 32768
