@@ -31,7 +31,7 @@ TOGETHER = 1 << 28
 their own but is kept as long as one of them."""
 KEPT = 1 << 28
 """Bytes up to which the memory of results is used again once nobody holds any of them: all results
-of a million scenes, which take 70 instead of 250 to 500 ns a scene. A quarter does not hold them."""
+of a million scenes, which take 70 instead of 250 to 500 ns a scene; a quarter holds none."""
 WORTH_KEEPING = 1 << 17
 """Bytes from which fresh memory has to be paged in; less is had from what was freed."""
 WORTH_A_THREAD = 32768
