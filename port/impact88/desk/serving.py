@@ -16,6 +16,7 @@ HOST = "127.0.0.1"
 THREADS = 8
 """Requests answered at a time; computing waits in one."""
 LARGEST_HEADER = 32_768
+"""Bytes of a request's header; a browser sends a thousand."""
 CONNECTIONS = 256
 """Connections at a time: four times those that may wait (`halfopen.WAITING`), and fewer than the
 512 sockets that `select` takes on Windows."""

@@ -20,10 +20,10 @@ from .drawing import Box, Drawing, Text, short
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
 
-MOST_PANELS = 12
-MOST_BARS = 8
-BINS = 60
-SWEEP = 801
+MOST_PANELS, MOST_BARS = 12, 8
+"""Panels that fit a page, and bars that fit a panel."""
+BINS, SWEEP = 60, 801
+"""Bars of a histogram, two a millimetre; points of a sweep, ten a millimetre."""
 WIDEST_SWEEP = 5.0
 """Friction coefficients beyond are not swept."""
 _LEFT, _TOP = 13.0, 6.0

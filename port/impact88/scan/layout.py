@@ -38,6 +38,7 @@ OPTIONAL = (0, 1, 10, 13, 14)
 SPACED = (4, 5)
 """The lines of the angles, whose blanks people retype by eye."""
 REPLY_LENGTHS, NUMBER_LENGTHS = (5, 42), (1, 15)
+"""Characters: from ``0,0,0`` to three of the longest numbers; of what the program prints."""
 WRAP = 40
 """Columns of the Apple's screen, at which its lines break."""
 
