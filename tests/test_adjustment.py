@@ -161,9 +161,9 @@ class TestLeastOfAll:
         ),
     )
 
-    # IMPACT88_SETS=1 solves all; these two need tolerances tightened little by little
+    # IMPACT88_SETS=1 solves all; the last needs tolerances tightened little by little
     @pytest.mark.parametrize(
-        ("problem", "squares"), PROBLEMS if os.environ.get("IMPACT88_SETS") else PROBLEMS[2::3]
+        ("problem", "squares"), PROBLEMS if os.environ.get("IMPACT88_SETS") else PROBLEMS[5:]
     )
     def test_is_found(self, problem, squares):
         known = {}
@@ -177,6 +177,7 @@ class TestLeastOfAll:
             if not one.undetermined:
                 assert np.abs(equations(one.values)).max() < 1e-12
 
+    @pytest.mark.skipif(not os.environ.get("IMPACT88_SETS"), reason="a slow one")
     def test_no_contradiction_is_made_of_a_narrow_valley(self):
         """EL within 46 of 7 million possible, the spin within 104 rad/s: an energy of about nothing
         is lost where neither vehicle spins much, and that is well within both tolerances."""

@@ -161,7 +161,7 @@ class TestSignOfFriction:
     # IMPACT88_BRUTE_SCENES sets how many scenes (20: five minutes)
     SETS = (("UX", "UY"), ("GA", "MU"), ("UX", "VY", "GA"), ("WA", "WB", "UY"), ("PA", "TB", "MA"))
 
-    @pytest.mark.parametrize("names", SETS if BRUTE_SCENES > 1 else SETS[2::2], ids=" ".join)
+    @pytest.mark.parametrize("names", SETS if BRUTE_SCENES > 1 else SETS[2:3], ids=" ".join)
     def test_no_scene_tried_lies_outside(self, names):
         """Against forty thousand scenes, half of them on faces, and steps towards better ones: no
         more than a thousandth of the range is missing."""

@@ -143,9 +143,9 @@ def test_what_follows_from_a_solution(case: Case) -> None:
 
 def test_640_of_the_924_sets_of_six_velocities_are_generically_solvable() -> None:
     # IMPACT88_SETS=1 tries all of them
-    every = 1 if os.environ.get("IMPACT88_SETS") else 28
+    every = 1 if os.environ.get("IMPACT88_SETS") else 56
     sets = list(combinations((*VELOCITIES, *FINAL_STATE), 6))[::every]
-    assert sum(map(generically_solvable, sets)) == {1: 640, 28: 22}[every]
+    assert sum(map(generically_solvable, sets)) == {1: 640, 56: 12}[every]
 
 
 @pytest.mark.parametrize("vehicle", ["A", "B"])
