@@ -31,7 +31,17 @@ from .alignment import (
     letter_of,
 )
 from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
-from .glyphs import ILLEGIBLE, NUMERIC, Gap, Page, Region, letters, plain_glyphs, printed_for
+from .glyphs import (
+    ILLEGIBLE,
+    NUMERIC,
+    Gap,
+    Page,
+    Region,
+    label_cost,
+    letters,
+    plain_glyphs,
+    printed_for,
+)
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -237,18 +247,18 @@ def _keep_left_over(page: Page, readers: Sequence["_Reader"]) -> None:
         line = [*group]
         kinds = [roles.get(index) for index in line]
         numbered = "number" in kinds
-        figures = sum(page.glyphs[index].char.isdigit() for index in line)
-        stars = 4 * figures <= len(line) <= len("*****") + 2 and {"star", "gap"} & {*kinds}
+        alike = sum(label_cost("*", page.glyphs[index].char) < 40 for index in line)
+        stars = len(line) <= len("*****") + 2 and 2 * alike > len(line)
         whole = not (numbered or stars or 2 * kinds.count("exact") >= len(kinds))
-        loose = line if whole else [at for at in line if roles.get(at) in (None, "gap")]
+        loose = line if whole else [at for at in line if at not in roles]
         for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
             run = [index for _, index in pairs]
             if not _SLOT_COMMAND.fullmatch("".join(page.glyphs[index].char for index in run)):
                 span = page.span(run[0], run[-1] + 1)
                 text = " ".join(page.text[slice(*span)].split())
-                piece = Piece(
-                    text, *page.place(span[0]), *span, _bears(text) if whole else numbered, whole
-                )
+                figure = not stars and any(map(str.isdigit, text))
+                beside = _bears(text) if whole else numbered or figure
+                piece = Piece(text, *page.place(span[0]), *span, beside, whole)
                 above = [one for one in printouts if one.line <= number] or printouts[:1]
                 above[-1].left_over.append(piece)
     for one in printouts:
@@ -356,9 +366,6 @@ def _notes(glyphs: Region, start: int, stop: int, found: Sequence[Mapping[int, i
         if not numbers.isdisjoint(line) and len(words - own) >= least:
             notes.update(line)
     return notes
-
-
-_BESIDE_STARS = [one for one in STATES if one.kind == "between" and one.line in STARS]
 
 
 class _Reader:
@@ -539,15 +546,13 @@ class _Reader:
             self._remark("reply", f"{what} is not three numbers", start)
 
     def roles(self) -> dict[int, str]:
-        """What each glyph is: of a number, an exact letter of a label, a damaged one, of a row of
-        asterisks or beside one; not others between lines or put into labels."""
+        """What each glyph is: of a number, an exact letter of a label, a damaged one;
+        not others between lines or put into labels."""
         roles = dict.fromkeys(self._exact, "exact")
         for index, state in self._states.items():
             letter, figure = letter_of(state), self._glyphs[index].char.isdigit()
             again = state == self._states.get(index - 1) or (letter in "%()=" and figure)
-            if letter == "*" or STATES[state] in _BESIDE_STARS:
-                roles[index] = "star" if letter else "gap"
-            elif letter and again:
+            if letter and again:
                 roles.pop(index, None)
             elif letter:
                 roles.setdefault(index, "letter")
