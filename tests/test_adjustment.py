@@ -408,7 +408,7 @@ class TestUncertainty:
             assert drawn.values[name].std() == pytest.approx(deviations[name], rel=0.05)
             assert drawn.values[name].mean() == pytest.approx(solution.values[name], abs=0.1)
 
-    @pytest.mark.parametrize("tolerance", [1e-6])
+    @pytest.mark.parametrize("tolerance", [1e-6, 1e-2][: 1 + bool(os.environ.get("IMPACT88_SETS"))])
     def test_draws_are_adjusted_however_tight_the_tolerances(self, tolerance):
         """So near the impact the equations are straight: draws spread as to first order."""
         true = {**VEHICLES, **dict.fromkeys(("UY", "WA", "VX", "WB"), 0.0), "UX": -36.0, "VY": 58.0}
