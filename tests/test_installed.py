@@ -33,7 +33,7 @@ from impact88 import cli, sample
 from impact88.bench.populations import evolved
 from impact88.desk import app
 from impact88.equations import edits
-from impact88.scan.naming import prototypes
+from impact88.scan.typeface import prototypes
 from impact88.schemas import NUMBERS, text
 statuses = {}
 def run(*arguments):

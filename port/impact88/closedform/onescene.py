@@ -74,7 +74,8 @@ class _Call:
         into = self.results.ctypes.data + 8 * np.arange(len(ALL))
         into[-1] = self.status.ctypes.data  # STATUS
         self.room.moving[:] = [*at, *into]
-        self.looked_at = at, np.array([ORDINARY[name] for name in names])
+        self._looked_at = at, np.array([ORDINARY[name] for name in names])
+        self.room.prepare(1, CIRCLE, *self._looked_at)
 
 
 _calls: dict[tuple[bool, bool], list[_Call]] = defaultdict(list)
@@ -95,7 +96,7 @@ def by_machine(
     free = _calls[point, pivot]
     call = free.pop() if free else _Call(point, pivot)
     call.scene[:] = values
-    done = call.room.run(1, CIRCLE, *call.looked_at)
+    done = call.room.run()
     names, places = _places(wanted)
     found, status = call.results[places], call.status[0]
     free.append(call)

@@ -69,7 +69,8 @@ class Program(Schedule):
         room.moving[len(columns) :] = results
         if fixed:
             room.values[:] = [fixed[x] if isinstance(x, str) else x for x in self.scalars]
-        done = room.run(count, circle, checked, limits)
+        room.prepare(count, circle, checked, limits)
+        done = room.run()
         self._rooms.append(room)
         return done
 
@@ -93,14 +94,17 @@ class Room:
         self._call = np.array([*call, 0, 0, 0, 0, 0], np.int64)
         self._at = self._call.ctypes.data
 
-    def run(
+    def prepare(
         self, count: int, circle: int, checked: Addresses | None = None, limits: Array | None = None
-    ) -> int:
-        """`Program.run`, of what ``moving`` and ``values`` hold."""
+    ) -> None:
+        """What `run` does: see `Program.run`. ``checked`` and ``limits`` are to be kept."""
         looked_at = 0, 0, 0
         if checked is not None and limits is not None:
             looked_at = checked.ctypes.data, limits.ctypes.data, len(checked)
         self._call[-5:] = *looked_at, count, circle
+
+    def run(self) -> int:
+        """`Program.run` as prepared, of what ``moving`` and ``values`` hold."""
         assert native.library is not None
         done: int = native.library.run_program(self._at)
         return done
