@@ -23,6 +23,7 @@ _FORWARD = ("MUC", "COND")
 _TOLD = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
 
 
+@np.errstate(all="ignore")
 def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     """The consequences of ``values`` (geometry, velocities, coefficients, PN and PT, by name), as
     far as what they need is known: contact point, STATUS, direction of force, contact velocities,
