@@ -182,6 +182,15 @@ def test_characters_read_as_plain_ones_are_counted(old: str, new: str, told: str
     assert any(told in remark for remark in result.remarks)
 
 
+def test_a_number_without_its_label_is_no_part_of_the_reply_above_it() -> None:
+    prompt = "ENTER THE INITIAL VELOCITY COMPONENTS OF MB :Vbx,Vby,Wb ?"
+    (printed,) = read_printouts(SAMPLE)
+    typed = ",".join(printed.text(name) or "" for name in ("VX", "VY", "WB"))
+    (shown,) = read_printouts(f"{prompt}{typed}\n\n{SAMPLE}".replace("MA= ", " ", 1))
+    assert shown.replies["WB"].text == printed.text("WB")
+    assert verify(shown).verdict is Verdict.IDENTICAL_AS_READ
+
+
 def test_a_reply_never_outranks_the_printed_number() -> None:
     prompt = "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?"
     text = f"{prompt}-29.04,0,0\n\n{SAMPLE}"

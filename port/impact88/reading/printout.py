@@ -524,8 +524,11 @@ class _Reader:
     def _read_reply(self, names: Sequence[str], start: int) -> None:
         """The three numbers typed at a prompt, after any that INPUT refused."""
         stop, line = start, self._line(start)
+        others = {begins for begins, _ in self._slots.values()} - {start}
         while self._states.get(stop) and (not self._letter(stop) or self._line(stop) == line):
             stop += 1
+            if stop in others:  # a number whose label is missing
+                break
         parts = _reply_parts(self._glyphs[start:stop])
         before = _before_reply(parts[0], self.shown.text(names[0]))
         if before and self._glyphs[start - 1].char != "?":
