@@ -261,7 +261,7 @@ def sections(result: Verification) -> list[Section]:
     ]
     every = (
         Section(DOUBTFUL, doubtful),
-        Section(EXPLAINED, _explained(result) if result.verdict is Verdict.DIFFERS else []),
+        Section(EXPLAINED, _explained(result) if _is_explained(result) else []),
         Section("the page cannot show", result.unseen),
         Section("what the page shows besides", result.findings),
         Section("beside the verdict", result.warnings),
@@ -335,6 +335,11 @@ def _left_over(pieces: Sequence[Piece]) -> Iterator[str]:
         yield f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
     if len(lines) > _MOST_LINES:
         yield f"and {len(lines) - _MOST_LINES} more lines that do not belong to the program's page"
+
+
+def _is_explained(result: Verification) -> bool:
+    """Of a picture its cells say what differs; no explanation is looked for."""
+    return result.verdict is Verdict.DIFFERS and result.exhibit is None
 
 
 def _explained(result: Verification) -> list[str]:
