@@ -254,6 +254,7 @@ def test_the_answer_is_what_reconstruct_says_of_the_same_impact(
             assert float(text) == pytest.approx(found[name], rel=6e-4, abs=1e-9), name
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     "changes", [dict.fromkeys(("UX", "UY", "WA", "VX", "VY", "WB"), "0"), {"MA": "0"}, {"M": "4"}]
 )

@@ -18,6 +18,7 @@ from captures import ROOT
 from impact88.judging.judgement import Verdict
 from impact88.recovery.replays import run_all
 from impact88.reporting.examination import Examined, Verification, examine, examine_bytes
+from impact88.reporting.verification import EXPLAINED, lines
 from impact88.scan import sheets
 from impact88.scan.evidence import MOST_MISREAD, THRESHOLDS, Judged, judged, state
 from impact88.scan.holding import Cell
@@ -232,6 +233,7 @@ def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> Non
     altered = examine_bytes("page.png", saved(grey, "PNG"))
     (result,) = altered.results
     assert result.verdict is Verdict.DIFFERS
+    assert EXPLAINED not in "\n".join(lines(result))  # the cells say it
     assert [(one.name, one.same) for one in result.differing] == [(target["field"], False)]
     assert f"shows {source['predicted']}" in result.findings[0]
     shown = report([altered])
