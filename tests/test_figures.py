@@ -20,6 +20,7 @@ from impact88.commands import figure_command as command
 from impact88.commands.figure_command import solved
 from impact88.errors import UserError
 from impact88.figures import axes, canvas, charts, freebody
+from impact88.figures.canvas import svg
 from impact88.figures.drawing import (
     Box,
     Drawing,
@@ -36,7 +37,6 @@ from impact88.figures.drawing import (
 from impact88.figures.labels import place
 from impact88.figures.scenegeometry import plan
 from impact88.figures.sceneview import scene_drawing, scene_svg
-from impact88.figures.svg import svg
 from impact88.figures.views import configurations
 from impact88.scene import Scene, sample
 from impact88.uncertainty.bounds import bounds

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..accuracy.errorbound import APPLESOFT, DOUBLE, relative_bounds
 from ..figures.axes import Panel, key, powers
-from ..figures.drawing import BLACK, GREY, ORANGE, VERMILION, Box, Drawing, Text, wrapped
+from ..figures.drawing import GREY, ORANGE, VERMILION, Box, Drawing, Text, wrapped
 from .measure import Row
 from .methods import METHODS
 from .populations import POPULATIONS
@@ -88,12 +88,12 @@ def work_precision(rows: Sequence[Row], roof: float) -> Drawing:
             (_TIMES, "time per scene, s", powers(1e-9, 1e-2, 2)),
             (_ERRORS, "" if column else _LABEL, _ERROR_TICKS),
         )
-        panel.rule(roof, BLACK, (1.2, 0.6), "memory roof")
+        panel.rule(roof, dash=(1.2, 0.6), role="memory roof")
         for row in rows:
             if row["population"] != name:
                 continue
             if row["method"] not in _MARKS:
-                panel.rule(row["seconds"], GREY, (0.4, 0.6))
+                panel.rule(row["seconds"], GREY, dash=(0.4, 0.6))
                 continue
             colour, ends = _MARKS[row["method"]][1], (_shown(row["median"]), _shown(row["largest"]))
             panel.line([row["seconds"]] * 2, ends, colour, 0.3)
@@ -118,7 +118,7 @@ def error_distribution(rows: Sequence[Row]) -> Drawing:
         )
         for unit, colour in ((DOUBLE, ORANGE), (APPLESOFT, VERMILION)):
             line = [_shown(x) for x in relative_bounds(_CONDITIONS, unit).tolist()]
-            errors.line(_CONDITIONS, line, colour, 0.4, (1.2, 0.6), role="bound")
+            errors.line(_CONDITIONS, line, colour, dash=(1.2, 0.6), role="bound")
         shares = page.panel(
             *(98, 170, place, []),
             (_ERRORS, "the same error", _ERROR_TICKS),
@@ -135,6 +135,6 @@ def error_distribution(rows: Sequence[Row]) -> Drawing:
             share = 1 - np.arange(len(ordered)) / len(ordered)
             mark, colour = _MARKS[method]
             dash = (0.4, 0.6) if mark[-1] == " " else ()
-            shares.line(ordered, share, colour, 0.4, dash, role=method)
+            shares.line(ordered, share, colour, dash=dash, role=method)
     note = "dashed: 16 × condition × unit roundoff, of double precision and of the 1988 program"
     return page.finished(len(page.names), SCATTERED, note)

@@ -209,8 +209,8 @@ def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[d
 
 def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     """The scene from above as SVG, as `impact88 figure scene` draws it. Raises UserError."""
+    from ..figures.canvas import svg
     from ..figures.sceneview import scene_drawing
-    from ..figures.svg import svg
     from ..judging import beside
     from ..units import system_of
 
@@ -227,8 +227,8 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
 
 def sign_diagram() -> str:
     """Axes, angles and impulses of a scene, as `impact88 figure planar` draws them."""
+    from ..figures.canvas import svg
     from ..figures.freebody import planar
-    from ..figures.svg import svg
 
     return svg(planar())
 

@@ -95,16 +95,19 @@ class Panel:
         corner, right, _, top = box.corners
         for end in (right, top):
             drawing.add(Path((corner, end), BLACK, 0.2, role="axis"))
-        across = ticks(*x, x_ticks) if isinstance(x_ticks, int) else x_ticks
-        up = ticks(*y, y_ticks) if isinstance(y_ticks, int) else y_ticks
-        for value, text in across:
-            at = complex(self.x(value), box.bottom)
-            self._tick(at, 1j * box.height if grid else 0, -0.9j)
-            drawing.add(Text(at - 1j * BELOW, text, anchor="middle", role="x tick"))
-        for value, text in up:
-            at = complex(box.left, self.y(value))
-            self._tick(at, box.width if grid else 0, -0.9)
-            drawing.add(Text(at - 1.5 - 0.8j, text, anchor="end", role="y tick"))
+        up, left = 1j * box.height, -1.5 - 0.8j
+        for axis, given, inward, outward, shift, look in (
+            (self.x, x_ticks, up, -0.9j, -1j * BELOW, ("middle", "x tick")),
+            (self.y, y_ticks, box.width, -0.9, left, ("end", "y tick")),
+        ):
+            marks = ticks(axis.low, axis.high, given) if isinstance(given, int) else given
+            for value, text in marks:
+                place = axis(value)
+                at = complex(place, box.bottom) if axis is self.x else complex(box.left, place)
+                if grid:
+                    drawing.add(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
+                drawing.add(Path((at, at + outward), BLACK, 0.2, role="tick"))
+                drawing.add(Text(at + shift, text, anchor=look[0], role=look[1]))
         room = box.width + 8
         at = complex((box.left + box.right) / 2, box.bottom - BELOW - ROW + 0.2)
         for line in d.wrapped(x_label, room) if x_label else []:
@@ -113,38 +116,22 @@ class Panel:
         if y_label:
             drawing.add(Text(complex(box.left - 1, box.top + 1.8), y_label, role="y label"))
 
-    def _tick(self, at: complex, inward: complex, outward: complex) -> None:
-        if inward:
-            self.drawing.add(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
-        self.drawing.add(Path((at, at + outward), BLACK, 0.2, role="tick"))
-
     def at(self, x: float, y: float) -> complex:
         """Where a pair of numbers is on paper."""
         return complex(self.x(x), self.y(y))
 
-    def line(
-        self,
-        xs: Any,
-        ys: Any,
-        colour: str = BLACK,
-        width: float = 0.4,
-        dash: tuple[float, ...] = (),
-        fill: str | None = None,
-        role: str = "",
-    ) -> None:
-        """A line through pairs of numbers; pieces with one that is not finite are left out."""
+    def line(self, xs: Any, ys: Any, colour: str, width: float = 0.4, **look: Any) -> None:
+        """A line through pairs of numbers; pieces with one that is not finite are left out.
+        ``look``: as of a `Path`."""
         points = self.x(np.asarray(xs, float)) + 1j * self.y(np.asarray(ys, float))
         finite = np.isfinite(points)
         for piece in np.split(points, np.flatnonzero(np.diff(finite)) + 1):
             if len(piece) > 1 and np.isfinite(piece[0]):
-                path = Path(tuple(map(complex, piece)), colour, width, dash, fill, role)
-                self.drawing.add(path)
+                self.drawing.add(Path(tuple(map(complex, piece)), colour, width, **look))
 
-    def rule(
-        self, x: float, colour: str = BLACK, dash: tuple[float, ...] = (), role: str = ""
-    ) -> None:
+    def rule(self, x: float, colour: str = BLACK, **look: Any) -> None:
         """A line over the whole height."""
-        self.line([x, x], [self.y.low, self.y.high], colour, 0.35, dash, role=role)
+        self.line([x, x], [self.y.low, self.y.high], colour, 0.35, **look)
 
     def shade(self, low: float, high: float, colour: str) -> None:
         """A stretch of the horizontal axis, behind everything."""
@@ -158,23 +145,16 @@ class Panel:
         box = Box(left, middle - half, right, middle + half)
         self.drawing.add(Path(box.corners, d.BLUE, 0.2, fill=fill, role=role))
 
-    def mark(
-        self,
-        x: float,
-        y: float,
-        shape: str = "o",
-        colour: str = BLACK,
-        filled: bool = True,
-        role: str = "mark",
-    ) -> None:
-        """A mark at a pair of numbers."""
+    def mark(self, x: float, y: float, shape: str = "o", *look: Any, **looks: Any) -> None:
+        """A mark at a pair of numbers, if they are finite."""
         at = self.at(x, y)
         if math.isfinite(abs(at)):
-            self.drawing.add(mark(at, shape, colour, filled, role))
+            self.drawing.add(mark(at, shape, *look, **looks))
 
 
-def mark(at: complex, shape: str, colour: str, filled: bool = True, role: str = "mark") -> Path:
-    """A mark on paper."""
+def mark(
+    at: complex, shape: str, colour: str = BLACK, filled: bool = True, role: str = "mark"
+) -> Path:
     corners, turn = MARKS[shape]
     points = tuple(at + 0.9 * d.unit(turn + 360 * i / corners) for i in range(corners))
     return Path(points, colour, 0.3, (), colour if filled else d.WHITE, role)

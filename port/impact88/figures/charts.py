@@ -91,7 +91,7 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
         panel.line(*steps, d.BLUE, 0.2, fill=_PALE, role="draws")
         panel.rule(bound.nominal, role="nominal")
         for share in (0.05, 0.95):
-            panel.rule(quantiles[share], d.VERMILION, _DASHED, role="quantile")
+            panel.rule(quantiles[share], d.VERMILION, dash=_DASHED, role="quantile")
         for end in (bound.lower, bound.upper):
             panel.mark(end, 0.03 * panel.y.high, "D", role="bound")
     rows = -(-len(names) // columns)
@@ -130,7 +130,7 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
             # where both lie on one side the shorter bar stands on the longer
             for value, colour, end in sorted(sides, key=lambda side: -abs(side[0] - bound.nominal)):
                 panel.bar(bound.nominal, value, -place, 1.3, colour, f"{source} {end}")
-            panel.line([drive.lowest, drive.highest], [-place] * 2, width=0.3, role="whisker")
+            panel.line([drive.lowest, drive.highest], [-place] * 2, d.BLACK, 0.3, role="whisker")
         panel.rule(bound.nominal, role="nominal")
         top = box.bottom - 11.5 - d.ROW * (len(d.wrapped(_label(name, units), box.width + 8)) - 1)
     looks = (("at its upper limit", d.BLUE, None), ("in between", d.BLACK, ()))
@@ -295,7 +295,7 @@ def force_and_impulse() -> Drawing:
             y_ticks=[(level, name)],
         )
         panel.line(xs, ys, d.BLUE, fill=_PALE, role="force")
-        panel.line([0, 1], [level] * 2, d.GREY, 0.2, _DASHED)
+        panel.line([0, 1], [level] * 2, d.GREY, 0.2, dash=_DASHED)
         at = panel.at(0.4, 0.35 * mean)
         drawing.add(Text(at, "impulse", anchor="middle"))
     drawing.height = 38 - top

@@ -1,11 +1,9 @@
-"""Drawings as lists of paths and texts on paper, which `svg` and `canvas` only copy.
+"""Drawings as lists of paths and texts on paper, which `canvas` only copies.
 
 Points are complex numbers, x + iy in millimetres, y upwards; a page reaches from 0 at its top left
 corner down to -height. Texts are measured with the widths of DejaVu Sans, matplotlib's font and as
 wide as any likely to stand in for it, so texts that do not overlap here overlap nowhere.
 """
-
-from __future__ import annotations
 
 import cmath
 import math
@@ -13,7 +11,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..errors import UserError
 
@@ -22,11 +20,8 @@ DRAWABLE = 1e100
 COLUMN = 85.0
 """Width in millimetres of a column in print."""
 MM_PER_POINT = 25.4 / 72
-FONTS = "'DejaVu Sans', Verdana, Arial, sans-serif"
-TEXT = 6.5
-"""Size of most texts, in points."""
-ROW = 3.4
-"""Distance in mm of lines of such texts."""
+TEXT, ROW = 6.5, 3.4
+"""Size of most texts in points, and the distance of their lines in mm."""
 
 # Okabe and Ito's colours, which stay apart for every common kind of colour blindness
 BLACK, GREY, WHITE = "#000000", "#666666", "#ffffff"
@@ -93,26 +88,20 @@ class Box(NamedTuple):
 
     @property
     def width(self) -> float:
-        """From left to right."""
         return self.right - self.left
 
     @property
     def height(self) -> float:
-        """From bottom to top."""
         return self.top - self.bottom
 
     @property
     def corners(self) -> tuple[complex, ...]:
         """From the lower left one counterclockwise."""
         left, bottom, right, top = self
-        return (
-            complex(left, bottom),
-            complex(right, bottom),
-            complex(right, top),
-            complex(left, top),
-        )
+        points = (left, bottom), (right, bottom), (right, top), (left, top)
+        return tuple(complex(*point) for point in points)
 
-    def overlaps(self, other: Box) -> bool:
+    def overlaps(self, other: "Box") -> bool:
         """Whether the two share area."""
         beside = self.left >= other.right or other.left >= self.right
         return not beside and self.bottom < other.top and other.bottom < self.top
@@ -128,7 +117,6 @@ class View(NamedTuple):
         return self.origin + self.scale * point
 
     def all(self, points: Iterable[complex]) -> tuple[complex, ...]:
-        """Several points on paper."""
         return tuple(self(point) for point in points)
 
 
@@ -158,11 +146,9 @@ class Drawing:
         self.labels += [item for item in items if isinstance(item, Label)]
 
     def texts(self) -> list[Text]:
-        """The texts only."""
         return [item for item in self.items if isinstance(item, Text)]
 
     def paths(self) -> list[Path]:
-        """The paths only."""
         return [item for item in self.items if isinstance(item, Path)]
 
     def heading(self) -> float:
@@ -226,7 +212,7 @@ def text_box(text: Text) -> Box:
 
 
 def unit(degrees: float) -> complex:
-    """The direction ``degrees`` from the x axis."""
+    """The direction so many degrees from the x axis."""
     return cmath.rect(1.0, math.radians(degrees))
 
 
@@ -235,52 +221,33 @@ def degrees(direction: complex) -> float:
     return math.degrees(cmath.phase(direction))
 
 
-def arrow(
-    start: complex,
-    end: complex,
-    colour: str = BLACK,
-    width: float = 0.35,
-    dash: tuple[float, ...] = (),
-    head: float = 2.0,
-    role: str = "",
-) -> list[Path]:
-    """A shaft and a filled head of length ``head``, shorter where the arrow itself is short."""
-    length = abs(end - start)
+def arrow(tail: complex, tip: complex, *look: Any, head: float = 2.0, role: str = "") -> list[Path]:
+    """A shaft and a filled head of length ``head``, shorter where the arrow itself is short.
+    ``look``: colour, width and dashes of the shaft."""
+    length = abs(tip - tail)
     if length == 0:
         return []
-    head = min(head, 0.6 * length)
-    along = head * (end - start) / length
-    return [
-        Path((start, end - 0.85 * along), colour, width, dash, role=role),
-        Path(_head(end, along), None, fill=colour, role=role and f"{role} head"),
-    ]
+    along = min(head, 0.6 * length) * (tip - tail) / length
+    return _headed((tail, tip - 0.85 * along), tip, along, look or (BLACK, 0.35), role)
 
 
-def _head(tip: complex, along: complex) -> tuple[complex, ...]:
-    return (tip, tip - along * (1 - 0.36j), tip - along * (1 + 0.36j))
+def _headed(
+    shaft: tuple[complex, ...], tip: complex, along: complex, look: tuple[Any, ...], role: str
+) -> list[Path]:
+    head = (tip, tip - along * (1 - 0.36j), tip - along * (1 + 0.36j))
+    filled = Path(head, None, fill=look[0], role=role and f"{role} head")
+    return [Path(shaft, *look)._replace(role=role), filled]
 
 
 def turning_arrow(
-    center: complex,
-    radius: float,
-    counterclockwise: bool,
-    colour: str,
-    width: float,
-    dash: tuple[float, ...],
-    opening: float,
-    span: float = 250.0,
-    role: str = "",
+    center: complex, radius: float, sense: int, gap: float, *look: Any, span: float, role: str
 ) -> list[Path]:
-    """An arc around ``center`` with a head showing the sense; ``opening`` is the direction in
-    degrees the gap between its ends looks to."""
-    sense = 1 if counterclockwise else -1
-    points = arc(center, opening + sense * (360 - span) / 2, sense * span, radius)
+    """An arc of ``span`` degrees around ``center`` with a head, counterclockwise for a ``sense`` of
+    1, else -1; ``gap`` is the direction in degrees the gap between its ends looks to."""
+    points = arc(center, gap + sense * (360 - span) / 2, sense * span, radius)
     # the head's tip goes on a little along the tangent, its back sits on the arc
     along = min(1.7, radius) * sense * 1j * (points[-1] - center) / radius
-    return [
-        Path(points, colour, width, dash, role=role),
-        Path(_head(points[-1] + 0.6 * along, along), None, fill=colour, role=f"{role} head"),
-    ]
+    return _headed(points, points[-1] + 0.6 * along, along, look, role)
 
 
 def arc(center: complex, first: float, turn: float, radius: float) -> tuple[complex, ...]:
@@ -290,7 +257,6 @@ def arc(center: complex, first: float, turn: float, radius: float) -> tuple[comp
 
 
 def circle(center: complex, radius: float) -> tuple[complex, ...]:
-    """A circle as a polygon."""
     return arc(center, 0, 360, radius)[1:]
 
 

@@ -64,12 +64,15 @@ def planar(scene: Any = None, velocities: bool = False) -> Drawing:
         moved = View(at(apart[vehicle.name]), scale)
         _body(drawing, shapes, vehicle, moved, scale * size)
         if velocities:
-            low, (_, width, dash, head) = vehicle.name.lower(), ARROWS["before"]
+            low, colour, (_, look, head) = (
+                vehicle.name.lower(),
+                COLOURS[vehicle.name],
+                ARROWS["before"],
+            )
             side = -0.9j if vehicle.name == "A" else 0.9j  # where P_t is not
             base = moved(vehicle.center + side * vehicle.width)
             end = base + 8 * vehicle.before.velocity / vehicle.before.speed
-            colour = COLOURS[vehicle.name]
-            drawing.add(*d.arrow(base, end, colour, width, dash, head, "velocity"))
+            drawing.add(*d.arrow(base, end, colour, *look, head=head, role="velocity"))
             drawing.add(Label(base, base - end, f"v_{{{low}n}}, v_{{{low}t}}", colour=colour))
     _plane(drawing, shapes, at.origin, scale * size)
     page = Box(0.6, 0.4 - drawing.height, drawing.width - 0.6, -0.4)
@@ -99,8 +102,8 @@ def _body(drawing: Drawing, shapes: Plan, vehicle: Vehicle, at: View, size: floa
         drawing.add(Label(end, sense * along, text, 8, IMPULSE, True, role))
     if not point:
         outward = -sense * shapes.normal
-        look = (IMPULSE, 0.6, (), d.degrees(outward) + 180, 200, "moment")
-        drawing.add(*d.turning_arrow(contact, _MOMENT, sense > 0, *look))
+        turn = contact, _MOMENT, sense, d.degrees(outward) + 180
+        drawing.add(*d.turning_arrow(*turn, IMPULSE, 0.6, span=200, role="moment"))
         edge = contact + _MOMENT * outward
         drawing.add(Label(edge, outward, f"{minus}M", 8, IMPULSE, True, "moment label"))
     drawing.add(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))

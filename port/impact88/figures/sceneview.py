@@ -8,10 +8,10 @@ from typing import Any
 from ..reconstruction.impulse import clock
 from ..units import RULES, System, system_of
 from . import drawing as d
+from .canvas import Svg, svg
 from .drawing import ROW, Box, Drawing, Label, Path, Text, View, short
 from .labels import place
 from .scenegeometry import Plan, Vehicle, plan
-from .svg import Svg, svg
 
 COLOURS = {"A": d.BLUE, "B": d.VERMILION}
 TINTS = {"A": "#d6e8f3", "B": "#fbe6d8"}
@@ -19,12 +19,12 @@ IMPULSE = "#a03c78"
 """A darker reddish purple than Okabe and Ito's: thin lines need it on white."""
 PLANE = (2.4, 0.8, 0.4, 0.8)
 """Dashes of the contact plane."""
-ARROWS: dict[str, tuple[str, float, tuple[float, ...], float]] = {
-    "before": ("v", 0.45, (1.3, 0.7), 2.2),
-    "after": ("V", 0.65, (), 2.5),
-    "change": ("ΔV", 0.3, (0.4, 0.5), 1.8),
+ARROWS: dict[str, tuple[str, tuple[float, tuple[float, ...]], float]] = {
+    "before": ("v", (0.45, (1.3, 0.7)), 2.2),
+    "after": ("V", (0.65, ()), 2.5),
+    "change": ("ΔV", (0.3, (0.4, 0.5)), 1.8),
 }
-"""Velocities of a vehicle: symbol, width, dashes and head of the arrow."""
+"""Velocities of a vehicle: symbol, width and dashes of the arrow, and its head."""
 FIELD = 70.0
 """Largest height in mm of the drawing proper."""
 _MARGIN = 6.0
@@ -92,24 +92,21 @@ class _Field:
         self.force = 0j
         if shapes.impulse:
             self.force = 0.5 * self.size * shapes.impulse / abs(shapes.impulse)
-        box = d.extent(self._points())
+        # the n axis stands at the plane's end
+        points = [0j, self.half, -self.half, self.half + 0.3 * self.size * shapes.normal]
+        for vehicle in shapes.vehicles:
+            if vehicle.wall:
+                points += self._face(vehicle)
+            else:
+                points += vehicle.outline
+                points += [end for ends in self._arrows(vehicle).values() for end in ends]
+        box = d.extent([*points, self.force, -self.force])
         tallest = FIELD + 0.3 * (width - d.COLUMN) - 2 * _MARGIN
         scale = min((width - 2 * _MARGIN) / box.width, tallest / box.height)
         bottom = top - scale * box.height - 2 * _MARGIN
         self.frame = Box(0.8, bottom, width - 0.8, top - 0.4)
         left = (width - scale * (box.left + box.right)) / 2
         self.at = View(complex(left, bottom + _MARGIN - scale * box.bottom), scale)
-
-    def _points(self) -> list[complex]:
-        # the n axis stands at the plane's end
-        points = [0j, self.half, -self.half, self.half + 0.3 * self.size * self.shapes.normal]
-        for vehicle in self.shapes.vehicles:
-            if vehicle.wall:
-                points += self._face(vehicle)
-            else:
-                points += vehicle.outline
-                points += [end for ends in self._arrows(vehicle).values() for end in ends]
-        return [*points, self.force, -self.force]
 
     def _face(self, vehicle: Vehicle) -> list[complex]:
         """Four corners of the strip a wall is drawn as."""
@@ -180,20 +177,18 @@ class _Field:
         colour, name = COLOURS[vehicle.name], vehicle.name.lower()
         center = self.at(vehicle.center)
         for kind, ends in self._arrows(vehicle).items():
-            symbol, width, dash, head = ARROWS[kind]
             start, end = self.at.all(ends)
-            role = f"{vehicle.name} {kind}"
-            drawing.add(*d.arrow(start, end, colour, width, dash, head, role))
-            text, at = f"{symbol}_{name}", start if kind == "before" else end
+            drawing.add(*velocity_arrow(vehicle, kind, start, end))
+            text, at = f"{ARROWS[kind][0]}_{name}", start if kind == "before" else end
             towards = 2 * at - start - end
             drawing.add(Label(at, towards, text, colour=colour, role=f"{text} label"))
         turns = [("ω", vehicle.before, 2.9, (0.9, 0.6)), ("Ω", vehicle.after, 3.9, ())]
         for symbol, motion, radius, dash in turns:
             if motion is None or not abs(motion.spin) > 1e-4 * self.speed / self.size:
                 continue
-            look = (colour, 0.4, dash, d.degrees(-vehicle.front))
+            turn = center, radius, 1 if motion.spin > 0 else -1, d.degrees(-vehicle.front)
             role = f"{vehicle.name} spin"
-            drawing.add(*d.turning_arrow(center, radius, motion.spin > 0, *look, role=role))
+            drawing.add(*d.turning_arrow(*turn, colour, 0.4, dash, span=250, role=role))
             edge, text = center + radius * vehicle.front, f"{symbol}_{name}"
             drawing.add(Label(edge, vehicle.front, text, colour=colour, role=f"{text} label"))
         role = f"{vehicle.name} center"
@@ -202,14 +197,24 @@ class _Field:
     def _draw_impulse(self, drawing: Drawing, vehicle: Vehicle) -> None:
         """The force on a vehicle, and from where on its clock it comes."""
         acted = vehicle.name == "A"
-        force, symbol, role = -self.force, "−P", "opposite impulse"
-        width, head = 0.45, 2.2
-        if acted:
-            force, symbol, role, width, head = self.force, "P", "impulse", 0.9, 2.8
+        force, symbol, role, width, head = (
+            (self.force, "P", "impulse", 0.9, 2.8)
+            if acted
+            else (-self.force, "−P", "opposite impulse", 0.45, 2.2)
+        )
         tip = self.at(force)
         drawing.add(*d.arrow(self.at(0), tip, IMPULSE, width, head=head, role=role))
         text = f"{symbol}, {clock(vehicle.pdof(self.shapes.impulse or 0j))}"
         drawing.add(Label(tip, force, text, 7.5, IMPULSE, acted, f"{role} label"))
+
+
+def velocity_arrow(
+    vehicle: Vehicle, kind: str, start: complex, end: complex, head: float = 0.0
+) -> list[Path]:
+    """A velocity of a vehicle on paper; ``head``: where it is not the usual one."""
+    _, look, usual = ARROWS[kind]
+    role = f"{vehicle.name} {kind}"
+    return d.arrow(start, end, COLOURS[vehicle.name], *look, head=head or usual, role=role)
 
 
 def name_label(vehicle: Vehicle, at: complex, towards: complex, size: float = 10) -> Label:
@@ -255,14 +260,6 @@ def draw_bodies(drawing: Drawing, vehicles: Sequence[Vehicle], at: View) -> None
             drawing.add(Path(at.all(points), COLOURS[name], width, dash, role=role))
 
 
-def _round_below(value: float) -> float:
-    """The largest 1, 2 or 5 times a power of ten that is not above ``value``."""
-    if not value > 0:
-        return 0.0
-    power = 10.0 ** math.floor(math.log10(value))
-    return max(step * power for step in (1, 2, 5) if step * power <= value * (1 + 1e-12))
-
-
 def with_unit(value: float, rule: str, units: System) -> str:
     """An amount in the units shown, named where they have names."""
     label = "" if units is RULES else units.label(rule)
@@ -274,13 +271,15 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
     shapes, sample = field.shapes, 8.0
 
     def velocity(kind: str) -> list[Path]:
-        return d.arrow(0, sample, d.BLACK, *ARROWS[kind][1:])
+        _, look, head = ARROWS[kind]
+        return d.arrow(0, sample, d.BLACK, *look, head=head)
 
     def scale(word: str, size: float, per_unit: float, rule: str) -> tuple[list[Path], str]:
-        """A bar of a round amount, about half of ``size``, and what it stands for."""
-        per_unit /= units.shown(rule, 1.0)
-        amount = _round_below(units.shown(rule, size) * 0.5)
-        end = per_unit * amount
+        """A bar of 1, 2 or 5 times a power of ten, at most half of ``size``, and what it means."""
+        half = units.shown(rule, size) * 0.5
+        power = 10.0 ** math.floor(math.log10(half))
+        amount = max(step * power for step in (1, 2, 5) if step * power <= half * (1 + 1e-12))
+        end = per_unit / units.shown(rule, 1.0) * amount
         bar = [Path((0, end), d.BLACK, 0.4, role=f"{word} scale")]
         bar += [Path((x - 0.7j, x + 0.7j), d.BLACK, 0.4) for x in (0, end)]
         unit = f" {units.label(rule)}"
@@ -295,7 +294,7 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
     middle.append(scale("length", field.size, field.at.scale, _LENGTH))
     if shapes.impulse is not None:
         left.append((velocity("change"), "velocity change ΔV"))
-        force = d.arrow(0, sample, IMPULSE, 0.9, (), 2.8)
+        force = d.arrow(0, sample, IMPULSE, 0.9, head=2.8)
         size = with_unit(abs(shapes.impulse), _IMPULSE, units)
         left.append((force, f"impulse P on A, {size}"))
     if any(v.kept != v.outline for v in shapes.bodies):
@@ -342,21 +341,14 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
 
 
 def _cells(vehicle: Vehicle, shapes: Plan, units: System) -> list[str]:
-    point, after = shapes.numbers["M"] == 4, None if vehicle.wall else vehicle.after
-    impulse = shapes.impulse if after else None
-    change = abs(vehicle.change) if after and vehicle.change is not None else None
-
-    def speed(value: float | None) -> str:
-        return "–" if value is None else short(units.shown(_SPEED, value))
-
-    return [
-        speed(vehicle.before.speed),
-        speed(after and after.speed),
-        speed(change),
-        f"{vehicle.pdof(impulse):.0f}°".replace("-", "−") if impulse else "–",
-        "–" if point else short(vehicle.before.spin),
-        "–" if point or not after else short(after.spin),
-    ]
+    cells = [short(units.shown(_SPEED, vehicle.before.speed)), "–", "–", "–"]
+    after, spins = None if vehicle.wall else vehicle.after, [short(vehicle.before.spin), "–"]
+    if after and vehicle.change is not None:
+        cells[1:3] = (short(units.shown(_SPEED, v)) for v in (after.speed, abs(vehicle.change)))
+        if shapes.impulse:
+            cells[3] = f"{vehicle.pdof(shapes.impulse):.0f}°".replace("-", "−")
+        spins[1] = short(after.spin)
+    return cells + (["–", "–"] if shapes.numbers["M"] == 4 else spins)
 
 
 def _notes(shapes: Plan, units: System) -> list[str]:

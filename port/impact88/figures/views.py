@@ -10,7 +10,7 @@ from . import sceneview as view
 from .drawing import ROW, Box, Drawing, Path, Text, View
 from .labels import place
 from .scenegeometry import Motion, Plan, Vehicle, plan
-from .sceneview import ARROWS, COLOURS
+from .sceneview import COLOURS
 
 _GAP = 6.0
 """Between the views of a strip, in mm."""
@@ -52,8 +52,7 @@ def strip_drawing(
         for vehicle in moved:
             tail, tip = at.all((vehicle.center, _tip(vehicle, kind, 0.5 * time)))
             if abs(tip - tail) > 0.5:
-                look, role = ARROWS[kind][1:], f"{vehicle.name} {kind}"
-                drawing.add(*d.arrow(tail, tip, COLOURS[vehicle.name], *look, role))
+                drawing.add(*view.velocity_arrow(vehicle, kind, tail, tip))
             drawing.add(view.name_label(vehicle, tail, -vehicle.front))
         if kind == "impact" and shapes.impulse:
             force = 0.5 * size * shapes.impulse / abs(shapes.impulse)
@@ -119,9 +118,8 @@ def configurations() -> Drawing:
         view.draw_bodies(drawing, plans[count].vehicles, at)
         for vehicle in plans[count].vehicles:
             colour, center = COLOURS[vehicle.name], at(vehicle.center)
-            start, (_, width, dash, _) = at(_tail(vehicle, plans[count], arrow)), ARROWS["before"]
-            role = f"{vehicle.name} before"
-            drawing.add(*d.arrow(start, center, colour, width, dash, 2.0, role))
+            start = at(_tail(vehicle, plans[count], arrow))
+            drawing.add(*view.velocity_arrow(vehicle, "before", start, center, head=2.0))
             drawing.add(Path(d.circle(center, 0.5), colour, 0.3, fill=d.WHITE))
             drawing.add(view.name_label(vehicle, center, 0.3 + 1j, 8))
         drawing.add(Path(d.circle(at(0), 0.5), d.BLACK, 0.3, fill=d.WHITE))

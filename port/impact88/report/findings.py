@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import UserError
+from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
-from ..figures.svg import svg
 from ..names import DEFAULT_M, SCENE, check_names, quantity
 from ..plaintable import fixed, number
 from ..reconstruction.contact import MOVES, moved, placed
