@@ -138,13 +138,6 @@ class Panel:
         box = Box(self.x(low), self.box.bottom, self.x(high), self.box.top)
         self.drawing.items.insert(self._ground, Path(box.corners, None, fill=colour, role="shade"))
 
-    def bar(self, low: float, high: float, y: float, half: float, fill: str, role: str) -> None:
-        """A bar from ``low`` to ``high`` at ``y``, ``half`` a mm to either side."""
-        middle = self.y(y)
-        left, right = sorted((self.x(low), self.x(high)))
-        box = Box(left, middle - half, right, middle + half)
-        self.drawing.add(Path(box.corners, d.BLUE, 0.2, fill=fill, role=role))
-
     def mark(self, x: float, y: float, shape: str = "o", *look: Any, **looks: Any) -> None:
         """A mark at a pair of numbers, if they are finite."""
         at = self.at(x, y)

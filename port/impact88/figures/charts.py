@@ -15,7 +15,7 @@ from ..status import Status
 from ..units import System, system_of
 from . import drawing as d
 from .axes import Panel, key, span
-from .drawing import Box, Drawing, Text, short
+from .drawing import Box, Drawing, Path, Text, short
 
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
@@ -129,7 +129,9 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
             sides = [(drive.at_low, d.WHITE, "low"), (drive.at_high, d.BLUE, "high")]
             # where both lie on one side the shorter bar stands on the longer
             for value, colour, end in sorted(sides, key=lambda side: -abs(side[0] - bound.nominal)):
-                panel.bar(bound.nominal, value, -place, 1.3, colour, f"{source} {end}")
+                start, stop = panel.at(bound.nominal, -place), panel.at(value, -place)
+                bar = d.extent((start - 1.3j, stop + 1.3j)).corners
+                drawing.add(Path(bar, d.BLUE, 0.2, fill=colour, role=f"{source} {end}"))
             panel.line([drive.lowest, drive.highest], [-place] * 2, d.BLACK, 0.3, role="whisker")
         panel.rule(bound.nominal, role="nominal")
         top = box.bottom - 11.5 - d.ROW * (len(d.wrapped(_label(name, units), box.width + 8)) - 1)

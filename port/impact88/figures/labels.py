@@ -1,16 +1,11 @@
 """Where labels go: beside what they name, off every line and every other text."""
 
-from __future__ import annotations
-
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .drawing import Box, Drawing, Path, Text, text_box
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 DIRECTIONS = 24
 """Half as many leave labels on lines that a step of 15 degrees clears; twice as many change

@@ -36,7 +36,6 @@ class Motion(NamedTuple):
 
     @property
     def speed(self) -> float:
-        """The velocity's size."""
         return abs(self.velocity)
 
 
@@ -58,7 +57,6 @@ class Vehicle(NamedTuple):
 
     @property
     def change(self) -> complex | None:
-        """The change of velocity."""
         return self.after.velocity - self.before.velocity if self.after else None
 
     def pdof(self, impulse: complex) -> float:
@@ -89,7 +87,6 @@ class Plan(NamedTuple):
 
     @property
     def bodies(self) -> list[Vehicle]:
-        """The vehicles that are no wall."""
         return [vehicle for vehicle in self.vehicles if not vehicle.wall]
 
 
