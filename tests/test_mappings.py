@@ -147,12 +147,39 @@ UNUSABLE: list[Callable[[], Any]] = [
     lambda: impact88.Scene("a.toml"),  # type: ignore[arg-type]
     lambda: impact88.solve_frame(3, "LOSS"),
 ]
+THINGS: list[Any] = [None, 7, b"\xff", [], [1], {}, {1: 2}, {"MA": []}, object(), np.zeros((2, 2))]
+FUNCTIONS = (
+    "solve run bounds reconstruct oracle replay compare verify sample solve_frame solve_for "
+)
+FUNCTIONS += "read_printouts scene_svg barrier colinear colinear_inverse delta_v Scene"
 
 
 @pytest.mark.parametrize("call", UNUSABLE, ids=range(len(UNUSABLE)))
 def test_whatever_cannot_be_used_is_a_user_error(call: Callable[[], Any]) -> None:
     with pytest.raises(UserError):
         call()
+
+
+@pytest.mark.parametrize("name", FUNCTIONS.split())
+def test_a_thing_of_another_kind_is_a_user_error(name: str) -> None:
+    for thing in THINGS:
+        if isinstance(thing, list) and not thing and name in ("oracle", "solve_frame"):
+            continue  # of no scenes, nothing
+        with pytest.raises(UserError):
+            getattr(impact88, name)(thing)
+
+
+def test_a_frame_s_columns_may_have_numbers_for_names() -> None:
+    (row,) = impact88.solve_frame([{**NUMBERS, 7: "note"}], "LOSS")
+    assert row[7] == "note"
+    assert row["LOSS"] == impact88.solve(NUMBERS)["LOSS"]
+
+
+def test_results_wanted_may_stand_in_one_text() -> None:
+    for names in (["DVA", "LOSS"], "DVA,LOSS", "DVA LOSS"):
+        assert list(impact88.solve(NUMBERS, names)) == ["DVA", "LOSS"]
+        found = impact88.bounds({**NUMBERS, "GA": "-30 +- 5"}, names, samples=10)
+        assert list(found.bounds) == ["DVA", "LOSS"]
 
 
 EXAMPLES = set(impact88.__all__) - {"__version__", "accelerated"}

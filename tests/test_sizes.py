@@ -113,6 +113,7 @@ READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
     ),
     "a long line typed": (20_000, lambda n: (["basic", "t.bas"], table("10 " + "A" * n))),
     "printouts": (1, lambda n: (["verify", "--brief", "t.txt"], table(*[PRINTOUT] * n))),
+    "one letter to verify": (60_000, lambda n: (["verify", "t.txt"], b"x" * n)),
 }
 if os.environ.get("IMPACT88_SWEEP"):  # seconds for any number of rows
     READERS["unlike rows to compare"] = (

@@ -178,6 +178,11 @@ def quantity(name: str) -> Quantity:
     return SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
 
 
+def listed(names: Sequence[str] | str) -> Sequence[str]:
+    """Names given one by one, or in one text between commas or blanks."""
+    return names.replace(",", " ").split() if isinstance(names, str) else names
+
+
 def check_names(
     names: Iterable[str], allowed: Collection[str], what: str, where: str | None = None
 ) -> None:

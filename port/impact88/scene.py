@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 
 from . import notebook
 from .doubles import double, is_number
@@ -240,8 +240,8 @@ def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
 
 
 def check_mapping(values: object) -> None:
-    """Raises UserError for what is not a mapping, such as the name of a file."""
-    if not isinstance(values, Mapping):
+    """Raises UserError for what is not a mapping of names, such as the name of a file."""
+    if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
         hint = ", such as impact88.Scene.from_toml(...)" if isinstance(values, str) else ""
         raise UserError(f"{quoted(values)}: expected a mapping of names to values{hint}")
 
@@ -560,7 +560,7 @@ def sample(number: int) -> Scene:
     >>> impact88.sample(2)["M"]
     '4'
     """
-    if number not in _SAMPLES:
+    if not isinstance(number, Hashable) or number not in _SAMPLES:
         raise UserError(f"there is no sample {number}; expected {', '.join(map(str, SAMPLES))}")
     title, typed = _SAMPLES[number]
     values = published_data() | dict(entry.split("=") for entry in typed.split())

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..doubles import double
-from ..errors import UserError
+from ..errors import UserError, quoted
 from ..files import called
 from ..mappings import texts
 from ..names import DEFAULT_M, RESULTS, SCENE
@@ -209,6 +209,8 @@ def compare(
     '1 row: 1 agree, 0 disagree'
     """
     values = texts(values or {})
+    if not isinstance(path, str | os.PathLike):
+        raise UserError(f"{quoted(path)}: expected the name of a table's file")
     path = os.fspath(path)
     where = called(path)
     comparison = Comparison()

@@ -107,7 +107,9 @@ def oracle(
     """
     from ..mappings import typed
 
-    scenes = [typed(scene) for scene in ([scenes] if isinstance(scenes, Mapping) else scenes)]
+    if isinstance(scenes, Mapping) or not isinstance(scenes, Iterable):
+        scenes = [scenes]
+    scenes = [typed(scene) for scene in scenes]
     for scene in scenes:
         _check_model(scene)
     if not scenes:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .. import native
 from ..errors import UserError
 from ..mappings import in_base, in_doubles
-from ..names import PIVOT, RESULTS
+from ..names import PIVOT, RESULTS, listed
 from ..native.program import addresses
 from ..scene import check_mapping
 from ..status import Status
@@ -98,7 +98,7 @@ def solve(
     if outputs is None:
         outputs = ALL if out is None else tuple(out)
     elif isinstance(outputs, str):
-        outputs = outputs.replace(",", " ").split()
+        outputs = listed(outputs)
     wanted = _known(tuple(outputs))
     mu = columns.get("MU")
     if type(mu) in _CELLS or getattr(mu, "dtype", _FLOATS).kind in "OUS":

@@ -14,7 +14,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from ..applesoft.errorcodes import CODES
-from ..errors import UserError
+from ..errors import UserError, quoted
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT, label
 from . import numerals
 from . import plaintext as pasted
@@ -204,6 +204,8 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     >>> printout.fields["MA"].text
     '143.5'
     """
+    if not isinstance(text, str):
+        raise UserError(f"{quoted(text)}: expected a text; impact88.verify takes files and bytes")
     text = pasted.laid_out(text, where)
     page = Page(pasted.unwrapped(text))
     budget = Budget()

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..names import DEFAULT_M, SCENE, VELOCITIES
+from ..scene import check_mapping
 from .reals import Floats, Packed, from_packed
 from .textcolumns import read
 from .unit import NEVER, Ints, Unit, key
@@ -32,6 +33,7 @@ class Scenes(NamedTuple):
 def read_columns(columns: Mapping[str, Any]) -> Scenes:
     """Read all columns. Raises UserError for a missing or unknown name, lengths that do not agree,
     a text that is not a number, or values that are neither texts nor stored reals."""
+    check_mapping(columns)
     unknown = [name for name in columns if name not in SCENE]
     if unknown:
         raise UserError(f"{unknown[0]!r} is not a value of a scene (expected {' '.join(SCENE)})")

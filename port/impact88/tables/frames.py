@@ -60,7 +60,8 @@ def solve_frame(
 
     def solved(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
         """The results of a frame's columns, by heading."""
-        found = [name for name in scene_names(names) if name in SCENE]
+        # pandas names columns by numbers, too
+        found = [name for name in scene_names(list(map(str, names))) if name in SCENE]
         given = {name: column(heading(name)) for name in found}
         arrays = {n: np.asanyarray(c) for n, c in given.items()}
         texts: dict[str, Column]

@@ -24,7 +24,7 @@ from .. import status
 from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
 from ..mappings import within_limits
-from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names
+from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names, listed
 from ..reconstruction.contact import MOVES, moved, placed
 from ..reconstruction.model import Model, forward_model, reconstruction_model
 from ..scene import check_mapping
@@ -65,7 +65,7 @@ def input_names(problem: str) -> tuple[str, ...]:
 @np.errstate(all="ignore")
 def bounds(
     values: Mapping[str, Uncertain | float | str],
-    outputs: Sequence[str] | None = None,
+    outputs: Sequence[str] | str | None = None,
     *,
     problem: str = "forward",
     samples: int = 100_000,
@@ -186,7 +186,7 @@ class _Box:
     def of(
         cls,
         values: Mapping[str, Uncertain | float | str],
-        outputs: Sequence[str] | None,
+        outputs: Sequence[str] | str | None,
         problem: str,
         sigmas: float,
         exclude: Sequence[str],
@@ -198,7 +198,7 @@ class _Box:
         inputs = {name: item for name, item in given.items() if item.varies}
         known = {name: item.nominal for name, item in given.items() if not item.varies}
         usual, allowed = _outputs(problem, given["M"].nominal == 4)
-        wanted = tuple(dict.fromkeys(usual if outputs is None else outputs))
+        wanted = tuple(dict.fromkeys(usual if outputs is None else listed(outputs)))
         check_names(wanted, allowed, "result")
         if not wanted:
             raise UserError(f"no result is asked for; expected some of {' '.join(allowed)}")
