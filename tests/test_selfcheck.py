@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import shutil
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ import pytest
 import captures
 from impact88.checking import selfcheck
 from impact88.commands.selfcheck_command import _line
-from impact88.reporting.provenance import capture_hashes, listing_hash, sha256
+from impact88.report.frame import capture_hashes, hashes
 
 GOLDEN = captures.ROOT / "golden"
 FEW = 12
@@ -105,10 +106,12 @@ def test_nothing_to_compare_is_no_pass(few: Path) -> None:
 
 
 def test_hashes_are_those_of_the_files() -> None:
-    assert listing_hash() == sha256((captures.ROOT / "legacy" / "impact.bas").read_bytes())
-    hashes = dict(capture_hashes())
-    assert hashes["scenes.jsonl.gz"] == sha256((GOLDEN / "scenes.jsonl.gz").read_bytes())
-    assert len(hashes) == sum(
+    listing = (captures.ROOT / "legacy" / "impact.bas").read_bytes()
+    assert hashes()["listing"] == sha256(listing).hexdigest()
+    by_path = dict(capture_hashes())
+    scenes = (GOLDEN / "scenes.jsonl.gz").read_bytes()
+    assert by_path["scenes.jsonl.gz"] == sha256(scenes).hexdigest()
+    assert len(by_path) == sum(
         1
         for path in GOLDEN.rglob("*")
         if path.is_file()

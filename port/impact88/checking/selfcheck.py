@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from ..fields import FIELDS, outcome_fields
 from ..names import FINAL_VELOCITIES, SCENE
 from ..program.run import run
-from ..reporting import provenance
+from ..report import frame
 from ..scene import sample
 from . import captured
 
@@ -58,11 +58,8 @@ def record(checks: list[Check]) -> dict[str, Any]:
     """The record as one object: versions, hashes, checks, verdict."""
     return {
         "passed": all(check.passed for check in checks),
-        "versions": provenance.versions(),
-        "hashes": {
-            "listing": provenance.listing_hash(),
-            "captures": provenance.captures_hash(),
-        },
+        "versions": frame.versions(),
+        "hashes": frame.hashes(),
         "checks": [{**check._asdict(), "passed": check.passed} for check in checks],
         "seconds": round(sum(check.seconds for check in checks), 2),
     }

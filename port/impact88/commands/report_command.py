@@ -49,8 +49,7 @@ ARGUMENTS = (
 
 def main(args: argparse.Namespace) -> int:
     """Write the report of a collision."""
-    from ..report.findings import report
-    from ..report.tablefiles import as_rows, write_workbook
+    from ..report.findings import report, write_workbook
 
     source = options.source_of(args)
     if source is None or bool(args.scene) == bool(args.sample):
@@ -63,12 +62,13 @@ def main(args: argparse.Namespace) -> int:
     entries = entries_of(texts, source, args.units)
     options.note_remarks(entries)
     asked = {n: getattr(args, n) for n in ("samples", "seed", "case", "title", "paper")}
-    made = report(entries, source, data, **asked)
+    page, tables = report(entries, source, data, **asked)
     with replacing(args.output) as out:
-        out.write(made.page)
+        out.write(page)
     if args.csv:
+        rows = [r for one in tables for r in ([one.title], one.headings, *one.rows, [])]
         with replacing(args.csv) as out:
-            csv.writer(out, lineterminator="\n").writerows(as_rows(made.tables))
+            csv.writer(out, lineterminator="\n").writerows(rows)
     if args.xlsx:
-        write_workbook(args.xlsx, made.tables)
+        write_workbook(args.xlsx, tables)
     return 0

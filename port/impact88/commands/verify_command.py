@@ -86,9 +86,11 @@ def main(args: argparse.Namespace) -> int:
         adverse = any(result.verdict is not Verdict.IDENTICAL for result in file.results)
         status = max(status, 2 if file.error else int(adverse))
     if args.report and any(file.results for file in examined):
-        from ..reporting.casefile import write_report
+        from ..report.casefile import report
 
-        write_report(args.report, examined, **{name: getattr(args, name) for name in _ON_REPORT})
+        page = report(examined, **{name: getattr(args, name) for name in _ON_REPORT})
+        with files.replacing(args.report) as out:
+            out.write(page)
     return status
 
 

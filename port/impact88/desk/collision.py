@@ -267,4 +267,4 @@ def case_report(text: str, name: str) -> str:
     from ..report.findings import report
 
     entries = entries_of(toml_texts(text, name), name)
-    return report(entries, name, text.encode(), samples=DRAWS, seed=0).page
+    return report(entries, name, text.encode(), samples=DRAWS, seed=0)[0]

@@ -11,8 +11,8 @@ from ..errors import UserError
 from ..files import packaged_bytes
 from ..reading import plaintext as pasted
 from ..reading.printout import LARGEST_FILE
+from ..report.casefile import report as report_page
 from ..reporting import verification
-from ..reporting.casefile import report as report_page
 from ..reporting.examination import examine_bytes
 from ..reporting.verification import Examined, Verification
 

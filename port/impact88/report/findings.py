@@ -1,4 +1,5 @@
-"""The report of a collision: forward from a scene, inverse from a reconstruction file."""
+"""The report of a collision: forward from a scene, inverse from a reconstruction file; and its
+tables as a workbook."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -6,9 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import UserError
+from ..errors import UserError, library
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
+from ..files import replacing
 from ..names import DEFAULT_M, SCENE, check_names, quantity
 from ..plaintable import fixed, number
 from ..reconstruction.contact import MOVES, moved, placed
@@ -23,8 +25,8 @@ FIGURE_WIDTH = 150.0
 """Of the drawing, in mm: what both papers leave between their margins, less a little."""
 DRIVERS = 3
 """Inputs named for each result: they fill a line."""
-FORWARD = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF", "DVA", "DVB", "LOSS")
-"""Results that a scene's ranges are followed to."""
+FORWARD = ("SAF", "SBF", "VAX", "VAY", "WAF", "VBX", "VBY", "WBF", "DVA", "DVB", "LOSS")
+"""Results of a scene that the answer shows; its ranges are followed to all but the speeds."""
 INVERSE = (
     *("SA", "HA", "SB", "HB", "UX", "UY", "WA", "VX", "VY", "WB", "SAF", "SBF", "DVA", "DVB"),
     *("LOSS", "E", "MUP", "EM"),
@@ -76,14 +78,6 @@ class Findings(NamedTuple):
     drivers: Mapping[str, Sequence[str]]
     remarks: Sequence[str]
     scene: Mapping[str, float]
-    settings: str
-
-
-class Report(NamedTuple):
-    """The page, and its tables for other programs."""
-
-    page: str
-    tables: list[Table]
 
 
 def report(
@@ -96,9 +90,10 @@ def report(
     case: str = "",
     title: str = "",
     paper: str = "",
-) -> Report:
-    """The report of what a file (``source``, its bytes ``data``) says of a collision: forward for
-    a whole scene with nothing after the impact, else reconstructed. Raises UserError."""
+) -> tuple[str, list[Table]]:
+    """The page of what a file (``source``, its bytes ``data``) says of a collision: forward for
+    a whole scene with nothing after the impact, else reconstructed; and its tables. Raises
+    UserError."""
     units = system_of(entries.units)
     given = {n for n, text in entries.values.items() if text.strip()}
     scene = placed(SCENE, given)
@@ -106,10 +101,7 @@ def report(
     check_names(
         given - {"correlations"}, placed((*KNOWABLE, *MOVES), given), "name used here", source
     )
-    find = _forward if whole else _inverse
-    found = find(entries, source, samples, seed, units)
-    case = case or entries.case or ""
-    title = title or entries.title or "Planar impact of two vehicles"
+    found = (_forward if whole else _inverse)(entries, source, samples, seed, units)
     drawing = None
     if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
         look = (FIGURE_WIDTH, "Scene from above", units, entries.outlines)
@@ -117,12 +109,14 @@ def report(
     tables = [_answer(found, units), *_details(found, entries, units)]
     page = render(
         "collision.html",
-        title=title,
-        case=case,
+        title=title or entries.title or "Planar impact of two vehicles",
+        case=case or entries.case or "",
         paper=paper or ("letter" if units.name in ("us", "chapter", "") else "a4"),
         files=[(source, data)],
-        inverse=found.inverse,
-        uncertain=bool(found.spreads),
+        found=found,
+        draws=f"{samples:,} random draws, seed {seed}."
+        if any(one.low == one.low for one in found.spreads.values())
+        else "",
         base=base_of(units),
         units="any consistent set" if units is RULES else f"those of the file ({units.name})",
         answer=_sentences(found, units),
@@ -130,10 +124,27 @@ def report(
         drawing=svg(drawing) if drawing else "",
         figure_caption=drawing.description if drawing else "",
         remarks=[*entries.remarks.values(), *found.remarks],
-        doubtful=bool(found.remarks),
-        settings=found.settings,
     )
-    return Report(page, tables)
+    return page, tables
+
+
+def write_workbook(path: str, tables: Sequence[Table]) -> None:
+    """Write a sheet for each table; cells that are numbers are numbers. Raises UserError."""
+    book = library("openpyxl", "excel", "an .xlsx").Workbook()
+    book.remove(book.active)
+    for table in tables:
+        sheet = book.create_sheet(table.title[:31])
+        for row in (table.headings, *table.rows):
+            sheet.append([_cell(text) for text in row])
+    with replacing(path, "wb") as file:
+        book.save(file)
+
+
+def _cell(text: str) -> float | str | None:
+    try:
+        return float(text)
+    except ValueError:
+        return text or None
 
 
 def _forward(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
@@ -151,10 +162,9 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
     spreads: dict[str, Spread] = {}
     drivers: dict[str, list[str]] = {}
     remarks = sentences(int(results["STATUS"]), {**nominal, **results})
-    settings = ""
     if any(item.varies for item in inputs.values.values()):
         drawn: dict[str, Any] = {"samples": samples, "seed": seed, "keep_draws": True}
-        found = bounds(inputs.values, FORWARD, correlations=inputs.correlations, **drawn)
+        found = bounds(inputs.values, FORWARD[2:], correlations=inputs.correlations, **drawn)
         for vehicle in "AB":
             speeds = np.hypot(found.draws[f"V{vehicle}X"], found.draws[f"V{vehicle}Y"])
             speeds = speeds[np.isfinite(speeds)]
@@ -162,8 +172,8 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
             spreads[f"S{vehicle}F"] = Spread(float(speeds.std(ddof=1)), low, high)
         for name, bound in found.bounds.items():
             spread = found.spreads[name]
-            low, high = spread.quantiles[0.05], spread.quantiles[0.95]
-            spreads[name] = Spread(spread.deviation, low, high, bound.lower, bound.upper)
+            limits = spread.quantiles[0.05], spread.quantiles[0.95], bound.lower, bound.upper
+            spreads[name] = Spread(spread.deviation, *limits)
             ranked = sorted(found.drives[name].items(), key=lambda entry: -entry[1].swing)
             drivers[name] = [
                 f"{source} {number(drive.swing * units.factor(name), 3)} {units.unit(name)}".strip()
@@ -174,10 +184,8 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
             f"{100 * share:.3g} % of the draws carry the warning {name}"
             for name, share in found.warnings.items()
         ]
-        settings = f"{samples:,} random draws, seed {seed}."
     scene = {name: float(nominal[name]) for name in SCENE}
-    main = ("SAF", "SBF", *FORWARD)
-    return Findings(False, values, main, spreads, drivers, remarks, scene, settings)
+    return Findings(False, values, FORWARD, spreads, drivers, remarks, scene)
 
 
 def _inverse(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
@@ -187,18 +195,14 @@ def _inverse(entries: Entries, source: str, samples: int, seed: int, units: Syst
 
     texts = {n: text for n, text in entries.values.items() if text.strip() and n in KNOWABLE}
     texts.setdefault("M", DEFAULT_M)
+    known = {n: read(t, f"{source}: {n}", units=units.name or None) for n, t in texts.items()}
     try:
-        found = reconstruct(
-            {n: read(t, f"{source}: {n}", units=units.name or None) for n, t in texts.items()}
-        )
+        found = reconstruct(known)
     except UserError as error:
-        text = str(error)
-        raise UserError(text if text.startswith(source) else f"{source}: {text}") from None
-    best = found[0]
-    sought = [n for n in INVERSE if n not in best.system.known]
-    whole = Measured.of(best, samples, seed, sought)
+        raise UserError(str(error), source) from None
+    sought = [n for n in INVERSE if n not in found[0].system.known]
+    whole = Measured.of(found[0], samples, seed, sought)
     values, spread = whole.values, whole.spread
-    wanted = [n for n in sought if n in values]
     spreads, drivers = {}, {}
     for name in spread.names:
         low = high = lower = upper = math.nan
@@ -218,8 +222,7 @@ def _inverse(entries: Entries, source: str, samples: int, seed: int, units: Syst
     scene.setdefault("M", float(DEFAULT_M))
     if scene["M"] == 4 or "EM" not in scene:
         scene["EM"] = 0.0  # which nothing drawn depends on
-    settings = f"{samples:,} random draws, seed {seed}." if spread.draws else ""
-    return Findings(True, values, wanted, spreads, drivers, remarks, scene, settings)
+    return Findings(True, values, sought, spreads, drivers, remarks, scene)
 
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
@@ -237,19 +240,15 @@ def _amount(name: str, value: float, units: System, like: float = math.nan) -> s
 def _sentences(found: Findings, units: System) -> list[str]:
     """The answer, in a sentence for each vehicle."""
 
-    def said(name: str) -> str:
-        if name not in found.values:
-            return ""
-        spread = found.spreads.get(name, Spread())
-        text = _amount(name, found.values[name], units, spread.deviation)
-        if math.isfinite(spread.deviation):
-            text += f" ± {_amount(name, spread.deviation, units, spread.deviation)}"
-        return f"{text} {units.unit(name)}".strip()
-
     lines = []
     for vehicle in "AB":
-        asked = {"speed before": f"S{vehicle}", "after": f"S{vehicle}F", "ΔV": f"DV{vehicle}"}
-        words = [f"{word} {said(name)}" for word, name in asked.items() if said(name)]
+        words = []
+        for word, name in (("speed before", "S{}"), ("after", "S{}F"), ("ΔV", "DV{}")):
+            name = name.format(vehicle)
+            like = found.spreads.get(name, Spread()).deviation
+            if said := _amount(name, found.values.get(name, math.nan), units, like):
+                more = f" ± {_amount(name, like, units, like)}" if math.isfinite(like) else ""
+                words.append(f"{word} {said}{more} {units.unit(name)}".strip())
         pdof = found.values.get(f"PDOF{vehicle}", math.nan)
         if math.isfinite(pdof):
             words.append(f"force from {pdof:.0f}°, {clock(pdof)}")
@@ -266,8 +265,8 @@ def _unit(name: str, units: System) -> str:
 def _answer(found: Findings, units: System) -> Table:
     heads, caption = _SPREAD[:1], ""
     if found.spreads:
-        heads, caption = _SPREAD, _CAPTION
-        caption += "; none are sought for speeds after" if "SAF" in found.main[:1] else ""
+        heads = _SPREAD
+        caption = _CAPTION + "; none are sought for speeds after" * (not found.inverse)
     rows = []
     for name in found.main:
         if name in found.values:
@@ -276,7 +275,14 @@ def _answer(found: Findings, units: System) -> Table:
             cells = [_amount(name, x, units, spread.deviation) for x in shown]
             rows.append([name, quantity(name).meaning, *cells, _unit(name, units)])
     headings = ["", "result", *heads, "unit"]
-    return Table("Answer", headings, rows, (0, 1, len(headings) - 1), "answer", caption)
+    return Table(
+        "Answer",
+        headings,
+        rows,
+        (0, 1, len(headings) - 1),
+        "answer",
+        caption if found.spreads else "",
+    )
 
 
 def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
@@ -286,10 +292,9 @@ def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
             continue
         bare = not any(map(str.isalpha, text.replace("e", "").replace("E", ""))) and "°" not in text
         unit = units.unit(name) if bare and "'" not in text else ""
-        source = entries.sources.get(name, "")
-        if name in entries.estimated:
-            source = "; ".join(filter(None, [source, "estimate: " + entries.estimated[name]]))
-        rows.append([name, quantity(name).meaning, text, unit, source])
+        source = [entries.sources.get(name, "")]
+        source += ["estimate: " + entries.estimated[name]] if name in entries.estimated else []
+        rows.append([name, quantity(name).meaning, text, unit, "; ".join(filter(None, source))])
     headings = ["", "input", "given", "unit", "source"]
     tables = [Table("Inputs as given", headings, rows, (0, 1, 3, 4))]
     if found.drivers:

@@ -1,15 +1,19 @@
-"""The frame of a page for the case file: jinja2 templates, and what identifies the work.
+"""The frame of a page for the case file, and what identifies the work: versions and hashes.
 
 A page is one HTML file without any other, laid out for Letter or A4 when a browser prints it. The
 same input gives the same bytes: nothing on it comes from a clock.
 """
 
 import platform
+import sys
 from collections.abc import Sequence
+from functools import lru_cache
 from hashlib import sha256
+from importlib import resources
 from typing import Any
 
-from ..errors import UserError
+from .. import native
+from ..errors import library
 from ..version import __version__
 
 PAPERS = {"letter": "8.5in 11in", "a4": "210mm 297mm"}
@@ -19,43 +23,65 @@ PAPERS = {"letter": "8.5in 11in", "a4": "210mm 297mm"}
 def render(
     template: str,
     *,
-    package: str = __package__ or "",
     title: str,
     case: str = "",
     paper: str = "letter",
     files: Sequence[tuple[str, bytes]] = (),
     **content: Any,
 ) -> str:
-    """The page that ``template`` of ``package`` makes of ``content``, in the frame (frame.html).
-    ``title`` and ``case`` stand on every printed page; ``files``: names and bytes of what was read.
-    Raises UserError where jinja2 is not installed."""
-    import numpy
-
-    try:
-        import jinja2
-    except ImportError:
-        raise UserError("a report needs jinja2; pip install 'impact88[report]'") from None
-    loaders = [jinja2.PackageLoader(name) for name in dict.fromkeys((package, __package__ or ""))]
+    """The page that ``template`` makes of ``content``, in the frame (frame.html). ``title`` and
+    ``case`` stand on every printed page; ``files``: names and bytes of what was read. Raises
+    UserError where jinja2 is not installed."""
+    jinja2 = library("jinja2", "report", "a report")
     environment = jinja2.Environment(
-        loader=jinja2.ChoiceLoader(loaders),
+        loader=jinja2.PackageLoader(__package__),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    running = f"Case {case}" if case else title
     page = environment.get_template(template).render(
         title=title,
         case=case,
-        running=_css_text(f"Case {case}" if case else title),
+        # between quotes in CSS, whatever it holds
+        running="".join(c if c.isalnum() or c in " .,-/:" else f"\\{ord(c):06x}" for c in running),
         paper=PAPERS[paper],
         files=[(name, f"{len(data):,}", sha256(data).hexdigest()) for name, data in files],
-        versions=f"impact88 {__version__}, Python {platform.python_version()}, "
-        f"numpy {numpy.__version__}",
+        versions=versions(),
         **content,
     )
-    return page + "\n"
+    return f"{page}\n"
 
 
-def _css_text(text: str) -> str:
-    """A text as CSS has it between quotes, whatever it holds."""
-    return "".join(c if c.isalnum() or c in " .,-/:" else f"\\{ord(c):06x}" for c in text)
+@lru_cache(maxsize=1)
+def hashes() -> dict[str, str]:
+    """SHA-256 of the restored listing that is packaged, and over all packaged captures of the real
+    ROM: of the lines ``hash  path``, sorted by path, as `sha256sum` prints them."""
+    listing = resources.files("impact88.legacy").joinpath("impact.bas").read_bytes()
+    captures = "".join(f"{digest}  {path}\n" for path, digest in capture_hashes())
+    return {
+        "listing": sha256(listing).hexdigest(),
+        "captures": sha256(captures.encode()).hexdigest(),
+    }
+
+
+def capture_hashes() -> list[tuple[str, str]]:
+    """Path in golden/ and SHA-256 of each packaged capture, sorted by path."""
+    golden = resources.files("impact88.golden")
+    files = [(name, golden.joinpath(name)) for name in ("scenes.jsonl.gz", "fuzz.jsonl.gz")]
+    for folder in ("arithmetic", "programs"):
+        files += [(f"{folder}/{file.name}", file) for file in golden.joinpath(folder).iterdir()]
+    return sorted((path, sha256(f.read_bytes()).hexdigest()) for path, f in files if f.is_file())
+
+
+def versions() -> dict[str, str]:
+    """Versions of this package, of Python and numpy, and the machine."""
+    return {
+        "impact88": __version__,
+        "python": f"{platform.python_implementation()} {platform.python_version()}",
+        # importlib.metadata would import email and socket
+        "numpy": getattr(sys.modules.get("numpy"), "__version__", "not installed"),
+        "solve": f"compiled, {native.accelerated}" if native.accelerated else "numpy",
+        "machine": f"{platform.system()} {platform.release()} {platform.machine()}",
+    }

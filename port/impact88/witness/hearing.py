@@ -24,7 +24,7 @@ from ..files import packaged_bytes, write_folder
 from ..names import SCENE
 from ..program import emulated
 from ..program.run import Run, run
-from ..reporting import provenance
+from ..report import frame
 from ..scene import Scene, sample
 from .apple import Image, Lost
 from .packaged import OWN, Case
@@ -202,12 +202,8 @@ def record(image: Image, heard: list[Heard], seconds: float) -> dict[str, Any]:
     wrong = [one for one in heard if one.differences]
     return {
         "passed": bool(heard) and not wrong,
-        "versions": {**provenance.versions(), "py65": metadata.version("py65")},
-        "hashes": {
-            "rom_sha1": image.sha1,
-            "listing": provenance.listing_hash(),
-            "captures": provenance.captures_hash(),
-        },
+        "versions": {**frame.versions(), "py65": metadata.version("py65")},
+        "hashes": {"rom_sha1": image.sha1, **frame.hashes()},
         "rom": "Apple II Plus" if image.known else "unknown",
         "cases": Counter(one.kind for one in heard),
         "comparisons": {

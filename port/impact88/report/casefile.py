@@ -1,7 +1,7 @@
 """The report: verdicts on printouts as one self-contained page for a case file.
 
 All files first, those that could not be read included; then every printout from a page of its own;
-the method, provenance and room for a signature last. The frame is that of `report.frame`.
+the method, provenance and room for a signature last.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,9 +13,7 @@ from ..errors import UserError
 from ..fields import FIELDS
 from ..judging.judgement import Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
-from ..report.frame import render
-from . import provenance
-from .verification import (
+from ..reporting.verification import (
     MEANINGS,
     STATES,
     TITLES,
@@ -25,14 +23,7 @@ from .verification import (
     sections,
     summary,
 )
-
-
-def write_report(path: str, examined: Sequence[Examined], **given: str | None) -> None:
-    """Write the page for ``examined`` to ``path``, whole or not at all; ``given`` as for `report`.
-    Raises UserError."""
-    page = report(examined, **given)
-    with files.replacing(path) as file:
-        file.write(page)
+from .frame import hashes, render
 
 
 def report(
@@ -54,7 +45,6 @@ def report(
     digests = [(files.called(one.file), one.sha256 or "not read") for one in examined]
     return render(
         "verification.html",
-        package=__package__,
         title=f"Verification of {len(results)} printout{'s' * (len(results) != 1)}",
         case=case or "",
         examiner=examiner,
@@ -67,8 +57,8 @@ def report(
         key=[(n, q.meaning, q.unit) for n in FIELDS for q in [quantity("MU" if n == "MUP" else n)]],
         provenance=[
             *digests,
-            ("the listing", provenance.listing_hash()),
-            ("the captures of the ROM", provenance.captures_hash()),
+            ("the listing", hashes()["listing"]),
+            ("the captures of the ROM", hashes()["captures"]),
         ],
     )
 
