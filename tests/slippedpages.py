@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 
 import machines
 import printouts
-from impact88.explaining.explanations import Explanation
+from impact88.explaining.causes import Cause
 from impact88.fields import ANGLES, INPUTS
 
 Row = dict[str, Any]
-Named = Callable[[Explanation], bool]
+Named = Callable[[Cause], bool]
 
 
 class Slipped(NamedTuple):
@@ -50,7 +50,7 @@ def replaced(text: str, new: Mapping[str, str]) -> str:
     return text
 
 
-def _changes(one: Explanation) -> set[tuple[str | None, str | None]]:
+def _changes(one: Cause) -> set[tuple[str | None, str | None]]:
     if one.changes:
         return {(change["field"], change["would_be"]) for change in one.changes}
     return {(one.field, one.would_be)}
@@ -61,7 +61,7 @@ def _puts_right(true: Mapping[str, str]) -> Named:
     then nothing on the page depends on the others."""
     wanted = {(name, Decimal(text)) for name, text in true.items()}
 
-    def named(one: Explanation) -> bool:
+    def named(one: Cause) -> bool:
         said = {(name, Decimal(text or "NaN")) for name, text in _changes(one) if name is not None}
         return said == wanted or (bool(said) and said < wanted and not one.remaining)
 

@@ -9,7 +9,7 @@ import pytest
 
 import printouts
 from impact88.doubles import double
-from impact88.explaining.explanations import Explanation
+from impact88.explaining.causes import Cause
 from impact88.explaining.machines import cut
 from impact88.program.run import run
 from impact88.reading.numerals import as_printed
@@ -22,12 +22,12 @@ from impact88.scene import Scene, sample
 from test_printout import SAMPLE
 
 
-def explanations(text: str) -> list[Explanation]:
+def explanations(text: str) -> list[Cause]:
     (shown,) = read_printouts(text)
     return verify(shown).explanations
 
 
-def first(text: str) -> Explanation:
+def first(text: str) -> Cause:
     return explanations(text)[0]
 
 

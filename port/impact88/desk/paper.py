@@ -71,15 +71,15 @@ def _words(result: Verification) -> dict[str, Any]:
     says = verification.MEANINGS[result.verdict]
     contradicted = [check for check in [*result.fields, *result.replies] if check.same is False]
     look = [line for check in contradicted for line in verification.look(check)]
-    parts = [verification.Section("where to look", look), *verification.sections(result)]
+    parts = {"where to look": look, **verification.sections(result)}
     return {
         "title": verification.TITLES[result.verdict],
         "says": says,
         "summary": [line for line in verification.summary(result) if line != says],
         "parts": [
-            {"heading": one.heading[:1].upper() + one.heading[1:], "items": one.lines}
-            for one in parts
-            if one.lines
+            {"heading": heading[:1].upper() + heading[1:], "items": items}
+            for heading, items in parts.items()
+            if items
         ],
     }
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from dataclasses import field as default
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -32,36 +32,30 @@ _ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
 the last of them."""
 
 
-class Cause(NamedTuple):
-    """A cause that was tried: its kind, what is added, its bits, the names it leaves unexplained,
-    and the numbers it puts right."""
+@dataclass
+class Cause:
+    """A cause that was tried: its ``kind``, a ``note`` on it, the ``bits`` it asks for, the names
+    that it leaves unexplained, and the numbers it puts ``right``.
+
+    Of one that is offered as an explanation: how many it ``explains`` of how many ``differing``
+    numbers; ``changes``, all that it puts right and where that stands; ``field``, ``printed``,
+    ``would_be``: the first of them; where to ``look`` on the paper; ``rank``, from 1: explanations
+    that the page cannot tell apart share it."""
 
     kind: str
     note: str
     bits: float
     left: frozenset[str]
-    changes: tuple[Change, ...] = ()
-
-
-@dataclass
-class Explanation:
-    """A cause that would make printed and recomputed agree in ``explains`` of the differing numbers
-    and leaves ``unexplained`` ones. ``changes``: every printed number it puts right, and where it
-    stands; ``field``, ``printed``, ``would_be``: the first of them. ``look``: where to look on the
-    paper. ``rank``: from 1; explanations that the page cannot tell apart share it. ``weight``: the
-    bits it asks for."""
-
-    kind: str
-    note: str
-    weight: float
-    explains: int
-    unexplained: frozenset[str]
+    right: tuple[Change, ...] = ()
+    explains: int = 0
+    differing: int = 0
     changes: list[dict[str, Any]] = default(default_factory=list)
     rank: int = 1
 
     def __post_init__(self) -> None:
         first = self.changes[0] if self.changes else {}
         self.field, self.printed, self.would_be = map(first.get, ("field", "printed", "would_be"))
+        self.remaining = len(self.left)
         self.look = [change["look"] for change in self.changes if change["look"]]
 
     def __str__(self) -> str:
@@ -76,11 +70,6 @@ class Explanation:
                 f"{c['field']} {c['printed']}, would be {c['would_be']}" for c in self.changes[:6]
             )
         return what + (f" ({self.note})" if self.note else "")
-
-    @property
-    def remaining(self) -> int:
-        """How many numbers differ still."""
-        return len(self.unexplained)
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""

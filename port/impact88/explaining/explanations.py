@@ -10,6 +10,7 @@ share a rank: the page cannot tell them apart.
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,6 @@ from .causes import (
     LABELS_EXCHANGED,
     NOT_APPLESOFT,
     Cause,
-    Explanation,
     PageEvidence,
     differing,
     in_last_places,
@@ -62,7 +62,7 @@ _ANOTHER_ARITHMETIC = 17.0
 
 
 @np.errstate(all="ignore")  # a cause tried may leave a double's range, and then explains nothing
-def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) -> list[Explanation]:
+def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) -> list[Cause]:
     """Causes that make more of a differing printout agree, those that ask least first.
     ``rereading``: slips in its inputs; ``in_time``: whether more causes may still be tried."""
     page = PageEvidence(found)
@@ -86,7 +86,7 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
 @np.errstate(all="ignore")
 def explain_copy(
     found: Judged, put_right: Callable[[Judged, Mapping[str, str]], Judged | None]
-) -> list[Explanation]:
+) -> list[Cause]:
     """The same of a page held against a copy of the listing: slips, those nearest to its results
     first. ``put_right``: the printout judged by the copy with other inputs printed."""
     page = PageEvidence(found)
@@ -158,7 +158,7 @@ def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading)
             changes = (*exchanged, *one.changes)
             bits = row.bits + sum(map(_believed, one.changes))
             cause = _slipped(page, changes, _wrong(page, one, changes))
-            yield cause._replace(bits=bits, note=row.note)
+            yield replace(cause, bits=bits, note=row.note)
 
 
 def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[Change]:
@@ -231,43 +231,42 @@ def _believed(change: Change) -> float:
 # --- which are offered, and in what order ---
 
 
-def _ranked(page: PageEvidence, causes: Iterable[Cause]) -> list[Explanation]:
+def _ranked(page: PageEvidence, causes: Iterable[Cause]) -> list[Cause]:
     """Those that explain nearly all, the least to believe first, with ranks; none that only adds
     to a simpler one, or says it again."""
-    chosen: list[tuple[float, Cause]] = []
     offered = [
-        (_weight(one), one)
+        one
         for one in causes
         if len(one.left) <= page.most_left and page.base - one.left and _weight(one) <= _MOST_BITS
     ]
-    offered.sort(key=lambda pair: pair[0])
-    for bits, one in offered:
-        if bits <= offered[0][0] + _WORSE and not any(_adds_to(one, other) for _, other in chosen):
-            chosen.append((bits, one))
+    offered.sort(key=_weight)
+    chosen: list[Cause] = []
+    for one in offered:
+        near = _weight(one) <= _weight(offered[0]) + _WORSE
+        if near and not any(_adds_to(one, other) for other in chosen):
+            chosen.append(one)
     # a misreading that would do is not left out where another machine is named
-    shown, others = chosen[:MOST], chosen[MOST:]
-    innocent = next((pair for pair in others if not _accuses(pair[1])), None)
-    if innocent is not None and all(_accuses(one) for _, one in shown):
-        shown[-1] = innocent
-    leaders: list[tuple[float, Cause]] = []
+    innocent = next((one for one in chosen if not _accuses(one)), None)
+    if innocent in chosen[MOST:]:
+        chosen[MOST - 1] = innocent
+    leaders: list[Cause] = []
     ranked = []
-    for bits, one in shown:
+    for one in chosen[:MOST]:
         # that another program or machine made the page is said beside no misreading that explains
         # it better
         alike = (
             rank
-            for rank, (best, other) in enumerate(leaders, 1)
+            for rank, other in enumerate(leaders, 1)
             if one.left == other.left
-            and bits <= best + _ALIKE
+            and _weight(one) <= _weight(other) + _ALIKE
             and (_accuses(other) or not _accuses(one))
         )
         rank = next(alike, len(leaders) + 1)
-        if rank > len(leaders):
-            leaders.append((bits, one))
-        changes = [_described(page, change) for change in one.changes]
-        explains = len(page.base - one.left)
-        ranked.append(Explanation(one.kind, one.note, bits, explains, one.left, changes, rank))
-    return sorted(ranked, key=lambda one: (one.rank, one.weight))
+        leaders += [one] * (rank > len(leaders))
+        changes = [_described(page, change) for change in one.right]
+        found = len(page.base - one.left), len(page.base), changes, rank
+        ranked.append(Cause(one.kind, one.note, one.bits, one.left, one.right, *found))
+    return sorted(ranked, key=lambda one: (one.rank, _weight(one)))
 
 
 def _weight(one: Cause) -> float:
@@ -281,11 +280,10 @@ def _accuses(one: Cause) -> bool:
 def _adds_to(one: Cause, other: Cause) -> bool:
     """Whether a cause puts right what a likelier one does and more, or the same numbers in the
     same way, or says the same."""
-    if not other.changes:
-        return not one.changes and one[:2] == other[:2]
-    rights, others = ({(c.field, c.would_be) for c in each.changes} for each in (one, other))
-    fields, other_fields = ({name for name, _ in each} for each in (rights, others))
-    if one.kind == other.kind and fields == other_fields:
+    if not other.right:
+        return not one.right and (one.kind, one.note) == (other.kind, other.note)
+    rights, others = ({(c.field, c.would_be) for c in each.right} for each in (one, other))
+    if one.kind == other.kind and dict(rights).keys() == dict(others).keys():
         return len(one.left) > len(other.left) or rights == others
     return others < rights
 
@@ -293,9 +291,9 @@ def _adds_to(one: Cause, other: Cause) -> bool:
 def _described(page: PageEvidence, change: Change) -> dict[str, Any]:
     """A number put right, where it stands, and what to ask of the paper there."""
     kind, name, printed, would_be = change
-    replies = name.startswith("reply ")
+    readings = page.shown.replies if name.startswith("reply ") else page.shown.fields
     name = name.removeprefix("reply ")
-    reading = (page.shown.replies if replies else page.shown.fields).get(name)
+    reading = readings.get(name)
     label = kind in (LABELS_EXCHANGED, LABEL_WRONG)
     one = next((one for one in page.shown.labels if label and one.name == name), reading)
     line, column = (one.line, one.column) if one else (None, None)
@@ -303,9 +301,8 @@ def _described(page: PageEvidence, change: Change) -> dict[str, Any]:
     if one and (label or kind in slips.BITS):
         at, asked = (line, column), f"{printed} or {would_be}"
         if kind == slips.DIGIT and reading is not None:
-            pairs = enumerate(zip(printed, would_be, strict=True))
-            index, (read, true) = next(pair for pair in pairs if pair[1][0] != pair[1][1])
-            asked = f"{read} {'an' if true == '8' else 'a'} {true}"
+            index = next(at for at in range(len(printed)) if printed[at] != would_be[at])
+            asked = f"{printed[index]} {'an' if would_be[index] == '8' else 'a'} {would_be[index]}"
             if index < len(reading.region):
                 at = page.shown.place(reading.region[index].offset)
         look = f"line {at[0]}, column {at[1]}: is this {asked}?"

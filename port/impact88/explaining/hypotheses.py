@@ -90,7 +90,7 @@ class Rows:
     def __init__(self, page: PageEvidence) -> None:
         self._page = page
         self._scene, self._printed = page.recovered.scene, page.recovered.assumed
-        self._values = doubles_of({name: text or "0" for name, text in self._scene.items()})
+        self._values = doubles_of(self._scene)
         self._places = {name: decimals_of(text.strip()) for name, text in self._scene.items()}
         rows = (row for row in table() if row.inputs)
         made = (one for row in rows for one in self._made(row))

@@ -11,6 +11,7 @@ import math
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -81,7 +82,7 @@ def causes(page: PageEvidence) -> Iterator[Cause]:
             best[kind] = one
     for one in best.values():
         accused = NOT_APPLESOFT if known else ""
-        yield one._replace(note="; ".join(filter(None, [one.note, accused])))
+        yield replace(one, note="; ".join(filter(None, [one.note, accused])))
 
 
 def _causes(page: PageEvidence) -> Iterator[Cause]:
@@ -116,7 +117,7 @@ def _near(page: PageEvidence, scene: Mapping[str, str], pis: Iterable[float]) ->
     """Whether the page is near enough to the results with each pi, by double precision, that
     another arithmetic may explain it."""
     turned = np.array([*pis]) / math.pi
-    columns = {n: np.full(len(turned), double(text or "0")) for n, text in scene.items()}
+    columns = {n: np.full(len(turned), double(text)) for n, text in scene.items()}
     columns |= {name: columns[name] * turned for name in ANGLES}
     found = in_doubles(columns, list(page.results))
     return list(page.fits(found, len(turned), _OPEN_UNITS, _OPEN))

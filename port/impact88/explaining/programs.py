@@ -35,7 +35,7 @@ def causes(page: PageEvidence) -> Iterator[Cause]:
     differ = page.base & set(numbers)
     if sum(log2(1 + abs(numbers[n]) * 10.0 ** places_of(n)) for n in differ) < _CHANCE:
         return
-    values = doubles_of({name: text or "0" for name, text in page.recovered.scene.items()})
+    values = doubles_of(page.recovered.scene)
     run = Run(spellings()[LISTING], {name: np.array([value]) for name, value in values.items()})
 
     def wrong(names: Mapping[str, Any], count: int) -> NDArray[np.intp]:

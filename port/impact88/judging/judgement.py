@@ -76,6 +76,11 @@ class FieldCheck:
         to be compared."""
         return {Status.READ: True, Status.CONTRADICTED: False}.get(self.status)
 
+    @property
+    def mark(self) -> str:
+        """How the number is marked: not at all where it was read exactly."""
+        return {Status.READ: "", Status.CONTRADICTED: "differs"}.get(self.status, self.status)
+
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints for a number."""
         doubts = [one._asdict() for one in self.doubts]

@@ -27,14 +27,8 @@ Program = Callable[[Sequence[Scene]], list[replays.Outcome]]
 """What a program prints for some scenes."""
 
 
-def unseen(
-    scene: Mapping[str, str | None], missing: list[str], program: Program = replays.run_all
-) -> list[str]:
-    """What the results that a program prints for a scene do not depend on, one sentence each;
-    nothing when the scene is not complete."""
-    if missing or any(text is None for text in scene.values()):
-        return []
-    base = {name: text or "0" for name, text in scene.items()}
+def unseen(base: Scene, program: Program = replays.run_all) -> list[str]:
+    """What the results that a program prints for a scene do not depend on, one sentence each."""
     tried: list[tuple[str, Scene]] = [("", base)]
     for name in INPUTS:
         own = scene_name(name)

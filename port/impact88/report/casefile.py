@@ -13,9 +13,9 @@ from ..errors import UserError
 from ..fields import FIELDS
 from ..judging.judgement import Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
+from ..reading.fieldlabels import LabelState
 from ..reporting.verification import (
     MEANINGS,
-    STATES,
     TITLES,
     Examined,
     Verification,
@@ -53,7 +53,6 @@ def report(
         printouts=list(map(_printout, results)),
         titles=TITLES,
         meanings=MEANINGS,
-        states=STATES,
         key=[(n, q.meaning, q.unit) for n in FIELDS for q in [quantity("MU" if n == "MUP" else n)]],
         provenance=[
             *digests,
@@ -84,12 +83,12 @@ def _printout(result: Verification) -> dict[str, Any]:
 
 def _drawing(result: Verification) -> str:
     """The scene from above; none of a scene that was guessed at."""
-    if not result.runnable or result.guessed or result.verdict is Verdict.INCOMPLETE:
+    scene = result.complete_scene
+    if not scene or result.guessed or result.verdict is Verdict.INCOMPLETE:
         return ""
     from ..closedform.solve import solve
     from ..figures.sceneview import scene_svg
 
-    scene = {name: text for name, text in result.scene.items() if text is not None}
     try:
         return scene_svg(scene, solve(doubles_of(scene), [*FINAL_VELOCITIES, "STATUS"]))
     except (UserError, ValueError):
@@ -123,7 +122,7 @@ def _marks(result: Verification) -> Iterator[tuple[int, int, str]]:
         for start, read in [(one.start, one.read) for one in check.doubts] or [(check.start, "")]:
             yield start, start + max(1, len(read)), "doubtful"
     for label in result.labels:
-        wrong = label in result.mislabelled
+        wrong = label.state is LabelState.CONTRADICTORY
         if wrong or label.doubt:
             yield label.start, label.stop, "differs" if wrong else "doubtful"
     yield from ((piece.start, piece.stop, "over") for piece in result.left_over if piece.beside)

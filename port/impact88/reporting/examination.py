@@ -244,9 +244,8 @@ def _result(found: Judged) -> Verification:
 def completed(result: Verification, *program: Program) -> Verification:
     """The same with what stands beside the verdict: what the page cannot show of what ``program``,
     by default the restored listing, prints, exact values and warnings."""
-    result.unseen = unseen(result.scene, result.missing, *program)
-    if result.runnable:
-        scene = {name: text or "" for name, text in result.scene.items()}
+    if scene := result.complete_scene:
+        result.unseen = unseen(scene, *program)
         beside.add_exact_values(scene, result.fields)
         result.warnings = beside.warnings(scene)
     return result

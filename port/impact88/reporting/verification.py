@@ -5,15 +5,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from .. import notebook
 from ..errors import printable, shown
 from ..fields import ANGLES, INPUTS, scene_name
 from ..files import called
-from ..judging.judgement import Doubtful, FieldCheck, Judged, Status, Verdict
+from ..judging.judgement import FieldCheck, Judged, Status, Verdict
 from ..plaintable import table
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
@@ -22,10 +23,8 @@ from ..recovery.typedtext import stored_and_printed
 from ..schemas import stamped
 
 if TYPE_CHECKING:
-    from ..explaining.causes import Explanation
+    from ..explaining.causes import Cause
     from ..program.emulated import ListingCopy
-
-NO_SINGLE_SLIP = "no single slip explains this"
 
 TITLES = {
     Verdict.IDENTICAL: "IDENTICAL",
@@ -43,14 +42,8 @@ MEANINGS = {
 }
 """What a verdict says."""
 
-STATES = {
-    Status.READ: "",
-    Status.DOUBTFUL: "doubtful",
-    Status.CONTRADICTED: "differs",
-    Status.NOT_READ: "not read",
-    Status.NOT_COMPARED: "not compared",
-}
-"""How a number is marked that was not read exactly."""
+DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
+EXPLAINED = "possible explanations, best first"
 
 
 @dataclass
@@ -79,7 +72,7 @@ class Verification:
     missing: list[str] = field(default_factory=list)
     guessed: list[str] = field(default_factory=list)
     unseen: list[str] = field(default_factory=list)
-    explanations: list[Explanation] = field(default_factory=list)
+    explanations: list[Cause] = field(default_factory=list)
     findings: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
@@ -106,26 +99,10 @@ class Verification:
         return [check for check in self.fields if check.same is False]
 
     @property
-    def doubtful(self) -> list[FieldCheck]:
-        """The numbers, replies included, in which the program's text was not read exactly."""
-        return [one for one in [*self.fields, *self.replies] if one.status == Status.DOUBTFUL]
-
-    @property
-    def mislabelled(self) -> list[LabelCheck]:
-        """The labels that name another number than the one that stands there."""
-        return [one for one in self.labels if one.state is LabelState.CONTRADICTORY]
-
-    @property
-    def disagreements(self) -> int:
-        """How many fields, replies, labels and endings differ: what a cause has to explain."""
-        others = [*self.replies, *([self.ending] if self.ending else [])]
-        wrong = [check for check in others if check.same is False]
-        return len(self.differing) + len(wrong) + len(self.mislabelled)
-
-    @property
-    def runnable(self) -> bool:
-        """Whether every value of the scene was recovered."""
-        return all(text is not None for text in self.scene.values())
+    def complete_scene(self) -> dict[str, str]:
+        """The scene; empty where a value of it was not recovered."""
+        scene = {name: text for name, text in self.scene.items() if text is not None}
+        return scene if len(scene) == len(self.scene) else {}
 
     @property
     def not_read(self) -> list[str]:
@@ -190,18 +167,6 @@ class Examined:
 # --- in words -------------------------------------------------------------------------------------
 
 
-class Section(NamedTuple):
-    """A part of what is said of a printout, in any form: a heading and its lines; a line that
-    begins with blanks belongs to the one above it."""
-
-    heading: str
-    lines: list[str]
-
-
-DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
-EXPLAINED = "possible explanations, best first"
-
-
 def summary(result: Verification) -> list[str]:
     """What a verdict rests on: counts, and by name what is missing."""
     verdict, fields, missing = result.verdict, result.fields, result.missing
@@ -212,7 +177,7 @@ def summary(result: Verification) -> list[str]:
     elif verdict is Verdict.DIFFERS:
         compared = sum(check.same is not None for check in fields)
         said = [f"{compared} printed numbers compared, {len(result.differing)} differ"]
-        if wrong := len(result.mislabelled):
+        if wrong := sum(one.state is LabelState.CONTRADICTORY for one in result.labels):
             said.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
     elif verdict is Verdict.IDENTICAL_AS_READ:
         said.append(MEANINGS[verdict])
@@ -234,40 +199,41 @@ def summary(result: Verification) -> list[str]:
 
 def counts(fields: Sequence[FieldCheck]) -> str:
     """How many numbers were read exactly, doubtful, contradicted, not read."""
-    number = {status: sum(check.status == status for check in fields) for status in Status}
-    said = [
-        f"{number.pop(Status.READ)} of {len(fields)} printed numbers read exactly and as the "
-        "program prints them"
-    ]
-    words = {**STATES, Status.DOUBTFUL: "read doubtfully"}
-    if number[Status.CONTRADICTED] > 1:
-        words[Status.CONTRADICTED] = "differ"
-    return ", ".join(
-        said + [f"{count} {words[status]}" for status, count in number.items() if count]
-    )
+    number = Counter(check.status for check in fields)
+    words = {
+        Status.DOUBTFUL: "read doubtfully",
+        Status.CONTRADICTED: "differs" if number[Status.CONTRADICTED] == 1 else "differ",
+        Status.NOT_READ: "not read",
+        Status.NOT_COMPARED: "not compared",
+    }
+    exact = f"{number[Status.READ]} of {len(fields)} printed numbers read exactly and as the "
+    others = [f"{number[status]} {word}" for status, word in words.items() if number[status]]
+    return ", ".join([exact + "program prints them", *others])
 
 
-def sections(result: Verification) -> list[Section]:
-    """Everything below the verdict and beside the table, in order; no empty ones."""
+def sections(result: Verification) -> dict[str, list[str]]:
+    """All that is said below the verdict and beside the table, in any form: headings, in order, and
+    the lines of each; a line that begins with blanks belongs to the one above it."""
     doubtful = _labels(result.labels)
-    for check in result.doubtful:
-        doubtful += _doubts(check)
-        suffix = f" ({check.name}: the program prints {check.recomputed})"
-        doubtful += [where + suffix for where in look(check)]
+    for check in [*result.fields, *result.replies]:
+        if check.status == Status.DOUBTFUL:
+            doubtful += _doubts(check)
+            suffix = f" ({check.name}: the program prints {check.recomputed})"
+            doubtful += [where + suffix for where in look(check)]
     notes = [
         f"{check.name}: the reply {check.printed} is not the {check.recomputed} used"
         for check in result.replies
         if check.same is False
     ]
-    every = (
-        Section(DOUBTFUL, doubtful),
-        Section(EXPLAINED, _explained(result) if _is_explained(result) else []),
-        Section("the page cannot show", result.unseen),
-        Section("what the page shows besides", result.findings),
-        Section("beside the verdict", result.warnings),
-        Section(NOTES, [*notes, *result.remarks, *_left_over(result.left_over)]),
-    )
-    return [one for one in every if one.lines]
+    every = {
+        DOUBTFUL: doubtful,
+        EXPLAINED: _explained(result),
+        "the page cannot show": result.unseen,
+        "what the page shows besides": result.findings,
+        "beside the verdict": result.warnings,
+        NOTES: [*notes, *result.remarks, *_left_over(result.left_over)],
+    }
+    return {heading: said for heading, said in every.items() if said}
 
 
 _DOUBTS: dict[str, str] = {
@@ -285,7 +251,8 @@ def _doubts(check: FieldCheck) -> Iterator[str]:
     for one in check.doubts:
         if one.how in _DOUBTS:
             words = {**one._asdict(), "program": check.recomputed or "", "whole": check.printed}
-            yield f"{_place(one)}: {check.name} {_DOUBTS[one.how].format(**words)}"
+            said = _DOUBTS[one.how].format(**words)
+            yield f"line {one.line}, column {one.column}: {check.name} {said}"
 
 
 def look(check: FieldCheck) -> Iterator[str]:
@@ -296,11 +263,7 @@ def look(check: FieldCheck) -> Iterator[str]:
             question = f"is {printed} missing here"
             if one.read:
                 question = f"is this {one.read} {printed if one.printed else 'part of the number'}"
-            yield f"{_place(one)}: {question}?"
-
-
-def _place(one: Doubtful | Piece) -> str:
-    return f"line {one.line}, column {one.column}"
+            yield f"line {one.line}, column {one.column}: {question}?"
 
 
 _LABELS = {
@@ -329,7 +292,8 @@ def _left_over(pieces: Sequence[Piece]) -> Iterator[str]:
     for piece in pieces:
         if piece.beside and not piece.whole:
             text = piece.text if len(piece.text) <= 40 else piece.text[:37] + "..."
-            yield f"{_place(piece)}: {text!r} left over beside a number"
+            where = f"line {piece.line}, column {piece.column}"
+            yield f"{where}: {text!r} left over beside a number"
     lines = sorted((one for one in pieces if one.whole), key=lambda piece: not piece.beside)
     for piece in sorted(lines[:_MOST_LINES], key=lambda piece: piece.line):
         yield f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
@@ -337,23 +301,21 @@ def _left_over(pieces: Sequence[Piece]) -> Iterator[str]:
         yield f"and {len(lines) - _MOST_LINES} more lines that do not belong to the program's page"
 
 
-def _is_explained(result: Verification) -> bool:
-    """Of a picture its cells say what differs; no explanation is looked for."""
-    return result.verdict is Verdict.DIFFERS and result.exhibit is None
-
-
 def _explained(result: Verification) -> list[str]:
-    """The explanations, best first, and where to look on the paper."""
+    """The explanations, best first, and where to look on the paper; of a picture its cells say what
+    differs."""
+    if result.verdict is not Verdict.DIFFERS or result.page is not None:
+        return []
     said: list[str] = []
     before = 0
     for one in result.explanations:
         if one.rank != before:
-            said.append(f"{one.rank}. {one}; explains {one.explains} of {result.disagreements}")
+            said.append(f"{one.rank}. {one}; explains {one.explains} of {one.differing}")
         else:
             said.append(f"   or, equally well on this page: {one}")
         before = one.rank
         said += [f"   look at {where}" for where in one.look[:4]]
-    return said or [NO_SINGLE_SLIP]
+    return said or ["no single slip explains this"]
 
 
 # --- what a page shows besides its numbers -------------------------------------------------------
@@ -464,7 +426,7 @@ def lines(result: Verification, brief: bool = False) -> Iterator[str]:
     """What `impact88 verify` prints of one printout; ``brief``: only verdict and what differs."""
     where = f"{shown(called(result.file))}, printout {result.number} ({result.where})"
     yield f"{where}: {TITLES[result.verdict]}"
-    parts = {one.heading: one.lines for one in sections(result)}
+    parts = sections(result)
     doubtful, notes = parts.pop(DOUBTFUL, []), parts.pop(NOTES, [])
     yield from (f"  {line}" for line in [*summary(result), *_some(doubtful, brief)])
     if checks := result.differing if brief else result.fields:
@@ -490,6 +452,6 @@ def _table(checks: Sequence[FieldCheck], exact: bool) -> list[str]:
     rows = [["", "printed", "recomputed", *["exact", "printed-exact"] * exact, ""]]
     for check in checks:
         beside = [check.exact or "", check.difference or ""] * exact
-        mark = STATES[check.status]
-        rows.append([check.name, check.printed or "-", check.recomputed or "-", *beside, mark])
+        numbers = [check.printed or "-", check.recomputed or "-"]
+        rows.append([check.name, *numbers, *beside, check.mark])
     return table(rows, left=(0, len(rows[0]) - 1))
