@@ -24,7 +24,7 @@ from impact88.uncertainty.bounds import (
     input_names,
 )
 from impact88.uncertainty.boundstable import as_json, table
-from impact88.uncertainty.extremes import Piece, extremes
+from impact88.uncertainty.extremes import Piece
 from impact88.uncertainty.ranges import read_correlations, read_inputs
 from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
@@ -299,7 +299,7 @@ class TestExtremes:
     def found(self, function, coordinates):
         count = function(np.full((1, coordinates), 0.5)).size
         piece = Piece(lambda u: function(u).reshape(len(u), -1), count)
-        return extremes(piece, coordinates, np.random.default_rng(self.RNG))
+        return piece.extremes(coordinates, np.random.default_rng(self.RNG))
 
     def test_inside(self):
         top = np.array([0.3, 0.71, 0.5])

@@ -140,6 +140,12 @@ def below_all(height: Array) -> Array:
     return np.where(np.isfinite(height), height, -np.inf)
 
 
+def spread_out(coordinates: int, count: int, rng: np.random.Generator) -> Array:
+    """A Latin hypercube: each coordinate visits every one of its ``count`` strata once."""
+    strata = rng.permuted(np.tile(np.arange(count), (coordinates, 1)), axis=1).T
+    return (strata + rng.random(strata.shape)) / count
+
+
 def _height(functions: Array, walls: Array, number: NDArray[np.intp], sense: Array) -> Array:
     own = sense * functions[np.arange(len(functions)), number]
     outside = np.maximum(np.maximum(-walls, walls - 1), 0.0).sum(axis=1)
@@ -163,61 +169,41 @@ def _best_between_walls(
     uphill: Array, low: Array, high: Array, rows: Array, below: Array, above: Array
 ) -> Array:
     """`best` where a wall stands in the way of the step that goes farthest without any."""
-    k, r = rows.shape[2], rows.shape[1]
+    c, r, k = rows.shape
     size = np.abs(uphill).max(axis=1, keepdims=True)
     unit = np.maximum(high, -low).max(axis=1)[:, None]
     goal = uphill / np.where(size > 0, size, 1.0)
-    floor = np.concatenate([low, below], axis=1) / unit
-    ceiling = np.concatenate([high, above], axis=1) / unit
-    step = 0.5 * (floor + ceiling)[:, :k]
+    every = np.concatenate([np.broadcast_to(np.eye(k), (c, k, k)), rows], axis=1)
+    every = np.concatenate([every, -every], axis=1)
+    most = np.concatenate([high, above, -low, -below], axis=1) / unit
 
-    def all_rows(move: Array) -> Array:
-        return np.concatenate([move, np.einsum("crk,ck->cr", rows, move)], axis=1)
-
-    def back(weights: Array) -> Array:
-        return np.asarray(weights[:, :k] + np.einsum("crk,cr->ck", rows, weights[:, k:]))
-
-    def room(values: Array, changes: Array) -> Array:
+    def longest(values: Array, changes: Array) -> Array:
         """The longest share of the changes that leaves values above 0, nearly."""
         shares = np.where(changes < 0, -values / np.where(changes < 0, changes, -1.0), np.inf)
         return np.asarray(np.minimum(1.0, 0.99 * shares.min(axis=1))[:, None])
 
-    gap = np.maximum(ceiling - floor, 1e-12)
-    over = np.clip(all_rows(step) - floor, 0.1 * gap, gap)
-    under = np.clip(ceiling - all_rows(step), 0.1 * gap, gap)
-    push, pull = 1 / np.maximum(over, 0.1), 1 / np.maximum(under, 0.1)
-    eye = np.eye(r)
+    step = 0.5 * (low + high) / unit
+    gap = np.tile(np.maximum(most[:, : k + r] + most[:, k + r :], 1e-12), 2)
+    room = np.clip(most - np.einsum("crk,ck->cr", every, step), 0.1 * gap, gap)
+    push = 1 / np.maximum(room, 0.1)
     with np.errstate(all="ignore"):
         for _ in range(ITERATIONS):
-            mean = 0.1 * ((over * push + under * pull).mean(axis=1) / 2)[:, None]
+            mean = 0.1 * (room * push).mean(axis=1)[:, None]
             going = mean > CENTRED
             if not going.any():
                 break
-            now = all_rows(step)
-            off_low, off_high = now - floor - over, ceiling - now - under
-            weight = push / over + pull / under
-            want = (mean - over * push - push * off_low) / over
-            want -= (mean - under * pull - pull * off_high) / under
-            right = goal + back(push - pull) + back(want)
-            # diagonal and r rows: solved by way of r equations
-            across = rows / weight[:, None, :k]
-            inner = np.einsum("crk,csk->crs", across, rows) + eye / weight[:, k:, None]
-            plain = right / weight[:, :k]
-            load = np.einsum("crk,ck->cr", rows, plain)
-            finite = np.isfinite(inner).all(axis=(1, 2)) & np.isfinite(load).all(axis=1)
-            inner[~finite], load[~finite] = eye, 0.0
+            off = most - np.einsum("crk,ck->cr", every, step) - room
+            want = (mean - push * off) / room
+            right = goal - np.einsum("crk,cr->ck", every, want)
+            matrix = np.einsum("crk,cr,crl->ckl", every, push / room, every)
+            finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
+            matrix[~finite], right[~finite] = np.eye(k), 0.0
             try:
-                held = np.linalg.solve(inner, load[:, :, None])[:, :, 0]
+                move = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
             except np.linalg.LinAlgError:
                 break
-            move = plain - np.einsum("crk,cr->ck", across, held)
-            moved = all_rows(move)
-            d_over, d_under = moved + off_low, off_high - moved
-            d_push = (mean - over * push - push * d_over) / over
-            d_pull = (mean - under * pull - pull * d_under) / under
-            first = going * np.minimum(room(over, d_over), room(under, d_under))
-            second = going * np.minimum(room(push, d_push), room(pull, d_pull))
-            step = step + first * move
-            over, under = over + first * d_over, under + first * d_under
-            push, pull = push + second * d_push, pull + second * d_pull
+            away = off - np.einsum("crk,ck->cr", every, move)
+            pushed = (mean - push * (room + away)) / room
+            first, second = going * longest(room, away), going * longest(push, pushed)
+            step, room, push = step + first * move, room + first * away, push + second * pushed
     return np.asarray(np.clip(np.nan_to_num(step * unit), low, high))

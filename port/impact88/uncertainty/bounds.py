@@ -15,7 +15,7 @@ initial velocities.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +28,8 @@ from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_n
 from ..reconstruction.contact import MOVES, moved, placed
 from ..reconstruction.model import Model, forward_model, reconstruction_model
 from ..scene import check_mapping
-from .boundstable import Bound, Bounds
-from .draws import drive_of, ranks, spread_of
-from .extremes import CORNERS_IN_FULL, Extremes, Piece, extremes, merged
+from .boundstable import Bound, Bounds, Drive, Spread
+from .extremes import CORNERS_IN_FULL, Extremes, Piece, merged
 from .uncertain import Uncertain, columns_of, correlation_root, fixed
 
 Array = NDArray[np.float64]
@@ -112,8 +111,8 @@ def bounds(
     if not usable.any():
         raise UserError("none of the draws has a finite result; expected narrower ranges")
     some = usable[:RANKED]
-    input_ranks = {name: ranks(column[some]) for name, column in ranked.items()}
-    output_ranks = {name: ranks(column[:RANKED][some]) for name, column in draws.items()}
+    input_ranks = {name: _ranks(column[some]) for name, column in ranked.items()}
+    output_ranks = {name: _ranks(column[:RANKED][some]) for name, column in draws.items()}
     return Bounds(
         problem=problem,
         inputs=box.inputs,
@@ -128,10 +127,10 @@ def bounds(
             )
             for place, name in enumerate(box.outputs)
         },
-        spreads={name: spread_of(draws[name][usable], quantiles) for name in box.outputs},
+        spreads={name: Spread.of(draws[name][usable], quantiles) for name in box.outputs},
         drives={
             output: {
-                name: drive_of(sweeps[name][output], input_ranks[name], output_ranks[output])
+                name: _drive(sweeps[name][output], input_ranks[name], output_ranks[output])
                 for name in box.inputs
             }
             for output in box.outputs
@@ -150,6 +149,22 @@ def bounds(
         correlations=pairs,
         draws=draws if keep_draws else {},
     )
+
+
+def _ranks(values: Array) -> Array:
+    """Ranks from 0, equal values sharing the mean of theirs, less the mean of all."""
+    ordered = np.sort(values)
+    below = np.searchsorted(ordered, values, side="left")
+    ranks = (below + np.searchsorted(ordered, values, side="right") - 1) / 2
+    return np.asarray(ranks - ranks.mean())
+
+
+def _drive(sweep: Array, first: Array, second: Array) -> Drive:
+    size = np.sqrt((first @ first) * (second @ second))
+    correlation = float(first @ second / size) if size > 0 else float("nan")
+    finite = sweep[np.isfinite(sweep)] if np.isfinite(sweep).any() else np.array([np.nan])
+    ends = (sweep[0], sweep[-1], finite.min(), finite.max())
+    return Drive(correlation, *(float(end) for end in ends))
 
 
 def _check(samples: int, sigmas: float, quantiles: Sequence[float], outputs: int) -> None:
@@ -235,16 +250,16 @@ class _Box:
         friction = self.known.get("MU")
         # a share of the critical friction has the sign that ends the sliding, whatever gt is
         if self.model is not forward_model or friction in (0.0, PIVOT) or self.share:
-            return extremes(self.piece(None), count, rng)
-        slip = extremes(Piece(lambda points: self.slip(points)[:, None], 1), count, rng)
+            return self.piece(None).extremes(count, rng)
+        slip = Piece(lambda points: self.slip(points)[:, None], 1).extremes(count, rng)
         (lowest, highest), pieces = slip.bound[:, 0], []
         for sign in (1.0, -1.0):
             # kept where gt <= 0, changed where gt > 0
             if lowest <= 0 if sign > 0 else highest > 0:
                 apart = 0.0 if sign > 0 else SLIP_APART * float(highest - lowest)
-                pieces.append(extremes(self.piece(sign, apart), count, rng, slip.at[:, 0]))
+                pieces.append(self.piece(sign, apart).extremes(count, rng, slip.at[:, 0]))
         searched = merged(pieces)
-        return replace(searched, evaluations=searched.evaluations + slip.evaluations)
+        return searched._replace(evaluations=searched.evaluations + slip.evaluations)
 
     def piece(self, sign: float | None, apart: float = 0.0) -> Piece:
         """The outputs with MU's sign kept (+1) or changed (-1) throughout, and where line 400 does

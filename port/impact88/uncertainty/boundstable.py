@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, field, fields, replace
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +16,48 @@ from ..names import quantity
 from ..plaintable import number, plain
 from ..plaintable import table as columns
 from ..units import RULES, system_of, written
-from .draws import Drive, Spread
 from .uncertain import Uncertain
 
-if TYPE_CHECKING:
-    from .reconstructed import Range
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Monte Carlo: mean, standard deviation and quantiles (share -> value) of one result."""
+
+    mean: float
+    deviation: float
+    quantiles: dict[float, float]
+
+    @classmethod
+    def of(cls, values: Array, quantiles: Sequence[float]) -> Spread:
+        """NaN of no values."""
+        if not len(values):
+            return cls(math.nan, math.nan, dict.fromkeys(quantiles, math.nan))
+        found = np.quantile(values, list(quantiles)).tolist() if quantiles else []
+        deviation = float(values.std(ddof=1)) if len(values) > 1 else 0.0
+        return cls(float(values.mean()), deviation, dict(zip(quantiles, found, strict=True)))
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What one input does to one result.
+
+    ``rank_correlation``: Spearman's, over the draws; nan where either does not vary; ``at_low`` and
+    ``at_high``: the result with this input at its limits and the others nominal; ``lowest`` and
+    ``highest``: over the whole sweep, beyond the former where the result turns around.
+    """
+
+    rank_correlation: float
+    at_low: float
+    at_high: float
+    lowest: float
+    highest: float
+
+    @property
+    def swing(self) -> float:
+        """How far the result goes as this input alone runs through its range."""
+        return self.highest - self.lowest
 
 
 @dataclass(frozen=True)
@@ -87,40 +125,26 @@ def in_units(found: Bounds, name: str | None) -> Bounds:
     if units is RULES:
         return found
 
-    def times(record: Any, name: str, **other: Any) -> Any:
-        factor, numbers = units.factor(name), {}
-        for each in fields(record):
-            value = getattr(record, each.name)
-            if isinstance(value, float) and each.name != "rank_correlation":
-                numbers[each.name] = value * factor
-        return replace(record, **numbers, **other)
+    def times(value: Any, factor: float) -> Any:
+        if isinstance(value, float | np.ndarray):
+            return value * factor
+        if isinstance(value, dict):
+            return {key: times(item, factor) for key, item in value.items()}
+        if isinstance(value, tuple):
+            return tuple(times(item, factor) for item in value)
+        if not is_dataclass(value):
+            return value
+        kept = ("rank_correlation", "at_lower", "at_upper")
+        numbers = {f.name: getattr(value, f.name) for f in fields(value) if f.name not in kept}
+        others = {n: written(getattr(value, n), units) for n in kept[1:] if hasattr(value, n)}
+        return replace(value, **times(numbers, factor), **others)  # type: ignore[type-var]
 
-    def quantiles(name: str, spread: Spread) -> dict[float, float]:
-        return {share: value * units.factor(name) for share, value in spread.quantiles.items()}
-
-    return replace(
-        found,
-        inputs={n: times(item, n) for n, item in found.inputs.items()},
-        limits={
-            n: (low * units.factor(n), high * units.factor(n))
-            for n, (low, high) in found.limits.items()
-        },
-        bounds={
-            n: times(
-                *(bound, n),
-                at_lower=written(bound.at_lower, units),
-                at_upper=written(bound.at_upper, units),
-            )
-            for n, bound in found.bounds.items()
-        },
-        spreads={n: times(x, n, quantiles=quantiles(n, x)) for n, x in found.spreads.items()},
-        drives={
-            n: {source: times(drive, n) for source, drive in drives.items()}
-            for n, drives in found.drives.items()
-        },
-        draws={n: draws * units.factor(n) for n, draws in found.draws.items()},
-        units=units.name,
-    )
+    parts = ("inputs", "limits", "bounds", "spreads", "drives", "draws")
+    named = {part: getattr(found, part).items() for part in parts}
+    changed: dict[str, Any] = {
+        part: {n: times(x, units.factor(n)) for n, x in of} for part, of in named.items()
+    }
+    return replace(found, **changed, units=units.name)
 
 
 def as_json(bounds: Bounds) -> dict[str, Any]:
@@ -162,8 +186,8 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
     return whole
 
 
-def unbounded(bound: Bound | Range) -> list[str]:
-    """The sides on which there is no bound."""
+def unbounded(bound: Any) -> list[str]:
+    """The sides on which a bound (with ``lower`` and ``upper``) is none."""
     return [side for side in ("lower", "upper") if math.isinf(getattr(bound, side))]
 
 

@@ -11,15 +11,13 @@ proof that no value lies farther.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .ascent import OUTSIDE, below_all, extremes_of
-from .draws import spread_out
+from .ascent import OUTSIDE, below_all, extremes_of, spread_out
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -45,21 +43,11 @@ POLE_PAIRS = 64
 """Pairs of points between which a denominator's zeros are looked for."""
 
 
-class Piece(NamedTuple):
-    """m functions of k coordinates, smooth where they count.
-
-    ``function``: points of the unit cube, n x k -> n x (m + q): the m functions, ``size`` is m, and
-    q denominators, finite and continuous: where one is zero functions may have a pole. ``margin``:
-    points -> n, smooth; the functions count where it is not negative (None: everywhere).
-    """
-
-    function: Callable[[Array], Array]
-    size: int
-    margin: Callable[[Array], Array] | None = None
+_SENSE = np.array([[-1.0], [1.0]])
+"""Of the lowest and the highest."""
 
 
-@dataclass(frozen=True)
-class Extremes:
+class Extremes(NamedTuple):
     """Of m functions of k coordinates: ``bound``, 2 x m, infinite where a pole lies inside, nan
     where no value is finite; ``at``, 2 x m x k, points of the unit cube, at a pole one close to it;
     ``corner``, 2 x m, over the corners evaluated; ``evaluations``, points looked at."""
@@ -70,86 +58,84 @@ class Extremes:
     evaluations: int
 
 
-_SENSE = np.array([[-1.0], [1.0]])
-"""Of the lowest and the highest."""
-
-
-def extremes(
-    piece: Piece,
-    coordinates: int,
-    rng: np.random.Generator,
-    known: Array | None = None,
-) -> Extremes:
-    """Seek the extremes of a piece's functions. ``known``: further points to start from, n x k."""
-    groups = [_corners(coordinates, rng), interior := spread_out(coordinates, SCATTERED, rng)]
-    on_faces = rng.random(interior.shape) < 0.5
-    groups.append(np.where(on_faces, np.round(rng.random(interior.shape)), interior))
-    middle = np.full((1, coordinates), 0.5)
-    groups.append(middle if known is None else np.concatenate([middle, known]))
-    ground = _Ground(piece)
-    if piece.margin is not None:
-        ground.deepest = float(np.abs(piece.margin(np.concatenate(groups))).max())
-    points = np.concatenate(groups)
-    values = ground.values(points)
-    count = values.shape[1]
-    ends = np.cumsum([len(group) for group in groups])
-    numbers = np.split(np.arange(len(points)), ends[:-1])
-    bound, at, _ = extremes_of(
-        *(ground, points, values, numbers, STARTS, LEAST_GAIN),
-        lambda begin: np.empty((0, len(begin))),
-    )
-    lacking = np.isnan(values[:, : piece.size]).any(axis=1)
-    if piece.margin is not None:
-        lacking &= piece.margin(points) >= 0
-    if lacking.any() and coordinates:
-        at, bound = ground.stepped(at, bound, rng)
-    corner = _SENSE * below_all(_SENSE[:, :, None] * values[: len(groups[0])].T).max(axis=2)
-    corner[np.isinf(corner)] = np.nan
-    finite = np.isfinite(values[:, piece.size :]).all(axis=1)
-    if finite.any():
-        pairs = points[finite][rng.integers(finite.sum(), size=(2, POLE_PAIRS))]
-        for j in range(piece.size, count):
-            ways = zip(pairs, at[:, j], strict=True)
-            _seek_poles(piece, j, bound, at, *(np.vstack(way) for way in ways))
-    size = piece.size
-    return Extremes(bound[:, :size], at[:, :size], corner[:, :size], ground.taken)
-
-
 def merged(pieces: Sequence[Extremes]) -> Extremes:
     """The extremes over several pieces together."""
-
-    def chosen(by: str, names: Sequence[str]) -> list[Array]:
-        values = np.stack([getattr(piece, by) for piece in pieces])
-        which = np.where(np.isnan(values), -np.inf, _SENSE * values).argmax(axis=0)
-        side, function = np.indices(which.shape)
-        each = (np.stack([getattr(piece, name) for piece in pieces]) for name in names)
-        return [array[which, side, function] for array in each]
-
+    bound, at, corner = (np.stack([piece[i] for piece in pieces]) for i in range(3))
+    which = np.where(np.isnan(bound), -np.inf, _SENSE * bound).argmax(axis=0)
+    side, function = np.indices(which.shape)
+    corners = _SENSE * np.fmax.reduce(_SENSE * corner)
     taken = sum(piece.evaluations for piece in pieces)
-    (bound, at), (corner,) = chosen("bound", ("bound", "at")), chosen("corner", ("corner",))
-    return Extremes(bound, at, corner, taken)
+    return Extremes(bound[which, side, function], at[which, side, function], corners, taken)
 
 
-class _Ground:
-    """A piece as `ascent` climbs it: its functions, and its margin as the only wall. ``deepest``:
-    the largest margin seen; ``taken``: points looked at."""
+class Piece:
+    """m functions of k coordinates, smooth where they count: what `ascent` climbs.
 
-    def __init__(self, piece: Piece) -> None:
-        self.piece, self.deepest, self.taken = piece, 1.0, 0
+    ``function``: points of the unit cube, n x k -> n x (m + q): the m functions, ``size`` is m, and
+    q denominators, finite and continuous: where one is zero functions may have a pole. ``margin``:
+    points -> n, smooth; the functions count where it is not negative (None: everywhere): the only
+    wall. ``deepest``: the largest margin seen; ``taken``: points looked at.
+    """
+
+    def __init__(
+        self,
+        function: Callable[[Array], Array],
+        size: int,
+        margin: Callable[[Array], Array] | None = None,
+    ) -> None:
+        self.function, self.size, self.margin = function, size, margin
+        self.deepest, self.taken = 1.0, 0
+
+    def extremes(
+        self, coordinates: int, rng: np.random.Generator, known: Array | None = None
+    ) -> Extremes:
+        """Seek the extremes of the functions. ``known``: further points to start from, n x k."""
+        if coordinates <= CORNERS_IN_FULL:
+            corners = np.array([*product((0.0, 1.0), repeat=coordinates)])
+        else:
+            corners = np.round(rng.random((SCATTERED, coordinates)))
+        interior = spread_out(coordinates, SCATTERED, rng)
+        on_faces = rng.random(interior.shape) < 0.5
+        faces = np.where(on_faces, np.round(rng.random(interior.shape)), interior)
+        middle = np.full((1, coordinates), 0.5)
+        others = middle if known is None else np.concatenate([middle, known])
+        points = np.concatenate(groups := [corners, interior, faces, others])
+        if self.margin is not None:
+            self.deepest = float(np.abs(self.margin(points)).max())
+        values = self.values(points)
+        ends = np.cumsum([len(group) for group in groups])
+        bound, at, _ = extremes_of(
+            *(self, points, values, np.split(np.arange(len(points)), ends[:-1]), STARTS),
+            *(LEAST_GAIN, lambda begin: np.empty((0, len(begin)))),
+        )
+        lacking = np.isnan(values[:, : self.size]).any(axis=1)
+        if self.margin is not None:
+            lacking &= self.margin(points) >= 0
+        if lacking.any() and coordinates:
+            at, bound = self.stepped(at, bound, rng)
+        corner = _SENSE * below_all(_SENSE[:, :, None] * values[: len(corners)].T).max(axis=2)
+        corner[np.isinf(corner)] = np.nan
+        finite = np.isfinite(values[:, self.size :]).all(axis=1)
+        if finite.any():
+            pairs = points[finite][rng.integers(finite.sum(), size=(2, POLE_PAIRS))]
+            for j in range(self.size, values.shape[1]):
+                self.seek_poles(j, bound, at, np.concatenate([pairs, at[:, j, None]], axis=1))
+        size = self.size
+        return Extremes(bound[:, :size], at[:, :size], corner[:, :size], self.taken)
 
     def values(self, points: Array) -> Array:
         """The functions, nan outside the piece."""
-        values = self.piece.function(points)
+        values = self.function(points)
         self.taken += len(points)
-        if self.piece.margin is not None:
-            values = np.where(self.piece.margin(points)[:, None] >= 0, values, np.nan)
+        if self.margin is not None:
+            values = np.where(self.margin(points)[:, None] >= 0, values, np.nan)
         return values
 
     def walls(self, points: Array) -> Array:
         """From 0 to 1 inside; what `ascent` takes for touching it is inside, too."""
-        if self.piece.margin is None:
+        if self.margin is None:
             return np.empty((len(points), 0))
-        shares = self.piece.margin(points)[:, None] / (4 * self.deepest or 1.0)
+        shares = self.margin(points)[:, None] / (4 * self.deepest or 1.0)
         return np.where(np.isnan(shares), -1.0, shares - 2 * OUTSIDE)
 
     def at(self, u: Array, guess: Array) -> tuple[Array, Array, Array, Flags]:
@@ -170,7 +156,7 @@ class _Ground:
         with np.errstate(all="ignore"):
             functions, walls = (
                 np.nan_to_num((f(ahead) - f(behind)).reshape(n, k, -1) / distance[:, :, None])
-                for f in (self.piece.function, self.walls)
+                for f in (self.function, self.walls)
             )
         return functions.swapaxes(1, 2), walls.swapaxes(1, 2), np.empty((n, 0, k))
 
@@ -192,43 +178,27 @@ class _Ground:
             highest = np.where(better, height[every, choice], highest)
         return at.reshape(shape), _SENSE * highest.reshape(2, count)
 
-
-def _seek_poles(piece: Piece, j: int, bound: Array, at: Array, start: Array, end: Array) -> None:
-    """Look for zeros of denominator ``j`` between two lots of points, take the functions on either
-    side of them, and note in ``bound`` and ``at`` those that a pole makes infinite. Zeros outside
-    the piece are none."""
-
-    def between(share: Array) -> Array:
-        return start + share[:, None] * (end - start)
-
-    def sign_at(share: Array) -> Array:
-        return np.sign(piece.function(between(share))[:, j])
-
-    low, high = np.zeros(len(start)), np.ones(len(start))
-    first = sign_at(low)
-    changes = first * sign_at(high) < 0
-    start, end, low, high, first = (a[changes] for a in (start, end, low, high, first))
-    for _ in range(HALVES if len(low) else 0):
-        half = 0.5 * (low + high)
-        same = sign_at(half) == first
-        low, high = np.where(same, half, low), np.where(same, high, half)
-    if piece.margin is not None and len(low):
-        counts = piece.margin(between(low)) >= 0
-        start, end, low = start[counts], end[counts], low[counts]
-    for side in (-1, 1) if len(low) else ():
-        places = [between(low + away * side) for away in BESIDE_POLE]
-        far, near = (piece.function(points)[:, : piece.size] for points in places)
-        with np.errstate(all="ignore"):
-            growing = (np.abs(near) > POLE_GROWTH * np.abs(far)) & (np.abs(far) > 0)
-        for which, sign in enumerate((-1, 1)):
-            endless = growing & (near * sign > 0)
-            for function in np.flatnonzero(endless.any(axis=0)).tolist():
-                bound[which, function] = sign * np.inf
-                at[which, function] = places[1][endless[:, function].argmax()]
-
-
-def _corners(coordinates: int, rng: np.random.Generator) -> Array:
-    if coordinates <= CORNERS_IN_FULL:
-        corners = list(product((0.0, 1.0), repeat=coordinates))
-        return np.array(corners).reshape(2**coordinates, coordinates)
-    return np.round(rng.random((SCATTERED, coordinates)))
+    def seek_poles(self, j: int, bound: Array, at: Array, pairs: Array) -> None:
+        """Look for zeros of denominator ``j`` between ``pairs`` of points, take the functions on
+        either side of them, and note in ``bound`` and ``at`` those that a pole makes infinite.
+        Zeros outside the piece are none."""
+        first, last = (np.sign(self.function(points)[:, j]) for points in pairs)
+        low, high = ends = pairs[:, first * last < 0]
+        first, apart = first[first * last < 0], ends[1] - ends[0]
+        for _ in range(HALVES if len(low) else 0):
+            half = 0.5 * (low + high)
+            same = (np.sign(self.function(half)[:, j]) == first)[:, None]
+            low, high = np.where(same, half, low), np.where(same, high, half)
+        if self.margin is not None and len(low):
+            counts = self.margin(low) >= 0
+            low, apart = low[counts], apart[counts]
+        for side in (-1, 1) if len(low) else ():
+            places = [low + away * side * apart for away in BESIDE_POLE]
+            far, near = (self.function(points)[:, : self.size] for points in places)
+            with np.errstate(all="ignore"):
+                growing = (np.abs(near) > POLE_GROWTH * np.abs(far)) & (np.abs(far) > 0)
+            for which, sign in enumerate((-1, 1)):
+                endless = growing & (near * sign > 0)
+                for function in np.flatnonzero(endless.any(axis=0)).tolist():
+                    bound[which, function] = sign * np.inf
+                    at[which, function] = places[1][endless[:, function].argmax()]

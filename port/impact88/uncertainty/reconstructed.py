@@ -25,8 +25,8 @@ from ..reconstruction.geometry import NAMES as GEOMETRY
 from ..reconstruction.geometry import Geometry
 from ..reconstruction.state import CRUSH, DIRECTIONS, State
 from ..reconstruction.system import PARAMETERS, TINY, System
-from .ascent import OUTSIDE, climb, extremes_of
-from .draws import Spread, spread_of, spread_out
+from .ascent import OUTSIDE, climb, extremes_of, spread_out
+from .boundstable import Spread
 from .uncertain import Uncertain, columns_of, fixed
 
 Floats = NDArray[np.float64]
@@ -75,7 +75,7 @@ class Draws:
     def spread(self, name: str, quantiles: Sequence[float]) -> Spread:
         """Mean, standard deviation and quantiles of those that have a solution."""
         values = self.values[name]
-        return spread_of(values[np.isfinite(values)], quantiles)
+        return Spread.of(values[np.isfinite(values)], quantiles)
 
 
 @dataclass(frozen=True)
