@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from impact88 import barrier, sample, solve, solve_for
 from impact88.chapter.barrier import BARRIER, BARRIER_AFTER, VEHICLE
 from impact88.errors import UserError
-from impact88.reconstruction.geometry import NAMES as GEOMETRY
-from impact88.reconstruction.impulse import clock, facing, forces
+from impact88.reconstruction.geometry import GEOMETRY, clock, facing
+from impact88.reconstruction.outcome import forces
 from impact88.reconstruction.state import State
 from reference_cases import cases_of
 

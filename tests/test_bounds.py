@@ -14,7 +14,7 @@ from impact88.bench.populations import scenes
 from impact88.closedform.solve import quantities
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES, quantity
-from impact88.reconstruction.model import forward_model, reconstruction_model
+from impact88.reconstruction.outcome import forward_model, reconstruction_model
 from impact88.scene import sample
 from impact88.status import Status
 from impact88.uncertainty import uncertain

@@ -16,11 +16,9 @@ from impact88 import sample, solve, solve_for
 from impact88.bench.populations import scenes
 from impact88.errors import UserError
 from impact88.names import COEFFICIENTS, FINAL_STATE, VELOCITIES
-from impact88.reconstruction.model import initial_impact
-from impact88.reconstruction.outcome import outcome
-from impact88.reconstruction.solutiontable import tables
+from impact88.reconstruction.outcome import initial_impact, outcome
+from impact88.reconstruction.solutiontable import Impact
 from impact88.reconstruction.unknowns import UnsolvableError
-from impact88.units import RULES
 from reference_cases import Case, cases_of
 
 VEHICLES = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
@@ -525,7 +523,7 @@ def test_a_fit_of_contradictions_does_not_stand_beside_a_solution() -> None:
 
 def test_rounding_prints_as_nothing_and_a_heading_is_above_minus_180() -> None:
     values = {**dict.fromkeys(("UY", "VS"), -2e-14), "UX": -40.0, "SA": 40.0, "HA": -180.0}
-    text = tables({**values, "E": 1e-12, "MB": 90.0}, ["UX"], [], [], RULES)
+    text = Impact({"UX": -40.0}, {**values, "E": 1e-12, "MB": 90.0}).as_text()
     assert "heading 180" in text
     assert "-180" not in text
     assert "e-14" not in text

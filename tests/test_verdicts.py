@@ -253,7 +253,7 @@ def status_range(value):
 
 def test_barrier_reconstruction_has_energies():
     """An infinite body at rest adds no energy, in every solver."""
-    from impact88.reconstruction.model import reconstruction_model
+    from impact88.reconstruction.outcome import reconstruction_model
 
     wall = {**RUN_1, "MB": np.inf, "IB": np.inf, "VX": 0.0, "VY": 0.0, "WB": 0.0, "E": 0.1}
     names = (*FINAL, "MUP", "KI", "KF", "LOSS", "STATUS")

@@ -30,9 +30,8 @@ from numpy.typing import NDArray
 from ..closedform.solve import solve
 from ..files import packaged_text
 from ..names import FINAL_STATE, VELOCITIES
-from ..reconstruction.contact import moved
-from ..reconstruction.geometry import Geometry
-from ..reconstruction.impulse import forces
+from ..reconstruction.geometry import Geometry, moved
+from ..reconstruction.outcome import forces
 from ..reconstruction.state import State
 from .deltav import delta_v
 

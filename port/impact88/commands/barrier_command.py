@@ -27,7 +27,7 @@ import argparse
 
 from ..chapter.barrier import BARRIER, BARRIER_AFTER
 from ..reconstruction.frictionshare import share_resolved
-from ..reconstruction.solutiontable import show
+from ..reconstruction.solutiontable import Exact
 from ..stderr import note
 from ..uncertainty.uncertain import fixed
 from ..units import system_of
@@ -48,9 +48,10 @@ def main(args: argparse.Namespace) -> int:
     given, named = options.known_within_limits(args, KNOWABLE, single=True)
     wall = {name: fixed(value) for name, value in BARRIER.items()}
     resting = {} if "UX" in given else {n: fixed(value) for n, value in BARRIER_AFTER.items()}
-    known, found = share_resolved(given | wall | resting)
-    if found:
-        note(None, found)
+    known, friction = share_resolved(given | wall | resting)
+    if friction:
+        note(None, friction)
     everything = {name: item.nominal for name, item in known.items()} | BARRIER_AFTER
-    show(everything, None, options.source_of(args), args.contact_time, args.json, system_of(named))
+    found = Exact.all_of(everything, None, args.contact_time, options.source_of(args))
+    options.show_impacts(args, found, system_of(named))
     return 0

@@ -18,7 +18,7 @@ from ..chapter.colinear import colinear, colinear_inverse
 from ..errors import UserError
 from ..names import quantity
 from ..plaintable import decimals_for, fixed, paragraph, quantities, table
-from ..reconstruction.impulse import forces
+from ..reconstruction.outcome import forces
 from ..status import sentences
 from ..units import System, system_of, written
 from . import options

@@ -35,9 +35,11 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from ..reconstruction.solutiontable import Impact
     from ..uncertainty.boundstable import Bounds
     from ..uncertainty.ranges import Inputs
     from ..uncertainty.uncertain import Uncertain
+    from ..units import System
 
 FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
 """What ``--from`` and ``--to`` take."""
@@ -273,6 +275,16 @@ def show(
         print("\n".join(lines()))
 
 
+def show_impacts(args: argparse.Namespace, found: Sequence[Impact], units: System) -> None:
+    """Print solved impacts."""
+    from ..reconstruction.solutiontable import in_turn
+
+    def record() -> dict[str, Any]:
+        return {"solutions": [impact.as_json(units) for impact in found]}
+
+    show(args, "reconstruct", record, lambda: [in_turn(found, units)])
+
+
 def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -> None:
     """Print an object of a published form on one line; what is not finite is null."""
     import json
@@ -490,7 +502,7 @@ def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
     note_remarks(scene.entries, based)
     if (move := getattr(args, "move_contact", None)) is None:
         return scene
-    from ..reconstruction.contact import moved_texts
+    from ..reconstruction.geometry import moved_texts
 
     parts = [part.strip() for part in move.split(",")]
     if len(parts) != 2:

@@ -50,6 +50,7 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 
 import argparse
 import sys
+from collections.abc import Sequence
 
 from ..errors import UserError
 from ..files import replacing
@@ -57,7 +58,7 @@ from ..progress import progress
 from ..reconstruction.adjustment import Reconstruction, needs_adjustment, reconstruct
 from ..reconstruction.frictionshare import share_resolved
 from ..reconstruction.knowable import KNOWABLE
-from ..reconstruction.solutiontable import in_turn, show
+from ..reconstruction.solutiontable import Exact, Impact
 from ..reconstruction.state import QUANTITIES
 from ..scene import shown_texts
 from ..scene import template as scene_template
@@ -86,21 +87,23 @@ def main(args: argparse.Namespace) -> int:
         return 0
     wanted = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
     known, named = options.known_within_limits(args, KNOWABLE)
-    known, found = share_resolved(known)
-    if found:
-        note(None, found)
+    known, friction = share_resolved(known)
+    if friction:
+        note(None, friction)
     units = system_of(named)
-    if not args.write_scene and not needs_adjustment(known, wanted):
+    found: Sequence[Impact]
+    if args.write_scene or needs_adjustment(known, wanted):
+        found = _reconstructed(known, wanted, args, units)
+    else:
         numbers = {name: item.nominal for name, item in known.items()}
-        show(numbers, wanted, options.source_of(args), args.contact_time, args.json, units)
-        return 0
-    _reconstruct(known, wanted, args, units)
+        found = Exact.all_of(numbers, wanted, args.contact_time, options.source_of(args))
+    options.show_impacts(args, found, units)
     return 0
 
 
-def _reconstruct(
+def _reconstructed(
     known: dict[str, Uncertain], wanted: list[str] | None, args: argparse.Namespace, units: System
-) -> None:
+) -> list[Measured]:
     try:
         with progress(None, "reconstruct", "impacts") as meter:
             solutions = reconstruct(known, meter.update)
@@ -114,17 +117,9 @@ def _reconstruct(
     found = []
     for solution in solutions:
         with progress(None, "reconstruct", "impacts") as meter:
-            found.append(
-                Measured.of(
-                    *(solution, args.samples, args.seed, wanted, args.contact_time, meter.update)
-                )
-            )
-    options.show(
-        args,
-        "reconstruct",
-        lambda: {"solutions": [solution.as_json(units) for solution in found]},
-        lambda: [in_turn([solution.as_text(units) for solution in found])],
-    )
+            given = (args.samples, args.seed, wanted, args.contact_time)
+            found.append(Measured.of(solution, *given, meter.update))
+    return found
 
 
 def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace, units: System) -> None:

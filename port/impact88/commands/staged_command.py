@@ -31,14 +31,11 @@ from dataclasses import asdict
 from math import isfinite, sqrt
 from typing import Any
 
-import numpy as np
-
 from ..chapter import staged
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_STATE, VELOCITIES, missing
 from ..plaintable import fixed, paragraph, table
-from ..reconstruction.doublerange import within_doubles
-from ..reconstruction.geometry import NAMES, Geometry
+from ..reconstruction.geometry import GEOMETRY, Geometry, within_doubles
 from ..reconstruction.unknowns import check_physical
 from ..units import base_of, system_of
 from . import options
@@ -79,7 +76,7 @@ def _own(args: argparse.Namespace) -> int:
     """Fit the collision of a file."""
     if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
         raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number, 0 or more")
-    names = (*NAMES, *VELOCITIES, *FINAL_STATE)
+    names = (*GEOMETRY, *VELOCITIES, *FINAL_STATE)
     known, named = options.known_values(args, names)
     if absent := [name for name in names if name not in known]:
         raise UserError(missing(absent), args.scene)
@@ -96,7 +93,7 @@ def _fitted(
 ) -> tuple[dict[str, Any], list[str]]:
     """The fit of one collision, as JSON and as lines."""
 
-    check_physical({name: np.asarray(value) for name, value in known.items()})
+    check_physical(known)
     scene = {name: value for name, value in known.items() if name not in FINAL_STATE}
     here = Geometry.of(scene)
     if not here.relative([scene[name] for name in VELOCITIES])[0]:

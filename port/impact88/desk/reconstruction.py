@@ -69,11 +69,11 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
 def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dict[str, Any], str]]:
     """Each solution as the command gives it, as an object and as text. Raises UserError."""
     from ..reconstruction import adjustment
-    from ..reconstruction.solutiontable import Exact
+    from ..reconstruction.solutiontable import Exact, Impact
     from ..uncertainty.reconstructedtable import Measured
     from ..units import system_of
 
-    found: Sequence[Exact | Measured]
+    found: Sequence[Impact]
     if adjustment.needs_adjustment(known):
         found = [Measured.of(impact, DRAWS) for impact in adjustment.reconstruct(known)]
     else:

@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..reconstruction.impulse import clock
+from ..reconstruction.geometry import clock
 from ..units import RULES, System, system_of
 from . import drawing as d
 from .canvas import Svg, svg

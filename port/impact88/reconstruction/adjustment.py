@@ -21,19 +21,16 @@ from ..errors import UserError
 from ..mappings import within_limits
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, check_names
 from ..uncertainty.uncertain import Uncertain, fixed
-from .doublerange import within_doubles
-from .geometry import NAMES as GEOMETRY
-from .knowable import OTHERS
+from .geometry import GEOMETRY, with_point_masses, within_doubles
+from .knowable import KNOWABLE, OTHERS
 from .state import COURSES, DIRECTIONS, FORCES, QUANTITIES, SPEEDS, State
-from .system import MEASURABLE, PARAMETERS, SPINS, System
-from .unknowns import UnsolvableError, solve_for, typed
+from .system import PARAMETERS, SPINS, System
+from .unknowns import UnsolvableError, check_physical, solve_for, typed
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
-KNOWABLE = ("M", *PARAMETERS, "MU", *MEASURABLE)
-"""What may be known."""
 _STARTS = 120
 """With half of them one of several impacts was missed in 2 of 48 problems seen from elsewhere (axes
 turned, mirrored, vehicles exchanged), with twice as many none more is found."""
@@ -469,30 +466,18 @@ def _preferred(found: list[Reconstruction]) -> list[Reconstruction]:
 def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:
     given = within_limits(known)
     check_names(given, KNOWABLE, "value of an impact")
-    m = given.setdefault("M", fixed(6.0))
-    if m.varies or m.nominal not in (4, 6):
-        raise UserError("M must be 6, or 4 for point masses")
-    if m.nominal == 4:
+    if given.setdefault("M", fixed(6.0)).nominal == 4:
         ignored = (*SPINS, "EM", "DA", "DB", "PA", "PB", "IA", "IB")
         given = {name: item for name, item in given.items() if name not in ignored}
-        given |= {name: fixed(0.0) for name in ("DA", "DB", "PA", "PB")}
-        given |= {"IA": fixed(1.0), "IB": fixed(1.0)}
-        given = {"TA": fixed(0.0), "TB": fixed(0.0), **given}
-    missing = [name for name in GEOMETRY if name not in given]
-    if missing:
-        raise UserError(f"missing {' '.join(missing)}: the vehicles and their geometry are needed")
-    for name in ("MA", "MB", "IA", "IB"):
-        least = given[name].nominal if given[name].kind == "normal" else given[name].low
-        if not least > 0:
-            raise UserError(f"{name} is not positive")
-    if "MU" in given and "MUP" in given:
-        raise UserError("MU and MUP are both given; expected one")
+        given = {n: fixed(v) for n, v in with_point_masses({"M": 4.0}).items()} | given
+    check_physical(
+        {n: np.array([x.nominal if x.kind == "normal" else x.low]) for n, x in given.items()}
+    )
+    if given["M"].varies:
+        raise UserError("M must be 6, or 4 for point masses")
     if ("ELA" in given) != ("ELB" in given):
         raise UserError("ELA and ELB sum to EL; expected both, or EL")
     for name, item in given.items():
-        infinite = name in ("MA", "MB", "IA", "IB") and not item.varies
-        if np.isnan(item.nominal) or (np.isinf(item.nominal) and not infinite):
-            raise UserError(f"{name} is not finite")
         if name in SPEEDS and item.nominal < 0:
             raise UserError(f"{name} is negative; expected a speed, its course beside it")
     return given

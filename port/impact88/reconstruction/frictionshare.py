@@ -47,7 +47,6 @@ def share_resolved(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertain]
 
 def _signed(others: Mapping[str, Uncertain], share: float) -> float:
     """The P_t/P_n that is a share of MUC in the impact that follows from it and the others."""
-
     exact = not needs_adjustment(others, None)
     numbers = {name: item.nominal for name, item in others.items()}
 
@@ -60,7 +59,7 @@ def _signed(others: Mapping[str, Uncertain], share: float) -> float:
         scene = {name: value for name, value in scene.items() if name in SCENE}
         return mu - share * float(solve({**scene, "MU": 0.0}, ("MUC",))["MUC"])
 
-    failure: UserError | None = None
+    failure = UserError("no friction is found that is this share of the critical friction", "MU")
     for start in (0.3, -0.3):
         try:
             a, b = 0.0, start
@@ -74,6 +73,4 @@ def _signed(others: Mapping[str, Uncertain], share: float) -> float:
                 return b
         except UserError as error:
             failure = error
-    if failure is not None:
-        raise failure
-    raise UserError("no friction is found that is this share of the critical friction", "MU")
+    raise failure

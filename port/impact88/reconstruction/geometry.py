@@ -4,26 +4,52 @@ The contact plane makes the angle Γ with the y axis; n = (cos Γ, sin Γ) is no
 (-sin Γ, cos Γ) lies in it. The contact point is at (-d4, -d3) from A's center of gravity and at
 (d2, d1) from B's, so A is on the +n side. The impulse (P_n, P_t) and moment impulse M act on A,
 their opposites on B. Masses appear inverted only: a rigid barrier is nothing special.
+
+DA PA and DB PB are the contact point's polar coordinates in each vehicle, from its front: B's
+contact point lies at the angle θ_b + φ_b from its center of gravity, so B faces θ_b; A's lies at
+θ_a + φ_a + 180°, so A faces θ_a + 180°. One point has four numbers there, so a move of it changes
+all four together: varied apart they tear it in two.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cached_property, wraps
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..closedform.degrees import sin_cos as real_sin_cos
+from ..doubles import double
+from ..errors import BEYOND_DOUBLES, UserError
+from ..scene import OWN_AXES
 
 Array = NDArray[Any]
+P = ParamSpec("P")
+R = TypeVar("R")
 
-NAMES = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
+GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 """The values of a scene that make its geometry; M (6 or 4) is optional."""
-_POINT_MASS = dict.fromkeys(NAMES[:2] + NAMES[3:7], 0.0) | {"IA": 1.0, "IB": 1.0}
+_POINT_MASS = dict.fromkeys(GEOMETRY[:2] + GEOMETRY[3:7], 0.0) | {"IA": 1.0, "IB": 1.0}
 """What a point mass does not look at, and may be left out where M is 4 throughout."""
+
+
+def within_doubles(function: Callable[P, R]) -> Callable[P, R]:
+    """``function`` without numpy's warnings: what lies beyond the range of doubles is said in words
+    at the end. A matrix that is not finite, and so has no decomposition, is a UserError."""
+
+    @wraps(function)
+    def quiet(*arguments: P.args, **options: P.kwargs) -> R:
+        with np.errstate(all="ignore"):
+            try:
+                return function(*arguments, **options)
+            except np.linalg.LinAlgError:
+                raise UserError(BEYOND_DOUBLES) from None
+
+    return quiet
 
 
 def _numbers(value: Any) -> Array:
@@ -67,9 +93,9 @@ class Geometry:
 
     @classmethod
     def of(cls, columns: Mapping[str, Any]) -> Geometry:
-        """Of scenes given by name (`NAMES`, and M where not 6), angles in degrees."""
+        """Of scenes given by name (`GEOMETRY`, and M where not 6), angles in degrees."""
         columns = with_point_masses(columns)
-        value = {name: _numbers(columns[name]) for name in NAMES}
+        value = {name: _numbers(columns[name]) for name in GEOMETRY}
         point = np.asarray(columns.get("M", 6), np.float64) == 4
         sine, cosine = sin_cos(value["GA"])
         sine_a, cosine_a = sin_cos(value["TA"] + value["PA"])
@@ -127,3 +153,69 @@ class Geometry:
     def contact_point(self) -> dict[str, Array]:
         """The contact point from each center of gravity, along the scene's x and y."""
         return {"CAX": -self.d4, "CAY": -self.d3, "CBX": self.d2, "CBY": self.d1}
+
+
+# -- in a vehicle's own axes
+
+MOVES = ("CX", "CY")
+"""How far the contact point moves along the scene's x and y."""
+
+
+def facing(vehicle: str, theta: Any) -> Any:
+    """The direction (degrees from the x axis) a vehicle's front points to."""
+    return np.asarray(theta) + (180.0 if vehicle == "A" else 0.0)
+
+
+def clock(pdof: float) -> str:
+    """A PDOF as the nearest hour of the clock: 12 o'clock is the front, 3 o'clock the right."""
+    return f"{round(pdof / 30) % 12 or 12} o'clock"
+
+
+def placed(names: Iterable[str], given: Iterable[str]) -> tuple[str, ...]:
+    """``names`` with CAF CAL in place of DA PA, CBF CBL of DB PB, where those are ``given``."""
+    own: dict[str, str] = {}
+    for vehicle, axes in OWN_AXES.items():
+        if set(axes) & set(given):
+            own |= dict(zip((f"D{vehicle}", f"P{vehicle}"), axes, strict=True))
+    return tuple(own.get(name, name) for name in names)
+
+
+@within_doubles
+def moved(values: Mapping[str, Any]) -> dict[str, Any]:
+    """``values`` (a scene's geometry, numbers or arrays, with CX and CY, or CAF CAL CBF CBL) with
+    DA PA DB PB of the contact point as it is moved, or given, and without those."""
+    kept = dict(values)
+    for vehicle, axes in OWN_AXES.items():
+        if axes[0] in kept:
+            forward, left = (np.asarray(kept.pop(name), np.float64) for name in axes)
+            kept[f"D{vehicle}"] = np.hypot(forward, left)
+            kept[f"P{vehicle}"] = np.degrees(np.arctan2(left, forward))
+    if not set(MOVES) & set(kept):
+        return kept
+    values, kept = kept, {name: value for name, value in kept.items() if name not in MOVES}
+    dx, dy = (np.asarray(values.get(name, 0.0), np.float64) for name in MOVES)
+    for vehicle, sign in (("A", -1.0), ("B", 1.0)):
+        heading = np.asarray(values[f"T{vehicle}"], np.float64)
+        distance = np.asarray(values[f"D{vehicle}"], np.float64)
+        angle = np.radians(heading + values[f"P{vehicle}"])
+        # A's polar coordinates point from the contact point to its center of gravity
+        x = distance * np.cos(angle) + sign * dx
+        y = distance * np.sin(angle) + sign * dy
+        kept[f"D{vehicle}"] = np.hypot(x, y)
+        kept[f"P{vehicle}"] = np.degrees(np.arctan2(y, x)) - heading
+    return kept
+
+
+def moved_texts(texts: Mapping[str, str], dx: float, dy: float) -> dict[str, str]:
+    """What a move of the contact point changes in a scene's texts: DA PA DB PB. Raises UserError
+    where a number of it lies beyond the range of doubles."""
+    names = [kind + vehicle for vehicle in "AB" for kind in "DPT"]
+    values = moved({**{name: double(texts[name]) for name in names}, "CX": dx, "CY": dy})
+    changed = {name: float(values[name]) for name in ("DA", "PA", "DB", "PB")}
+    for name, value in changed.items():
+        if not math.isfinite(value):
+            raise UserError(
+                f"the contact point cannot be moved: {name} would be {value}; expected numbers "
+                "within the range of doubles"
+            )
+    return {name: repr(value).upper() for name, value in changed.items()}

@@ -16,8 +16,7 @@ import numpy as np
 
 from ..closedform.energy import kinetic_energy
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
-from .geometry import Geometry, sin_cos
-from .impulse import facing
+from .geometry import Geometry, facing, sin_cos
 
 SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": ("VBX", "VBY")}
 """Speeds, each with its velocity's components."""

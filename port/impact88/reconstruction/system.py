@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 from ..uncertainty.uncertain import Uncertain
-from .geometry import NAMES as GEOMETRY
-from .geometry import Geometry
+from .geometry import GEOMETRY, Geometry
 from .state import (
     CHANGES,
     CONTACT,

@@ -41,9 +41,7 @@ from ..names import (
     quantity,
 )
 from ..uncertainty.uncertain import fixed
-from .doublerange import within_doubles
-from .geometry import NAMES as GEOMETRY
-from .geometry import with_point_masses
+from .geometry import GEOMETRY, with_point_masses, within_doubles
 from .state import State
 from .system import SPINS, TINY, System
 
@@ -172,8 +170,13 @@ class _Problem:
 
     @classmethod
     def of(cls, known: Mapping[str, Any], unknown: Iterable[str] | None) -> _Problem:
-        given = _numbers(known)
-        point = _is_point_mass(given)
+        allowed = {*GEOMETRY, "M", *VELOCITIES, *FINAL_STATE, "E", "EM", "MU", "MUP"}
+        values = columns(known)
+        check_names(values, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
+        given = {n: np.asarray(v, np.float64) for n, v in with_point_masses(values).items()}
+        check_physical(given)
+        m = given.get("M", np.asarray(6.0))
+        point = bool(m.size) and bool((m == 4).all())
         names = tuple(n for n in UNKNOWNS if not (point and n in (*SPINS, "EM")))
         absent = tuple(n for n in names if n not in given and not (n == "MUP" and "MU" in given))
         wanted = absent if unknown is None else tuple(dict.fromkeys(unknown))
@@ -189,7 +192,6 @@ class _Problem:
             shapes = ", ".join(f"{name} {v.shape}" for name, v in given.items() if v.ndim)
             raise UserError(f"the arrays do not broadcast together: {shapes}") from None
         given = {name: np.broadcast_to(value, shape) for name, value in given.items()}
-        check_physical(given)
         return cls(given, wanted, names, absent, shape, point)
 
     @property
@@ -437,39 +439,24 @@ def _blame(name: str, value: float) -> str:
     return why.get((name, value), usual)
 
 
-def _numbers(known: Mapping[str, Any]) -> dict[str, Array]:
-    allowed = {*GEOMETRY, "M", *VELOCITIES, *FINAL_STATE, "E", "EM", "MU", "MUP"}
-    values = columns(known)
-    check_names(values, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
-    given = {name: np.asarray(value, np.float64) for name, value in values.items()}
-    given = {name: np.asarray(value) for name, value in with_point_masses(given).items()}
-    absent = [name for name in GEOMETRY if name not in given]
-    if absent:
+def check_physical(given: Mapping[str, Any]) -> None:
+    """Raises UserError where vehicles or geometry are missing, for M other than 6 or 4, values that
+    are not finite, masses that are not positive, two infinite ones."""
+    if absent := [name for name in GEOMETRY if name not in given]:
         raise UserError(f"{missing(absent)}: the vehicles and their geometry must be known")
     if "MU" in given and "MUP" in given:
         raise UserError("MU and MUP are both given; give MUP (signed Pt/Pn) or MU, not both")
-    return given
-
-
-def _is_point_mass(given: Mapping[str, Array]) -> bool:
-    m = given.get("M", np.asarray(6.0))
-    if not ((m == 6).all() or (m == 4).all()):
+    m, mu = given.get("M", 6.0), given.get("MUP", given.get("MU", 0.0))
+    if not (np.all(m == 6) or np.all(m == 4)):
         raise UserError("M must be 6, or 4 for point masses, the same in all scenes")
-    return bool(m.size) and bool((m == 4).all())
-
-
-def check_physical(given: Mapping[str, Array]) -> None:
-    """Raises UserError for values that are not finite, masses that are not positive, two infinite
-    ones."""
-    mu = given.get("MUP", given.get("MU"))
-    if mu is not None and (mu == PIVOT).any() and not (mu == PIVOT).all():
+    if np.any(mu == PIVOT) and not np.all(mu == PIVOT):
         raise UserError("MU is the pivot's -10 in some scenes only; solve pivots apart")
     for name, value in given.items():
         meaning = f"{quantity(name).meaning} [{quantity(name).unit}]"
         infinite_allowed = name in ("MA", "MB", "IA", "IB")
         if np.isnan(value).any() or (np.isinf(value).any() and not infinite_allowed):
             raise UserError(f"{name} is not finite; expected {meaning}")
-        if infinite_allowed and not (value > 0).all():
+        if infinite_allowed and not np.all(value > 0):
             raise UserError(f"{name} is not positive; expected {meaning}")
     for kind, names in (("mass", ("MA", "MB")), ("moment of inertia", ("IA", "IB"))):
         if all(np.isinf(given[name]).any() for name in names):

@@ -13,8 +13,7 @@ from ..figures.sceneview import scene_drawing
 from ..files import replacing
 from ..names import DEFAULT_M, SCENE, check_names, quantity
 from ..plaintable import fixed, number
-from ..reconstruction.contact import MOVES, moved, placed
-from ..reconstruction.impulse import clock
+from ..reconstruction.geometry import MOVES, clock, moved, placed
 from ..reconstruction.knowable import KNOWABLE
 from ..scene import Entries
 from ..status import sentences

@@ -25,8 +25,8 @@ from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
 from ..mappings import within_limits
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names, listed
-from ..reconstruction.contact import MOVES, moved, placed
-from ..reconstruction.model import Model, forward_model, reconstruction_model
+from ..reconstruction.geometry import MOVES, moved, placed
+from ..reconstruction.outcome import Model, forward_model, reconstruction_model
 from ..scene import check_mapping
 from .boundstable import Bound, Bounds, Drive, Spread
 from .extremes import CORNERS_IN_FULL, Extremes, Piece, merged

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from ..errors import UserError
 from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
-from ..reconstruction.contact import MOVES, moved, placed
+from ..reconstruction.geometry import MOVES, moved, placed
 from . import uncertain
 from .uncertain import Uncertain
 

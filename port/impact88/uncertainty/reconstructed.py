@@ -21,8 +21,7 @@ from numpy.typing import NDArray
 
 from ..names import COEFFICIENTS, IMPULSES, VELOCITIES
 from ..reconstruction.adjustment import Reconstruction, pseudo_inverse
-from ..reconstruction.geometry import NAMES as GEOMETRY
-from ..reconstruction.geometry import Geometry
+from ..reconstruction.geometry import GEOMETRY, Geometry
 from ..reconstruction.state import CRUSH, DIRECTIONS, State
 from ..reconstruction.system import PARAMETERS, TINY, System
 from .ascent import OUTSIDE, climb, extremes_of, spread_out

@@ -5,21 +5,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass, field
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import notebook
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
-from ..plaintable import number, paragraph, plain, table
+from ..plaintable import number, paragraph, table
 from ..reconstruction import adjustment
 from ..reconstruction.adjustment import Reconstruction, typed_friction
-from ..reconstruction.doublerange import within_doubles
-from ..reconstruction.solutiontable import Spread, completed, in_turn, numbers, tables
+from ..reconstruction.geometry import within_doubles
+from ..reconstruction.solutiontable import Impact, completed, in_turn
 from ..reconstruction.state import COURSES, FORCES, SPEEDS
-from ..status import sentences
 from ..units import RULES, System, written
 from .boundstable import unbounded
 from .reconstructed import Draws, Range, draws, ranges
@@ -92,12 +91,12 @@ def _along_an_axis(solution: Reconstruction, name: str) -> bool:
     return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
 
 
-class Measured(NamedTuple):
+@dataclass(frozen=True)
+class Measured(Impact):
     """A reconstruction, everything that follows from it, and how uncertain that is."""
 
-    solution: Reconstruction
-    values: dict[str, float]
-    spread: Uncertainty
+    solution: Reconstruction = field(kw_only=True)
+    spread: Uncertainty = field(kw_only=True)
 
     @classmethod
     @within_doubles
@@ -109,17 +108,30 @@ class Measured(NamedTuple):
         wanted: Sequence[str] | None = None,
         contact_time: float | None = None,
         progress: Callable[[int], object] = lambda draws: None,
-    ) -> Measured:
+    ) -> Self:
         """See `uncertainty`, and `solutiontable.completed`."""
         values = dict(solution.values)
         if "MUP" in values and "UX" in values:
             values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
         spread = uncertainty(solution, samples, seed, wanted, progress)
-        return cls(solution, completed(values, contact_time), spread)
+        values, lacking = completed(values, contact_time), solution.undetermined
+        helpful = solution.helpful if lacking else ()
+        return cls(
+            *(solution.system.known, values, lacking, helpful), solution=solution, spread=spread
+        )
+
+    def spread_of(self, name: str) -> tuple[float, float, float] | None:
+        if name not in self.spread.names:
+            return None
+        bound = self.spread.ranges.get(name)
+        ends = (bound.lower, bound.upper) if bound else (math.nan, math.nan)
+        return self.spread.deviations[name], *ends
+
+    def drivers_of(self, name: str) -> Sequence[tuple[str, float]]:
+        return self.spread.drivers.get(name, ())[:DRIVERS]
 
     @within_doubles
     def warnings(self, units: System = RULES) -> list[str]:
-        """What a reader must know, in sentences."""
         solution, lines = self.solution, []
         if solution.undetermined:
             lines.append(f"not determined by what is known: {' '.join(solution.undetermined)}")
@@ -163,7 +175,7 @@ class Measured(NamedTuple):
             )
         if self.spread.draws and self.spread.draws.failed:
             lines.append(f"{100 * self.spread.draws.failed:.3g} % of the draws have no solution")
-        return lines + sentences(int(self.values.get("STATUS", 0)), self.values)
+        return lines + super().warnings()
 
     @property
     def not_searched(self) -> list[str]:
@@ -190,26 +202,8 @@ class Measured(NamedTuple):
             )
         return lines
 
-    # -- tables
-
-    @within_doubles
-    def as_text(self, units: System = RULES) -> str:
-        """The reconstruction as tables."""
-        answered = {}
-        for name in _ANSWERS:
-            if name in self.spread.names:
-                bound = self.spread.ranges.get(name)
-                ends = (bound.lower, bound.upper) if bound else (math.nan, math.nan)
-                drivers = self.spread.drivers[name][:DRIVERS]
-                answered[name] = Spread(self.spread.deviations[name], *ends, drivers)
-        further = [self._adjustments(units), self._spreads(units), *self._connections()]
-        remarks = self.warnings(units)
-        if self.solution.undetermined:  # which the answer says, too
-            further.append(paragraph(f"! {remarks.pop(0)}"))
-        return tables(
-            *(self.values, self.solution.system.nominal, remarks, further, units, answered),
-            *(self.solution.undetermined, self.solution.helpful),
-        )
+    def further(self, units: System) -> list[list[str]]:
+        return [self._adjustments(units), self._spreads(units), *self._connections()]
 
     def _adjustments(self, units: System) -> list[str]:
         count = self.solution.redundancy
@@ -268,35 +262,22 @@ class Measured(NamedTuple):
         columns = table(driving, ["uncertain through", *[""] * DRIVERS], left=(0, 1, 2, 3))
         return [correlations if len(at) > 1 else [], columns if driving else []]
 
-    @within_doubles
-    def as_json(self, units: System = RULES) -> dict[str, Any]:
-        """The reconstruction for a program, in ``units``; numbers that do not exist are null."""
-        solution, spread = self.solution, self.spread
-        whole: dict[str, Any] = plain(
-            {
-                **numbers(self.values, solution.system.known, self.warnings(units), units),
-                "undetermined": solution.undetermined,
-                "adjusted": [
-                    dict(
-                        zip(
-                            a._fields,
-                            (a.name, *(units.factor(a.name) * x for x in a[1:])),
-                            strict=True,
-                        )
-                    )
-                    | {"moved": a.moved}
-                    for a in solution.adjusted
-                ],
-                "redundancy": solution.redundancy,
-                "sum_of_squares": solution.squares,
-                "equal_tolerances_assumed": solution.assumed,
-                "uncertainty": {name: self._uncertain(name, units) for name in spread.names},
-                "correlations": {"names": spread.names, "matrix": spread.correlations},
-                "draws_without_solution": spread.draws.failed if spread.draws else None,
-                "not_searched": self.not_searched,
-            }
-        )
-        return whole
+    def more(self, units: System) -> dict[str, Any]:
+        solution, spread, adjusted = self.solution, self.spread, []
+        for a in solution.adjusted:
+            sizes = {n: units.factor(a.name) * x for n, x in zip(a._fields[1:], a[1:], strict=True)}
+            adjusted.append({"name": a.name, **sizes, "moved": a.moved})
+        return {
+            "undetermined": solution.undetermined,
+            "adjusted": adjusted,
+            "redundancy": solution.redundancy,
+            "sum_of_squares": solution.squares,
+            "equal_tolerances_assumed": solution.assumed,
+            "uncertainty": {name: self._uncertain(name, units) for name in spread.names},
+            "correlations": {"names": spread.names, "matrix": spread.correlations},
+            "draws_without_solution": spread.draws.failed if spread.draws else None,
+            "not_searched": self.not_searched,
+        }
 
     def _uncertain(self, name: str, units: System) -> dict[str, Any]:
         factor = units.factor(name)
@@ -324,7 +305,7 @@ class Reconstructions(list[Reconstruction]):
 
     def _repr_html_(self) -> str:
         """What `impact88 reconstruct --samples 0` prints, as a notebook shows it."""
-        return notebook.preformatted(in_turn([Measured.of(one, 0).as_text() for one in self]))
+        return notebook.preformatted(in_turn([Measured.of(one, 0) for one in self]))
 
 
 def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions:
