@@ -25,18 +25,15 @@ CODES: dict[str, int] = {
 
 
 class ApplesoftError(Exception):
-    """An error the ROM reports: ``kind``, a key of `CODES`, and the BASIC line it happened in, set
-    by whoever runs the program (None: no program line, so no `` IN n``)."""
+    """An error the ROM reports: ``kind``, a key of `CODES`; ``code``, what ``PEEK (222)`` shows
+    after ONERR; the BASIC line it happened in, set by whoever runs the program (None: no program
+    line, so no `` IN n``)."""
 
     def __init__(self, kind: str, line: int | None = None) -> None:
         super().__init__(kind)
         self.kind = kind
+        self.code = CODES[kind]
         self.line = line
-
-    @property
-    def code(self) -> int:
-        """What ``PEEK (222)`` shows after ONERR."""
-        return CODES[self.kind]
 
     @property
     def message(self) -> str:

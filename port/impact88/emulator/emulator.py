@@ -10,18 +10,19 @@ machine.reals()                # {'A': '8100000000'}
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from math import prod
 from typing import Any
 
 from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals, keyed
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import to_stored
+from .faults import Fault, Restart
 from .machine import Machine
-from .memory import INTEGER, STRING
+from .memory import AFTER_TYPING, INPUT_BUFFER, INTEGER, MARKS, STRING
 from .tokens import LINE_LIMIT, source, split_number, tokenise
 
 PROMPT = "]"
-_MARKS = {"$": STRING, "%": INTEGER}
 
 
 class Applesoft:
@@ -113,36 +114,32 @@ class Applesoft:
 
     def enter(self, text: str) -> ApplesoftError | None:
         """The same for a line as it is."""
-        machine = self.machine
-        machine.errflg >>= 1
-        machine.error = None
-        if not text.strip(" "):
-            return None
-        typed = keyed(text).encode("ascii")
-        try:
-            numbered = split_number(text)
-            number, rest = numbered or (None, text)
-            if machine.lock & 0x80:
-                machine.set_pointers()
-                machine.go(machine.next_statements)
-                return machine.error
-            tokens = tokenise(rest)
-            machine.parse(typed, tokens)
-            if number is None:
-                machine.go(machine.execute)
-            else:
-                machine.store_line(number, tokens)
-        except ValueError:
-            return self._complain(ApplesoftError("SYNTAX"))
-        except ApplesoftError as error:
-            return self._complain(error)
-        return machine.error
+        self.machine.errflg >>= 1
+        self.machine.error = None
+        if text.strip(" "):
+            self.machine.go(partial(self._take, text))
+        return self.machine.error
 
-    def _complain(self, error: ApplesoftError) -> ApplesoftError:
-        self.machine.put(f"\n?{error.kind} ERROR\a")
-        self.machine.clear_stack()
-        self.machine.error = error
-        return error
+    def _take(self, text: str) -> None:
+        """PARSE: on page 2 a line's tokens come in its place. Under LOCK every line is RUN."""
+        machine = self.machine
+        try:
+            number, rest = split_number(text) or (None, text)
+        except ValueError:
+            raise Fault("SYNTAX", machine.sp) from None
+        if machine.lock & 0x80:
+            machine.set_pointers()
+            return machine.next_statements()
+        tokens = tokenise(rest)
+        for line in (keyed(text).encode("ascii"), tokens):
+            machine.ram[INPUT_BUFFER : INPUT_BUFFER + len(line) + 1] = line + b"\0"
+        machine.ram[INPUT_BUFFER + len(tokens) + 2] = 0
+        machine.txtptr = INPUT_BUFFER
+        machine.fac = AFTER_TYPING
+        if number is None:
+            return machine.execute()
+        machine.store_line(number, tokens)
+        raise Restart
 
     def source(self) -> str:
         """The program as text that `load` takes."""
@@ -188,7 +185,7 @@ class Applesoft:
         array = self.machine.arrays.get(key)
         if array is None:
             return None
-        start = self.machine.arytab + array.offset + array.head
+        start = self.machine.arytab + array.first
         places = range(start, start + prod(array.sizes) * array.element, array.element)
         data = [self._shown(key, place) for place in places]
         return {"dims": list(reversed(array.sizes)), "data": data}
@@ -205,8 +202,9 @@ class Applesoft:
 
 def _key(name: str) -> int:
     """A name's two bytes in memory."""
-    two = name.rstrip("%$")[:2].ljust(2, "\0").encode("ascii")
-    return int.from_bytes(two, "big") | _MARKS.get(name[-1], 0)
+    letters = name.rstrip("%$").encode("ascii")
+    two = letters[:2].ljust(2, b"\0")
+    return int.from_bytes(two, "big") | MARKS[name.encode()[len(letters) :]]
 
 
 def _name(key: int) -> str:

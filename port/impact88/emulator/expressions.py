@@ -12,7 +12,7 @@ from collections.abc import Callable
 from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
-from .faults import Fault, placed
+from .faults import Fault, located, placed
 from .memory import ADDRESSES, EMPTY, FUNCTION, INTEGER, STRING, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
 from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
@@ -39,12 +39,12 @@ ERROR_DEPTHS = (3, 3, 5, 3, 6)
 SIGNS, TRUTHS = (1, 2, 4), {1: 4, 0: 2, -1: 1}
 """CPRTYP's bits for >, = and <; CPRMASK's by what `compare` says of the right operand."""
 
-NUMERIC: dict[str, Callable[[Number], Number]]
-NUMERIC = {"SGN": functions.sign, "ABS": real.absolute, "LOG": functions.logarithm}
-NUMERIC["ATN"] = functions.arc_tangent
-LOOKING_FOR_INT: dict[str, Callable[[Number], Number]]
-LOOKING_FOR_INT = {"SQR": functions.square_root, "EXP": functions.exponential}
-LOOKING_FOR_INT |= {"COS": functions.cosine, "SIN": functions.sine, "TAN": functions.tangent}
+NUMERIC: dict[str, Callable[[Number], Number]] = {
+    **{"SGN": functions.sign, "ABS": real.absolute, "LOG": functions.logarithm},
+    **{"ATN": functions.arc_tangent, "SQR": functions.square_root, "EXP": functions.exponential},
+    **{"COS": functions.cosine, "SIN": functions.sine, "TAN": functions.tangent},
+}
+LOOKING_FOR_INT = ("SQR", "EXP", "COS", "SIN", "TAN")
 """Functions that ask for an INT on their way."""
 FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
 """How far below a formula's entry they find their errors; others 5."""
@@ -141,8 +141,12 @@ class Expressions(Variables):
                     if operator or not valtyp:
                         pos += 1
                         break
-                    self.txtptr = pos + 1
-                    fac = self._concatenation(sp, fac)
+                    # CAT: left + the next element, whatever operator stands before
+                    self.txtptr, self.fac, self.cprtyp = pos + 1, fac, 0
+                    right = self.element(sp - 2)
+                    if not self.valtyp & 0x80:
+                        raise Fault("TYPE MISMATCH", sp - 5)
+                    fac = located(sp - 1, self.joined, descriptor(fac), descriptor(right))
                     pos, cprtyp = self.txtptr, self.cprtyp
                 elif GREATER <= byte <= LESS:
                     signs = SIGNS[byte - GREATER] ^ cprtyp
@@ -171,7 +175,9 @@ class Expressions(Variables):
                         if relation & 1 or valtyp & 0x80:
                             if relation & 1 != valtyp >> 7:
                                 raise Fault("TYPE MISMATCH", sp - 5)
-                            order = -self.compare_strings(descriptor(left), fac)
+                            right_text = self.used(descriptor(fac))  # STRCMP
+                            left_text = self.used(descriptor(left))
+                            order = (left_text < right_text) - (left_text > right_text)
                             valtyp = 0
                             cprtyp = cprtyp - 1 & 0xFF
                         else:
@@ -189,6 +195,8 @@ class Expressions(Variables):
                         fac = ONE if left[0] and fac[0] else ZERO
                 except ApplesoftError as error:
                     raise placed(error, sp - ERROR_DEPTHS[min(doing, POWER)]) from None
+                except ValueError:  # a divisor whose top bit is clear: a string's address
+                    self.refuse("a string as divisor")
                 waits = last < PRECEDENCES[operator]
             if not waits:
                 self.txtptr = pos
@@ -202,18 +210,6 @@ class Expressions(Variables):
             pending.append((last, operator, fac, cprtyp))
             last = PRECEDENCES[operator]
             sp -= PENDING
-
-    def _concatenation(self, sp: int, left: Number) -> Number:
-        """CAT: left + the next element, whatever operator stands before."""
-        self.fac = left
-        self.cprtyp = 0
-        right = self.element(sp - 2)
-        if not self.valtyp & 0x80:
-            raise Fault("TYPE MISMATCH", sp - 5)
-        try:
-            return self.joined(descriptor(left), descriptor(right))
-        except ApplesoftError as error:
-            raise placed(error, sp - 1) from None
 
     def element(self, sp: int) -> Number:
         """FRM_ELEMENT of a formula with this ``sp``: a constant, a variable, a string, a function
@@ -230,26 +226,23 @@ class Expressions(Variables):
             return self._variable(sp - 5, name, subscripts)
         self.txtptr = pos
         try:
-            return self._other_element(sp, byte)
+            if DIGIT_0 <= byte <= DIGIT_9 or byte == POINT:
+                return self.constant()
+            if byte == QUOTE:
+                string = self.literal(pos + 1)
+                self.txtptr = self.strng2
+                return string
+            if byte == FN:
+                return self._function_call(sp)
+            if byte >= FIRST_FUNCTION:
+                self.txtptr += 1
+                return self.function(byte, sp)
+            if byte in MINUS_OR_NOT:  # behind a string's +; the ROM goes astray
+                self.txtptr += 1
+                return self.formula(sp - PENDING)
+            return self.parenthesis(sp - 3)
         except ApplesoftError as error:
             raise placed(error, sp - 5) from None
-
-    def _other_element(self, sp: int, byte: int) -> Number:
-        if DIGIT_0 <= byte <= DIGIT_9 or byte == POINT:
-            return self.constant()
-        if byte == QUOTE:
-            string = self.literal(self.txtptr + 1)
-            self.txtptr = self.strng2
-            return string
-        if byte == FN:
-            return self._function_call(sp)
-        if byte >= FIRST_FUNCTION:
-            self.txtptr += 1
-            return self.function(byte, sp)
-        if byte in MINUS_OR_NOT:  # behind a string's +; the ROM goes astray
-            self.txtptr += 1
-            return self.formula(sp - PENDING)
-        return self.parenthesis(sp - 3)
 
     def parenthesis(self, sp: int) -> Number:
         """PARCHK: a formula in parentheses. Raises SYNTAX."""
@@ -317,21 +310,16 @@ class Expressions(Variables):
         fac = self.parenthesis(sp - 6)
         word = WORDS[token]
         try:
-            result = self._applied(word, fac, sp - 5)
+            if word in NUMERIC:
+                result = NUMERIC[word](fac)
+            else:  # the method named for the function
+                result = getattr(self, f"_{word.rstrip('$').lower()}")(fac, sp - 5)
         except ApplesoftError as error:
             raise placed(error, sp - FUNCTION_DEPTHS.get(word, 5)) from None
+        if word in LOOKING_FOR_INT:
+            self.charac = word, ZERO, fac
         if self.valtyp and word not in ("CHR$", "STR$"):
             raise Fault("TYPE MISMATCH", sp - 3)
-        return result
-
-    def _applied(self, word: str, fac: Number, sp: int) -> Number:
-        if word in NUMERIC:
-            return NUMERIC[word](fac)
-        if word not in LOOKING_FOR_INT:  # the method named for the function
-            own: Number = getattr(self, f"_{word.rstrip('$').lower()}")(fac, sp)
-            return own
-        result = LOOKING_FOR_INT[word](fac)
-        self.charac = word, ZERO, fac
         return result
 
     def _int(self, fac: Number, sp: int) -> Number:
@@ -345,11 +333,9 @@ class Expressions(Variables):
         that of an older number."""
         result = functions.power(left, right)
         if left[2] and rounded(right)[0] >= INTEGER_EXPONENT:
-            result = (
-                real.negate(real.absolute(result))
-                if self._int_byte() & 1
-                else real.absolute(result)
-            )
+            result = real.absolute(result)
+            if self._int_byte() & 1:
+                result = real.negate(result)
         self.charac = "^", left, right
         return result
 
@@ -380,7 +366,7 @@ class Expressions(Variables):
     def _fre(self, fac: Number, sp: int) -> Number:
         """FRE: the room left, past 32767 as a negative number."""
         if self.valtyp:
-            self.used(fac)
+            self.used(descriptor(fac))
         self.collect_garbage()
         self.valtyp = 0
         return integer((self.fretop - self.strend + 0x8000 & 0xFFFF) - 0x8000)
@@ -405,7 +391,7 @@ class Expressions(Variables):
         if not self.valtyp:
             raise Fault("TYPE MISMATCH", sp - 6)
         self.valtyp = 0
-        return self.used(fac)
+        return self.used(descriptor(fac))
 
     def _len(self, fac: Number, sp: int) -> Number:
         return integer(len(self._text(fac, sp)))

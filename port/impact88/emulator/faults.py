@@ -1,26 +1,34 @@
 """Errors as the ROM finds them: with the 6502's stack pointer, which ONERR leaves where it is."""
 
+from collections.abc import Callable
+from typing import Any, TypeVar
+
 from ..applesoft.errorcodes import ApplesoftError
+
+T = TypeVar("T")
 
 
 class Fault(ApplesoftError):
     """An error of a program. ``stack``: the stack pointer where the ROM jumps to ERROR; ``code``:
-    what ``PEEK (222)`` shows, the kind's unless given."""
+    where it is not the kind's."""
 
-    def __init__(self, kind: str, stack: int, code: int | None = None) -> None:
+    def __init__(self, kind: str, stack: int, code: int = 0) -> None:
         super().__init__(kind)
         self.stack = stack
-        self._code = code
-
-    @property
-    def code(self) -> int:
-        """What ``PEEK (222)`` shows after ONERR."""
-        return super().code if self._code is None else self._code
+        self.code = code or self.code
 
 
 def placed(error: ApplesoftError, stack: int) -> Fault:
     """The error with a stack pointer, unless it has one already."""
     return error if isinstance(error, Fault) else Fault(error.kind, stack)
+
+
+def located(stack: int, does: Callable[..., T], *arguments: Any) -> T:
+    """What a routine returns; its errors are `placed`."""
+    try:
+        return does(*arguments)
+    except ApplesoftError as error:
+        raise placed(error, stack) from None
 
 
 class TooManyStatements(Exception):

@@ -10,7 +10,6 @@ LIST and GOTO follow the addresses; a running program goes on with the bytes beh
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
-from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, add, compare, integer, rounded
 from .expressions import ONE
 from .faults import Fault, Restart
@@ -39,18 +38,14 @@ class Frame(NamedTuple):
     sign: int = 0
 
 
-NO_FRAME, END_MARK = Frame(-1, NO_VARIABLE, 0, 0), b"\0\0"
+NO_FRAME, END_MARK, BREAK = Frame(-1, NO_VARIABLE, 0, 0), b"\0\0", b"\rBREAK"
 
 
 class Flow(InputOutput):
     """The statements that say what comes next, and the program between TXTTAB and PRGEND."""
 
     execute: Callable[[], None]
-
-    def __init__(self, *arguments: object, **options: object) -> None:
-        super().__init__(*arguments, **options)  # type: ignore[arg-type]
-        self.frames: list[Frame] = []
-        self.last_line, self.broken = 0, False
+    broken = False
 
     def set_stack(self, sp: int) -> None:
         """TXS: what lay below is gone."""
@@ -62,7 +57,7 @@ class Flow(InputOutput):
         """STKINI: nothing on the stack, no temporaries, nothing to continue."""
         self.temppt = TEMPORARIES
         self.sp = STACK
-        self.frames.clear()
+        self.frames: list[Frame] = []
         self.oldtext &= 0xFF
         self.subflg = 0
 
@@ -171,26 +166,22 @@ class Flow(InputOutput):
             self.forpnt = self.variable(self.sp - 4)
 
     def goto_(self, sp: int = 0) -> None:
-        """GOTO, at once from a place where it has been done before."""
-        target = self.targets.get(self.txtptr)
-        if target is None:
-            self.goto(sp or self.sp - 2)
-        else:
-            self.txtptr = target
-            self.charac = 0
-
-    def goto(self, sp: int) -> None:
-        """GOTO, the line looked up. Raises SYNTAX and UNDEF'D STATEMENT."""
+        """GOTO. Raises SYNTAX and UNDEF'D STATEMENT."""
         start = self.txtptr
-        number = self.line_number(sp - 2)
-        self.rem_()
-        beyond = self.txtptr + 1 if number >> 8 > self.curlin >> 8 else self.txttab
-        found, address = self.find_line(number, beyond)
-        if not found:
-            raise Fault("UNDEF'D STATEMENT", sp)
-        self.txtptr = address - 1
-        if self.txttab <= start < self.prgend:
-            self.targets[start] = self.txtptr
+        target = self.targets.get(start)
+        if target is None:
+            sp = sp or self.sp - 2
+            number = self.line_number(sp - 2)
+            self.rem_()
+            beyond = self.txtptr + 1 if number >> 8 > self.curlin >> 8 else self.txttab
+            found, address = self.find_line(number, beyond)
+            if not found:
+                raise Fault("UNDEF'D STATEMENT", sp)
+            target = address - 1
+            if self.txttab <= start < self.prgend:
+                self.targets[start] = target
+        self.txtptr = target
+        self.charac = 0
 
     def gosub_(self) -> None:
         if self.sp - 4 & 0xFF < GOSUB_ROOM - 4:
@@ -256,21 +247,6 @@ class Flow(InputOutput):
         self.cursv = self.curlin
         self.rem_()
 
-    def handle(self, code: int, stack: int) -> None:
-        """HANDLERR: an error goes to ONERR's line, and leaves the stack as it is. Raises UNDEF'D
-        STATEMENT, where the ROM would loop."""
-        self.errnum, self.errstk = code, self.remstk
-        self.errlin, self.errpos = self.curlin, self.oldtext
-        self.txtptr, self.curlin = self.txtpsv, self.cursv
-        self.sp = stack & 0xFF
-        if stack < 0:
-            self.frames.clear()
-        try:
-            self.goto_()
-        except ApplesoftError:
-            self.errflg = 0
-            raise
-
     def resume_(self) -> None:
         """RESUME. Where there was no error the ROM goes on at address 0."""
         self.curlin, self.txtptr = self.errlin, self.errpos
@@ -288,7 +264,7 @@ class Flow(InputOutput):
             self.set_pointers()
         else:
             self.clear()
-            self.goto(self.sp - 2)
+            self.goto_()
 
     def end(self, message: bytes = b"") -> None:
         """END, or STOP with a message; CONT goes on here, unless at the prompt."""
@@ -298,16 +274,12 @@ class Flow(InputOutput):
             self.message(message)
         raise Restart
 
-    def stop(self) -> None:
-        """STOP."""
-        self.end(b"\rBREAK")
-
     def break_(self) -> None:
         """Control-C: an error under ONERR, else as STOP."""
         if self.errflg & 0x80:
             raise Fault("SYNTAX", self.sp - 4, BREAK_CODE)
         self.broken = True
-        self.stop()
+        self.end(BREAK)
 
     def message(self, text: bytes) -> None:
         """What stands before the prompt: a text, the bell, the line if there is one."""

@@ -7,14 +7,13 @@ quote; after a number only a comma, a colon or the end will do.
 """
 
 from ..applesoft.console import CONTROL_C
-from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import Number, integer
 from .expressions import Expressions, byte_of
-from .faults import Fault, placed
+from .faults import Fault, located
 from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS
 from .screen import HEIGHT, WIDTH
 from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, spelling
-from .variables import IS_STRING
+from .variables import IS_STRING, descriptor
 
 TAB, SPC = TOKENS["TAB("], TOKENS["SPC("]
 ZONE = 16
@@ -60,7 +59,7 @@ class InputOutput(Expressions):
 
     def show_message(self, text: bytes, address: int = IN_ROM) -> None:
         """STROUT: a text that is no variable's, as a temporary string."""
-        self.used(self.temporary(0, address, address >> 8))
+        self.used(descriptor(self.temporary(0, address, address >> 8)))
         self.fac = len(text), self.fac[1], 0
         self.show(text)
 
@@ -86,7 +85,7 @@ class InputOutput(Expressions):
             else:
                 fac = self.formula(sp - 2)
                 if self.valtyp:
-                    self.show(self.used(fac))
+                    self.show(self.used(descriptor(fac)))
                 else:
                     self.show_number(fac)
                 newline = True
@@ -196,7 +195,7 @@ class InputOutput(Expressions):
             prompt = self.literal(self.txtptr + 1)
             self.txtptr = self.strng2
             self.expect(SEMICOLON, sp - 2)
-            self.show(self.used(prompt))
+            self.show(self.used(descriptor(prompt)))
         else:
             self.put("?")
         self.refuse_direct(sp - 2)
@@ -225,13 +224,8 @@ class InputOutput(Expressions):
                 self._more_values(source, sp)
             self.txtptr += 1
             self.character()
-            try:
-                refused = self._take_item(source, sp)
-            except ApplesoftError as error:
-                raise placed(error, sp - 4) from None
-            if not refused and not self.at_end() and ram[self.txtptr] != COMMA:
-                refused = True
-            if refused:
+            refused = located(sp - 4, self._take_item, source, sp)
+            if refused or not (self.at_end() or ram[self.txtptr] == COMMA):
                 self._refuse_value(source, sp)
                 return
             values, self.txtptr = self.txtptr, variables

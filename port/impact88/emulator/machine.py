@@ -13,7 +13,7 @@ from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import integer
 from .expressions import address_of
 from .faults import Fault, Restart, placed
-from .flow import EQUAL, Flow
+from .flow import BREAK, EQUAL, Flow
 from .inputoutput import FROM_DATA
 from .memory import DIRECT, INPUT_BUFFER, RTS, SPEED, SUBFLG_SIMPLE
 from .screen import FLASHING, INVERSE, NORMAL
@@ -30,22 +30,19 @@ KEPT = {
 """Statements that put a byte into memory for drawing, which is not done here, and for PEEK: where,
 and what for each number."""
 FLASH_BIT = 0x40
-AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
-"""What the ROM's parser leaves in the accumulator: an address."""
 
 
 class Machine(Flow):
     """An Apple II Plus with 48K as far as a BASIC program can tell.
 
     ``after_line(number)`` is called each time the program leaves a line. Of the last program:
-    ``broken``, whether control-C ended it, ``last_line``, where, and ``error``, in which.
+    ``broken``, whether control-C ended it, and ``error``, in which.
     """
 
     def __init__(self, *devices: Any, **options: Any) -> None:
         super().__init__(*devices, **options)
         self.after_line: Callable[[int], object] | None = None
         self.error: ApplesoftError | None = None
-        self.fac = AFTER_TYPING
         statements: dict[str, Callable[[], object]] = {
             word: getattr(self, f"{word.lower().rstrip(':')}_", partial(self.refuse, word))
             for word in KEYWORDS[: LAST_STATEMENT - FIRST + 1]
@@ -57,6 +54,8 @@ class Machine(Flow):
             "NORMAL": partial(self.set_mode, NORMAL),
             "INVERSE": partial(self.set_mode, INVERSE),
             "FLASH": partial(self.set_mode, FLASHING, FLASH_BIT),
+            "TRACE": partial(self.trace, 0x80),
+            "NOTRACE": partial(self.trace, 0),
             "LET": lambda: self.let(self.sp - 2),
             "POKE": lambda: self.poke(*self._address_and_byte()),
             "READ": lambda: self.take_items(FROM_DATA, self.datptr, self.sp - 2),
@@ -65,24 +64,17 @@ class Machine(Flow):
         }
         alone: dict[str, Callable[[], object]]
         alone = {"CLEAR": self.clear, "CONT": self.cont, "END": self.end, "NEW": self.new}
-        alone |= {"POP": self.subroutine, "RETURN": self.return_, "STOP": self.stop}
+        alone |= {"POP": self.subroutine, "RETURN": self.return_}
+        alone["STOP"] = partial(self.end, BREAK)
         statements |= {word: partial(self._alone, does) for word, does in alone.items()}
         self.statements = list(statements.values())
+        self.clear_stack()
         self.text_changed()
         self.variables_changed()
 
-    def parse(self, typed: bytes, tokens: bytes) -> None:
-        """PARSE: on page 2 tokens come in the place of the line that was typed."""
-        for line in (typed, tokens):
-            self.ram[INPUT_BUFFER : INPUT_BUFFER + len(line) + 1] = line + b"\0"
-        self.ram[INPUT_BUFFER + len(tokens) + 2] = 0
-        self.txtptr = INPUT_BUFFER
-        self.fac = AFTER_TYPING
-
     def go(self, step: Callable[[], None]) -> None:
-        """Do a line typed without a number, or RUN (``step``: `execute` or `next_statements`), and
-        whatever follows, until the machine is back at the prompt. Raises TooManyStatements and
-        `console.EndOfInput`."""
+        """Do a ``step`` and whatever follows, until the machine is back at the prompt. Raises
+        TooManyStatements and `console.EndOfInput`."""
         self.curlin |= DIRECT
         self.error, self.broken = None, False
         while True:
@@ -100,16 +92,25 @@ class Machine(Flow):
             except Restart:
                 break
             step = self.next_statements
-        if self.curlin < DIRECT:
-            self.last_line = self.curlin
-            if self.after_line:
-                self.after_line(self.curlin)
+        if self.after_line and self.curlin < DIRECT:
+            self.after_line(self.curlin)
 
     def _handle(self, error: ApplesoftError) -> None:
-        """ERROR: to ONERR's line, or a message and RESTART."""
+        """ERROR: a message and RESTART; under ONERR its line (HANDLERR), the stack left as it is.
+        Raises UNDEF'D STATEMENT there, where the ROM would loop."""
         if self.errflg & 0x80:
-            self.handle(error.code, placed(error, self.sp - 4).stack)
-            return
+            stack = placed(error, self.sp - 4).stack
+            self.errnum, self.errstk = error.code, self.remstk
+            self.errlin, self.errpos = self.curlin, self.oldtext
+            self.txtptr, self.curlin = self.txtpsv, self.cursv
+            self.sp = stack & 0xFF
+            if stack < 0:
+                self.frames.clear()
+            try:
+                return self.goto_()
+            except ApplesoftError:
+                self.errflg = 0
+                raise
         error.line = self.curlin if self.curlin < DIRECT else None
         self.error = error
         self.put(f"\n?{error.kind}")
@@ -253,8 +254,5 @@ class Machine(Flow):
             raise Fault("ILLEGAL QUANTITY", self.sp - 2)
         self.ram[place] = table[n]
 
-    def trace_(self) -> None:
-        self.trcflg = self.trcflg >> 1 | 0x80
-
-    def notrace_(self) -> None:
-        self.trcflg >>= 1
+    def trace(self, bit: int) -> None:
+        self.trcflg = self.trcflg >> 1 | bit

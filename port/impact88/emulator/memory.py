@@ -35,6 +35,8 @@ PAGE_ZERO = bytes.fromhex("4C3CD4 4C3ADB 000000 00 4C99E1")
 """The jumps with which switching on begins page 0: to the prompt, to print a text, and USR's."""
 FIRST_SEED = from_stored("804FC75200")
 """RND's seed after switching on: of the ROM's five bytes, which end in 58, four are copied."""
+AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
+"""What the ROM's parser leaves in the accumulator: an address."""
 SPEED, SEED, SCREEN, ADDRESSES = 241, range(201, 206), range(BASE, END), 0x10000
 REFUSALS, MORE_REFUSED = 8, "more of the kind"
 """How many different requests for what is not done here are remembered; a program makes few."""
@@ -71,7 +73,7 @@ INTEGER, STRING, FUNCTION = 0x8080, 0x0080, 0x8000
 
 _NUMERAL = re.compile(rb" *[-+]?[ 0-9]*(?:\.[ 0-9]*)?(?:E *[-+%c%c]?[ 0-9]*)?" % (PLUS, MINUS))
 _NAME = re.compile(rb"([A-Z]) *([A-Z0-9]?)[A-Z0-9 ]*([$%]?) *")
-_MARKS = {b"": 0, b"$": STRING, b"%": INTEGER}
+MARKS = {b"": 0, b"$": STRING, b"%": INTEGER}
 _SIGNS = bytes.maketrans(bytes((PLUS, MINUS)), b"+-")
 
 Name = tuple[int, int, bool]
@@ -81,9 +83,10 @@ Name = tuple[int, int, bool]
 class Memory:
     """``ram``, the pointers, the devices, and the program's bytes from ``txtptr`` on.
 
-    ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``refused``:
-    what was asked for and is not done here (drawing, tape, machine code); ``charac``: CHARAC, in
-    which INT leaves a byte too, or the function and its operands whose INT left it.
+    ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``fac``: what
+    the accumulator held last; ``refused``: what was asked for and is not done here (drawing, tape,
+    machine code); ``charac``: CHARAC, in which INT leaves a byte too, or the function and its
+    operands whose INT left it.
     """
 
     variables_changed: Callable[[], None]
@@ -92,19 +95,18 @@ class Memory:
         self,
         keyboard: Keyboard,
         screen: Device,
-        printer: Device | None = None,
+        printer: Device | None,
         *,
-        dos: bool = False,
-        echo: bool = True,
-        blanks: bool = True,
+        blanks: bool,
+        **dos: bool,
     ) -> None:
         self.ram = bytearray(ADDRESSES + _BEYOND)
         self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
         self.ram[SPEED] = 1
         self.screen = Screen(self.ram, screen, blanks=blanks)
-        self.console = Console(keyboard, self.screen.write, printer, dos=dos, echo=echo)
+        self.console = Console(keyboard, self.screen.write, printer, **dos)
         self.console.editor = self.screen
-        self.seed = FIRST_SEED
+        self.seed, self.fac = FIRST_SEED, AFTER_TYPING
         self.sp = STACK
         self.txttab = TEXT_START
         self.vartab = self.arytab = self.strend = self.prgend = TEXT_START + 2
@@ -176,7 +178,6 @@ class Memory:
         self.ram[address] = value & 0xFF
         self.ram[address + 1] = value >> 8 & 0xFF
 
-    linnum = 0
     charac: int | tuple[str, Number, Number] = 0
 
     def text_changed(self) -> None:
@@ -225,7 +226,7 @@ class Memory:
         match = _NAME.match(self.ram, pos)
         assert match is not None
         first, second, mark = match.groups()
-        key = ord(first) << 8 | ord(second or b"\0") | _MARKS[mark]
+        key = ord(first) << 8 | ord(second or b"\0") | MARKS[mark]
         end = match.end()
         subscripts = self.ram[end] == OPEN
         if BUFFER_END <= pos < self.prgend:
@@ -252,7 +253,7 @@ class Memory:
         return value
 
     def line_number(self, sp: int) -> int:
-        """LINGET: the digits that come next, in LINNUM too; 0 if there are none. Raises SYNTAX."""
+        """LINGET: the digits that come next; 0 if there are none. Raises SYNTAX."""
         number = 0
         while (byte := self.character()) in DIGITS:
             if number >> 8 >= LINE_LIMIT:
@@ -260,7 +261,6 @@ class Memory:
             self.charac = byte - 48
             number = 10 * number + byte - 48
             self.txtptr += 1
-        self.linnum = number
         return number
 
     def find_line(self, number: int, address: int) -> tuple[bool, int]:

@@ -98,16 +98,11 @@ def tokenise(kept: str, *, folded: bool = False) -> bytes:
 def split_number(text: str) -> tuple[int, str] | None:
     """The line number a typed line begins with and its rest; None if it begins with no digit.
     Blanks before and within the number do not count. Raises ValueError past 63999."""
-    number = None
-    for position, character in enumerate(text):
-        if character == " ":
-            continue
-        if not "0" <= character <= "9":
-            return None if number is None else (number, text[position:])
-        if (number or 0) >= (LAST_LINE + 1) // 10:
-            raise ValueError("a line number goes up to 63999")
-        number = 10 * (number or 0) + int(character)
-    return None if number is None else (number, "")
+    rest = text.lstrip(" 0123456789")
+    digits = text[: len(text) - len(rest)].replace(" ", "")
+    if len(digits.lstrip("0")) > 5 or int(digits or 0) > LAST_LINE:
+        raise ValueError("a line number goes up to 63999")
+    return (int(digits), rest) if digits else None
 
 
 def source(lines: Iterable[tuple[int, bytes]]) -> str:

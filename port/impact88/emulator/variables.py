@@ -11,12 +11,13 @@ subscript fastest. Assignment makes them; where names lie is remembered while no
 """
 
 from collections.abc import Callable, Iterator
+from math import prod
 from struct import Struct
 from typing import NamedTuple
 
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
-from .faults import Fault, placed
+from .faults import Fault, located, placed
 from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
 from .tokens import CLOSE, COMMA, QUOTE
 
@@ -49,22 +50,18 @@ def element_size(name: int) -> int:
 
 
 class Array(NamedTuple):
-    """Where an array lies, from the first one on; its sizes, the last dimension's first; where its
-    elements begin, from its own start on, and their size."""
+    """Where an array's elements begin, from the first array on; its sizes, the last dimension's
+    first; the size of an element."""
 
-    offset: int
+    first: int
     sizes: tuple[int, ...]
-    head: int
     element: int
 
 
 class Variables(Memory):
-    """Strings and variables. ``fac``: what the accumulator held last; ``valtyp``: `IS_STRING` when
-    that is a string."""
+    """Strings and variables. ``valtyp``: `IS_STRING` when the accumulator holds a string."""
 
-    fac: Number
-    valtyp = 0
-    strng2 = 0
+    valtyp = strng2 = 0
 
     def collect_garbage(self) -> None:
         """GARBAG: move the strings that variables hold together below MEMSIZ, the highest first.
@@ -166,9 +163,9 @@ class Variables(Memory):
             self.fretop += length
         return length, address
 
-    def used(self, string: Number) -> bytes:
-        """FREFAC: the characters of the string in the accumulator, which has been used then."""
-        length, address = self.freed(descriptor(string))
+    def used(self, place: int) -> bytes:
+        """FRETMP: the characters of a string that has been used, by its descriptor."""
+        length, address = self.freed(place)
         return bytes(self.ram[address : address + length])
 
     def assign_string(self, target: int, string: Number) -> None:
@@ -207,13 +204,6 @@ class Variables(Memory):
         self.move(source + first, address, length)
         return self.temporary(length, address, extension)
 
-    def compare_strings(self, left: int, right: Number) -> int:
-        """STRCMP: 1 if the string of the left descriptor is larger, 0 if equal, -1 if smaller."""
-        other = self.used(right)
-        length, address = self.freed(left)
-        text = bytes(self.ram[address : address + length])
-        return (text > other) - (text < other)
-
     inttyp = False
     formula: Callable[[int], Number]
 
@@ -236,8 +226,8 @@ class Variables(Memory):
             place += size
 
     def _array(self, name: int, place: int, sizes: tuple[int, ...]) -> Array:
-        head = ARRAY_HEADER + 2 * len(sizes)
-        return Array(place - self.arytab, sizes, head, element_size(name))
+        first = place - self.arytab + ARRAY_HEADER + 2 * len(sizes)
+        return Array(first, sizes, element_size(name))
 
     def reason(self, address: int) -> None:
         """REASON: there must be room up to an address. Raises OUT OF MEMORY."""
@@ -265,10 +255,7 @@ class Variables(Memory):
         name |= mark
         address = self.simple.get(name)
         if address is None:
-            try:
-                address = self._make(name)
-            except ApplesoftError as error:
-                raise placed(error, sp - 4) from None
+            address = located(sp - 4, self._make, name)
         self.varpnt = address
         return address
 
@@ -322,15 +309,12 @@ class Variables(Memory):
         bottom = sp - 2 * n
         array = self.arrays.get(name)
         if array is None:
-            try:
-                array = self._make_array(name, found, dimensions)
-            except ApplesoftError as error:
-                raise placed(error, bottom - 2) from None
+            array = located(bottom - 2, self._make_array, name, found, dimensions)
             if dimensions:
                 return 0
         elif dimensions:
             raise Fault("REDIM'D ARRAY", bottom)
-        offset, sizes, head, element = array
+        first, sizes, element = array
         if len(sizes) != n:
             raise Fault("BAD SUBSCRIPT", bottom)
         index = 0
@@ -340,9 +324,8 @@ class Variables(Memory):
             if subscript >= size:
                 raise Fault("BAD SUBSCRIPT", sp - 2 * n)
             index = index * size + subscript
-        address = self.arytab + offset + head + element * index
-        self.varpnt = address
-        return address
+        self.varpnt = self.arytab + first + element * index
+        return self.varpnt
 
     def _make_array(self, name: int, last: list[int], dimensions: int) -> Array:
         ram, place = self.ram, self.strend
@@ -352,9 +335,7 @@ class Variables(Memory):
         header = bytes((name >> 8, name & 0xFF, 0, 0, len(last)))
         header += b"".join(size.to_bytes(2, "big") for size in sizes)
         ram[place:start] = header
-        size = element_size(name)
-        for n in sizes:
-            size *= n
+        size = element_size(name) * prod(sizes)
         end = start + size
         if end > ADDRESS_LIMIT:
             raise ApplesoftError("OUT OF MEMORY")
