@@ -11,7 +11,7 @@ from ..native.formulas import Expression, ExpressionTable
 from ..native.program import Program
 from . import degrees, sinetable
 from .columns import UNUSED_BY_POINTS
-from .impact import Impact
+from .impact import impact
 from .plan import Plan
 
 Kinds = tuple[str, ...]
@@ -56,8 +56,8 @@ def program_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None
     if kind["M"] == "mixed":
         point = table.equals(scene["M"], 4.0)
     infinite = any("inf" in what for what in kinds)
-    impact = Impact(table, scene, pivot, point, infinite, sign)
-    results: dict[str, Expression] = {name: getattr(impact, name) for name in wanted}
+    found = impact(table, scene, pivot, point, infinite, sign)
+    results: dict[str, Expression] = {name: found[name] for name in wanted}
     endings = ["RESULT_OR_INFINITE" if name == "COND" else "RESULT" for name in results]
     for number, (name, e) in enumerate(results.items()):
         if e.operation == "bits":

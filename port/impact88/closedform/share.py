@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..names import DEFAULT_M, SCENE
 from ..native.formulas import ExpressionTable
 from ..native.schedule import Schedule
-from .impact import Impact
+from .impact import impact
 from .written import written
 
 _SHARE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*%\s*")
@@ -36,8 +36,8 @@ def resolved(texts: Mapping[str, str], source: str) -> tuple[str, str]:
     numbers |= {name: double(texts[name]) for name in SCENE if name in texts and name != "MU"}
     table = ExpressionTable()
     columns = {name: table.column(name, varies=True) for name in SCENE}
-    impact = Impact(table, columns, pivot=True, point=numbers["M"] == 4, infinite=False)
-    wanted = {"PN": impact.PN, "MUC": impact.MUC, "gt": impact.gt}
+    found = impact(table, columns, pivot=True, point=numbers["M"] == 4, infinite=False)
+    wanted = {name: found[name] for name in ("PN", "MUC", "gt")}
     values = [numbers.get(name, 0.0) for name in SCENE]
     try:
         pn, critical, slip = written(Schedule(wanted, ["RESULT"] * 3))(*values)

@@ -165,7 +165,7 @@ def _with_shares_typed(columns: Mapping[str, Any]) -> Mapping[str, Any]:
 def quantities(
     columns: Mapping[str, object], names: Sequence[str], sign: float | None = None
 ) -> dict[str, Array]:
-    """Results and other quantities of `closedform.impact.Impact`, such as ``gt`` and
+    """Results and other quantities of `closedform.impact`, such as ``gt`` and
     ``determinant``, by their names there; otherwise as `solve`, on one thread.
 
     ``sign``: +1 to keep MU's sign in all scenes, -1 to change it, instead of line 400's rule.
