@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 from impact88 import solve
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.columns import UNUSED_BY_POINTS, examine, part, sources
-from impact88.closedform.fused import plan_for
+from impact88.closedform.programs import program_for
 from impact88.closedform.solve import SHARED_TILE
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.status import Status
+from passes import passes
 from worked_cases import RUN_1, reference_cases, scene_of
 
 pytestmark = pytest.mark.usefixtures("both_machines")
@@ -401,11 +402,11 @@ class TestColumns:
             solve(columns, outputs)
 
 
-def passes(columns, outputs=FINAL_VELOCITIES):
+def passes_of(columns, outputs=FINAL_VELOCITIES):
     """How many passes over the scenes the plan for these columns makes."""
     given, shape = sources(columns)
     block = examine({name: part(source, 0, shape[0]) for name, source in given.items()})
-    return plan_for(block.kinds, tuple(outputs)).passes
+    return passes(program_for(block.kinds, tuple(outputs)))
 
 
 class TestSkipping:
@@ -432,20 +433,20 @@ class TestSkipping:
     )
     def test_paths(self, change, at_most):
         general = self.general()
-        assert passes({**general, **change}) <= at_most * passes(general)
+        assert passes_of({**general, **change}) <= at_most * passes_of(general)
         # a block of scenes that are all alike takes the same path as a scalar
         columns = {name: np.full(100, value) for name, value in change.items()}
-        assert passes({**general, **columns}) == passes({**general, **change})
+        assert passes_of({**general, **columns}) == passes_of({**general, **change})
 
     def test_outputs(self):
         general = self.general()
-        everything = passes(general, tuple(RESULTS))
-        assert passes(general, ["KI"]) <= 0.05 * everything
-        assert passes(general, ["XA"]) <= 0.15 * everything
-        assert passes(general, ["PN"]) < passes(general, FINAL_VELOCITIES) < everything / 1.5
+        everything = passes_of(general, tuple(RESULTS))
+        assert passes_of(general, ["KI"]) <= 0.05 * everything
+        assert passes_of(general, ["XA"]) <= 0.15 * everything
+        assert passes_of(general, ["PN"]) < passes_of(general, FINAL_VELOCITIES) < everything / 1.5
 
     def test_no_trigonometry_for_a_point_mass_but_of_the_surface(self):
-        assert passes({**self.general(), "M": 4.0, "GA": 0.0}) < 30
+        assert passes_of({**self.general(), "M": 4.0, "GA": 0.0}) < 30
 
 
 def test_memory_is_bounded_by_the_results():

@@ -18,7 +18,7 @@ import numpy as np
 from .. import native
 from ..accuracy.errorbound import scales
 from ..accuracy.sensitivity import movements, sensitivity
-from ..closedform.plan import Plan
+from ..closedform.programs import by_numpy
 from ..closedform.solve import TILE, solve
 from ..names import FINAL_VELOCITIES, SCENE
 from ..native.formulas import ExpressionTable
@@ -68,7 +68,7 @@ def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[]
     program = Program(dict.fromkeys(results, sum(others, first)), ["RESULT"] * len(results))
     read = [columns[name] for name in program.columns]
     if native.library is None:
-        return partial(Plan(program).run, read, results, {}, TILE)
+        return partial(by_numpy, program, read, results, {}, TILE)
     return lambda: program.run(addresses(read), addresses(results.values()), count)
 
 

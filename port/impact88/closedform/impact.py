@@ -255,5 +255,5 @@ def impact(
         **{"KI": KI, "KF": KF, "LOSS": (50.0 * lost) / KI, "COND": COND, "MUP": MUP},
         **{"MUC": critical_numerator / critical_denominator},
         **{"DVA": change_size(ma), "DVB": change_size(mb)},
-        "STATUS": table.bits(sum(bits[1:], bits[0])),
+        "STATUS": sum(bits[1:], bits[0]),
     }

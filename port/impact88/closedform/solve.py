@@ -20,9 +20,9 @@ from ..native.program import addresses
 from ..scene import check_mapping
 from ..status import Status
 from .columns import Source, examine, part, sources
-from .fused import CIRCLE, plan_for, program_for
 from .onescene import ALL, in_order, solve_one
 from .plain import check_room, rooms, shared_out, solve_plain, workers
+from .programs import CIRCLE, by_numpy, program_for
 from .share import share_of
 
 Array = NDArray[Any]
@@ -200,7 +200,7 @@ def _solve_part(
         program = program_for(block.kinds, tuple(results), sign)
         columns = [block.varying[name] for name in program.columns]
         if native.library is None:
-            plan_for(block.kinds, tuple(results), sign).run(columns, into, fixed, tile)
+            by_numpy(program, columns, into, fixed, tile)
         else:
             program.run(addresses(columns), addresses(into.values()), end - at, CIRCLE, fixed)
         if block.refused is not None:

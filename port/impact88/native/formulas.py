@@ -216,7 +216,3 @@ class ExpressionTable:
 
     def equals(self, a: Expression, number: float) -> Expression:
         return self.combine("equal", a, self.constant(number))
-
-    def bits(self, number: Expression) -> Expression:
-        """A sum of bits as the whole number it is."""
-        return self.combine("bits", number)
