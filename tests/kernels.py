@@ -9,7 +9,7 @@ import math
 import textwrap
 from collections.abc import Iterator
 
-from impact88.closedform.programs import KERNELS, program_for
+from impact88.closedform.impactprograms import KERNELS, program_for
 from impact88.native.program import Program
 
 HEAD = """\

@@ -18,8 +18,8 @@ import impact88
 import kernels
 from impact88 import native
 from impact88.bench.populations import POPULATIONS, enlarged, scenes, texts
+from impact88.closedform.impactprograms import KERNELS, program_for
 from impact88.closedform.plain import FEW
-from impact88.closedform.programs import KERNELS, program_for
 from impact88.closedform.solve import TILE, quantities
 from impact88.names import RESULTS
 from impact88.replay import blocks

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88.closedform.programs import by_numpy
+from impact88.closedform.impactprograms import by_numpy
 from impact88.native.formulas import ExpressionTable
 from impact88.native.schedule import Schedule
 from passes import passes

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from impact88 import solve
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.columns import UNUSED_BY_POINTS, examine, part, sources
-from impact88.closedform.programs import program_for
+from impact88.closedform.impactprograms import program_for
 from impact88.closedform.solve import SHARED_TILE
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE

@@ -30,7 +30,8 @@ from impact88.accuracy.sensitivity import movements, sensitivity
 from impact88.applesoft.operators import Real
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.columns import ANGLES
-from impact88.closedform.degrees import STEP, sin_cos
+from impact88.closedform.degrees import sin_cos
+from impact88.closedform.sinetable import STEP
 from impact88.names import FINAL_VELOCITIES, SCENE
 from impact88.program.run import run
 from impact88.scene import Scene, sample

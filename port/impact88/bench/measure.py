@@ -18,7 +18,7 @@ import numpy as np
 from .. import native
 from ..accuracy.errorbound import scales
 from ..accuracy.sensitivity import movements, sensitivity
-from ..closedform.programs import by_numpy
+from ..closedform.impactprograms import by_numpy
 from ..closedform.solve import TILE, solve
 from ..names import FINAL_VELOCITIES, SCENE
 from ..native.formulas import ExpressionTable

@@ -20,8 +20,8 @@ from .. import native
 from ..names import PIVOT, RESULTS
 from ..native import program
 from .columns import INERTIAS, ORDINARY, UNUSED_BY_POINTS
+from .impactprograms import CIRCLE, program_for, varying
 from .plain import NAMES, PLAIN
-from .programs import CIRCLE, program_for, varying
 from .written import written
 
 ALL = tuple(RESULTS)

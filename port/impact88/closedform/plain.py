@@ -17,7 +17,7 @@ from ..names import SCENE
 from ..native.program import Addresses, addresses
 from ..processors import processors
 from .columns import ORDINARY, UNUSED_BY_POINTS, alike_kind
-from .programs import CIRCLE, program_for
+from .impactprograms import CIRCLE, program_for
 
 Array = NDArray[Any]
 

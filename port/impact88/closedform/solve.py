@@ -20,9 +20,9 @@ from ..native.program import addresses
 from ..scene import check_mapping
 from ..status import Status
 from .columns import Source, examine, part, sources
+from .impactprograms import CIRCLE, by_numpy, program_for
 from .onescene import ALL, in_order, solve_one
 from .plain import check_room, rooms, shared_out, solve_plain, workers
-from .programs import CIRCLE, by_numpy, program_for
 from .share import share_of
 
 Array = NDArray[Any]

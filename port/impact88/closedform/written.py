@@ -8,7 +8,7 @@ from typing import Any
 from ..fields import ANGLES
 from ..names import SCENE
 from ..native.schedule import Schedule
-from .degrees import sine_and_cosine
+from .sinetable import sine_and_cosine
 
 NAMES = tuple(SCENE)
 LARGE_ANGLE = 720.0

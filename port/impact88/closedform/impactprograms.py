@@ -14,7 +14,7 @@ from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE
 from ..native.formulas import Expression, ExpressionTable
 from ..native.program import Program
 from ..native.schedule import Schedule
-from . import degrees
+from . import degrees, sinetable
 from .columns import UNUSED_BY_POINTS
 from .impact import impact
 
@@ -24,8 +24,8 @@ Array = NDArray[Any]
 
 _CIRCLE = np.frombuffer(
     struct.pack(
-        *("P8dq", degrees.table().ctypes.data, 1 / degrees.STEP, degrees.STEP),
-        *(degrees.INTEGER_IN_LOW_BITS, *degrees.POLYNOMIALS, degrees.STEPS),
+        *("P8dq", degrees.table().ctypes.data, 1 / sinetable.STEP, sinetable.STEP),
+        *(sinetable.INTEGER_IN_LOW_BITS, *sinetable.POLYNOMIALS, sinetable.STEPS),
     ),
     np.uint8,
 ).copy()
@@ -67,7 +67,7 @@ _STEPS: dict[str, Callable[..., Any]] = {
     "MINUS_PRODUCT": lambda a, b, c: c - a * b,
     "PRODUCTS_PLUS": lambda a, b, c, d: a * b + c * d,
     "PRODUCTS_MINUS": lambda a, b, c, d: a * b - c * d,
-    "SINE_AND_COSINE": degrees.sines_and_cosines,
+    "SINE_AND_COSINE": degrees.sine_and_cosine,
     # a zero's sign would tell which path led to it
     **dict.fromkeys(("RESULT", "RESULT_OR_INFINITE"), lambda value: value + 0.0),
     "BITS": lambda number: number.astype(np.uint16),
