@@ -62,7 +62,7 @@ class Program(Schedule):
         """Run it over ``count`` scenes of float64 columns and results (uint16: bits), in the
         program's order; ``fixed``: the columns that do not vary; ``circle``: see
         `closedform.impactprograms`. Returns how many scenes were done: all, or those before the
-        strips among which a column ``checked`` leaves its ``limits`` (the least and most of each)."""
+        strips among which a column ``checked`` leaves its ``limits`` (least and most of each)."""
         assert native.library is not None
         room = self._rooms.pop() if self._rooms else Room(self)
         room.moving[: len(columns)] = columns
