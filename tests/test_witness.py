@@ -18,11 +18,16 @@ from impact88.errors import UserError
 from impact88.program.emulated import LISTING
 from impact88.program.run import run
 from impact88.scene import sample
-from impact88.witness import basic
 from impact88.witness.apple import APPLE_II_PLUS, Apple, Lost, read_image
-from impact88.witness.hearing import hear, hear_sample, hear_scene
-from impact88.witness.packaged import Case, cases, own_programs
-from impact88.witness.session import Session
+from impact88.witness.hearing import (
+    Case,
+    cases,
+    hear,
+    hear_sample,
+    hear_scene,
+    own_programs,
+)
+from impact88.witness.session import Session, small_letters
 from installed import impact88
 from tinyrom import CODE, START, rom
 
@@ -60,14 +65,12 @@ def test_a_run_is_taken_down_to_the_bit(session: Session) -> None:
 def test_the_listing_is_typed_with_its_small_letters(session: Session) -> None:
     session.run_scene(sample(1))
     session.apple.restore(session._with_listing)
-    kept = dict(basic._lines(session.apple))
-    text = (captures.ROOT / "legacy" / LISTING).read_text(encoding="ascii")
+    text, place = (captures.ROOT / "legacy" / LISTING).read_text(encoding="ascii"), 0
     for line in text.splitlines():
-        number, _, rest = line.partition(" ")
-        assert kept[int(number)][1].decode("ascii") == rest
-    assert basic.small_letters(session.apple, "120 REM NONE") == []
-    with pytest.raises(ValueError, match="line 120"):
-        basic.small_letters(session.apple, "120 REM Another program")
+        place = session.apple.memory.index(line.partition(" ")[2].encode("ascii") + b"\0", place)
+    assert small_letters(session.apple, "120 REM NONE") == []
+    with pytest.raises(ValueError, match="does not hold ' Another program'"):
+        small_letters(session.apple, "120 REM Another program")
 
 
 def test_a_key_is_pressed_only_when_the_rom_waits(session: Session) -> None:
@@ -149,9 +152,9 @@ def test_a_capture_is_compared_too(session: Session) -> None:
 
 def test_programs_and_calculations_are_compared() -> None:
     machine = Session(rom("HELLO\n", {}, None))
-    program = {"program": '10 PRINT "HELLO"', "keyboard": "", "output": "HELLO\n"}
+    program = {"bas": '10 PRINT "HELLO"', "in": "", "out": "HELLO\n"}
     assert hear(machine, Case("fuzz", "x", program)).differences == []
-    program["output"] = "HELLO!\n"
+    program["out"] = "HELLO!\n"
     assert differing(hear(machine, Case("fuzz", "x", program))) == {"capture: displayed"}
     for row in (
         ["neg", "8490000001", "", "20", "8410000001:849000000100:20"],

@@ -55,14 +55,17 @@ def calls(folder: Any) -> dict[str, list[list[str]]]:
     }
 
 
-def programs(folder: Any) -> dict[str, dict[str, str]]:
-    """The captured programs by name: their texts by ending."""
+def programs(folder: Any) -> Iterator[tuple[str, str, dict[str, str]]]:
+    """The captured programs, then the fuzz: kind, name, texts by ending."""
     found: dict[str, dict[str, str]] = {}
     for file in _files(folder, PROGRAMS):
         name, _, ending = file.name.rpartition(".")
         if ending in ENDINGS:
             found.setdefault(name, {})[ending] = file.read_bytes().decode("latin-1")
-    return {name: texts for name, texts in found.items() if "bas" in texts}
+    yield from ((PROGRAMS, name, texts) for name, texts in found.items() if "bas" in texts)
+    for row in rows(folder, FUZZ):
+        texts = zip(ENDINGS, (row["program"], row["keyboard"], row["output"]), strict=False)
+        yield FUZZ, row["name"], dict(texts)
 
 
 def _files(folder: Any, name: str) -> list[Any]:

@@ -91,12 +91,10 @@ def _replay(golden: Any) -> Counted:
 
 
 def _programs(golden: Any) -> Counted:
-    for name, texts in captured.programs(golden).items():
-        shown = captured.displayed(texts["bas"], texts.get("in", ""))
+    for kind, name, texts in captured.programs(golden):
+        keys, blanks = texts.get("in", ""), kind == captured.PROGRAMS
+        shown = captured.displayed(texts["bas"], keys, blanks=blanks)
         yield name, shown == texts.get("out", "")
-    for row in captured.rows(golden, captured.FUZZ):
-        shown = captured.displayed(row["program"], row["keyboard"], blanks=False)
-        yield row["name"], shown == row["output"]
 
 
 def _published(golden: Any) -> Counted:

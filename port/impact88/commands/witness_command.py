@@ -85,7 +85,6 @@ def main(args: argparse.Namespace) -> int:
 def _jobs(args: argparse.Namespace) -> list[Job]:
     """What is to be done; all input is read before the machine is started."""
     from ..witness import hearing
-    from ..witness.packaged import ALL, cases, own_programs
 
     jobs: list[Job] = []
     changes = options.settings(args.set)
@@ -102,13 +101,13 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         options.note_remarks(scene.entries)
         jobs.append(partial(hearing.hear_scene, name=path, scene=scene))
     if args.captures is not None:
-        if args.captures != ALL and not args.captures.isdecimal():
+        if args.captures != "all" and not args.captures.isdecimal():
             raise UserError(f"--captures {args.captures}; expected a number, or all")
-        count = None if args.captures == ALL else int(args.captures)
-        for case in cases(count, args.seed):
+        count = None if args.captures == "all" else int(args.captures)
+        for case in hearing.cases(count, args.seed):
             jobs.append(partial(hearing.hear, case=case))
     if args.programs:
-        jobs += [partial(hearing.hear, case=case) for case in own_programs(args.programs)]
+        jobs += [partial(hearing.hear, case=case) for case in hearing.own_programs(args.programs)]
     if args.random:
         from ..checking.vectors import scenes
 

@@ -11,7 +11,10 @@ import json
 import os
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from functools import cache
 from importlib import metadata
+from pathlib import Path
+from random import Random
 from typing import Any, NamedTuple
 
 from ..applesoft.console import Console
@@ -19,19 +22,86 @@ from ..checking import captured
 from ..checking.captured import ARITHMETIC, ENDINGS, FUZZ, PROGRAMS, SCENES
 from ..checking.selfcheck import GOLDEN_RUNS
 from ..emulator.faults import TooManyStatements
+from ..errors import UserError
 from ..fields import FIELDS, outcome_fields
-from ..files import packaged_bytes, write_folder
+from ..files import packaged_bytes, read_bytes, write_folder
 from ..names import SCENE
 from ..program import emulated
 from ..program.run import Run, run
 from ..report import frame
 from ..scene import Scene, sample
 from .apple import Image, Lost
-from .packaged import OWN, Case
-from .session import Finished, Session
+from .session import LONGEST_TYPED, Finished, Session
 
+OWN = "own programs"
 CAPTURE, PORT, EMULATOR, REPLAY, PUBLISHED = "capture", "port", "emulator", "replay", "published"
 HERE = "this arithmetic"
+TOLD = 100
+"""Cases with differences that a record holds in full."""
+
+
+class Case(NamedTuple):
+    """One capture, or a program of the user's own: which kind, its name, and what it holds (a row
+    of scenes, a program's texts by ending, or an arithmetic file's five columns)."""
+
+    kind: str
+    name: str
+    data: Any
+
+
+def cases(count: int | None, seed: int = 0) -> list[Case]:
+    """Captures, drawn evenly from scenes, programs and the routines of the arithmetic, none twice;
+    all of them for ``count`` None."""
+    if count is None:
+        return [case for deck in _decks() for case in deck]
+    rng = Random(seed)
+    scenes, programs, *calls = (rng.sample(deck, len(deck)) for deck in _decks())
+    rng.shuffle(calls)
+    drawn: list[Case] = []
+    for turn in range(count):
+        arithmetic = calls[turn // 3 % len(calls)]
+        deck = (scenes, programs, arithmetic)[turn % 3] or arithmetic
+        drawn += [deck.pop()] if deck else []
+    return drawn
+
+
+@cache
+def _decks() -> list[list[Case]]:
+    golden = captured.golden()
+    return [
+        [Case(SCENES, row["id"], row) for row in captured.rows(golden, SCENES)],
+        [Case(*program) for program in captured.programs(golden)],
+        *(
+            [Case(ARITHMETIC, f"{operation}-{place:04d}", row) for place, row in enumerate(rows)]
+            for operation, rows in captured.calls(golden).items()
+        ),
+    ]
+
+
+def own_programs(folder: str) -> list[Case]:
+    """Every ``.bas`` in a folder, with the replies in the ``.in`` beside it. Raises UserError when
+    there is none, one cannot be read, or a line is too long to be typed."""
+    try:
+        paths = sorted(path for path in Path(folder).iterdir() if path.suffix.lower() == ".bas")
+    except OSError as error:
+        raise UserError(f"cannot be read: {error.strerror or error}", folder) from None
+    if not paths:
+        raise UserError("holds no .bas", folder)
+    found = []
+    for path in paths:
+        program, replies = _text(path), path.with_suffix(".in")
+        for row, line in enumerate(program.split("\n"), 1):
+            if len(line) > LONGEST_TYPED:
+                reason = f"{len(line)} characters; {LONGEST_TYPED} can be typed on a line"
+                raise UserError(f"row {row} has {reason}", str(path))
+        typed = _text(replies) if replies.exists() else ""
+        found.append(Case(OWN, path.stem, {"bas": program, "in": typed}))
+    return found
+
+
+def _text(path: Path) -> str:
+    text = read_bytes(str(path), limit=1_000_000).decode("latin-1")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 class Difference(NamedTuple):
@@ -54,22 +124,13 @@ class Difference(NamedTuple):
 
 class Heard(NamedTuple):
     """A case heard: its kind and name, what it was compared with, where they differ, and what the
-    ROM did, in the captures' form, for `saving`."""
+    ROM did, in the captures' form."""
 
     kind: str
     name: str
     compared: tuple[str, ...]
     differences: list[Difference]
     capture: Any
-
-
-def hear(session: Session, case: Case) -> Heard:
-    """A packaged capture done again on the ROM, or a program of the user's own."""
-    if case.kind == SCENES:
-        return hear_scene(session, case.name, Scene(case.data["scene"]), case.data)
-    if case.kind == ARITHMETIC:
-        return _hear_call(session, case)
-    return _hear_program(session, case)
 
 
 Sides = dict[str, tuple[Mapping[str, str], Mapping[str, str]]]
@@ -88,6 +149,22 @@ def _held(kind: str, name: str, sides: Sides, capture: Any) -> Heard:
             for each in apart
         ]
     return Heard(kind, name, tuple(sides), differences, capture)
+
+
+def hear(session: Session, case: Case) -> Heard:
+    """A packaged capture done again on the ROM, or a program of the user's own."""
+    if case.kind == SCENES:
+        return hear_scene(session, case.name, Scene(case.data["scene"]), case.data)
+    if case.kind != ARITHMETIC:
+        return _hear_program(session, case)
+    *asked, expected = case.data
+    rom, what = session.calculate(*asked), " ".join(filter(None, asked))
+    mine = {what: captured.result(rom)}
+    sides: Sides = {
+        CAPTURE: (mine, {what: captured.result(expected)}),
+        HERE: (mine, {what: captured.call(*asked)}),
+    }
+    return _held(ARITHMETIC, case.name, sides, [*asked, rom])
 
 
 def hear_scene(
@@ -147,50 +224,31 @@ def _left_behind(run: Finished | Run) -> dict[str, str]:
 def _hear_program(session: Session, case: Case) -> Heard:
     """A program, held against its capture, if it has one, and the emulator: all that is displayed,
     and the screen at the end. One that does not come to an end is a difference."""
-    data, fuzz = case.data, case.kind == FUZZ
-    program, keys = data["program" if fuzz else "bas"], data.get("keyboard" if fuzz else "in", "")
-    before = session.apple.instructions
-    rom, differences = {"displayed": "", "screen": ""}, []
-    others: dict[str, dict[str, str]] = {}
+    data, apple, blanks = case.data, session.apple, case.kind != FUZZ
+    program, keys = data["bas"], data.get("in", "")
+    before = apple.instructions
+    rom, others = {}, {}
     if case.kind != OWN:
-        others[CAPTURE] = {"displayed": data.get("output" if fuzz else "out", "")}
+        others[CAPTURE] = {"displayed": data.get("out", "")}
         others[CAPTURE] |= {"screen": data["scr"]} if "scr" in data else {}
-    others[EMULATOR] = {}
     try:
-        rom["displayed"] = session.run_program(program, keys, blanks=not fuzz)
-        rom["screen"] = session.apple.screen_text()
-        machine, shown = captured.session(program, keys, blanks=not fuzz)
-        others[EMULATOR]["displayed"] = shown.replace("\0", "")
+        rom["displayed"] = session.run_program(program, keys, blanks=blanks)
+        rom["screen"] = apple.screen_text()
+        machine, shown = captured.session(program, keys, blanks=blanks)
+        others[EMULATOR] = {"displayed": shown.replace("\0", "")}
         if case.kind == OWN:
             others[EMULATOR]["screen"] = machine.screen_text()
     except Lost as lost:
-        rom["displayed"] = session.apple.take_output()
-        others = {EMULATOR: {}}
-        differences.append(Difference(EMULATOR, "the ROM", str(lost), "not compared"))
+        rom = {"displayed": apple.take_output(), "screen": "", "the ROM": str(lost)}
+        others = {EMULATOR: {"the ROM": "not compared"}}
     except TooManyStatements:
-        allowed = f"no end after {captured.PLENTY:,} statements"
-        differences.append(Difference(EMULATOR, "the emulator", "came to an end", allowed))
-    done = {**data, "output" if fuzz else "out": rom["displayed"]}
-    if not fuzz:
-        done["instructions"] = session.apple.instructions - before
+        rom["the emulator"] = "came to an end"
+        others[EMULATOR] = {"the emulator": f"no end after {captured.PLENTY:,} statements"}
+    done = {**data, "out": rom["displayed"], "instructions": apple.instructions - before}
     if case.kind == OWN or "scr" in data:
         done["scr"] = rom["screen"]
     sides: Sides = {who: ({what: rom[what] for what in o}, o) for who, o in others.items()}
-    heard = _held(case.kind, case.name, sides, done)
-    return heard._replace(differences=differences + heard.differences)
-
-
-def _hear_call(session: Session, case: Case) -> Heard:
-    *asked, expected = case.data
-    rom, what = session.calculate(*asked), " ".join(filter(None, asked))
-    others = {CAPTURE: captured.result(expected), HERE: captured.call(*asked)}
-    mine = {what: captured.result(rom)}
-    sides: Sides = {who: (mine, {what: text}) for who, text in others.items()}
-    return _held(ARITHMETIC, case.name, sides, [*asked, rom])
-
-
-TOLD = 100
-"""Cases with differences that a record holds in full."""
+    return _held(case.kind, case.name, sides, done)
 
 
 def record(image: Image, heard: list[Heard], seconds: float) -> dict[str, Any]:
@@ -228,19 +286,21 @@ def save(folder: str, heard: Iterable[Heard]) -> None:
     UserError when a place cannot be written to."""
     files: dict[str, list[str]] = {}
     index: dict[str, str] = {}
-    for one in heard:
-        if one.kind in (SCENES, FUZZ):
-            files.setdefault(f"{one.kind}.jsonl.gz", []).append(json.dumps(one.capture))
-        elif one.kind == ARITHMETIC:
-            name = os.path.join(ARITHMETIC, f"{one.capture[0]}.tsv.gz")
-            files.setdefault(name, []).append("\t".join(one.capture))
+    for kind, name, _, _, done in heard:
+        if kind == ARITHMETIC:
+            place, line = os.path.join(ARITHMETIC, f"{done[0]}.tsv.gz"), "\t".join(done)
+            files.setdefault(place, []).append(line)
+        elif kind == SCENES:
+            files.setdefault(f"{SCENES}.jsonl.gz", []).append(json.dumps(done))
+        elif kind == FUZZ:
+            row = {"name": name, "program": done["bas"], "keyboard": done["in"]}
+            line = json.dumps({**row, "output": done["out"]})
+            files.setdefault(f"{FUZZ}.jsonl.gz", []).append(line)
         else:
-            for ending in ENDINGS:
-                if one.capture.get(ending):
-                    name = os.path.join(PROGRAMS, f"{one.name}.{ending}")
-                    files[name] = [one.capture[ending]]
-            if one.kind != OWN:
-                index[one.name] = str(one.capture["instructions"])
+            for ending in filter(done.get, ENDINGS):
+                files[os.path.join(PROGRAMS, f"{name}.{ending}")] = [done[ending]]
+            if kind != OWN:
+                index[name] = str(done["instructions"])
     if index:
         text = captured.golden().joinpath(PROGRAMS, "index.tsv").read_text("utf-8")
         heading, *rows = (line.split("\t") for line in text.splitlines())
