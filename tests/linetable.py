@@ -24,8 +24,6 @@ HEAD = '''"""Which BASIC line the Python lines of `listing` translate, and what 
 Made by tests/linetable.py from the comments of listing.py; not to be edited by hand.
 """
 
-from __future__ import annotations
-
 FIRST_PYTHON_LINE = {first}
 """Where `listing.impact` begins."""
 _PYTHON = """
@@ -40,6 +38,7 @@ REALS = """
 {REALS}
 """.split()
 INPUTS = {inputs}
+"""The lines of INPUT."""
 _ASSIGNED = """
 {ASSIGNED}
 """

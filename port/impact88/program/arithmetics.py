@@ -48,8 +48,8 @@ class Arithmetic:
         """An exception as Applesoft's error; None for one that is not this arithmetic's."""
         if isinstance(exception, ApplesoftError):
             return exception
-        kinds = (made for kind, made in self.errors.items() if isinstance(exception, kind))
-        return next((made() for made in kinds), None)
+        made = self.errors.get(type(exception))
+        return made and made()
 
     def number(self, text: str) -> Any:
         """A number from its text, not yet rounded. Raises ApplesoftError OVERFLOW."""
@@ -71,28 +71,24 @@ def _of_reals(function: Callable[[Number], Number]) -> Callable[[Real], Real]:
     return lambda x: Real(function(x.number))
 
 
-def _read_float(text: str, start: int) -> tuple[float, int]:
-    """The double nearest to the decimal text. Raises OVERFLOW past the range of doubles."""
-    value, end = doubles.read(text, start)
-    if math.isinf(value):
+def _finite(x: float) -> float:
+    """A double. Raises OVERFLOW past their range."""
+    if not math.isfinite(x):
         raise overflow()
-    return value, end
+    return x
+
+
+def _read_float(text: str, start: int) -> tuple[float, int]:
+    """The double nearest to the decimal text."""
+    value, end = doubles.read(text, start)
+    return _finite(value), end
 
 
 def _write_float(x: float) -> str:
-    if not math.isfinite(x):
-        raise overflow()
-    if x == 0:
+    if _finite(x) == 0:
         return "0"
     mantissa, exponent = f"{abs(x):.8E}".split("E")
     return decimaltext.lay_out("-" if x < 0 else "", mantissa.replace(".", ""), int(exponent) - 8)
-
-
-def _floor(x: float) -> float:
-    """INT of a double. Raises OverflowError for one that is not finite."""
-    if not math.isfinite(x):
-        raise overflow()
-    return float(math.floor(x))
 
 
 APPLESOFT = Arithmetic(
@@ -114,7 +110,7 @@ FLOAT64 = Arithmetic(
     read=_read_float,
     LET=lambda x: x,
     NEXT=lambda x: x + 1,
-    INT=_floor,
+    INT=lambda x: float(math.floor(_finite(x))),
     ABS=abs,
     SIN=math.sin,
     COS=math.cos,

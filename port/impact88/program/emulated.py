@@ -23,7 +23,6 @@ from ..scene import Scene
 from .run import Run
 
 LISTING = "impact.bas"
-SLOT_LINE = 190
 
 
 def loaded(
@@ -39,7 +38,7 @@ def loaded(
     for line in scene.typed_lines():
         machine.enter(line)
     if slot:
-        machine.enter(f'{SLOT_LINE} P$ = "PR# " + "{slot}"')
+        machine.enter(f'190 P$ = "PR# " + "{slot}"')
     machine.feed(*scene.keyboard())
     return machine
 
@@ -91,29 +90,25 @@ class ListingCopy:
 
     def __init__(self, path: str) -> None:
         data = files.read_bytes(path, LARGEST_COPY)
-        self.file = files.called(path)
-        self.sha256 = sha256(data).hexdigest()
+        self.file, self.sha256 = files.called(path), sha256(data).hexdigest()
         try:
             text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
-            self._source = _listed(text)
+            self._lines = _listed(text)
         except (ValueError, ApplesoftError) as error:
             raise UserError(f"is not an Applesoft program: {error}", path) from None
-        if not self._source:
+        if not self._lines:
             raise UserError("holds no program; expected numbered lines of Applesoft", path)
 
     def changed_lines(self) -> list[ChangedLine]:
         """The lines in which the copy is another program than the restored listing; remarks and
         blanks apart."""
-        restored = _listed(_restored())
-        pairs = {
-            number: (self._source.get(number, ""), restored.get(number, ""))
-            for number in sorted({*self._source, *restored})
-        }
-        return [
-            ChangedLine(number, copy, listed)
-            for number, (copy, listed) in pairs.items()
-            if _plain(copy) != _plain(listed)
-        ]
+        both = self._lines, _listed(_restored())
+        changed = []
+        for number in sorted({*both[0], *both[1]}):
+            copy, restored = (lines.get(number, []) for lines in both)
+            if _plain(copy) != _plain(restored):
+                changed.append(ChangedLine(number, ":".join(copy), ":".join(restored)))
+        return changed
 
     def run(self, scene: Mapping[str, str], *, dos: bool = True) -> Run:
         """RUN of the copy with a scene's values. Raises UserError where it asks for other input
@@ -132,23 +127,24 @@ class ListingCopy:
 
     def _lists(self, verb: str) -> Iterator[list[str]]:
         """The items of every READ or INPUT, in the order of the lines."""
-        for _, text in sorted(self._source.items()):
-            yield from filter(None, (_items(statement, verb) for statement in _split(text)))
+        for statement in chain.from_iterable(self._lines.values()):
+            if items := _items(statement, verb):
+                yield items
 
     def _with(self, scene: Mapping[str, str]) -> Iterator[str]:
         names = chain.from_iterable(self._lists("READ"))
-        for number, text in sorted(self._source.items()):
-            statements = []
-            for statement in _split(text):
-                if items := _items(statement, "DATA"):
-                    given = [(item, next(names, "").upper()) for item in items]
-                    items = [scene[name] if name in SCENE else item for item, name in given]
-                    statement = " DATA " + ",".join(items)
-                match = _ASSIGNED.fullmatch(statement)
-                if match and match["name"].upper() in SCENE:
-                    statement = match["before"] + scene[match["name"].upper()]
-                statements.append(statement)
-            yield f"{number} {':'.join(statements)}"
+
+        def given(statement: str) -> str:
+            if items := _items(statement, "DATA"):
+                read = [(item, next(names, "").upper()) for item in items]
+                return " DATA " + ",".join(scene[n] if n in SCENE else item for item, n in read)
+            match = _ASSIGNED.fullmatch(statement)
+            if match and match["name"].upper() in SCENE:
+                return match["before"] + scene[match["name"].upper()]
+            return statement
+
+        for number, statements in self._lines.items():
+            yield f"{number} {':'.join(map(given, statements))}"
 
 
 def _items(statement: str, verb: str) -> list[str]:
@@ -161,22 +157,22 @@ def _restored() -> str:
     return files.packaged_text("impact88.legacy", LISTING)
 
 
-def _listed(text: str) -> dict[int, str]:
-    """The lines of a program by number, as LIST shows them."""
+def _listed(text: str) -> dict[int, list[str]]:
+    """The statements of a program by line, as LIST shows them."""
     machine = Applesoft()
     machine.load(text)
     pairs = (line.strip().partition(" ") for line in machine.source().splitlines())
-    return {int(number): rest for number, _, rest in pairs}
+    return {int(number): list(_statements(rest)) for number, _, rest in pairs}
 
 
-def _split(text: str) -> Iterator[str]:
+def _statements(text: str) -> Iterator[str]:
     place = 0
     while place <= len(text) and (match := _STATEMENT.match(text, place)):
         yield match[0]
         place = match.end() + 1
 
 
-def _plain(text: str) -> str:
+def _plain(statements: list[str]) -> str:
     """A line without blanks and remarks."""
-    kept = (one for one in _split(text) if not one.lstrip().upper().startswith("REM"))
+    kept = (one for one in statements if not one.lstrip().upper().startswith("REM"))
     return ":".join("".join(statement.split()) for statement in kept)

@@ -98,13 +98,12 @@ def start(
             names = listing.impact(data, chosen, console, slot)
     except listing.End as end:
         zero_determinant = True
-        names = stepping.names_in(end.__traceback__)
+        _, names = stepping.left_at(end.__traceback__)
     except Exception as exception:
         error = chosen.error(exception)
         if error is None:
             raise
-        error.line = stepping.line_of(exception.__traceback__)
-        names = stepping.names_in(exception.__traceback__)
+        error.line, names = stepping.left_at(exception.__traceback__)
     reals, array = stepping.variables(names, chosen.unset)
     if error is not None and error.line is not None:
         asked = console.reply.begun if console.reply else None

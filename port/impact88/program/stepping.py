@@ -52,23 +52,18 @@ _TRANSLATIONS = {
 _MAIN = min(_TRANSLATIONS, key=lambda code: code.co_firstlineno)
 
 
-def _entries(traceback: TracebackType | None) -> Iterator[TracebackType]:
+def left_at(traceback: TracebackType | None) -> tuple[int | None, dict[str, Any]]:
+    """Where an exception left `listing.impact`: the innermost BASIC line that it came from, and the
+    local names."""
+    line, names = None, {}
     while traceback is not None:
-        yield traceback
+        frame = traceback.tb_frame
+        if frame.f_code is _LISTING:
+            names = frame.f_locals
+        elif frame.f_code in _TRANSLATIONS:
+            line = basic_line(traceback.tb_lineno) or line
         traceback = traceback.tb_next
-
-
-def line_of(traceback: TracebackType | None) -> int | None:
-    """The BASIC line an exception came from: that of the innermost frame inside a BASIC line."""
-    inside = [one for one in _entries(traceback) if one.tb_frame.f_code in _TRANSLATIONS]
-    lines = (basic_line(one.tb_lineno) for one in reversed(inside))
-    return next(filter(None, lines), None)
-
-
-def names_in(traceback: TracebackType | None) -> Mapping[str, Any]:
-    """The local names of `listing.impact` in the traceback of an exception that left it."""
-    frames = (one.tb_frame for one in _entries(traceback))
-    return next(frame.f_locals for frame in frames if frame.f_code is _LISTING)
+    return line, names
 
 
 def variables(names: Mapping[str, Any], unset: object) -> Variables:
@@ -95,26 +90,19 @@ def after_every_line(after_line: AfterLine, unset: object) -> Iterator[None]:
     do not count."""
     current: int | None = None
 
-    def report(frame: FrameType) -> None:
-        nonlocal current
-        outer: FrameType | None = frame
-        while outer is not None and outer.f_code is not _LISTING:
-            outer = outer.f_back
-        if current is not None and outer is not None:
-            line, current = current, None
-            after_line(line, variables(outer.f_locals, unset))
-
     def trace(frame: FrameType, event: str, _: object) -> Any:
         nonlocal current
         if frame.f_code not in _TRANSLATIONS:
             return None
-        if event == "line":
-            line = basic_line(frame.f_lineno)
-            if line != current:
-                report(frame)
-                current = line
-        elif event == "return" and frame.f_code is _MAIN:
-            report(frame)
+        ended = event == "return" and frame.f_code is _MAIN
+        line = basic_line(frame.f_lineno) if event == "line" else None if ended else current
+        if line != current:
+            left, current = current, line
+            outer: FrameType | None = frame
+            while outer is not None and outer.f_code is not _LISTING:
+                outer = outer.f_back
+            if left is not None and outer is not None:
+                after_line(left, variables(outer.f_locals, unset))
         return trace
 
     before = sys.gettrace()
