@@ -15,18 +15,14 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-CONTROL_C = "\x03"
-CONTROL_D = "\x04"
-CONTROL_H = "\x08"
-CONTROL_U = "\x15"
-CONTROL_X = "\x18"
-ESCAPE = "\x1b"
+CONTROL_C, CONTROL_D, CONTROL_H, CONTROL_U, CONTROL_X = "\x03\x04\x08\x15\x18"
+ESCAPE, BELL = "\x1b\a"
 PROMPT = "\0"
 """The prompt character Applesoft gives the monitor's line reader: it is sent, and shows nothing."""
 LINE_LIMIT, WARNING, BUFFER = 239, 248, 256
-"""What INPUT keeps of a line; where the bell begins; where a line is abandoned."""
-BELL = "\a"
+"""What INPUT keeps of a line; where the bell begins; where a line is abandoned: the ROM's."""
 PRINTER_SLOT = 1
+"""Where a printer's card is by custom; the listing's line 180 says so."""
 NO_KEY = "?"
 _ESCAPED = range(0xDC80, 0xDD00)
 """What Python makes of the bytes from 80 on that it cannot decode."""
@@ -62,17 +58,12 @@ class Editor:
     def escape(self, key: str) -> None:
         """ESC and this key: the monitor's movements of the cursor."""
 
-    def end_line(self) -> None:
-        """RETURN: what stands behind the cursor is cleared."""
+    def end_line(self, shown: bool) -> None:
+        """RETURN: what stands behind the cursor is cleared. ``shown``: a terminal has shown it."""
 
-    def typed(self) -> None:
-        """A line was typed on a terminal, which has shown it."""
-
-    def begin_echo(self) -> None:
-        """What comes is the echo of a key, not of a program."""
-
-    def end_echo(self) -> None:
-        """The echo is over."""
+    def echo(self, keys: str, put: Device) -> None:
+        """Show keys, which are never inverse."""
+        put(keys)
 
 
 class Console:
@@ -159,15 +150,12 @@ class Console:
         self.put(prompt)
         typed = capitals(self._typed_line())
         if typed.isprintable() and len(typed) <= WARNING:
-            self._show_keys(typed)
+            self.editor.echo(typed, self._echo)
         else:
             typed = self._edited(prompt, typed)
-        self.editor.end_line()
-        if self.echo:
-            self.put("\n")
-        else:  # the terminal has shown the line, RETURN included
-            self._line_begins = True
-            self.editor.typed()
+        self.editor.end_line(not self.echo)
+        self._echo("\n")
+        self._line_begins = True
         return typed[:LINE_LIMIT]
 
     def _edited(self, prompt: str, typed: str) -> str:
@@ -183,7 +171,7 @@ class Console:
                 continue
             if key == CONTROL_U:
                 key = self.editor.under_cursor()
-            self._show_keys(key)
+            self.editor.echo(key, self._echo)
             if key == CONTROL_H:
                 if not kept:
                     self._echo("\n" + prompt)
@@ -207,11 +195,6 @@ class Console:
                 return
             key = keys.popleft()
             self.editor.escape(_MOVES.get(key, key))
-
-    def _show_keys(self, keys: str) -> None:
-        self.editor.begin_echo()
-        self._echo(keys)
-        self.editor.end_echo()
 
     def _echo(self, text: str) -> None:
         if self.echo:

@@ -44,7 +44,7 @@ class Screen(Editor):
         self._ram, self._device, self._blanks = ram, device, blanks
         self.column = self._expected = 0
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
-        self.mask = self._program_mask = NORMAL
+        self.mask = NORMAL
         self.row = 1
         ram[BASE:END] = bytes([_BLANK]) * (END - BASE)
         ram[BASE + _TITLE_COLUMN : BASE + _TITLE_COLUMN + len(_TITLE)] = _TITLE
@@ -185,22 +185,19 @@ class Screen(Editor):
         if self.call(_ESCAPES.get(key, 0)):
             self._expected = self.column
 
-    def end_line(self) -> None:
-        """RETURN: what stands behind the cursor in its row is cleared."""
+    def end_line(self, shown: bool) -> None:
+        """RETURN: what stands behind the cursor in its row is cleared. ``shown``: a terminal has
+        shown it, and the cursor is at the left."""
         self._clear_from(self.column)
+        if shown:
+            self._draw("\n")
+            self._expected = 0
 
-    def begin_echo(self) -> None:
-        """A key is shown, which is never inverse."""
-        self._program_mask, self.mask = self.mask, NORMAL
-
-    def end_echo(self) -> None:
-        """The key is shown."""
-        self.mask = self._program_mask
-
-    def typed(self) -> None:
-        """A line was typed on a terminal, which has shown it: the cursor is at the left."""
-        self._draw("\n")
-        self._expected = 0
+    def echo(self, keys: str, put: Callable[[str], object]) -> None:
+        """Show keys, which are never inverse."""
+        mask, self.mask = self.mask, NORMAL
+        put(keys)
+        self.mask = mask
 
 
 def row_address(row: int, left: int) -> int:
