@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..accuracy import errorbound
 from ..closedform.solve import solve
 from ..doubles import double
-from ..equations.evaluation import Run, running_errors
+from ..equations.evaluation import BESIDE, Run, running_errors
 from ..equations.spelling import A_IMPULSE, IMPULSES, LISTING, spellings
 from ..errors import quoted
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
@@ -48,9 +48,10 @@ _NOTHING = re.compile(
 )
 """What programs write where they have no result: spreadsheets' errors, C's -nan(ind), infinity."""
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
-_HALF = 0.5 + 1e-9
+HALF = 0.5 + 1e-9
 """Of the last digit written."""
 
+COLUMNS = (*SCENE, *(f"{row}_{name}" for row in BESIDE for name in SCENE))
 ABSENT, DOUBLE, DIGITS, ELIMINATION, DIFFER = range(5)
 """How a result agrees; absent where one side has none."""
 
@@ -58,15 +59,14 @@ ABSENT, DOUBLE, DIGITS, ELIMINATION, DIFFER = range(5)
 class Case(NamedTuple):
     """Rows of a table, theirs and ours: arrays with the rows last, the ``names`` of results before.
 
-    ``units``: the last digit written of ``values`` (0 where there is none); ``sizes``: what errors
-    are a share of; ``best``, ``loose``: the shares that the best of programs, and the usual ways,
-    may be off in double precision; ``per_unit``: the latter in other arithmetic, per unit roundoff.
+    ``scene``: each row's, and those of the rows before and after (`COLUMNS`); ``units``: the last
+    digit written of ``values`` (0 where there is none); ``sizes``: what errors are a share of;
+    ``best``, ``loose``: the shares that the best of programs, and the usual ways, may be off in
+    double precision; ``per_unit``: the latter in other arithmetic, per unit roundoff.
     """
 
     names: tuple[str, ...]
     scene: Floats
-    before: Floats
-    after: Floats
     values: Floats
     units: Floats
     ours: Floats
@@ -76,23 +76,19 @@ class Case(NamedTuple):
     loose: Floats
     per_unit: Floats
 
-    def part(self, rows: NDArray[np.intp] | Bools) -> Case:
+    def part(self, rows: NDArray[np.intp]) -> Case:
         """Some of the rows."""
         return Case(self.names, *(column[..., rows] for column in self[1:]))
 
     @property
     def columns(self) -> dict[str, Floats]:
-        """The scenes by name, and those of the rows before and after."""
-        beside = {"": self.scene, "before_": self.before, "after_": self.after}
-        return {
-            f"{row}{name}": column
-            for row, columns in beside.items()
-            for name, column in zip(SCENE, columns, strict=True)
-        }
+        """The scenes by name."""
+        return dict(zip(COLUMNS, self.scene, strict=True))
 
-    def of(self, name: str) -> int:
-        """Which of the results has a name."""
-        return self.names.index(name)
+    @property
+    def wrong(self) -> Bools:
+        """The rows that disagree."""
+        return np.asarray((self.judged()[0] == DIFFER).any(0))
 
     def judged(self) -> tuple[NDArray[np.intp], Floats]:
         """How each result agrees, and the difference as a share of its size, (results, rows)."""
@@ -100,7 +96,7 @@ class Case(NamedTuple):
             off = np.abs(self.values - self.ours)
             last_bits = 2 * np.spacing(np.abs(self.ours))
             tight, loose = (share * self.sizes + last_bits for share in (self.best, self.loose))
-            written = self.units * _HALF
+            written = self.units * HALF
             # nothing there to measure by: as a share of what they have
             measure = np.where(self.sizes > 0, self.sizes, np.abs(self.values))
             relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
@@ -125,13 +121,13 @@ def case_of(
         few = {name: column[undecided] for name, column in scene.items()}
         some = {name: (a[undecided], b[undecided]) for name, (a, b) in theirs.items()}
         other, _ = _case({**few, "MU": -few["MU"]}, some, rtol)
-        agree, now = ((c.judged()[0] < DIFFER).all(0) for c in (other, case.part(undecided)))
-        better = agree & ~now
-        for column, instead in zip(case[6:], other[6:], strict=True):
+        better = case.part(undecided).wrong & ~other.wrong
+        for column, instead in zip(case[4:], other[4:], strict=True):
             column[..., undecided[better]] = instead[..., better]
     return case
 
 
+@np.errstate(all="ignore")
 def _case(
     scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None
 ) -> tuple[Case, NDArray[np.intp]]:
@@ -140,27 +136,23 @@ def _case(
     sizes = errorbound.scales(scene, ours)
     best = errorbound.relative_bounds(ours["COND"], 1.0)
     spent = running_errors(spellings()[IMPULSES], scene)
-    with np.errstate(all="ignore"):
-        largest = np.nanmax(np.abs([ours[name] for name in FINAL_VELOCITIES]), 0, initial=0.0)
-        eliminated = _condition(scene) * largest
-        shares = [
-            np.fmax(eliminated, np.broadcast_to(spent[name][1], largest.shape)) / sizes[name]
-            for name in FINAL_VELOCITIES
-        ]
-        finite = np.max(np.where(np.isfinite(shares), shares, 0.0), axis=0)
-        sliding, off = spent["gt"]
-        undecided = np.abs(sliding) <= off * errorbound.DOUBLE
-        undecided &= (scene["MU"] != PIVOT) & (scene["MU"] != 0)
-    per_unit = np.fmax(best, finite)
+    largest = np.nanmax(np.abs([ours[name] for name in FINAL_VELOCITIES]), 0, initial=0.0)
+    eliminated = _condition(scene) * largest
+    shares = [np.fmax(eliminated, spent[name][1]) / sizes[name] for name in FINAL_VELOCITIES]
+    sliding, off = spent["gt"]
+    undecided = np.abs(sliding) <= off * errorbound.DOUBLE
+    undecided &= (scene["MU"] != PIVOT) & (scene["MU"] != 0)
+    per_unit = np.fmax(best, np.max(np.where(np.isfinite(shares), shares, 0.0), axis=0))
     columns = np.stack([scene[name] for name in SCENE])
-    beside = np.roll(columns, 1, -1), np.roll(columns, -1, -1)
+    beside = (np.roll(columns, step, -1) for step in BESIDE.values())
     values, units = (np.stack(column) for column in zip(*theirs.values(), strict=True))
     mine, measures = (np.stack([found[name] for name in theirs]) for found in (ours, sizes))
-    shared = [
+    tight, loose = (
         share * errorbound.DOUBLE if rtol is None else np.full(best.size, rtol)
         for share in (best, per_unit)
-    ]
-    found = (columns, *beside, values, units, mine, measures, ours["COND"], *shared, per_unit)
+    )
+    scenes = np.concatenate([columns, *beside])
+    found = (scenes, values, units, mine, measures, ours["COND"], tight, loose, per_unit)
     case = Case(tuple(theirs), *found)
     return case, np.flatnonzero(undecided)
 
@@ -181,22 +173,23 @@ def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Flo
     column = rows.one_per_row(name)
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
         return column.astype(float) * factor, np.zeros(rows.count)
-    texts = ["" if cell is None else str(cell).strip() for cell in column]
-    there = [index for index, text in enumerate(texts) if not _NOTHING.fullmatch(text)]
     values, units = np.full(rows.count, np.nan), np.zeros(rows.count)
-    for index in there:
+    for index, cell in enumerate(column):
+        text = "" if cell is None else str(cell).strip()
+        if _NOTHING.fullmatch(text):
+            continue
         try:
-            values[index] = double(texts[index])
+            values[index] = double(text)
         except ValueError:
-            rows.bad.append(rows.cell(index, name, f"{quoted(texts[index])} is not a number"))
-        written = _WRITTEN.fullmatch(texts[index])
-        if written:
+            rows.bad.append(rows.cell(index, name, f"{quoted(text)} is not a number"))
+        if written := _WRITTEN.fullmatch(text):
             decimals, exponent = written.groups(default="")
             power = float(exponent or 0) - len(decimals)
             units[index] = 10.0 ** min(300.0, max(power, -400.0))
     return values * factor, units * factor
 
 
+@np.errstate(all="ignore")
 def violated(case: Case) -> dict[str, Bools]:
     """Which of Equations 13 to 18 their results violate: number -> rows; empty when the table lacks
     a final velocity (point masses keep their spins, given or not).
@@ -207,26 +200,20 @@ def violated(case: Case) -> dict[str, Bools]:
     """
     spelling, scene = spellings()[A_IMPULSE], case.columns
     point = scene["M"] == 4
-    missing = set(spelling.unknown) - set(case.names)
-    if missing - ({"WAF", "WBF"} if point.all() else set()):
+    slack = case.units * 0.5 + case.loose * case.sizes
+    given = dict(zip(case.names, zip(case.values, slack, strict=True), strict=True))
+    for name in ("WAF", "WBF"):
+        kept = scene[name[:2]]
+        if name in given or point.all():
+            value, room = given.get(name, (kept, 0.0))
+            given[name] = np.where(point, kept, value), np.where(point, 0.0, room)
+    if set(spelling.unknown) - given.keys():
         return {}
-    values, room = [], []
-    for name in spelling.unknown:
-        if name in missing:
-            value, slack = scene[name[:2]], np.zeros(point.size)
-        else:
-            row = case.of(name)
-            value = case.values[row]
-            slack = case.units[row] * 0.5 + case.loose * case.sizes[row]
-        kept = point & (name in ("WAF", "WBF"))
-        values.append(np.where(kept, scene.get(name[:2], value), value))
-        room.append(np.where(kept, 0.0, slack))
+    values, room = np.stack([given[name] for name in spelling.unknown], 2)[..., None, :]
     matrix, right = (whole[0] for whole in Run(spelling, scene).system({}))
-    with np.errstate(all="ignore"):
-        terms = matrix * np.stack(values, 1)[:, None, :]
-        limit = (np.abs(matrix) * np.stack(room, 1)[:, None, :]).sum(2)
-        limit += _ROUNDING * (np.abs(terms).sum(2) + np.abs(right))
-        off = np.abs(terms.sum(2) - right) > limit
+    terms = matrix * values
+    limit = (np.abs(matrix) * room).sum(2) + _ROUNDING * (np.abs(terms).sum(2) + np.abs(right))
+    off = np.abs(terms.sum(2) - right) > limit
     subjects = [spelling.statements[index].subject for index in spelling.equations]
-    numbers = [found[0] for text in subjects if (found := re.search("[0-9]+", text))]
-    return {number: off[:, numbers.index(number)] for number in EQUATIONS}
+    rows = {re.findall("[0-9]+", text)[0]: off[:, row] for row, text in enumerate(subjects)}
+    return {number: rows[number] for number in EQUATIONS}

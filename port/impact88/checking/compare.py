@@ -9,16 +9,17 @@ import difflib
 import os
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..doubles import double
 from ..errors import UserError, quoted
-from ..files import called
+from ..files import called, replacing
 from ..mappings import texts
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..plaintable import plain
@@ -27,8 +28,8 @@ from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
 from ..tables.table import format_of, open_reader
 from ..tables.tableunits import TableUnits
 from . import agreement
-from .agreement import Bools, Case
-from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, diagnose
+from .agreement import ABSENT, DIFFER, DIGITS, DOUBLE, ELIMINATION, Bools, Case
+from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis
 from .trials import Program
 from .vectors import FAILURE
 
@@ -75,13 +76,13 @@ class Tally:
 
     def add(self, grades: NDArray[np.intp], relative: NDArray[np.float64]) -> None:
         """Count a block's rows."""
-        counts = np.bincount(grades, minlength=agreement.DIFFER + 1).tolist()
-        self.compared += sum(counts[agreement.DOUBLE :])
-        self.double += counts[agreement.DOUBLE]
-        self.digits += counts[agreement.DIGITS]
-        self.elimination += counts[agreement.ELIMINATION]
-        self.differ += counts[agreement.DIFFER]
-        self.largest = float(relative.max(initial=self.largest, where=grades > agreement.ABSENT))
+        counts = np.bincount(grades, minlength=DIFFER + 1).tolist()
+        self.compared += sum(counts[DOUBLE:])
+        self.double += counts[DOUBLE]
+        self.digits += counts[DIGITS]
+        self.elimination += counts[ELIMINATION]
+        self.differ += counts[DIFFER]
+        self.largest = float(relative.max(initial=self.largest, where=grades > ABSENT))
 
 
 @dataclass
@@ -214,7 +215,7 @@ def compare(
     path = os.fspath(path)
     where = called(path)
     comparison = Comparison()
-    kept: list[tuple[Case, Bools]] = []
+    kept: list[Case] = []
     with open_reader(path, format_of(path, form), encoding) as reader:
         wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
         known = {*SCENE, *RESULTS, *CARRIED}
@@ -222,11 +223,8 @@ def compare(
         if not wanted:
             hints = [f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant]
             hint = f" ({', '.join(hints)}?)" if hints else ""
-            raise UserError(
-                f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
-                "scene's",
-                where,
-            )
+            says = f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
+            raise UserError(f"{says}scene's", where)
         check_scene_columns([name for name in reader.names if name in SCENE], list(values), ("M",))
         comparison.tallies = {name: Tally() for name in wanted}
         with progress(reader.total, "compare", "B") as meter:
@@ -240,7 +238,7 @@ def compare(
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
     if causes and comparison.differing:
-        _explain(kept, comparison)
+        _explain(agreement.joined(kept), comparison)
     return comparison
 
 
@@ -262,26 +260,25 @@ def _compare_block(
     comparison: Comparison,
     rtol: float | None,
     units: TableUnits,
-) -> tuple[Case, Bools]:
-    """Judge a block and count; the rows that may be looked into are returned, and which of them
-    disagree."""
+) -> Case:
+    """Judge a block and count; the rows that may be looked into are returned."""
     whole = {"M": DEFAULT_M, **values}
     scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
     scene |= numbers(rows, units)
-    scene = {name: scene[name] for name in SCENE}
     theirs = {
         name: agreement.read_theirs(rows, name, units.factor(name)) for name in comparison.tallies
     }
+    readable = np.ones(rows.count, bool)
+    readable[[bad.row - rows.first for bad in rows.bad]] = False
+    for given, _ in theirs.values():
+        given[~readable] = np.nan
     case = agreement.case_of(scene, theirs, rtol)
-    bad = {one.row for one in rows.bad}
-    readable = np.array([rows.first + index not in bad for index in range(rows.count)], bool)
     grades, relative = case.judged()
-    grades = np.where(readable, grades, agreement.ABSENT)
-    compared, wrong = (grades > agreement.ABSENT).any(0), (grades == agreement.DIFFER).any(0)
+    compared, wrong = (grades > ABSENT).any(0), (grades == DIFFER).any(0)
+    solved = compared & np.isfinite(case.ours)
     for place, tally in enumerate(comparison.tallies.values()):
         tally.add(grades[place], relative[place])
-        solved = compared & np.isfinite(case.ours[place])
-        tally.missing += int((solved & (grades[place] == agreement.ABSENT)).sum())
+        tally.missing += int((solved[place] & (grades[place] == ABSENT)).sum())
     comparison.rows += rows.count
     comparison.bad += rows.bad
     comparison.agreeing += int((compared & ~wrong).sum())
@@ -291,7 +288,7 @@ def _compare_block(
             skipped = comparison.not_compared.setdefault(reason, Skipped())
             skipped.rows += len(found)
             skipped.first = (skipped.first + found)[:WORST]
-    loosely = ~wrong & (grades == agreement.ELIMINATION)
+    loosely = ~wrong & (grades == ELIMINATION)
     by_row = np.where(loosely, relative, 0.0).max(0)
     loose = comparison.elimination
     loose.rows += int(loosely.any(0).sum())
@@ -299,11 +296,10 @@ def _compare_block(
         worst = int(by_row.argmax())
         loose.worst_row, loose.worst_relative = rows.first + worst, largest
         loose.worst_condition = float(case.condition[worst])
-    off = np.where(grades == agreement.DIFFER, relative, -1.0).argmax(0)
+    off = np.where(grades == DIFFER, relative, -1.0).argmax(0)
     comparison.differences += _differing(rows, np.flatnonzero(wrong), off, relative, case)
     right = np.flatnonzero(compared & ~wrong)[:LOOKED_INTO]
-    looked_into = np.concatenate([np.flatnonzero(wrong), right])
-    return case.part(looked_into), wrong[looked_into]
+    return case.part(np.concatenate([np.flatnonzero(wrong), right]))
 
 
 def _skipped(rows: Rows, readable: Bools, case: Case) -> Iterator[tuple[str, Bools]]:
@@ -336,11 +332,10 @@ def _differing(
         )
 
 
-def _explain(kept: Sequence[tuple[Case, Bools]], comparison: Comparison) -> None:
-    wrong = np.concatenate([wrong for _, wrong in kept])
-    places = np.concatenate([np.flatnonzero(wrong), np.flatnonzero(~wrong)[:LOOKED_INTO]])
-    found = diagnose(agreement.joined([case for case, _ in kept]).part(places), wrong[places])
-    rows = comparison.differences
+def _explain(case: Case, comparison: Comparison) -> None:
+    wrong, rows = case.wrong, comparison.differences
+    right = np.flatnonzero(~wrong)[:LOOKED_INTO]
+    found = Diagnosis(case.part(np.concatenate([np.flatnonzero(wrong), right])))
     comparison.equations, comparison.programs = found.equations, found.programs
     comparison.evidence = [
         one._replace(parts={says: rows[place].row for says, place in one.parts.items()})
@@ -350,3 +345,34 @@ def _explain(kept: Sequence[tuple[Case, Bools]], comparison: Comparison) -> None
         row._replace(cause=cause) for row, cause in zip(rows, found.causes, strict=True)
     ]
     comparison.causes.update(found.causes)
+
+
+def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> None:
+    """Write the JUnit report that systems for continuous integration read: a failing test for every
+    row that disagrees, one test for those that agree, one for each reason why rows were not
+    compared (failing with ``strict``). Raises UserError when the place cannot be written to."""
+    suite = ElementTree.Element("testsuite", name=f"impact88 compare {name}")
+
+    def test(name: str, outcome: str = "", message: str = "") -> None:
+        case = ElementTree.SubElement(suite, "testcase", classname="impact88.compare", name=name)
+        if outcome:
+            ElementTree.SubElement(case, outcome, message=message)
+
+    test(f"{comparison.agreeing} of {comparison.rows} rows agree")
+    for row in comparison.differences:
+        place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
+        said = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
+        test(place, "failure", f"{said}; {row.cause}")
+    for bad in comparison.bad:
+        test(f"row {bad.row}", "error", str(bad))
+    for said in comparison.silent:
+        test(said, "failure" if strict else "skipped", said)
+    for reason, skipped in comparison.not_compared.items():
+        if reason in HARMLESS:
+            test(f"{skipped.rows} rows: {reason}", "skipped", reason)
+    suite.set("tests", str(len(suite)))
+    for count, outcome in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
+        suite.set(count, str(len(suite.findall(f"testcase/{outcome}"))))
+    ElementTree.indent(suite)
+    with replacing(path, "wb") as file:
+        ElementTree.ElementTree(suite).write(file, "utf-8", xml_declaration=True)

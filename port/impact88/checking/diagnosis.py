@@ -24,7 +24,7 @@ from ..fields import FIELDS
 from ..names import FINAL_VELOCITIES, SCENE
 from ..progress import progress
 from ..replay import replay
-from .agreement import Bools, Case, Floats, violated
+from .agreement import HALF, Bools, Case, Floats, violated
 from .trials import BORNE_OUT, Found, Judge, Program, pairs, ranked, run, singles, spread
 
 PRINTED = "digits of the 1988 printout, which floors"
@@ -89,11 +89,14 @@ class Cause(NamedTuple):
 
 
 class Diagnosis:
-    """Why rows disagree: ``causes`` of each that does, in order; the ``evidence`` for each, and the
-    ``programs``; ``equations``: in how many of the rows each could be checked, and is violated."""
+    """Why rows of a case disagree: ``causes`` of each that does, in order; the ``evidence`` for
+    each, and the ``programs``; ``equations``: in how many of the rows each could be checked, and is
+    violated."""
 
-    def __init__(self, case: Case, wrong: Bools) -> None:
-        self._case, self._wrong = case, wrong
+    @np.errstate(all="ignore")
+    def __init__(self, case: Case) -> None:
+        self._case, self._wrong = case, case.wrong
+        wrong = self._wrong
         self._causes = np.where(wrong, UNKNOWN, "").astype(object)
         self.evidence: list[Cause] = []
         self.programs: list[Program] = []
@@ -103,15 +106,14 @@ class Diagnosis:
             for number, off in violations.items()
         }
         # how far off the results are, and how near a program must come to explain them
-        given, sizes = np.isfinite(case.values - case.ours), case.sizes
-        written = case.units * (0.5 + 1e-9)
-        beyond = np.maximum(np.abs(case.values - case.ours) - written, 0.0)
-        share = np.where(sizes > 0, beyond / sizes, np.where(beyond == 0, 0.0, 1.0))
-        share = np.where(given, share, 0.0)
-        worst = np.argmax(share, axis=0)[None]
-        self._off = np.take_along_axis(share, worst, 0)[0]
-        shown = np.where(given & (sizes > 0), written / sizes, 0.0)
-        self._room = np.fmax(np.take_along_axis(shown, worst, 0)[0], case.loose)
+        off, sizes, written = np.abs(case.values - case.ours), case.sizes, case.units * HALF
+        beyond = np.maximum(off - written, 0.0)
+        share = np.where(sizes > 0, beyond / sizes, beyond != 0)
+        share = np.where(np.isfinite(off), share, 0.0)
+        worst = share.argmax(0), np.arange(wrong.size)
+        self._off = share[worst]
+        shown = np.where(np.isfinite(off) & (sizes > 0), written / sizes, 0.0)
+        self._room = np.fmax(shown[worst], case.loose)
         near = np.fmin(np.fmax(4 * case.loose, _CLOSE), _EXPLAINED * self._off)
         self._limits = np.where(wrong, near, np.fmax(case.loose, _CLOSE)) * sizes + written
         if not self._by_digits():
@@ -131,9 +133,8 @@ class Diagnosis:
 
     def _by_search(self) -> None:
         case = self._case
-        searched = [name for name in case.names if name != "MUC"]
         theirs, limits, ours = (
-            {name: rows[case.of(name)] for name in searched}
+            {n: row for n, row in zip(case.names, rows, strict=True) if n != "MUC"}
             for rows in (case.values, self._limits, case.ours)
         )
         whole = Judge(case.columns, theirs, limits, self._wrong)
@@ -222,12 +223,6 @@ class Diagnosis:
                 self._causes[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
 
 
-@np.errstate(all="ignore")
-def diagnose(case: Case, wrong: Bools) -> Diagnosis:
-    """The likely causes of a case's disagreements. ``wrong``: the rows that disagree."""
-    return Diagnosis(case, wrong)
-
-
 def _are_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
     """Rows whose results are ours cut at the last digit written (a hair of rounding allowed)."""
     unit = np.where(case.units > 0, case.units, np.nan)
@@ -243,7 +238,7 @@ def _as_printed(case: Case, wrong: Bools) -> Bools:
     places, more = np.split(np.flatnonzero(wrong), [LOOKED_INTO])
     if not all(name in FIELDS for name in case.names):
         return rows
-    columns = zip(SCENE, case.scene[:, places].tolist(), strict=True)
+    columns = zip(SCENE, case.scene[:, places].tolist(), strict=False)
     try:
         replayed = replay({name: [f"{x:.15G}" for x in column] for name, column in columns})
     except UserError:

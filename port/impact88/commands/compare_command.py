@@ -25,7 +25,7 @@ from collections.abc import Iterator
 
 from ..accuracy.errorbound import DOUBLE
 from ..checking.agreement import EQUATIONS
-from ..checking.compare import HARMLESS, Comparison, compare
+from ..checking.compare import HARMLESS, Comparison, compare, write_junit
 from ..errors import UserError, shown
 from ..stderr import note
 from ..tables.table import format_of
@@ -72,8 +72,6 @@ def main(args: argparse.Namespace) -> int:
         not args.no_causes,
     )
     if args.junit:
-        from ..checking.junit import write_junit
-
         write_junit(args.junit, args.theirs, comparison, args.strict)
     options.show(args, "compare", comparison.as_json, lambda: _lines(comparison))
     for line in _notes(comparison):
