@@ -62,7 +62,7 @@ class Applesoft:
         return self._keyboard() if self._keyboard else None
 
     def feed(self, *lines: str) -> None:
-        """Queue lines to be typed, for INPUT, GET or the prompt."""
+        """Lines to be typed, for INPUT, GET or the prompt."""
         self._queue.extend(lines)
 
     def feed_keys(self, text: str) -> None:

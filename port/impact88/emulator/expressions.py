@@ -17,21 +17,18 @@ from .memory import ADDRESSES, EMPTY, FUNCTION, INTEGER, STRING, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
 from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
 
-ROOM, PENDING = 59, 12
-"""CHKMEM: where the stack pointer has to be at least for a formula; bytes on the stack for an
-operator that waits for its right operand."""
+ROOM, PENDING, DIGITS_COUNTED, LARGEST_ADDRESS = 59, 12, 36, 0x90
+"""Of the ROM: where CHKMEM wants the stack pointer to be at least; bytes on the stack for an
+operator that waits for its right operand; what FOUT leaves in VARPNT; GETADR's largest exponent."""
 POINT, DIGIT_0, DIGIT_9, LETTER_A, LETTER_Z = map(ord, ".09AZ")
 FN, PLUS_TOKEN, MINUS_TOKEN, NOT_TOKEN, OR_TOKEN, GREATER, LESS, FIRST_FUNCTION = (
     TOKENS[word] for word in ("FN", "+", "-", "NOT", "OR", ">", "<", "SGN")
 )
 BLANK_OR_PLUS, MINUS_OR_NOT = (BLANK, PLUS_TOKEN), (MINUS_TOKEN, NOT_TOKEN)
-POWER, AND, OR, NEGATE, NOT, RELATION = range(4, 10)
-"""Operators by their place in MATHTBL, after + - * and /."""
+POWER, AND, OR, NEGATE, NOT, RELATION, NONE = range(4, 11)
 PRECEDENCES = (0x79, 0x79, 0x7B, 0x7B, 0x7D, 0x50, 0x46, 0x7F, 0x7F, 0x64, 0)
-RELATIONAL = PRECEDENCES[RELATION]
-NONE = -1
-"""No operator follows: the last place in `PRECEDENCES`."""
-ONE = integer(1)
+"""Operators by their place in MATHTBL, after + - * and /, none at the end; what stands there."""
+RELATIONAL, ONE = PRECEDENCES[RELATION], integer(1)
 ARITHMETIC: tuple[Callable[[Number, Number], Number], ...]
 ARITHMETIC = (real.add, real.subtract, real.multiply, real.divide)
 ERROR_DEPTHS = (3, 3, 5, 3, 6)
@@ -50,9 +47,6 @@ FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
 """How far below a formula's entry they find their errors; others 5."""
 WORDS = {token: word for word, token in TOKENS.items()}
 FIRST_SLICE, SCREEN_DOT = TOKENS["LEFT$"], TOKENS["SCRN("]
-DIGITS_COUNTED = 36
-LARGEST_ADDRESS = 0x90
-"""Exponent of the largest number GETADR takes."""
 
 
 def address_of(x: Number, sp: int) -> int:
@@ -163,7 +157,7 @@ class Expressions(Variables):
                     operator = NONE
                     break
             waits = last < PRECEDENCES[operator]
-            if valtyp & 0x80 and (waits or last != RELATIONAL) and (operator >= 0 or last):
+            if valtyp & 0x80 and (waits or last != RELATIONAL) and (operator != NONE or last):
                 raise Fault("TYPE MISMATCH", sp - 2)
             while not waits and pending:
                 last, doing, left, relation = pending.pop()

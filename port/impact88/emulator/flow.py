@@ -18,11 +18,9 @@ from .memory import ADDRESSES, DIGITS, DIRECT, GOTO, HEADER, ROM, STACK, SUBFLG_
 from .tokens import COMMA, TOKENS
 from .variables import store
 
-FOR_SIZE, FOR_ROOM = 18, 74
-GOSUB_SIZE, GOSUB_ROOM = 7, 64
-"""Bytes on the stack, and where the stack pointer has to be at least."""
+FOR_SIZE, FOR_ROOM, GOSUB_SIZE, GOSUB_ROOM, NO_VARIABLE = 18, 74, 7, 64, -1
+"""Bytes on the stack, and where the stack pointer has to be at least; a GOSUB's variable."""
 TO, THEN, STEP, GOSUB, EQUAL = (TOKENS[word] for word in ("TO", "THEN", "STEP", "GOSUB", "="))
-NO_VARIABLE = -1
 
 
 class Frame(NamedTuple):

@@ -16,23 +16,14 @@ from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, 
 from .variables import IS_STRING, descriptor
 
 TAB, SPC = TOKENS["TAB("], TOKENS["SPC("]
-ZONE = 16
-LAST_ZONE_FROM = 24
-"""From this column on a comma begins a new line."""
-WRAP_COLUMN = 33
-INDENT = 5
-"""LIST goes on in the next row, indented, when the cursor has reached a column after a character
-or the blank that ends a keyword."""
-LAST_NUMBER = 0xFFFF
+ZONE, LAST_ZONE_FROM, WRAP_COLUMN, INDENT, LAST_NUMBER = 16, 24, 33, 5, 0xFFFF
+"""Columns of the ROM: a comma's zones, and from where on it begins a new line; from where on LIST
+goes on in the next row after a character or a keyword, indented; and its last line's number."""
 IN_ROM, IN_STACK_PAGE = 0xD000, 0x100
 """Where messages and the digits of a number stand; only the page counts."""
-
-FROM_REPLY, FROM_KEY, FROM_DATA = 0, 0x40, 0x98
-"""INPFLG."""
-BAD_REPLY = 254
-BREAK_CODE = 255
-AFTER_GET = 0xFF40
-"""What a bad GET puts in place of the line number: the machine believes it is at the prompt."""
+FROM_REPLY, FROM_KEY, FROM_DATA, BAD_REPLY, BREAK_CODE, AFTER_GET = 0, 0x40, 0x98, 254, 255, 0xFF40
+"""INPFLG; codes of ONERR; what a bad GET puts in place of the line number: the machine believes it
+is at the prompt."""
 REENTER, EXTRA_IGNORED = b"?REENTER\r", b"?EXTRA IGNORED\r"
 
 
@@ -72,8 +63,15 @@ class InputOutput(Expressions):
         sp, newline = self.sp - 2, True
         while (byte := self.character()) and byte != COLON:
             newline = False
-            if byte in (TAB, SPC):
-                self._skip_columns(byte, sp - 1)
+            if byte in (TAB, SPC):  # TAB counts from 1, 0 is 256
+                self.txtptr += 1
+                columns = self.byte(sp - 3)
+                if self.character() != CLOSE:
+                    raise Fault("SYNTAX", sp - 1)
+                self.txtptr += 1
+                if byte == TAB:
+                    columns = (columns - 1 & 0xFF) - self.screen.column
+                self.put(" " * columns)
             elif byte == COMMA:
                 self.txtptr += 1
                 if self.screen.column >= LAST_ZONE_FROM:
@@ -91,18 +89,6 @@ class InputOutput(Expressions):
                 newline = True
         if newline:
             self.console.put("\n")
-
-    def _skip_columns(self, token: int, sp: int) -> None:
-        """SPC: so many blanks; TAB: up to a column, counted from 1, 0 as 256."""
-        self.txtptr += 1
-        columns = self.byte(sp - 2)
-        if self.character() != CLOSE:
-            raise Fault("SYNTAX", sp)
-        self.txtptr += 1
-        if token == TAB:
-            columns = (columns - 1 & 0xFF) - self.screen.column
-        if columns > 0:
-            self.put(" " * columns)
 
     def byte(self, sp: int) -> int:
         """GETBYT: a number from 0 to 255."""
@@ -127,30 +113,25 @@ class InputOutput(Expressions):
         self.screen.mask = mask
 
     def list_(self) -> None:
-        sp = self.sp - 2
-        byte = self.character()
-        if not (byte in DIGITS or self.at_end() or byte in (MINUS, COMMA)):
+        sp, ram = self.sp - 2, self.ram
+        if self.character() not in (*DIGITS, 0, COLON, MINUS, COMMA):
             return
-        number = self.line_number(sp - 2)
-        _, line = self.find_line(number, self.txttab)
+        last = self.line_number(sp - 2)
+        _, line = self.find_line(last, self.txttab)
         if not self.at_end():
             if self.character() not in (MINUS, COMMA):
                 return
             self.txtptr += 1
-            number = self.line_number(sp - 2)
+            last = self.line_number(sp - 2)
             if not self.at_end():
                 return
-        self._list_lines(line, number or LAST_NUMBER)
-
-    def _list_lines(self, line: int, last: int) -> None:
-        ram = self.ram
         for _ in range(ADDRESSES):  # addresses poked may lead in a circle
             if not ram[line + 1]:
                 break
             self.pause()
             self.put("\n")
             number = self.word(line + 2)
-            if number > last:
+            if number > (last or LAST_NUMBER):
                 break
             self.show_number(integer(number))
             self.put(" ")
@@ -174,20 +155,6 @@ class InputOutput(Expressions):
 
     def restore_(self) -> None:
         self.datptr = self.txttab - 1
-
-    def _next_data(self, sp: int) -> None:
-        """Put TXTPTR where the next DATA's text begins. Raises OUT OF DATA."""
-        ram = self.ram
-        while True:
-            self.data_()
-            if not ram[self.txtptr]:
-                if not ram[self.txtptr + 2]:
-                    raise Fault("OUT OF DATA", sp)
-                self.datlin = self.word(self.txtptr + 3)
-                self.txtptr += HEADER
-            self.txtptr += 1
-            if ram[self.txtptr] == DATA:
-                return
 
     def input_(self) -> None:
         sp = self.sp - 2
@@ -226,7 +193,14 @@ class InputOutput(Expressions):
             self.character()
             refused = located(sp - 4, self._take_item, source, sp)
             if refused or not (self.at_end() or ram[self.txtptr] == COMMA):
-                self._refuse_value(source, sp)
+                if source != FROM_REPLY:
+                    self.curlin = self.datlin if source == FROM_DATA else AFTER_GET
+                    raise Fault("SYNTAX", sp)
+                if self.errflg & 0x80:
+                    raise Fault("SYNTAX", sp, BAD_REPLY)
+                # asked again, from where the ROM noted last that a statement begins
+                self.show_message(REENTER)
+                self.txtptr = self.oldtext
                 return
             values, self.txtptr = self.txtptr, variables
             if self.at_end():
@@ -238,11 +212,21 @@ class InputOutput(Expressions):
             self.show_message(EXTRA_IGNORED)
 
     def _more_values(self, source: int, sp: int) -> None:
-        """Where the values are used up: the next DATA, a key, or another reply."""
-        if source == FROM_DATA:
-            return self._next_data(sp)
+        """Where the values are used up: the next DATA's text, a key, or another reply. Raises OUT
+        OF DATA."""
+        ram = self.ram
+        while source == FROM_DATA:
+            self.data_()
+            if not ram[self.txtptr]:
+                if not ram[self.txtptr + 2]:
+                    raise Fault("OUT OF DATA", sp)
+                self.datlin = self.word(self.txtptr + 3)
+                self.txtptr += HEADER
+            self.txtptr += 1
+            if ram[self.txtptr] == DATA:
+                return
         if source == FROM_KEY:
-            self.ram[INPUT_BUFFER] = ord(self.console.read_key()) & 0x7F
+            ram[INPUT_BUFFER] = ord(self.console.read_key()) & 0x7F
         else:
             self.put("??")
             self._put_in_buffer(self.console.read_line())
@@ -271,15 +255,3 @@ class InputOutput(Expressions):
         self.assign_string(self.forpnt, string)
         self.valtyp = IS_STRING
         return False
-
-    def _refuse_value(self, source: int, sp: int) -> None:
-        """INPUTERR. A reply is asked for again, from where the ROM noted last that a statement
-        begins, unless ONERR is on."""
-        if source == FROM_REPLY:
-            if self.errflg & 0x80:
-                raise Fault("SYNTAX", sp, BAD_REPLY)
-            self.show_message(REENTER)
-            self.txtptr = self.oldtext
-            return
-        self.curlin = self.datlin if source == FROM_DATA else AFTER_GET
-        raise Fault("SYNTAX", sp)

@@ -29,7 +29,6 @@ KEPT = {
 }
 """Statements that put a byte into memory for drawing, which is not done here, and for PEEK: where,
 and what for each number."""
-FLASH_BIT = 0x40
 
 
 class Machine(Flow):
@@ -53,7 +52,7 @@ class Machine(Flow):
             "TEXT": self.screen.full_window,
             "NORMAL": partial(self.set_mode, NORMAL),
             "INVERSE": partial(self.set_mode, INVERSE),
-            "FLASH": partial(self.set_mode, FLASHING, FLASH_BIT),
+            "FLASH": partial(self.set_mode, FLASHING, 0x40),
             "TRACE": partial(self.trace, 0x80),
             "NOTRACE": partial(self.trace, 0),
             "LET": lambda: self.let(self.sp - 2),
@@ -120,7 +119,7 @@ class Machine(Flow):
 
     def next_statements(self) -> None:
         """NEWSTT: statement after statement. Raises Restart at the program's end."""
-        ram, statements = self.ram, self.statements
+        ram = self.ram
         line = self.curlin
         while True:
             self.remstk = self.sp
@@ -147,31 +146,23 @@ class Machine(Flow):
                     self.show_number(integer(self.curlin))
                     self.put(" ")
                 line = self.curlin
-            pos += 1
-            byte = ram[pos]
-            while byte == BLANK:
-                pos += 1
-                byte = ram[pos]
-            if byte >= FIRST:
-                self.txtptr = pos + 1
-                if byte > LAST_STATEMENT:
-                    raise Fault("SYNTAX", self.sp - 2)
-                statements[byte - FIRST]()
-            else:
-                self.txtptr = pos
-                if byte and byte != COLON:
-                    self.let(self.sp - 2)
+            self.txtptr = pos + 1
+            self.execute()
 
     def execute(self) -> None:
         """EXECUTE_STATEMENT: the statement at TXTPTR. Raises SYNTAX."""
-        byte = self.character()
+        ram, pos = self.ram, self.txtptr
+        while (byte := ram[pos]) == BLANK:
+            pos += 1
         if byte >= FIRST:
-            self.txtptr += 1
+            self.txtptr = pos + 1
             if byte > LAST_STATEMENT:
                 raise Fault("SYNTAX", self.sp - 2)
             self.statements[byte - FIRST]()
-        elif byte and byte != COLON:
-            self.let(self.sp - 2)
+        else:
+            self.txtptr = pos
+            if byte and byte != COLON:
+                self.let(self.sp - 2)
 
     def dim_(self) -> None:
         while True:
@@ -197,15 +188,14 @@ class Machine(Flow):
         self.ram[function + 4] = first
         self.data_()
 
-    def _address(self) -> int:
-        return address_of(self.number(self.sp - 4), self.sp - 4)
+    def _address(self, sp: int) -> int:
+        return address_of(self.number(sp), sp)
 
     def _address_and_byte(self) -> tuple[int, int]:
         """GTNUM: an address, a comma, a byte."""
-        sp = self.sp - 6
-        place = address_of(self.number(sp), sp)
-        self.expect(COMMA, sp)
-        return place, self.byte(sp + 2)
+        place = self._address(self.sp - 6)
+        self.expect(COMMA, self.sp - 6)
+        return place, self.byte(self.sp - 4)
 
     def wait_(self) -> None:
         """WAIT: until bits come up, which nothing but control-C does here."""
@@ -218,7 +208,7 @@ class Machine(Flow):
 
     def call_(self) -> None:
         """CALL of a routine that is known, or of a bare RTS."""
-        place = self._address()
+        place = self._address(self.sp - 4)
         bell, normal = partial(self.put, "\a"), partial(self.set_mode, NORMAL)
         routines: dict[int, Callable[[], object]] = {
             **{0xF328: self.forget_error, 0xD66C: self.clear, 0xD683: self.clear_stack},
@@ -231,13 +221,13 @@ class Machine(Flow):
             self.refuse(f"CALL {place}")
 
     def himem_(self) -> None:
-        place = self._address()
+        place = self._address(self.sp - 4)
         if place < self.strend:
             raise Fault("OUT OF MEMORY", self.sp - 2)
         self.memsiz = self.fretop = place
 
     def lomem_(self) -> None:
-        place = self._address()
+        place = self._address(self.sp - 4)
         if not self.vartab <= place < self.memsiz:
             raise Fault("OUT OF MEMORY", self.sp - 2)
         self.vartab = place

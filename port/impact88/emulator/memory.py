@@ -16,19 +16,14 @@ from .faults import Fault, TooManyStatements
 from .screen import BASE, END, Screen
 from .tokens import BLANK, COLON, OPEN, QUOTE, TOKENS
 
-TEXT_START, TOP_OF_MEMORY = 0x801, 0xC000
-"""TXTTAB and, without a disk system, HIMEM."""
+TEXT_START, ROM, STACK, DIRECT, RTS = 0x801, 0xC000, 0xF8, 0xFF00, 0x60
+"""The machine's TXTTAB and, without a disk system, HIMEM; the stack pointer when nothing is on the
+stack; CURLIN from here on: typed without a line number; a routine's end."""
 INPUT_BUFFER, BUFFER_END = 0x200, 0x300
 """Page 2, where typed lines are read in and their tokens put in their place."""
-STACK = 0xF8
-"""The stack pointer when nothing is on the stack."""
-DIRECT = 0xFF00
-"""CURLIN from here on means: typed without a line number."""
-TEMPORARIES, TEMPORARIES_END = 0x55, 0x5E
-"""TEMPST: the descriptors of three temporary strings."""
-ROM, RTS = 0xC000, 0x60
-EMPTY = 0xE09A
-"""A zero in ROM, where a variable is found that was never made."""
+TEMPORARIES, TEMPORARIES_END, EMPTY = 0x55, 0x5E, 0xE09A
+"""TEMPST: the descriptors of three temporary strings; a zero in ROM, where a variable is found
+that was never made."""
 APPLE_II_PLUS = {0xFBB3: 0xEA}
 """The byte of the monitor by which programs identify the model."""
 PAGE_ZERO = bytes.fromhex("4C3CD4 4C3ADB 000000 00 4C99E1")
@@ -63,11 +58,9 @@ OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37:
 GOTO, PLUS, MINUS = (TOKENS[word] for word in ("GOTO", "+", "-"))
 SUBFLG_SIMPLE = 0x80
 """SUBFLG: no array and no integer may come, because of FOR or DEF FN."""
-DIGITS = range(48, 58)
-HEADER = 4
-"""Bytes of a line before its text: the next line's address and the number."""
-LINE_LIMIT = 0x19
-"""LINGET refuses a further digit when the number's high byte has come so far: past 63999."""
+DIGITS, HEADER, LINE_LIMIT = range(48, 58), 4, 0x19
+"""Characters; a line's bytes before its text: the next line's address and the number; the number's
+high byte from which LINGET refuses a further digit: past 63999."""
 INTEGER, STRING, FUNCTION = 0x8080, 0x0080, 0x8000
 """Top bits of a name's two bytes in memory: its kind; a real has none."""
 
@@ -103,14 +96,14 @@ class Memory:
         self.ram = bytearray(ADDRESSES + _BEYOND)
         self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
         self.ram[SPEED] = 1
-        self.screen = Screen(self.ram, screen, blanks=blanks)
+        self.screen = Screen(self.ram, screen, blanks)
         self.console = Console(keyboard, self.screen.write, printer, **dos)
         self.console.editor = self.screen
         self.seed, self.fac = FIRST_SEED, AFTER_TYPING
         self.sp = STACK
         self.txttab = TEXT_START
         self.vartab = self.arytab = self.strend = self.prgend = TEXT_START + 2
-        self.fretop = self.memsiz = TOP_OF_MEMORY
+        self.fretop = self.memsiz = ROM
         self.curlin = DIRECT
         self.datptr = self.txtptr = TEXT_START - 1
         self.oldlin = self.oldtext = self.datlin = self.varpnt = self.forpnt = self.remstk = 0
@@ -174,7 +167,6 @@ class Memory:
         return self.ram[address] | self.ram[address + 1] << 8
 
     def put_word(self, address: int, value: int) -> None:
-        """The same, put there."""
         self.ram[address] = value & 0xFF
         self.ram[address + 1] = value >> 8 & 0xFF
 
@@ -195,7 +187,6 @@ class Memory:
         return byte
 
     def at_end(self) -> bool:
-        """Whether the statement ends here."""
         return self.character() in (0, COLON)
 
     def expect(self, byte: int, sp: int) -> int:

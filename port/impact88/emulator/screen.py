@@ -7,16 +7,18 @@ it, for any row number and with the window's left edge added: a change of the wi
 only then, and unusual windows write outside the rows.
 """
 
+import re
 from collections.abc import Callable
 from functools import lru_cache
 from itertools import pairwise
 
 from ..applesoft.console import Editor
 
-WIDTH, HEIGHT = 40, 24
-BASE, END = 0x400, 0x800
-NORMAL, INVERSE, FLASHING = 0xFF, 0x3F, 0x7F
-_BLANK, _SMALL_LETTERS = 0xA0, 0xE0
+WIDTH, HEIGHT, BASE, END = 40, 24, 0x400, 0x800
+NORMAL, INVERSE, FLASHING, _BLANK, _SMALL_LETTERS = 0xFF, 0x3F, 0x7F, 0xA0, 0xE0
+"""Of the monitor: the screen and where it lies; its masks and codes."""
+_SHOWS = re.compile("[^\0-\x09\x0b-\x1f]")
+"""A character that shows, or the end of the line."""
 _TITLE, _TITLE_COLUMN = bytes(code | 0x80 for code in b"APPLE ]["), 15
 """What switching on shows in the first row."""
 _ESCAPES = {
@@ -38,9 +40,7 @@ class Screen(Editor):
     0, in a window with ``left``, ``width``, ``top`` and ``bottom``. ``blanks``: whether skipped
     columns are passed on as blanks; the machine sends none."""
 
-    def __init__(
-        self, ram: bytearray, device: Callable[[str], object], *, blanks: bool = True
-    ) -> None:
+    def __init__(self, ram: bytearray, device: Callable[[str], object], blanks: bool) -> None:
         self._ram, self._device, self._blanks = ram, device, blanks
         self.column = self._expected = 0
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
@@ -53,7 +53,11 @@ class Screen(Editor):
     def write(self, text: str) -> None:
         """Show characters, and pass them on."""
         gap = max(self.column - self._expected, 0) if self._blanks else 0
-        shown, gap = _filled(text, gap)
+        shown = text
+        if gap and (first := _SHOWS.search(text)):
+            if first[0] != "\n":
+                shown = text[: first.start()] + " " * gap + text[first.start() :]
+            gap = 0
         self._device(shown)
         self._draw(text)
         self._expected = self.column - gap
@@ -118,7 +122,7 @@ class Screen(Editor):
 
     def rows(self) -> list[bytes]:
         """The 24 rows as they lie in memory, 40 bytes each."""
-        starts = (BASE + row % 8 * 0x80 + row // 8 * WIDTH for row in range(HEIGHT))
+        starts = (row_address(row, 0) for row in range(HEIGHT))
         return [bytes(self._ram[start : start + WIDTH]) for start in starts]
 
     def text(self) -> str:
@@ -144,21 +148,16 @@ class Screen(Editor):
 
     def call(self, address: int) -> bool:
         """CALL of a routine of the monitor that moves or clears; whether it is one."""
-        routine = {
-            0xFC58: self.home,
+        routines: dict[int, Callable[[], None]] = {
+            **{0xFC58: self.home, 0xFC70: self._scroll, 0xFC66: self._line_feed},
+            **{0xFC1A: self._step_up, 0xFC10: self._step_back, 0xFBF4: self._advance},
             0xFC9C: lambda: self._clear_from(self.column),
             0xFC42: lambda: self._clear_rows(self.row, self.column),
-            0xFC70: self._scroll,
-            0xFC66: self._line_feed,
-            0xFC1A: self._step_up,
-            0xFC10: self._step_back,
-            0xFBF4: self._advance,
-            0xFC62: lambda: self.write("\n"),
-            0xFB2F: self.full_window,
-        }.get(address)
-        if routine:
-            routine()
-        return routine is not None
+            **{0xFC62: lambda: self.write("\n"), 0xFB2F: self.full_window},
+        }
+        if address in routines:
+            routines[address]()
+        return address in routines
 
     def full_window(self) -> None:
         """TEXT: the whole screen, the cursor in the last row."""
@@ -218,17 +217,6 @@ def row_moves(top: int, bottom: int, left: int, width: int) -> list[tuple[slice,
         for upper, lower in pairwise(starts)
         if upper < END
     ]
-
-
-def _filled(text: str, gap: int) -> tuple[str, int]:
-    """``text`` with blanks before the first character that shows on this line, and how many are
-    still to come."""
-    for n, character in enumerate(text if gap else ""):
-        if character >= " ":
-            return text[:n] + " " * gap + text[n:], 0
-        if character == "\n":
-            return text, 0
-    return text, gap
 
 
 def shown_character(code: int) -> str:

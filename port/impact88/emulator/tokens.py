@@ -26,13 +26,12 @@ KEYWORDS = (
 """In the ROM's order: the first has token 0x80."""
 
 TOKENS = {word: FIRST + n for n, word in enumerate(KEYWORDS)}
-DATA, REM, AT, PRINT = (TOKENS[word] for word in ("DATA", "REM", "AT", "PRINT"))
+DATA, REM, AT, PRINT, LAST_STATEMENT = (
+    TOKENS[word] for word in ("DATA", "REM", "AT", "PRINT", "NEW")
+)
 BLANK, QUOTE, COLON, COMMA, SEMICOLON, OPEN, CLOSE = map(ord, ' ":,;()')
-LAST_STATEMENT = TOKENS["NEW"]
-"""Keywords up to here may begin a statement."""
-LAST_LINE = 63999
-LINE_LIMIT = 239
-"""The monitor hands over no more of a line than this."""
+LAST_LINE, LINE_LIMIT = 63999, 239
+"""The ROM's largest number of a line, and what the monitor hands over of one that is typed."""
 
 _LISTED = (*KEYWORDS, "", *[*CODES][1:], " ERROR\a")
 _BY_LETTER: dict[str, list[tuple[str, int]]] = {}

@@ -21,32 +21,21 @@ from .faults import Fault, located, placed
 from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
 from .tokens import CLOSE, COMMA, QUOTE
 
-DESCRIPTOR, IS_STRING, LONGEST = 3, 0xFF, 255
+DESCRIPTOR, IS_STRING, LONGEST, VARIABLE_SIZE, ARRAY_HEADER = 3, 0xFF, 255, 7, 5
+AUTOMATIC, LARGEST_INTEGER, DEEPEST = 11, 143, 63
+"""Of the ROM: bytes, and VALTYP; elements per dimension of an array that no DIM made; exponent of
+the largest number that MKINT takes; the stack pointer below which a subscript's formula fails."""
+LOWEST = from_stored("9080000020")
+"""The one number below -32767.99 that the ROM lets through: a little less than -32768."""
+AFTER_SUBSCRIPT = (COMMA, CLOSE)
+_STORED = Struct(">BI")
+stored_at, store = _STORED.unpack_from, _STORED.pack_into
 
 
 def descriptor(string: Number) -> int:
     """The address of the descriptor of a string in the accumulator."""
     mantissa = string[1]
     return mantissa >> 16 & 0xFF | mantissa & 0xFF00
-
-
-VARIABLE_SIZE, ARRAY_HEADER, ADDRESS_LIMIT = 7, 5, 0xFFFF
-AUTOMATIC = 11
-"""Elements per dimension of an array that no DIM made."""
-LOWEST = from_stored("9080000020")
-"""The one number below -32767.99 that the ROM lets through: a little less than -32768."""
-LARGEST_INTEGER = 143
-"""Exponent of the largest number that MKINT takes."""
-AFTER_SUBSCRIPT = (COMMA, CLOSE)
-DEEPEST = 63
-"""A subscript needs the stack pointer to be at least here, else its formula says that it is not."""
-_STORED = Struct(">BI")
-stored_at, store = _STORED.unpack_from, _STORED.pack_into
-
-
-def element_size(name: int) -> int:
-    """Bytes of an element of an array, by its name: a real five, a string three, an integer two."""
-    return 5 - (name >> 15) - 2 * (name >> 7 & 1)
 
 
 class Array(NamedTuple):
@@ -226,8 +215,9 @@ class Variables(Memory):
             place += size
 
     def _array(self, name: int, place: int, sizes: tuple[int, ...]) -> Array:
+        element = 5 - (name >> 15) - 2 * (name >> 7 & 1)  # a real 5, a string 3, an integer 2
         first = place - self.arytab + ARRAY_HEADER + 2 * len(sizes)
-        return Array(first, sizes, element_size(name))
+        return Array(first, sizes, element)
 
     def reason(self, address: int) -> None:
         """REASON: there must be room up to an address. Raises OUT OF MEMORY."""
@@ -335,15 +325,15 @@ class Variables(Memory):
         header = bytes((name >> 8, name & 0xFF, 0, 0, len(last)))
         header += b"".join(size.to_bytes(2, "big") for size in sizes)
         ram[place:start] = header
-        size = element_size(name) * prod(sizes)
-        end = start + size
-        if end > ADDRESS_LIMIT:
+        array = self._array(name, place, sizes)
+        end = start + array.element * prod(sizes)
+        if end > 0xFFFF:
             raise ApplesoftError("OUT OF MEMORY")
         self.reason(end)
-        ram[start:end] = bytes(size)
+        ram[start:end] = bytes(end - start)
         self.put_word(place + 2, end - place)
         self.strend = end
-        array = self.arrays[name] = self._array(name, place, sizes)
+        self.arrays[name] = array
         return array
 
     def value(self, address: int) -> Number:
@@ -352,7 +342,6 @@ class Variables(Memory):
         return (e, (m | 0x80000000) << 8, m >> 31) if e else ZERO
 
     def integer_value(self, address: int) -> Number:
-        """The integer at an address."""
         n = self.ram[address] << 8 | self.ram[address + 1]
         return integer(n - (n >> 15 << 16))
 
