@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 
 from impact88.cli import COMMANDS, main
-from impact88.commands.options import InputFile, InputFolder, OutputFile, OutputFolder
+from impact88.commands.options import InputPath, OutputPath
 from test_options import arguments
 
-FILES = (InputFile, InputFolder, OutputFile, OutputFolder)
+FILES = (InputPath, OutputPath)
+FOLDERS = ("DIR", "FOLDER")
 LINKS = {"path": None, "symlink": os.symlink, "hard link": os.link}
 
 
@@ -27,7 +28,8 @@ def pairs() -> list[tuple[str, argparse.Action, argparse.Action]]:
     found = []
     for command in COMMANDS:
         named = [action for action in arguments(command) if action.type in FILES]
-        found += [(command, a, b) for a, b in permutations(named, 2) if b.type is OutputFile]
+        written = [a for a in named if a.type is OutputPath and a.metavar not in FOLDERS]
+        found += [(command, a, b) for a, b in permutations(named, 2) if b in written]
     return found
 
 

@@ -31,8 +31,6 @@ Today's work, in double precision
 Each is imported on first use: running the 1988 program does not pay for numpy.
 """
 
-from __future__ import annotations
-
 import sys
 from importlib import import_module
 from types import ModuleType
@@ -41,8 +39,6 @@ from .version import __version__
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
-
     from . import names as names
     from . import status as status
     from .chapter.barrier import barrier as barrier
@@ -75,36 +71,33 @@ if TYPE_CHECKING:
     from .uncertainty.uncertain import Uncertain as Uncertain
 
 _LAZY = {
-    "Applesoft": "emulator.emulator",
-    "Bounds": "uncertainty.boundstable",
-    "Reconstruction": "reconstruction.adjustment",
-    "Replay": "replay",
-    "Run": "program.run",
-    "Scene": "scene",
-    "Solution": "reconstruction.unknowns",
-    "Uncertain": "uncertainty.uncertain",
-    "UserError": "errors",
-    "Verification": "reporting.examination",
-    "accelerated": "native",
-    "barrier": "chapter.barrier",
-    "bounds": "uncertainty.bounds",
-    "colinear": "chapter.colinear",
-    "colinear_inverse": "chapter.colinear",
-    "compare": "checking.compare",
-    "delta_v": "chapter.deltav",
-    "names": "",
-    "oracle": "checking.oracle",
-    "read_printouts": "reading.printout",
-    "reconstruct": "uncertainty.reconstructedtable",
-    "replay": "replay",
-    "run": "program.run",
-    "sample": "scene",
-    "scene_svg": "figures.sceneview",
-    "solve": "closedform.solve",
-    "solve_frame": "tables.frames",
-    "solve_for": "reconstruction.unknowns",
-    "status": "",
-    "verify": "reporting.examination",
+    name: place
+    for place, names_there in {
+        "": "names status",
+        "chapter.barrier": "barrier",
+        "chapter.colinear": "colinear colinear_inverse",
+        "chapter.deltav": "delta_v",
+        "checking.compare": "compare",
+        "checking.oracle": "oracle",
+        "closedform.solve": "solve",
+        "emulator.emulator": "Applesoft",
+        "errors": "UserError",
+        "figures.sceneview": "scene_svg",
+        "native": "accelerated",
+        "program.run": "Run run",
+        "reading.printout": "read_printouts",
+        "reconstruction.adjustment": "Reconstruction",
+        "reconstruction.unknowns": "Solution solve_for",
+        "replay": "Replay replay",
+        "reporting.examination": "Verification verify",
+        "scene": "Scene sample",
+        "tables.frames": "solve_frame",
+        "uncertainty.bounds": "bounds",
+        "uncertainty.boundstable": "Bounds",
+        "uncertainty.reconstructedtable": "reconstruct",
+        "uncertainty.uncertain": "Uncertain",
+    }.items()
+    for name in names_there.split()
 }
 """Public name -> the module that holds it, nothing for a module of this package. A test holds this
 table against the imports above."""
@@ -116,7 +109,7 @@ class _Package(ModuleType):
     """This package: ``impact88.replay`` stays the function when the room of that name is imported.
     Python would bind the name to the module once anything imports it."""
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         if not (isinstance(value, ModuleType) and _LAZY.get(name)):
             super().__setattr__(name, value)
 
@@ -126,7 +119,7 @@ sys.modules[__name__].__class__ = _Package
 
 if not TYPE_CHECKING:  # a checker that saw it would take any name for a public one
 
-    def __getattr__(name: str) -> Any:
+    def __getattr__(name: str) -> object:
         place = _LAZY.get(name)
         if place is None:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -5,35 +5,34 @@ unusable input, 3 a bug of this project; control-C, a broken pipe and a signal t
 shell's 130, 141 and 128 + signal. There is no traceback, unless IMPACT88_DEBUG=1 asks for a bug's.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import re
+import signal
 import sys
 import warnings
-from collections.abc import Collection, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
 
 from .commands import CHAPTER, COMMANDS, module_of
-from .errors import UserError, shown
+from .errors import UserError, note, shown
 from .files import ESCAPED
 from .names import did_you_mean
-from .signals import BROKEN_PIPE, INTERRUPTED, Terminated, orderly
-from .stderr import note
 from .version import __version__
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import IO
 
 UNUSABLE = 2
 BUG = 3
+INTERRUPTED = 128 + signal.SIGINT
+BROKEN_PIPE = 141
 
 
 class _NothingToKeep(Exception):
     """A command ended with status 2: the file it was writing is not put in place."""
+
+
+class _Terminated(BaseException):
+    """The process was asked to leave; the argument is the signal."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -48,10 +47,9 @@ class _Parser(argparse.ArgumentParser):
             hint = did_you_mean(word[1], known)
         raise UserError(f"{message}{hint} (see {self.prog} --help)")
 
-    def _print_message(self, message: str, file: IO[str] | None = None) -> None:  # type: ignore[override]
-        """argparse swallows what goes wrong here, and a full disk would look like success."""
-        if message:
-            (file or sys.stderr).write(message)
+    def print_help(self, file: object = None) -> None:
+        """argparse's own swallows what goes wrong: a full disk would look like success."""
+        print(self.format_help(), end="")
 
 
 def _dispatch(arguments: Sequence[str]) -> int:
@@ -60,33 +58,29 @@ def _dispatch(arguments: Sequence[str]) -> int:
     name, *rest = arguments
     if name == "help" and rest:  # help COMMAND is COMMAND --help
         name, *rest = [*rest, "--help"]
-    if name in ("-V", "--version"):
-        print(f"impact88 {__version__}")
-        return 0
-    if name in ("-h", "--help", "help"):
-        from .commands.helptext import overview
-
-        print(overview())
-        return 0
-    known: Collection[str] = [*COMMANDS, "chapter"]
+    known = [*COMMANDS, "chapter"]
+    page = "overview" if name in ("-h", "--help", "help") else ""
     if name == "chapter":
-        if not rest or rest[0] in ("-h", "--help"):
-            from .commands.helptext import chapter_overview
-
-            print(chapter_overview())
-            return 0
-        name, *rest = rest
-        known = CHAPTER
-    if name not in known:
+        name, *rest = rest or ["--help"]
+        known = [*CHAPTER]
+        page = "chapter_overview" if name in ("-h", "--help") else ""
+    if page:
+        print(getattr(import_module(".commands.helptext", __package__), page)())
+    elif name in ("-V", "--version"):
+        print(f"impact88 {__version__}")
+    elif name in known:
+        return _run(name, rest)
+    else:
         hint = did_you_mean(name, known)
         raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(known)})")
-    return _run(name, rest)
+    return 0
 
 
 def _run(name: str, arguments: Sequence[str]) -> int:
     module = import_module(module_of(name))
     from .commands import options
     from .commands.helptext import Formatter
+    from .scene import known_template
 
     parser = _Parser(
         prog=f"impact88 chapter {name}" if name in CHAPTER else f"impact88 {name}",
@@ -100,9 +94,11 @@ def _run(name: str, arguments: Sequence[str]) -> int:
     except SystemExit:  # --help has been printed
         return 0
     options.check_files(parser, args)
+    status = 0
     with suppress(_NothingToKeep), options.output_of(args, module.ARGUMENTS):
-        status = int(module.main(args))
-        if status == UNUSABLE:
+        if getattr(args, "template", False):
+            print(known_template(module.KNOWABLE))
+        elif (status := int(module.main(args) or 0)) == UNUSABLE:
             raise _NothingToKeep
     return status
 
@@ -124,10 +120,30 @@ def _prepare_streams() -> None:
         sys.stderr.reconfigure(errors=ESCAPED)
 
 
-def _drop_output() -> None:
-    """Let stdout lead nowhere: on its way out the interpreter would flush, and complain, again."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+def _leave(number: int, frame: object) -> None:
+    signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt if number == signal.SIGINT else _Terminated(number)
+
+
+@contextmanager
+def _orderly() -> Iterator[None]:
+    """Within, control-C is a KeyboardInterrupt once, SIGTERM and SIGHUP are `_Terminated`: they
+    would end Python on the spot, with half-written files left beside their names. A signal that the
+    caller ignores (nohup, a shell's background job) or handles stays as it is. Outside the main
+    thread, where Python takes no handlers, nothing changes."""
+    usual = {"SIGINT": signal.default_int_handler, "SIGTERM": signal.SIG_DFL}
+    usual["SIGHUP"] = signal.SIG_DFL  # none on Windows
+    taken = {}
+    with suppress(ValueError):  # not the main thread
+        for name, handler in usual.items():
+            number = getattr(signal, name, None)
+            if number is not None and signal.getsignal(number) == handler:
+                taken[number] = signal.signal(number, _leave)
+    try:
+        yield
+    finally:
+        for number, handler in taken.items():
+            signal.signal(number, handler)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -135,56 +151,59 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     called = next((word for word in arguments[:2] if word in COMMANDS), None)
     debug = os.environ.get("IMPACT88_DEBUG") == "1"
-    with orderly(), warnings.catch_warnings():
+    with _orderly(), warnings.catch_warnings():
         if not sys.warnoptions and not debug:
             # a library's warnings are not for the user's terminal
             warnings.simplefilter("ignore")
         try:
-            status = _status(arguments, called)
+            try:
+                _prepare_streams()
+                status = _dispatch(arguments)
+            except Exception as error:
+                if not (reason := _reason(error)):
+                    raise
+                note(called, reason)
+                status = UNUSABLE
             sys.stdout.flush()
+            return status
         except KeyboardInterrupt:
             with suppress(ValueError):
                 if sys.stderr.isatty():
                     print(file=sys.stderr)  # the shell's prompt comes on a line of its own
             return INTERRUPTED
-        except Terminated as signal:
-            _drop_output()
-            return signal.status
+        except _Terminated as stop:
+            status = 128 + stop.args[0]
         except BrokenPipeError:
-            _drop_output()
-            return BROKEN_PIPE
+            status = BROKEN_PIPE
         except OSError as error:  # a full disk, most likely
             place = shown(str(error.filename)) if error.filename else "standard output"
             note(called, f"{place}: {error.strerror or error}")
-            _drop_output()
-            return UNUSABLE
+            status = UNUSABLE
         except Exception as error:
             _report_bug(called, error, debug)
             return BUG
+        with suppress(OSError, ValueError):
+            # on its way out the interpreter would flush, and complain, again
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return status
 
 
-def _status(arguments: Sequence[str], called: str | None) -> int:
-    """Run one command; what is the input's fault, or the machine's, is one line and a status."""
-    try:
-        _prepare_streams()
-        return _dispatch(arguments)
-    except UserError as error:
-        note(called, str(error))
-    except ModuleNotFoundError as error:
+def _reason(error: Exception) -> str | None:
+    """What is said of an error that is the input's fault, or the machine's."""
+    if isinstance(error, UserError):
+        return str(error)
+    if isinstance(error, ModuleNotFoundError):
         package = (error.name or "").partition(".")[0]
         if package in ("", "impact88"):
-            raise
-        note(called, f"{package} is not installed; expected: pip install {package}")
-    except RecursionError:
-        note(called, "the input is nested too deeply; expected a simpler one")
-    except Exception as error:
-        # a library, or the stack of a thread
-        words = ("start new thread", "launch worker thread", "failed to map segment")
-        if not isinstance(error, MemoryError) and not any(text in str(error) for text in words):
-            raise
-        note(called, "not enough memory; expected a smaller input, or more memory")
-    return UNUSABLE
+            return None
+        return f"{package} is not installed; expected: pip install {package}"
+    if isinstance(error, RecursionError):
+        return "the input is nested too deeply; expected a simpler one"
+    # of a library, or for the stack of a thread
+    words = ("start new thread", "launch worker thread", "failed to map segment")
+    if isinstance(error, MemoryError) or any(text in str(error) for text in words):
+        return "not enough memory; expected a smaller input, or more memory"
+    return None
 
 
 def _report_bug(called: str | None, error: Exception, debug: bool) -> None:

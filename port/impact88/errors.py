@@ -1,10 +1,10 @@
-"""The one error a user of this package is shown, and how foreign text stands in a message."""
+"""The one error a user of this package is shown, what is said on standard error beside the result,
+and how foreign text stands in either."""
 
-from __future__ import annotations
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
+import sys
+from contextlib import suppress
+from importlib import import_module
+from types import ModuleType
 
 LONGEST_MESSAGE, LONGEST_PLACE, LONGEST_QUOTE = 500, 200, 60
 """Characters: six lines of a terminal; a path and a line of it; a cell, or a number with its unit.
@@ -60,11 +60,16 @@ class UserError(ValueError):
         self.where = where
 
 
-def library(name: str, extra: str, what: str) -> Any:
+def note(command: str | None, text: str) -> None:
+    """A line on stderr, where there is one that takes it: "impact88 COMMAND: text"."""
+    name = f"impact88 {command}" if command else "impact88"
+    with suppress(OSError, ValueError):  # closed, or full
+        print(f"{name}: {shown(text)}", file=sys.stderr, flush=True)
+
+
+def library(name: str, extra: str, what: str) -> ModuleType:
     """The module of that name, which ``what`` needs. Raises UserError, naming the extra that
     installs it, where it is missing."""
-    from importlib import import_module
-
     try:
         return import_module(name)
     except ImportError:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
-from .stderr import note
+from .errors import note
 
 SECONDS_BETWEEN_LINES = 2.0
 """In a log: thirty lines a minute at most."""

@@ -20,10 +20,10 @@ from pathlib import Path
 from types import FrameType
 
 from impact88 import cli
+from impact88.cli import INTERRUPTED
 from impact88.errors import UserError
 from impact88.program.run import run
 from impact88.scene import Scene
-from impact88.signals import INTERRUPTED
 
 from .case import Case
 

@@ -23,12 +23,10 @@ examples:
 exit status: 0 solved; 2 bad input, or unknowns that are not determined
 """
 
-import argparse
-
 from ..chapter.barrier import BARRIER, BARRIER_AFTER
+from ..errors import note
 from ..reconstruction.frictionshare import share_resolved
 from ..reconstruction.solutiontable import Exact
-from ..stderr import note
 from ..uncertainty.uncertain import fixed
 from ..units import system_of
 from . import options
@@ -41,17 +39,12 @@ KNOWABLE = (
 ARGUMENTS = (*options.SOLUTION, options.sample_option("vehicle A of a published run"))
 
 
-def main(args: argparse.Namespace) -> int:
-    """Solve for what is unknown and print every solution."""
-    if options.template_printed(args, KNOWABLE):
-        return 0
+def main(args: options.Args) -> None:
     given, named = options.known_within_limits(args, KNOWABLE, single=True)
-    wall = {name: fixed(value) for name, value in BARRIER.items()}
-    resting = {} if "UX" in given else {n: fixed(value) for n, value in BARRIER_AFTER.items()}
-    known, friction = share_resolved(given | wall | resting)
+    barrier = BARRIER if "UX" in given else BARRIER | BARRIER_AFTER
+    known, friction = share_resolved(given | {n: fixed(value) for n, value in barrier.items()})
     if friction:
         note(None, friction)
     everything = {name: item.nominal for name, item in known.items()} | BARRIER_AFTER
     found = Exact.all_of(everything, None, args.contact_time, options.source_of(args))
     options.show_impacts(args, found, system_of(named))
-    return 0

@@ -13,21 +13,17 @@ examples:
 exit status: 0 the program ended; 1 an Applesoft error, or more than --max-statements; 2 bad input
 """
 
-import argparse
 import signal
 import sys
 from contextlib import ExitStack, suppress
-from types import FrameType
 
 from ..applesoft.console import EndOfInput
 from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
 from ..emulator.faults import TooManyStatements
-from ..errors import UserError
+from ..errors import UserError, note
 from ..files import called, packaged_text, read_text, replacing, typed_line
 from ..program.run import page
-from ..signals import INTERRUPTED
-from ..stderr import note
 from . import options
 from .run_command import MACHINE, check_slot
 
@@ -36,7 +32,7 @@ SLOT_LINE = '190 P$ = "PR# " + "{}"'
 PROGRAM_LIMIT = 1_000_000
 """Bytes of a program's text; 48K hold some 50,000."""
 LEAVE = "control-Z and RETURN leave" if sys.platform == "win32" else "control-D leaves"
-BANNER = f"impact88 basic: an Apple II Plus. LIST shows the program, {{}}; {LEAVE}."
+BANNER = f"impact88 basic: an Apple II Plus. LIST shows the program, RUN starts {{}}; {LEAVE}."
 
 ARGUMENTS = (
     options.reads("program", "FILE.bas", "a program to run", nargs="?"),
@@ -101,8 +97,7 @@ class Terminal:
         print(end="\n" if self.row else "", flush=True)
 
 
-def main(args: argparse.Namespace) -> int:
-    """Run a program, or open the prompt."""
+def main(args: options.Args) -> int:
     if args.prompt and not args.program:
         raise UserError("--prompt needs FILE.bas; without a file the prompt appears anyway")
     check_slot(args)
@@ -113,7 +108,7 @@ def main(args: argparse.Namespace) -> int:
             terminal.read, terminal.show, printer, dos=not args.no_dos, echo=not terminal.typing
         )
 
-        def interrupt(number: int, frame: FrameType | None) -> None:
+        def interrupt(number: int, frame: object) -> None:
             """Break the program between two statements, or what is being typed."""
             if terminal.waiting:
                 raise KeyboardInterrupt
@@ -127,14 +122,19 @@ def main(args: argparse.Namespace) -> int:
             machine.enter(SLOT_LINE.format(args.slot))
         stack.callback(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, interrupt))
         try:
-            status = _session(machine, terminal, args)
-            if status == INTERRUPTED and printer is not None:
-                raise KeyboardInterrupt  # what the printer had so far replaces nothing
-            return status
+            status = _run_file(machine, terminal, stay=args.prompt) if args.program else 0
+            if args.prompt or not args.program:
+                if terminal.person:
+                    print(BANNER.format("it" if args.program else "the 1988 listing"))
+                machine.prompt(lambda line: not args.no_dos and _disk_command(machine, terminal))
+                print()
         except TooManyStatements:
             terminal.end_row()
             note("basic", f"stopped after {args.max_statements} statements")
             return 1
+        for what in machine.machine.refused:
+            note("basic", f"{what} is not supported: text only, no machine code")
+        return status
 
 
 def load_program(machine: Applesoft, path: str | None) -> None:
@@ -151,20 +151,6 @@ def load_program(machine: Applesoft, path: str | None) -> None:
         raise UserError("does not fit into 48K", where) from None
 
 
-def _session(machine: Applesoft, terminal: Terminal, args: argparse.Namespace) -> int:
-    status = 0
-    if args.program:
-        status = _run_file(machine, terminal, stay=args.prompt)
-    if args.prompt or not args.program:
-        if terminal.person:
-            print(BANNER.format("RUN starts it" if args.program else "RUN starts the 1988 listing"))
-        machine.prompt(None if args.no_dos else lambda line: _disk_command(machine, terminal.last))
-        print()
-    for what in machine.machine.refused:
-        note("basic", f"{what} is not supported: text only, no machine code")
-    return status
-
-
 def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
     try:
         error = machine.run()
@@ -174,22 +160,24 @@ def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
             "the input ended while the program asked for more; expected a line for every INPUT"
         ) from None
     except KeyboardInterrupt:
-        return INTERRUPTED
-    if not stay:
-        terminal.end_row()
+        if not stay:
+            raise
+    if stay:
+        return 0
+    terminal.end_row()
     if machine.machine.broken:
-        return 0 if stay else INTERRUPTED
-    return 1 if error and not stay else 0
+        raise KeyboardInterrupt  # what the printer had so far replaces nothing
+    return int(error is not None)
 
 
-def _disk_command(machine: Applesoft, line: str) -> bool:
-    """LOAD and SAVE, which the disk system would take; whether the line was one."""
-    word, _, name = line.strip().partition(" ")
+def _disk_command(machine: Applesoft, terminal: Terminal) -> bool:
+    """LOAD and SAVE, which the disk system would take; whether the last line was one."""
+    word, _, name = terminal.last.strip().partition(" ")
     name = name.strip()
-    if word.upper() not in ("LOAD", "SAVE") or not name:
+    if (word := word.upper()) not in ("LOAD", "SAVE") or not name:
         return False
     try:
-        if word.upper() == "LOAD":
+        if word == "LOAD":
             load_program(machine, name)
         else:
             with replacing(name) as file:

@@ -15,7 +15,6 @@ examples:
 exit status: 0 done; 2 bad input
 """
 
-import argparse
 import json
 import sys
 from typing import Any
@@ -43,7 +42,7 @@ ARGUMENTS = (
     options.count("--repeats", 1, 1000, "times are medians of so many (%(default)s)", default=5),
     options.flag("--quick", "time a twentieth of the scenes: rougher, sooner"),
     options.flag("--sizes", "growth with the scenes, instead"),
-    options.json_option("JSON instead of tables"),
+    options.flag("--json", "print JSON instead of tables"),
     options.OUTPUT,
     options.writes("--figure", "FILE", "draw error against time: .svg .png .pdf"),
     options.writes(
@@ -54,35 +53,34 @@ ARGUMENTS = (
 )
 
 
-def main(arguments: argparse.Namespace) -> int:
-    """Measure, and print tables or JSON."""
+def main(args: options.Args) -> int:
     from ..figures.canvas import check_ending, save
 
-    for picture in filter(None, (arguments.figure, arguments.errors_figure)):
+    for picture in filter(None, (args.figure, args.errors_figure)):
         check_ending(picture)
-    if arguments.sizes:
-        return _growth(arguments)
+    if args.sizes:
+        return _growth(args)
     from ..bench import figure, measure, tables
     from ..progress import progress
 
     library("mpmath", "bench", "the reference")
     machine = measure.machine()
     finite = [name for name in POPULATIONS if name != "barriers"]
-    populations = options.names_given(arguments.populations, finite, "--populations", "population")
+    populations = options.names_given(args.populations, finite, "--populations", "population")
     populations = populations or list(BENCHMARK)
-    total = measure.steps(populations, arguments.repeats)
+    total = measure.steps(populations, args.repeats)
     with progress(total, "bench") as meter:
-        share = QUICK if arguments.quick else 1.0
-        sizes = (arguments.scenes, arguments.seed, arguments.repeats)
+        share = QUICK if args.quick else 1.0
+        sizes = (args.scenes, args.seed, args.repeats)
         rows = measure.measure(populations, *sizes, meter, share)
-    few = min(arguments.scenes, COMPONENT_SCENES)
-    by_result = measure.components(populations, few, arguments.seed)
-    if arguments.figure:
-        save(figure.work_precision(rows, machine["memory_roof"]), arguments.figure)
-    if arguments.errors_figure:
-        save(figure.error_distribution(rows), arguments.errors_figure)
-    if arguments.json:
-        record = {"machine": machine, "seed": arguments.seed, "results": measure.as_json(rows)}
+    few = min(args.scenes, COMPONENT_SCENES)
+    by_result = measure.components(populations, few, args.seed)
+    if args.figure:
+        save(figure.work_precision(rows, machine["memory_roof"]), args.figure)
+    if args.errors_figure:
+        save(figure.error_distribution(rows), args.errors_figure)
+    if args.json:
+        record = {"machine": machine, "seed": args.seed, "results": measure.as_json(rows)}
         _print_json({**record, "components": by_result})
     else:
         print(tables.machine(machine), end="\n\n")
@@ -92,11 +90,11 @@ def main(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _growth(arguments: argparse.Namespace) -> int:
+def _growth(args: options.Args) -> int:
     from ..bench import measure, tables
 
-    sizes, machine = measure.sizes(SIZES, arguments.repeats), measure.machine()
-    if arguments.json:
+    sizes, machine = measure.sizes(SIZES, args.repeats), measure.machine()
+    if args.json:
         _print_json({"machine": machine, "sizes": sizes})
     else:
         print(f"{tables.machine(machine)}\n\n{tables.listing(sizes)}")

@@ -29,8 +29,6 @@ examples:
   impact88 bounds ranges.toml --correlation UX,VX=0.8 --json
 """
 
-import argparse
-
 from . import options
 
 ARGUMENTS = (
@@ -41,10 +39,8 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Print bounds, spreads and what drives them."""
+def main(args: options.Args) -> None:
     from ..uncertainty.boundstable import as_json, table
 
     found = options.explored(args, args.outputs)
     options.show(args, "bounds", lambda: as_json(found), lambda: [table(found)])
-    return 0

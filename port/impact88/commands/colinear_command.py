@@ -11,7 +11,6 @@ examples:
 exit status: 0 solved; 2 bad input, or E = 0 in the inverse problem
 """
 
-import argparse
 import math
 
 from ..chapter.colinear import colinear, colinear_inverse
@@ -26,16 +25,13 @@ from . import options
 COMMON = ("MA", "MB", "E", "MUP")
 BEFORE = ("UN", "UT", "VN", "VT")
 AFTER = ("VAN", "VAT", "VBN", "VBT")
+KNOWABLE = (*COMMON, *BEFORE, *AFTER)
 
 ARGUMENTS = options.SOLUTION
 
 
-def main(args: argparse.Namespace) -> int:
-    """Print the velocities that were not given, and what follows from them."""
-    knowable = (*COMMON, *BEFORE, *AFTER)
-    if options.template_printed(args, knowable):
-        return 0
-    known, named = options.known_values(args, knowable)
+def main(args: options.Args) -> None:
+    known, named = options.known_values(args, KNOWABLE)
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
     if before and after:
         raise UserError(
@@ -57,7 +53,6 @@ def main(args: argparse.Namespace) -> int:
         values["TF"] = args.contact_time
         values |= {n: float(v) for n, v in forces(values["P"], args.contact_time).items()}
     show(values, BEFORE if after else AFTER, args.json, system_of(named))
-    return 0
 
 
 def show(

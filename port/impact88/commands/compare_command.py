@@ -19,15 +19,13 @@ exit status: 0 everything agrees; 1 something does not, or a row could not be re
 or was not compared); 2 bad input
 """
 
-import argparse
 import math
 from collections.abc import Iterator
 
 from ..accuracy.errorbound import DOUBLE
 from ..checking.agreement import EQUATIONS
 from ..checking.compare import HARMLESS, Comparison, compare, write_junit
-from ..errors import UserError, shown
-from ..stderr import note
+from ..errors import UserError, note, shown
 from ..tables.table import format_of
 from . import options
 
@@ -57,8 +55,7 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Compare a table."""
+def main(args: options.Args) -> int:
     given = options.settings(args.set, units=args.units)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")

@@ -16,7 +16,6 @@ examples:
 exit status: 0 done; 2 bad input
 """
 
-import argparse
 from collections.abc import Iterable, Mapping
 from math import hypot, isfinite, nan
 from typing import Any, NamedTuple
@@ -60,8 +59,7 @@ Answer = tuple[dict[str, Any], list[str]]
 """What ``--json`` prints, and the lines for people."""
 
 
-def main(args: argparse.Namespace) -> int:
-    """Print the estimate, or its range."""
+def main(args: options.Args) -> None:
     known, named = options.known_values(args, KNOWABLE)
     factor = deltav.AS_PRINTED if args.as_printed else deltav.AS_USED
     try:
@@ -72,7 +70,6 @@ def main(args: argparse.Namespace) -> int:
     caution = f"An estimate: {deltav.ERROR};\nuntested elsewhere (Section VI)."
     whole = {"equation": equation, **found}
     options.show(args, "delta-v", lambda: whole, lambda: [*lines, equation, caution])
-    return 0
 
 
 def _answer(asked: _Question) -> Answer:

@@ -11,7 +11,6 @@ examples:
   impact88 desk --port 8088         at a port of your choice
 """
 
-import argparse
 import sys
 
 from . import options
@@ -22,8 +21,7 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Serve the page until it is interrupted."""
+def main(args: options.Args) -> None:
     from ..desk.serving import serve
 
     def announce(address: str) -> None:
@@ -31,4 +29,3 @@ def main(args: argparse.Namespace) -> int:
         print("Control-C ends the desk", file=sys.stderr, flush=True)
 
     serve(args.port, not args.no_browser, announce)
-    return 0

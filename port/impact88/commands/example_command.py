@@ -9,7 +9,6 @@ examples:
 exit status: 0 all printed numbers reproduced; 1 not all
 """
 
-import argparse
 from dataclasses import asdict
 
 from ..chapter.example import steps
@@ -19,8 +18,7 @@ from . import options
 ARGUMENTS = (options.JSON, options.OUTPUT)
 
 
-def main(args: argparse.Namespace) -> int:
-    """Print the steps."""
+def main(args: options.Args) -> int:
     numbers = [number for step in steps() for number in step.numbers]
     if args.json:
         described = [

@@ -27,7 +27,6 @@ examples:
   impact88 figure staged -o figure5.pdf
 """
 
-import argparse
 from collections.abc import Callable
 from typing import Any
 
@@ -66,8 +65,7 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Draw one figure."""
+def main(args: options.Args) -> None:
     from ..figures.canvas import check_ending, save
 
     check_ending(args.output)
@@ -75,10 +73,9 @@ def main(args: argparse.Namespace) -> int:
     if args.width:
         drawn.enlarged = args.width / drawn.width
     save(drawn, args.output)
-    return 0
 
 
-def _drawn(args: argparse.Namespace) -> Drawing:
+def _drawn(args: options.Args) -> Drawing:
     kind = args.kind
     given = bool(args.scene or args.sample)
     alone: dict[str, Callable[[], Drawing]] = {
@@ -116,7 +113,7 @@ def _drawn(args: argparse.Namespace) -> Drawing:
     return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
 
 
-def _barrier(args: argparse.Namespace) -> Drawing:
+def _barrier(args: options.Args) -> Drawing:
     """A vehicle against a barrier, its approach and its rebound."""
     known, units = options.known_values(args, (*VEHICLE, "M"))
     if absent := [name for name in VEHICLE if name not in known]:
@@ -137,7 +134,7 @@ def _barrier(args: argparse.Namespace) -> Drawing:
     )
 
 
-def _swept(args: argparse.Namespace) -> Drawing:
+def _swept(args: options.Args) -> Drawing:
     """One result a panel, along the one value swept."""
     if args.ranges:
         raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")

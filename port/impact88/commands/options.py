@@ -13,7 +13,7 @@ from functools import partial
 from math import isfinite
 
 from ..doubles import double
-from ..errors import UserError, quoted
+from ..errors import UserError, note, quoted
 from ..files import called, check_apart
 from ..names import SCENE, check_names
 from ..scene import (
@@ -26,10 +26,8 @@ from ..scene import (
     entries_in,
     in_base_units,
     is_share,
-    known_template,
     sample,
 )
-from ..stderr import note
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -37,7 +35,6 @@ if TYPE_CHECKING:
 
     from ..reconstruction.solutiontable import Impact
     from ..uncertainty.boundstable import Bounds
-    from ..uncertainty.ranges import Inputs
     from ..uncertainty.uncertain import Uncertain
     from ..units import System
 
@@ -45,24 +42,16 @@ FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
 """What ``--from`` and ``--to`` take."""
 
 
-class InputFile(str):
-    """The type of an argument that names a file to read; ``-`` is standard input."""
+class InputPath(str):
+    """The type of an argument that names a file or folder to read; ``-`` is standard input."""
 
 
-class InputFolder(str):
-    """A folder whose files are read."""
+class OutputPath(str):
+    """A file to write, or a folder to write into; ``-`` is standard output."""
 
 
-class OutputFile(str):
-    """A file to write; ``-`` is standard output."""
-
-
-class OutputFolder(str):
-    """A folder to write into."""
-
-
-# --- declarations --------------------------------------------------------------------------------
-
+Args = argparse.Namespace
+"""What a command line says."""
 Argument = tuple[tuple[str, ...], dict[str, "Any"]]
 """What argparse's ``add_argument`` takes: names and keywords."""
 
@@ -72,10 +61,8 @@ def value(names: str, metavar: str | None, meaning: str, **keywords: Any) -> Arg
     return tuple(names.split()), {"metavar": metavar, "help": meaning, **keywords}
 
 
-reads = partial(value, type=InputFile)
-reads_folder = partial(value, type=InputFolder)
-writes = partial(value, type=OutputFile)
-writes_folder = partial(value, type=OutputFolder)
+reads = partial(value, type=InputPath)
+writes = partial(value, type=OutputPath)
 
 
 def choice(names: str, choices: Sequence[Any], meaning: str, **keywords: Any) -> Argument:
@@ -119,14 +106,8 @@ def names_option(name: str, meaning: str, metavar: str = "NAMES") -> Argument:
     return value(name, metavar, text, action="append", default=[])
 
 
-def setting(meaning: str) -> Argument:
-    """The option ``--set NAME=VALUE``."""
-    return repeatable("--set", "NAME=VALUE", meaning)
-
-
-def sample_option(meaning: str = "the scene of a published run") -> Argument:
-    """The option ``--sample``."""
-    return choice("--sample", SAMPLES, meaning, type=int)
+setting = partial(repeatable, "--set", "NAME=VALUE")
+sample_option = partial(choice, "--sample", SAMPLES, type=int)
 
 
 def draws(default: int, meaning: str = "random draws") -> tuple[Argument, Argument]:
@@ -141,21 +122,6 @@ def seed(meaning: str = "which random draws", default: int = 0) -> Argument:
     return count("--seed", 0, 2**63, text, default=default, metavar="S")
 
 
-def renamed(old: str, new: str) -> Argument:
-    """An option that has another name now: refused, with that name."""
-
-    class Renamed(argparse.Action):
-        def __call__(self, *ignored: object) -> None:
-            raise UserError(f"{old} is not an option here; expected {new}")
-
-    return value(old, None, argparse.SUPPRESS, action=Renamed, dest=argparse.SUPPRESS)
-
-
-def json_option(meaning: str = "one JSON object") -> Argument:
-    """The option ``--json``."""
-    return flag("--json", f"print {meaning}")
-
-
 def _duration(text: str) -> float:
     """An argument's type: a time, in seconds without unit."""
     try:
@@ -167,7 +133,8 @@ def _duration(text: str) -> float:
         ) from None
 
 
-JSON = json_option()
+JSON = flag("--json", "print one JSON object")
+SAMPLE = sample_option("the scene of a published run")
 OUTPUT = writes("-o --output", "FILE", "write here (default: stdout)")
 """Of a command whose result is what it prints; others write files of their own."""
 UNITS = value(
@@ -188,7 +155,7 @@ MOVE = value(
 )
 ONE_SCENE = (
     reads("scene", "FILE.toml", "a scene file (- is stdin)", nargs="?"),
-    sample_option(),
+    SAMPLE,
     UNITS,
 )
 """A scene: a file, or ``--sample``."""
@@ -223,14 +190,14 @@ def declare(
             group.add_argument(*names, **keywords)
 
 
-def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> None:
+def check_files(parser: argparse.ArgumentParser, args: Args) -> None:
     """Expand patterns such as ``*.txt`` for shells that do not, and raise UserError when a file to
     write is also read or written twice. The types say which arguments are files."""
     inputs: list[str] = ["-"]
     outputs: dict[str, str | None] = {}
     for action in parser._actions:
         value = getattr(args, action.dest, None)
-        if action.type is InputFile and isinstance(value, list):
+        if action.type is InputPath and isinstance(value, list):
             from glob import glob
 
             value[:] = [
@@ -239,15 +206,15 @@ def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> No
                 for path in ((not os.path.exists(text) and sorted(glob(text))) or [text])
             ]
             inputs += value
-        elif action.type in (InputFile, InputFolder) and value is not None:
+        elif action.type is InputPath and value is not None:
             inputs.append(value)
-        elif action.type in (OutputFile, OutputFolder):
+        elif action.type is OutputPath:
             outputs[action.option_strings[0]] = value
     check_apart(inputs, outputs)
 
 
 @contextmanager
-def output_of(args: argparse.Namespace, arguments: Sequence[object]) -> Iterator[None]:
+def output_of(args: Args, arguments: Sequence[object]) -> Iterator[None]:
     """Send what is printed in the block to the file ``-o`` names, whole or not at all, for commands
     that declare `OUTPUT`. Raises UserError when the place cannot be written to."""
     if OUTPUT not in arguments or args.output in (None, "-"):
@@ -262,7 +229,7 @@ def output_of(args: argparse.Namespace, arguments: Sequence[object]) -> Iterator
 
 
 def show(
-    args: argparse.Namespace,
+    args: Args,
     form: str,
     record: Callable[[], Mapping[str, Any]],
     lines: Callable[[], Iterable[str]],
@@ -275,7 +242,7 @@ def show(
         print("\n".join(lines()))
 
 
-def show_impacts(args: argparse.Namespace, found: Sequence[Impact], units: System) -> None:
+def show_impacts(args: Args, found: Sequence[Impact], units: System) -> None:
     """Print solved impacts."""
     from ..reconstruction.solutiontable import in_turn
 
@@ -358,7 +325,7 @@ def names_given(
 ONE_EXPECTED = "expected one scene: a file, or --sample 1, 2 or 3"
 
 
-def source_of(args: argparse.Namespace) -> str | None:
+def source_of(args: Args) -> str | None:
     """What messages call the scene or the file given; None where there is none. Raises UserError
     where both a file and ``--sample`` are."""
     number = getattr(args, "sample", None)
@@ -367,11 +334,11 @@ def source_of(args: argparse.Namespace) -> str | None:
     return called(args.scene) if args.scene else f"sample {number}" if number else None
 
 
-def entries_given(args: argparse.Namespace, single: bool = False) -> Entries | None:
-    """The entries of the file or of ``--sample``, with their remarks on stderr; None where neither
+def entries_given(args: Args, single: bool = False) -> Entries:
+    """The entries of the file or of ``--sample``, with their remarks on stderr; empty where neither
     is given. Raises UserError where both are."""
     if source_of(args) is None:
-        return None
+        return Entries({}, {}, args.units)
     if args.scene:
         entries = entries_in(args.scene, args.units, single)
         note_remarks(entries)
@@ -381,51 +348,40 @@ def entries_given(args: argparse.Namespace, single: bool = False) -> Entries | N
     return entries
 
 
-def template_printed(args: argparse.Namespace, names: Sequence[str]) -> bool:
-    """Print a file to fill in where ``--template`` asks for it; whether it does. Raises UserError
-    where it does not and nothing is known."""
-    if args.template:
-        print(known_template(names))
-    elif source_of(args) is None and not args.set:
-        raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
-    return bool(args.template)
-
-
-def known_values(
-    args: argparse.Namespace, allowed: Collection[str]
-) -> tuple[dict[str, float], str | None]:
+def known_values(args: Args, allowed: Collection[str]) -> tuple[dict[str, float], str | None]:
     """What is known of a problem: the values of a flat TOML file or a sample, changed by ``--set``,
     in base units, and the name of the system they were written in. What is not known is left out of
     the file, or left empty as in a template; an empty setting makes a value unknown; of a value
     within limits the middle is taken. Raises UserError, naming file and name, for names not
-    ``allowed`` and texts that are not amounts."""
+    ``allowed``, texts that are not amounts, and where nothing is given."""
     values, named = known_within_limits(args, allowed, single=True)
     return {name: item.nominal for name, item in values.items()}, named
 
 
 def known_within_limits(
-    args: argparse.Namespace, allowed: Collection[str], single: bool = False
+    args: Args, allowed: Collection[str], single: bool = False
 ) -> tuple[dict[str, Uncertain], str | None]:
     """The same, but each value a number or known within limits (`uncertainty.uncertain`) unless
     ``single``; a setting's ``+- D`` is around the file's value. Of a sample the names ``allowed``
     are taken."""
-    values: dict[str, Uncertain] = {}
-    named = args.units
     source = source_of(args) or ""
-    if (entries := entries_given(args, single)) is not None:
-        named = entries.units
-        if args.scene:
-            for name in set(sum(OWN_AXES.values(), ())).intersection(entries.values) - {*allowed}:
-                raise UserError(
-                    f"{name} is known within limits, which impact88 bounds takes; expected a "
-                    f"number, or limits for D{name[1]} and P{name[1]}",
-                    source,
-                )
-            check_names(entries.values, allowed, "name used here", source)
-        for name, text in entries.values.items():
-            if text and name in allowed:
-                values[name] = _within_limits(name, text, source, named)
-    given, named = changes_in_base(set_pairs(args.set, allowed), "--set", named, args.scene)
+    if not source and not args.set:
+        raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
+    entries = entries_given(args, single)
+    if args.scene:
+        for name in set(sum(OWN_AXES.values(), ())).intersection(entries.values) - {*allowed}:
+            raise UserError(
+                f"{name} is known within limits, which impact88 bounds takes; expected a "
+                f"number, or limits for D{name[1]} and P{name[1]}",
+                source,
+            )
+        check_names(entries.values, allowed, "name used here", source)
+    values = {
+        name: _within_limits(name, text, source, entries.units)
+        for name, text in entries.values.items()
+        if text and name in allowed
+    }
+    given, named = _in_base(set_pairs(args.set, allowed), "--set", entries.units, args.scene)
     for name, text in given.items():
         center = values[name].nominal if name in values else None
         if text:
@@ -435,7 +391,7 @@ def known_within_limits(
     return values, named
 
 
-def changes_in_base(
+def _in_base(
     changes: Mapping[str, str], option: str, units: str | None, path: str | None
 ) -> tuple[dict[str, str], str | None]:
     """What an option changes, in base units, and the system of all: that of the file, or of the
@@ -482,15 +438,7 @@ def _double(name: str, text: str, source: str) -> float:
     return value
 
 
-def one_scene(args: argparse.Namespace) -> Scene:
-    """The scene that file or sample name, with what ``--set`` changes. Raises UserError unless
-    there is exactly one."""
-    if (scene := scene_given(args)) is None:
-        raise UserError(ONE_EXPECTED)
-    return scene
-
-
-def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
+def scene_given(args: Args, based: str = "") -> Scene | None:
     """The scene that file or sample name, with what ``--set`` and ``--move-contact`` change; None
     where neither is given. How its entries were understood is said on stderr, and what of the
     answer is ``based`` on other units than the scene's. Raises UserError."""
@@ -511,6 +459,13 @@ def scene_given(args: argparse.Namespace, based: str = "") -> Scene | None:
     texts, _ = in_base_units(given, "--move-contact", scene.units)
     moves = (_double(name, text, "--move-contact") for name, text in texts.items())
     return scene.replaced(moved_texts(scene, *moves))
+
+
+def one_scene(args: Args) -> Scene:
+    """The same. Raises UserError where neither is given."""
+    if (scene := scene_given(args)) is None:
+        raise UserError(ONE_EXPECTED)
+    return scene
 
 
 # --- values within limits, as bounds and figure take them ---------------------------------------
@@ -536,48 +491,41 @@ EXPLORED = (
 """What is uncertain, and how it is explored."""
 
 
-def inputs_given(args: argparse.Namespace) -> tuple[Inputs, str | None]:
-    """What the options describe, in base units, and the system it was written in. Raises
-    UserError."""
-    from ..uncertainty.ranges import Inputs, read_correlations, read_inputs
+def explored(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
+    """The bounds the options ask for, in the units of the inputs. Raises UserError."""
+    from ..progress import progress
+    from ..uncertainty.bounds import bounds
+    from ..uncertainty.boundstable import in_units
+    from ..uncertainty.ranges import read_correlations, read_inputs
 
-    if (entries := entries_given(args)) is None:
+    if (source := source_of(args)) is None:
         raise UserError(ONE_EXPECTED)
+    entries = entries_given(args)
     changes = pairs([*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'")
-    changes, units = changes_in_base(changes, "--range", entries.units, args.scene)
+    changes, units = _in_base(changes, "--range", entries.units, args.scene)
     problem = "reconstruction" if args.reconstruct else "forward"
-    inputs = read_inputs(entries.values, changes, problem, source_of(args) or "")
+    inputs = read_inputs(entries.values, changes, problem, source)
     correlations = dict(inputs.correlations)
     for text in args.correlations:
         names, equals, number = text.partition("=")
         if not equals:
             raise UserError(f"--correlation {text}: expected A,B=R, such as UX,VX=0.5")
         correlations |= read_correlations(f"{names} {number.strip()}", "--correlation")
-    return Inputs(inputs.values, correlations, inputs.derived), units
-
-
-def explored(args: argparse.Namespace, outputs: list[str] | None, keep: bool = False) -> Bounds:
-    """The bounds the options ask for, in the units of the inputs. Raises UserError."""
-    from ..progress import progress
-    from ..uncertainty.bounds import bounds
-    from ..uncertainty.boundstable import in_units
-
-    inputs, units = inputs_given(args)
     if not any(item.varies for item in inputs.values.values()):
         raise UserError(
             "nothing varies; give ranges in the file or with --range, such as MU='.7 .. .9'"
         )
     if inputs.derived:
         note(None, f"from the forward solution: {' '.join(inputs.derived)}")
-    words = [name.upper() for text in outputs or () for name in text.replace(",", " ").split()]
+    words = [name.upper() for text in outputs for name in text.replace(",", " ").split()]
     with progress(args.samples, "draws") as meter:
         found = bounds(
             inputs.values,
             words or None,
-            problem="reconstruction" if args.reconstruct else "forward",
+            problem=problem,
             samples=args.samples,
             seed=args.seed,
-            correlations=inputs.correlations,
+            correlations=correlations,
             sigmas=args.sigmas,
             exclude=[name.upper() for name in args.exclude],
             keep_draws=keep,

@@ -45,7 +45,7 @@ ARGUMENTS = (
     options.choice("--to", ("jsonl", "csv"), "csv: the scenes of --vectors as a flat table"),
     # what is typed for --to csv; in the help --csv names a file, that of `report`
     options.value("--csv", None, argparse.SUPPRESS, dest="to", action="store_const", const="csv"),
-    options.writes_folder(
+    options.writes(
         "--kit",
         "DIR",
         "write vectors, conventions and programs that answer them, in five languages and a "
@@ -56,8 +56,7 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Answer every line, or write test vectors."""
+def main(args: options.Args) -> int:
     from ..checking import kit, vectors
 
     wanted = args.vectors is not None

@@ -52,7 +52,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from ..errors import UserError
+from ..errors import UserError, note
 from ..files import replacing
 from ..progress import progress
 from ..reconstruction.adjustment import Reconstruction, needs_adjustment, reconstruct
@@ -62,7 +62,6 @@ from ..reconstruction.solutiontable import Exact, Impact
 from ..reconstruction.state import QUANTITIES
 from ..scene import shown_texts
 from ..scene import template as scene_template
-from ..stderr import note
 from ..uncertainty.reconstructedtable import Measured
 from ..uncertainty.uncertain import Uncertain
 from ..units import System, system_of
@@ -75,16 +74,15 @@ ARGUMENTS = (
         20_000, meaning="random draws of values known within limits; 0: neither draws nor bounds"
     ),
     options.writes("--write-scene", "FILE", "write the impact found as a scene file"),
-    options.renamed("--scene", "--write-scene FILE"),
+    options.value("--scene", None, argparse.SUPPRESS, dest="old"),
     *options.SOLUTION,
     options.sample_option("start from the scene of a published run"),
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Solve for what is unknown and print every solution."""
-    if options.template_printed(args, KNOWABLE):
-        return 0
+def main(args: options.Args) -> None:
+    if args.old:
+        raise UserError("--scene is not an option here; expected --write-scene FILE")
     wanted = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
     known, named = options.known_within_limits(args, KNOWABLE)
     known, friction = share_resolved(known)
@@ -98,11 +96,10 @@ def main(args: argparse.Namespace) -> int:
         numbers = {name: item.nominal for name, item in known.items()}
         found = Exact.all_of(numbers, wanted, args.contact_time, options.source_of(args))
     options.show_impacts(args, found, units)
-    return 0
 
 
 def _reconstructed(
-    known: dict[str, Uncertain], wanted: list[str] | None, args: argparse.Namespace, units: System
+    known: dict[str, Uncertain], wanted: list[str] | None, args: options.Args, units: System
 ) -> list[Measured]:
     try:
         with progress(None, "reconstruct", "impacts") as meter:
@@ -122,7 +119,7 @@ def _reconstructed(
     return found
 
 
-def _write_scene(solutions: list[Reconstruction], args: argparse.Namespace, units: System) -> None:
+def _write_scene(solutions: list[Reconstruction], args: options.Args, units: System) -> None:
     if len(solutions) > 1:
         raise UserError(f"{len(solutions)} impacts agree with what is known; expected one")
     texts = {name: repr(value).upper() for name, value in solutions[0].scene().items()}

@@ -21,7 +21,6 @@ examples:
 exit status: 0 written; 2 bad input
 """
 
-import argparse
 import csv
 
 from ..errors import UserError
@@ -31,7 +30,7 @@ from . import options
 
 ARGUMENTS = (
     *options.KNOWN,
-    options.sample_option(),
+    options.SAMPLE,
     options.writes("-o --output", "FILE.html", "the page", required=True),
     options.value("--case", "NUMBER", "the case number", default=""),
     options.value("--title", "TEXT", "the title of the page", default=""),
@@ -47,8 +46,7 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Write the report of a collision."""
+def main(args: options.Args) -> None:
     from ..report.findings import report, write_workbook
 
     source = options.source_of(args)
@@ -71,4 +69,3 @@ def main(args: argparse.Namespace) -> int:
             csv.writer(out, lineterminator="\n").writerows(rows)
     if args.xlsx:
         write_workbook(args.xlsx, tables)
-    return 0

@@ -13,7 +13,6 @@ examples:
 exit status: 0 the program ended, ZERO DETERMINANT included; 1 an Applesoft error; 2 bad input
 """
 
-import argparse
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -58,14 +57,14 @@ ARGUMENTS = (
         "the numbers to compute with (default: %(default)s)",
         default="applesoft",
     ),
-    options.json_option("the run as one JSON object"),
+    options.flag("--json", "print the run as one JSON object"),
     options.OUTPUT,
     *MACHINE,
     options.reads("--listing", "THEIRS.bas", "run another copy of the listing, in the emulator"),
 )
 
 
-def chosen_scene(args: argparse.Namespace) -> Scene | None:
+def chosen_scene(args: options.Args) -> Scene | None:
     """The scene the options name, changed; None for the listing's own data with prompts."""
     if (scene := options.scene_given(args, "the program's page")) is not None:
         return scene
@@ -80,7 +79,7 @@ def chosen_scene(args: argparse.Namespace) -> Scene | None:
     return None if missing else Scene(published_data() | changes, source="--set")
 
 
-def check_slot(args: argparse.Namespace) -> None:
+def check_slot(args: options.Args) -> None:
     """Raises UserError for a slot with nothing in it."""
     if args.slot not in (0, PRINTER_SLOT) and not args.no_dos:
         raise UserError(
@@ -89,8 +88,7 @@ def check_slot(args: argparse.Namespace) -> None:
         )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Run the program on the terminal, or on a scene."""
+def main(args: options.Args) -> int:
     check_slot(args)
     scene = chosen_scene(args)
     if args.listing:
@@ -132,7 +130,7 @@ def main(args: argparse.Namespace) -> int:
     return 1 if run.error else 0
 
 
-def _run_copy(args: argparse.Namespace, scene: Scene | None) -> int:
+def _run_copy(args: options.Args, scene: Scene | None) -> int:
     """Run a copy of the listing on a scene."""
     from ..program.emulated import ListingCopy
 

@@ -16,30 +16,26 @@ examples:
   impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
 
-import argparse
-
 from ..scene import SIGNS, Scene, sample, template
 from . import options
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)
 
-ARGUMENTS = (options.sample_option(), options.UNITS, options.OUTPUT)
+ARGUMENTS = (options.SAMPLE, options.UNITS, options.OUTPUT)
 
 
-def main(args: argparse.Namespace) -> int:
-    """Print a scene file."""
+def main(args: options.Args) -> None:
     if not args.units:
         print(sample(args.sample).to_toml() if args.sample else template(), end="")
-        return 0
+        return
     from ..units import SYSTEMS, system_named
 
     system = system_named(args.units, "--units").name
     if not args.sample:
         print(template(units=system), end="")
-        return 0
+        return
     # the chapter's samples are in ft, slug and s
     unit = SYSTEMS["chapter"].unit
     texts = {name: f"{text} {unit(name)}".strip() for name, text in sample(args.sample).items()}
     scene = Scene.from_mapping({**texts, "units": system})
     print(scene.to_toml(), end="")
-    return 0

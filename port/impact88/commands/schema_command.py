@@ -12,7 +12,6 @@ examples:
 exit status: 0 done; 2 no such schema
 """
 
-import argparse
 import json
 
 from ..schemas import CONVENTIONS, NUMBERS, text
@@ -21,12 +20,10 @@ from . import options
 ARGUMENTS = (options.value("name", "NAME", "a form, or conventions", nargs="?"), options.OUTPUT)
 
 
-def main(args: argparse.Namespace) -> int:
-    """Print a schema, the conventions, or the names."""
+def main(args: options.Args) -> None:
     if args.name:
         print(text(args.name), end="")
-        return 0
+        return
     for name, number in NUMBERS.items():
         print(f"{name:<12} {number}  {json.loads(text(name))['title']}")
     print(f"{CONVENTIONS:<12}    axes, signs, units, stored bytes, error bounds, vector classes")
-    return 0

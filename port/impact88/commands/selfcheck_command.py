@@ -8,17 +8,15 @@ examples:
 exit status: 0 everything came out as captured; 1 something did not
 """
 
-import argparse
 import sys
 
 from ..checking.selfcheck import CHECKS, Check, checks, record
 from . import options
 
-ARGUMENTS = (options.json_option("the record as one JSON object"), options.OUTPUT)
+ARGUMENTS = (options.flag("--json", "print the record as one JSON object"), options.OUTPUT)
 
 
-def main(args: argparse.Namespace) -> int:
-    """Run all checks and print the record."""
+def main(args: options.Args) -> int:
     results: list[Check] = []
     names = iter(CHECKS)
     report_on_stderr = args.json and sys.stderr.isatty()

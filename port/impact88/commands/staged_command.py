@@ -25,7 +25,6 @@ examples:
 exit status: 0 done; 1 a cell of Table 2 differs and nothing explains it
 """
 
-import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from math import isfinite, sqrt
@@ -55,8 +54,7 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Print the view asked for."""
+def main(args: options.Args) -> int:
     views: dict[str, Callable[[], list[str]]] = {
         **{"fit": _fits, "measured": _measured, "claims": _claims, "cells": _cells},
         "table": lambda: _table(args.table),
@@ -72,7 +70,7 @@ def main(args: argparse.Namespace) -> int:
     return int(any(not c.agrees and c.explanation == "not explained" for c in staged.comparison()))
 
 
-def _own(args: argparse.Namespace) -> int:
+def _own(args: options.Args) -> int:
     """Fit the collision of a file."""
     if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
         raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number, 0 or more")

@@ -24,23 +24,21 @@ examples:
 exit status: 0 identical; 1 any other verdict; 2 unreadable; of several files the highest
 """
 
-import argparse
 import sys
 
 from .. import files
-from ..errors import UserError
+from ..errors import UserError, note
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE
 from ..reporting.examination import Examined, Verdict, examine
 from ..reporting.verification import lines
-from ..stderr import note
 from . import options
 
 _ON_REPORT = ("date", "case", "examiner")
 
 ARGUMENTS = (
     options.reads("printouts", "PRINTOUT", "text, picture or PDF", nargs="+"),
-    options.json_option("one JSON object a printout"),
+    options.flag("--json", "print one JSON object a printout"),
     options.OUTPUT,
     options.flag("--brief", "only verdicts and what differs"),
     options.reads("--scene", "FILE.toml", "the inputs, for a page that has only results"),
@@ -61,8 +59,7 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Verify every printout of every file."""
+def main(args: options.Args) -> int:
     for option in _ON_REPORT:
         if getattr(args, option) and not args.report:
             raise UserError(f"--{option} is for the report; expected --report FILE.html with it")
@@ -94,7 +91,7 @@ def main(args: argparse.Namespace) -> int:
     return status
 
 
-def _show(file: Examined, args: argparse.Namespace) -> None:
+def _show(file: Examined, args: options.Args) -> None:
     if file.error:
         note("verify", file.error)
     if args.json:

@@ -16,7 +16,6 @@ exit status: 0 no difference; 1 a difference; 2 bad input, or a ROM that does no
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Iterator
 from functools import partial
@@ -46,7 +45,7 @@ ARGUMENTS = (
     options.setting("change a value of these scenes"),
     options.UNITS,
     options.value("--captures", "N", "N random packaged captures of each kind's mix, or all"),
-    options.reads_folder(
+    options.reads(
         "--programs",
         "FOLDER",
         "every .bas of a folder, its replies in a .in beside it, on the ROM and the emulator",
@@ -54,14 +53,13 @@ ARGUMENTS = (
     options.count("--random", 0, 10**7, "N random scenes", default=0),
     options.seed("of what is random"),
     options.flag("--any-rom", "accept a ROM that is not known, too"),
-    options.writes_folder("--save", "DIR", "write what the ROM did as captures"),
-    options.json_option("the record as one JSON object"),
+    options.writes("--save", "DIR", "write what the ROM did as captures"),
+    options.flag("--json", "print the record as one JSON object"),
     options.OUTPUT,
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Run the jobs on the ROM, and print what differs."""
+def main(args: options.Args) -> int:
     jobs = _jobs(args)
     from ..witness.apple import read_image
     from ..witness.hearing import record, save
@@ -82,7 +80,7 @@ def main(args: argparse.Namespace) -> int:
     return 0 if whole["passed"] else 1
 
 
-def _jobs(args: argparse.Namespace) -> list[Job]:
+def _jobs(args: options.Args) -> list[Job]:
     """What is to be done; all input is read before the machine is started."""
     from ..witness import hearing
 
