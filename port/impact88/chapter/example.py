@@ -8,7 +8,7 @@ Every number comes from the modules of this package; what the chapter prints sta
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from math import hypot, sqrt
+from math import hypot
 
 from ..closedform.solve import solve
 from ..names import FINAL_STATE, FINAL_VELOCITIES, VELOCITIES
@@ -19,7 +19,8 @@ from ..reconstruction.outcome import moment_ratio
 from ..reconstruction.unknowns import solve_for
 from ..scene import sample
 from ..uncertainty.uncertain import Uncertain
-from .deltav import AS_PRINTED, AS_USED, delta_v
+from .deltav import AS_PRINTED, AS_USED, delta_v, initial_velocity
+from .staged import Collision, closure
 
 ESTIMATES = {"VAX": -10.0, "VAY": 20.0, "VBX": -20.0, "VBY": 45.0}
 """The analyst's final velocities, ft/s."""
@@ -78,13 +79,18 @@ def steps() -> tuple[Step, ...]:
         for name, value in scene.items()
         if name not in ("E", "MU", "EM", "UX", "UY", "WA", "VX", "VY", "WB")
     }
-    true = _truth(scene, truth)
     momentum = _momentum(vehicles)
     initial = {"UX": momentum["UX"], "VY": momentum["VY"]}
+    a = hypot(ESTIMATES["VAX"] - initial["UX"], ESTIMATES["VAY"])
+    b = hypot(ESTIMATES["VBX"], ESTIMATES["VBY"] - initial["VY"])
     return (
-        true,
+        _truth(scene, truth),
         momentum,
-        _velocity_changes(initial),
+        Step(
+            "Velocity changes from them",
+            "Equations 20 and 21",
+            _of_both("DVA DVB", "velocity change", (a, b), "36.2 24.0"),
+        ),
         *_equation_19(scene, truth, initial),
         _coefficients(vehicles),
         _both_spins(vehicles, initial),
@@ -129,16 +135,6 @@ def _momentum(vehicles: dict[str, float]) -> Step:
     )
 
 
-def _velocity_changes(initial: dict[str, float]) -> Step:
-    a = hypot(ESTIMATES["VAX"] - initial["UX"], ESTIMATES["VAY"])
-    b = hypot(ESTIMATES["VBX"], ESTIMATES["VBY"] - initial["VY"])
-    return Step(
-        "Velocity changes from them",
-        "Equations 20 and 21",
-        _of_both("DVA DVB", "velocity change", (a, b), "36.2 24.0"),
-    )
-
-
 def _equation_19(
     scene: dict[str, float], truth: dict[str, float], initial: dict[str, float]
 ) -> tuple[Step, Step]:
@@ -171,16 +167,13 @@ def _equation_19(
         "larger (below). An analyst has only the last step's speeds.",
     )
 
-    def initial_velocities(change_a: float, change_b: float) -> tuple[float, float]:
-        a = ESTIMATES["VAX"] - sqrt(change_a**2 - ESTIMATES["VAY"] ** 2)
-        return a, ESTIMATES["VBY"] + sqrt(change_b**2 - ESTIMATES["VBX"] ** 2)
-
-    a, b = initial_velocities(round(used[0], 1), round(used[1], 1))
-    unrounded = initial_velocities(*used)[1]
+    a, b = (round(change, 1) for change in used)
+    ux = initial_velocity(a, ESTIMATES["VAX"], ESTIMATES["VAY"])
+    vy, unrounded = (initial_velocity(x, ESTIMATES["VBY"], ESTIMATES["VBX"]) for x in (b, used[1]))
     back = Step(
         "Initial velocities from those velocity changes and the estimated final velocities",
         "Equations 20 and 21, solved for v_ax and v_by",
-        _of_both("UX VY", "initial velocity", (a, b), "-43.6 61.5"),
+        _of_both("UX VY", "initial velocity", (ux, vy), "-43.6 61.5"),
         "From the velocity changes rounded to one decimal, as the chapter must have done: "
         f"unrounded, VY is {unrounded:.2f}.",
     )
@@ -213,21 +206,15 @@ def _coefficients(vehicles: dict[str, float]) -> Step:
 
 def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
     """Equations 15, 16 and 18 as the chapter means them, and the same with all laws kept."""
-    whole = {**vehicles, **ESTIMATES, **NO_SWERVING, **NO_TURNING, **initial, **BOTH_SPINS}
-    here = Geometry.of(whole)
-    before = [whole[name] for name in VELOCITIES]
-    after = [whole[name] for name in FINAL_STATE]
-    ax, ay, wa, bx, by, wb = (late - early for early, late in zip(before, after, strict=True))
-    ma, mb, ia, ib = (whole[name] for name in ("MA", "MB", "IA", "IB"))
-    gn, gn_after = (float(here.relative(v)[0]) for v in (before, after))
-    pt = ma * float(-ax * here.sine + ay * here.cosine)
-    pn = ma * float(ax * here.cosine + ay * here.sine)
-    spin = whole["WBF"] - whole["WAF"]
-    on_a = wa - ma * here.d3 * ax / ia + ma * here.d4 * ay / ia
-    bracket = float(on_a - wb - mb * here.d1 * bx / ib + mb * here.d2 * by / ib)
-    missed = float(
-        ib * wb + ia * wa + mb * (here.d1 + here.d3) * bx + ma * (here.d2 + here.d4) * ay
-    )
+    scene, after = {**vehicles, **NO_SWERVING, **NO_TURNING, **initial}, {**ESTIMATES, **BOTH_SPINS}
+    here = Geometry.of(scene)
+    six = ([of[n] for n in names] for of, names in ((scene, VELOCITIES), (after, FINAL_STATE)))
+    gn, gn_after = (float(here.relative(velocities)[0]) for velocities in six)
+    # what A and B gain of linear and angular momentum
+    gained = closure(Collision(0, "", scene, after, {}))
+    x, y, on_a, on_b = (gained[name] for name in ("x_of_a", "y_of_a", "spin_of_a", "spin_of_b"))
+    pn, pt = float(x * here.cosine + y * here.sine), float(y * here.cosine - x * here.sine)
+    spin, bracket = after["WBF"] - after["WAF"], on_a / scene["IA"] + on_b / scene["IB"]
     measured = {
         name: Uncertain("uniform", value, value - tolerance, value + tolerance)
         for estimates, kind in ((ESTIMATES, "velocity"), (BOTH_SPINS, "spin"))
@@ -244,7 +231,7 @@ def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
             Number("MUP", "P_t/P_n, as they stand", pt / pn, "1"),
             # (1 - e_m) spin = -e_m bracket
             Number("EM", "moment coefficient, as they stand", spin / (spin - bracket), "1"),
-            Number("17", "what Equation 17 is missed by", missed, "slug-ft2/s"),
+            Number("17", "what Equation 17 is missed by", on_a - on_b, "slug-ft2/s"),
             Number("E adjusted", "adjusted so that all equations hold", values["E"], "1"),
             Number("MUP adjusted", "adjusted", values["MUP"], "1"),
             Number("EM adjusted", "adjusted", values["EM"], "1"),

@@ -96,22 +96,18 @@ def emendations() -> tuple[Emendation, ...]:
 @cache
 def cells() -> tuple[Cell, ...]:
     """Tables 1 and 2, cell by cell: as printed, as emended, and the evidence."""
+    keys = {"loss": "loss_percent", "mu": "mu_signed_Pt_over_Pn"}
+    keys |= {column: f"{column}_deg" for column in ("phi", "theta", "Gamma")}
     result = []
-    for row in _rows("table1.csv"):
-        name = row["row"]
-        printed = _printed_1(row)
-        for column in COLUMNS_1:
-            key = f"{column}_deg" if column in ("phi", "theta", "Gamma") else column
-            remark = _remark(1, name, column)
-            result.append(Cell(1, name, column, printed[column], row[key], remark))
-    for row in _rows("table2.csv"):
-        name = row["collision"]
-        for column in COLUMNS_2:
-            key = {"loss": "loss_percent", "mu": "mu_signed_Pt_over_Pn"}.get(column, column)
-            remark = _remark(2, name, column)
-            result.append(
-                Cell(2, name, column, row[key], remark.emended if remark else row[key], remark)
-            )
+    for table, columns in ((1, COLUMNS_1), (2, COLUMNS_2)):
+        for row in _rows(f"table{table}.csv"):
+            name = row["row" if table == 1 else "collision"]
+            texts = {column: row[keys.get(column, column)] for column in columns}
+            printed = _printed_1(row) if table == 1 else texts
+            for column, text in texts.items():
+                remark = _remark(table, name, column)
+                emended = remark.emended if remark and table == 2 else text
+                result.append(Cell(table, name, column, printed[column], emended, remark))
     return tuple(result)
 
 
@@ -162,29 +158,25 @@ def with_8a_reconstructed() -> Collision:
 @cache
 def collisions() -> tuple[Collision, ...]:
     """The eleven staged collisions in Table 1's order."""
-    vehicles: dict[str, dict[str, str]] = {}
-    results: dict[str, dict[str, float]] = {}
+    rows: dict[str, dict[str, str]] = {}
     for cell in cells():
-        if cell.table == 1:
-            vehicles.setdefault(cell.row, {})[cell.column] = cell.emended
-        else:
-            results.setdefault(cell.row, {})[cell.column] = float(cell.printed)
+        # Table 2 is compared as it is printed
+        text = cell.emended if cell.table == 1 else cell.printed
+        rows.setdefault(cell.row, {})[cell.column] = text
     result = []
-    for number, table2 in results.items():
-        a, b = vehicles[f"{number}/A"], vehicles[f"{number}/B"]
-        scene = {"GA": float(a["Gamma"]), "WA": 0.0, "WB": 0.0}
+    for number in (name for name in rows if name.isdigit()):
+        scene = {"GA": float(rows[f"{number}/A"]["Gamma"]), "WA": 0.0, "WB": 0.0}
         measured: dict[str, float] = {}
-        for v, row in (("A", a), ("B", b)):
+        for v, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
+            row = rows[f"{number}/{v}"]
             names = {"M": "m", "I": "I", "D": "d", "P": "phi", "T": "theta"}
             scene |= {f"{name}{v}": float(row[column]) for name, column in names.items()}
-            x, y = ("UX", "UY") if v == "A" else ("VX", "VY")
             scene |= {x: float(row["vx"]), y: float(row["vy"])}
-            measured |= {
-                f"V{v}X": float(row["Vx"] or "nan"),
-                f"V{v}Y": float(row["Vy"] or "nan"),
-                f"W{v}F": float(row["Omega"]),
-            }
-        result.append(Collision(int(number), a["category"], scene, measured, table2))
+            after = {f"V{v}X": row["Vx"], f"V{v}Y": row["Vy"], f"W{v}F": row["Omega"]}
+            measured |= {name: float(text or "nan") for name, text in after.items()}
+        table2 = {column: float(text) for column, text in rows[number].items()}
+        category = rows[f"{number}/A"]["category"]
+        result.append(Collision(int(number), category, scene, measured, table2))
     return tuple(result)
 
 
@@ -355,9 +347,13 @@ class Compared:
 
 def comparison() -> list[Compared]:
     """Loss and the three pairs of ΔV of Table 2 beside their recomputation."""
-    rows = []
+    half, rows = _HALF_DIGIT_COEFFICIENT, []
+    offsets = np.array([*product((-half, 0, half), repeat=3)]).T
     for collision in collisions():
-        centre, spread = _with_rounding(collision)
+        coefficients = {
+            n: x + o for (n, x), o in zip(collision.coefficients.items(), offsets, strict=True)
+        }
+        centre, spread = forward(collision), forward(collision, coefficients)
         measured = experimental(collision)
         rounded_loss = collision.table2["loss"] + np.array([0, -_HALF_DIGIT, _HALF_DIGIT])
         equation_19 = predicted(collision, rounded_loss)
@@ -366,27 +362,17 @@ def comparison() -> list[Compared]:
             values[f"dV{vehicle}_exp"] = (measured[name], measured[name])
             values[f"dV{vehicle}_comp"] = (float(centre[name]), spread[name])
             values[f"dV{vehicle}_pred"] = (float(equation_19[name][0]), equation_19[name])
-        rows += [_compared(collision, c, *values[c]) for c in COLUMNS_2 if c in values]
+        for column in filter(values.__contains__, COLUMNS_2):
+            value, around = values[column]
+            printed = collision.table2[column]
+            low, high = float(np.min(around)), float(np.max(around))
+            # a printed last digit stands for half a unit either way; 1e-9: its own rounding
+            agrees = low - _HALF_DIGIT - 1e-9 <= printed <= high + _HALF_DIGIT + 1e-9
+            remark = _remark(2, str(collision.number), column)
+            why = "" if agrees else remark.evidence if remark else "not explained"
+            own = (collision.number, column, printed, value, low, high)
+            rows.append(Compared(*own, bool(agrees), why))
     return rows
-
-
-def _with_rounding(collision: Collision) -> tuple[dict[str, Array], dict[str, Array]]:
-    """The forward results, and the same with each coefficient half a printed digit off."""
-    half = _HALF_DIGIT_COEFFICIENT
-    offsets = np.array(list(product((-half, 0, half), repeat=3))).T
-    printed = np.array([*collision.coefficients.values()])[:, None]
-    rounded = dict(zip(collision.coefficients, printed + offsets, strict=True))
-    return forward(collision), forward(collision, rounded)
-
-
-def _compared(collision: Collision, column: str, value: float, spread: Any) -> Compared:
-    printed = collision.table2[column]
-    low, high = float(np.min(spread)), float(np.max(spread))
-    # a printed last digit stands for half a unit either way; 1e-9 for the decimal's own rounding
-    agrees = low - _HALF_DIGIT - 1e-9 <= printed <= high + _HALF_DIGIT + 1e-9
-    remark = _remark(2, str(collision.number), column)
-    explanation = "" if agrees else remark.evidence if remark else "not explained"
-    return Compared(collision.number, column, printed, value, low, high, bool(agrees), explanation)
 
 
 # -- what the chapter claims of its method
@@ -411,35 +397,6 @@ class Claim:
     verdict: str
 
 
-def _with(collision: Collision, changes: dict[str, Any]) -> dict[str, Array]:
-    """The collision with Table 2's coefficients and some values changed; friction keeps the sign of
-    Table 2, whatever the sliding does."""
-    scene = moved({**collision.scene, **changes})
-    em = np.asarray(scene.pop("EM", collision.coefficients["EM"]))
-    mu = typed_friction(scene, collision.coefficients["MUP"])
-    values = {**scene, "E": collision.coefficients["E"], "EM": em, "MU": mu}
-    return solve(values, ("DVA", "DVB", "LOSS"))
-
-
-def _change_of_delta_v(collision: Collision, changes: dict[str, Any]) -> Array:
-    """Percent, of both vehicles' ΔV alike: they stand in the ratio of the masses."""
-    there, here = _with(collision, changes), forward(collision)
-    return 100 * (there["DVA"] / here["DVA"] - 1)
-
-
-def _turned(name: str, degrees: float) -> Callable[[Collision], Array]:
-    """What turning an angle either way changes."""
-    turns = np.array([-degrees, degrees])
-    return lambda c: _change_of_delta_v(c, {name: c.scene[name] + turns})
-
-
-def _force_over_weight(collision: Collision) -> Array:
-    found = forward(collision)
-    average = forces(np.hypot(found["PN"], found["PT"]), np.array(CONTACT_TIMES))["FA"]
-    weights = np.array([collision.scene["MA"], collision.scene["MB"]]) * GRAVITY
-    return np.asarray(average[:, None] / weights)
-
-
 def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple[float, float]:
     values = np.concatenate([np.ravel(rule(collision)) for collision in alike])
     return float(values.min()), float(values.max())
@@ -448,39 +405,61 @@ def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple
 @cache
 def claims() -> tuple[Claim, ...]:
     """The claims, each with what the eleven collisions say."""
+
+    def changed(c: Collision, **changes: Any) -> dict[str, Array]:
+        """With Table 2's coefficients and some values changed; friction keeps the sign of Table 2,
+        whatever the sliding does."""
+        scene = moved({**c.scene, **changes})
+        em = np.asarray(scene.pop("EM", c.coefficients["EM"]))
+        mu = typed_friction(scene, c.coefficients["MUP"])
+        return solve({**scene, "E": c.coefficients["E"], "EM": em, "MU": mu}, ("DVA", "LOSS"))
+
+    def delta_v_changed(c: Collision, **changes: Any) -> Array:
+        """Percent, of both vehicles' ΔV alike: they stand in the ratio of the masses."""
+        return 100 * (changed(c, **changes)["DVA"] / forward(c)["DVA"] - 1)
+
+    def turned(c: Collision, degrees: float, *names: str) -> Array:
+        """By an angle turned either way; a vehicle's own contact point stays."""
+        both = np.array([-degrees, degrees])
+        return np.concatenate([delta_v_changed(c, **{n: c.scene[n] + both}) for n in names])
+
+    def force_over_weight(c: Collision) -> Array:
+        found = forward(c)
+        average = forces(np.hypot(found["PN"], found["PT"]), np.array(CONTACT_TIMES))["FA"]
+        return np.asarray(average[:, None] / (GRAVITY * np.array([c.scene["MA"], c.scene["MB"]])))
+
     sides = [c for c in collisions() if "SIDE" in c.category]
     others = [c for c in collisions() if "SIDE" not in c.category]
     around = np.radians(np.arange(0, 360, 5.0))
     contact = {"CX": np.cos(around), "CY": np.sin(around)}
-    moments = {"EM": np.linspace(-1, 0, 21)}
-    # either vehicle's own contact point stays
-    turned_a, turned_b = (_turned(name, 22.5) for name in ("TA", "TB"))
-    rows = (
+    moments = np.linspace(-1, 0, 21)
+    rows: tuple[tuple[str, str, str, Callable[[Collision], Array], str, str], ...] = (
         (
             *("IV-A", "results not critically sensitive to Γ", "Γ by 10 degrees either way"),
-            *(_turned("GA", 10.0), "% of ΔV", "false for the side impacts"),
+            *(lambda c: turned(c, 10.0, "GA"), "% of ΔV", "false for the side impacts"),
         ),
         (
             *("IV-A", "nor to the location of point C", "C by 1 ft in any direction"),
-            *(lambda c: _change_of_delta_v(c, contact), "% of ΔV", "true of a foot"),
+            *(lambda c: delta_v_changed(c, **contact), "% of ΔV", "true of a foot"),
         ),
         (
             *("V", "ΔV not very sensitive to e_m", "e_m over its whole range, -1 to 0"),
-            *(lambda c: _change_of_delta_v(c, moments), "% of ΔV", "true"),
+            *(lambda c: delta_v_changed(c, EM=moments), "% of ΔV", "true"),
         ),
         (
             *("V", "nor is the energy loss", "e_m over its whole range, -1 to 0"),
-            *(lambda c: _with(c, moments)["LOSS"] - forward(c)["LOSS"], "points of loss", "true"),
+            lambda c: changed(c, EM=moments)["LOSS"] - forward(c)["LOSS"],
+            *("points of loss", "true"),
         ),
         (
             *("IV-A", "turns during contact below 45 degrees matter little"),
             "one vehicle's heading by 22.5 degrees, half the turn",
-            *(lambda c: np.concatenate([turned_a(c), turned_b(c)]), "% of ΔV"),
+            *(lambda c: turned(c, 22.5, "TA", "TB"), "% of ΔV"),
             "they matter: up to a fifth of ΔV",
         ),
         (
             *("III", "average force 5 to 10 times the weight", "contact time .1 to .2 s"),
-            *(_force_over_weight, "weights", "the middle of a wider range"),
+            *(force_over_weight, "weights", "the middle of a wider range"),
         ),
     )
     return tuple(
