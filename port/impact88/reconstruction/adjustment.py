@@ -610,21 +610,20 @@ def _described(system: System, x: Floats, residual: float, assumed: bool) -> Rec
     _, null = pseudo_inverse(rows)
     values = {n: float(np.ravel(state.values[n])[0]) for n in ("M", *GEOMETRY)}
     undetermined = []
-    with np.errstate(all="ignore"):
-        for name in QUANTITIES:
-            if system.point and name in (*SPINS, "PM", "EM"):
-                continue
-            if name in COEFFICIENTS and name in system.known:
-                values[name] = float(np.ravel(state.values[name])[0])
-                continue
-            gradient = system.gradient(x, name)
-            largest = np.abs(gradient).max(initial=0.0)
-            value = float(np.ravel(state[name])[0])
-            is_open = np.abs(gradient @ null).max(initial=0.0) > _OPEN * largest
-            if np.isfinite(value) and np.isfinite(largest) and not is_open:
-                values[name] = value
-            elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):
-                undetermined.append(name)
+    for name in QUANTITIES:
+        if system.point and name in (*SPINS, "PM", "EM"):
+            continue
+        if name in COEFFICIENTS and name in system.known:
+            values[name] = float(np.ravel(state.values[name])[0])
+            continue
+        gradient = system.gradient(x, name)
+        largest = np.abs(gradient).max(initial=0.0)
+        value = float(np.ravel(state[name])[0])
+        is_open = np.abs(gradient @ null).max(initial=0.0) > _OPEN * largest
+        if np.isfinite(value) and np.isfinite(largest) and not is_open:
+            values[name] = value
+        elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):
+            undetermined.append(name)
     unknown = [n for n in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS) if n not in system.known]
     if unknown and not any(name in values for name in unknown) and not system.observations:
         raise UnsolvableError(

@@ -101,8 +101,7 @@ class Geometry:
         sine_a, cosine_a = sin_cos(value["TA"] + value["PA"])
         sine_b, cosine_b = sin_cos(value["TB"] + value["PB"])
         da, db = np.where(point, 0.0, value["DA"]), np.where(point, 0.0, value["DB"])
-        with np.errstate(divide="ignore"):
-            ma, mb, ia, ib = (1 / value[name] for name in ("MA", "MB", "IA", "IB"))
+        ma, mb, ia, ib = (1 / value[name] for name in ("MA", "MB", "IA", "IB"))
         d1, d2, d3, d4 = db * sine_b, db * cosine_b, da * sine_a, da * cosine_a
         return cls(cosine, sine, d1, d2, d3, d4, ma, mb, ia, ib, point)
 

@@ -305,7 +305,6 @@ class _Problem:
         return "; and ".join(bad) or None
 
 
-@np.errstate(all="ignore")
 def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) -> dict[str, Array]:
     """What the equations of n scenes determine, n each, NaN elsewhere: quantities by name, the
     ``error of`` each wanted one (`Solution.amplification`), ``sliding`` before the impact,
@@ -412,8 +411,7 @@ def typed(mup: Any, sliding: Any, velocities: Iterable[Any]) -> Array:
     """The MU that line 400 turns into MUP: changed where the sliding is positive. Where the sliding
     is not known the sign stays as it is."""
     mu, speed = np.asarray(mup), reduce(np.maximum, map(np.abs, velocities))
-    with np.errstate(invalid="ignore"):
-        changed = (sliding > TIE * speed) & (mu != PIVOT) & (mu != 0)
+    changed = (sliding > TIE * speed) & (mu != PIVOT) & (mu != 0)
     return np.where(changed, -mu, mu)
 
 

@@ -89,8 +89,7 @@ def climb(
             step[out] = best(
                 *(part[out] for part in (uphill, low, high, bends, below - bent, above - bent))
             )
-        with np.errstate(invalid="ignore"):
-            gain = _height(values, reached, number[who], sense[who]) - height
+        gain = _height(values, reached, number[who], sense[who]) - height
         better = good & ~out & (gain > 0)
         up = who[better]
         u[up], x[:, up] = tried[better], state[:, better]
@@ -186,24 +185,23 @@ def _best_between_walls(
     gap = np.tile(np.maximum(most[:, : k + r] + most[:, k + r :], 1e-12), 2)
     room = np.clip(most - np.einsum("crk,ck->cr", every, step), 0.1 * gap, gap)
     push = 1 / np.maximum(room, 0.1)
-    with np.errstate(all="ignore"):
-        for _ in range(ITERATIONS):
-            mean = 0.1 * (room * push).mean(axis=1)[:, None]
-            going = mean > CENTRED
-            if not going.any():
-                break
-            off = most - np.einsum("crk,ck->cr", every, step) - room
-            want = (mean - push * off) / room
-            right = goal - np.einsum("crk,cr->ck", every, want)
-            matrix = np.einsum("crk,cr,crl->ckl", every, push / room, every)
-            finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
-            matrix[~finite], right[~finite] = np.eye(k), 0.0
-            try:
-                move = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
-            except np.linalg.LinAlgError:
-                break
-            away = off - np.einsum("crk,ck->cr", every, move)
-            pushed = (mean - push * (room + away)) / room
-            first, second = going * longest(room, away), going * longest(push, pushed)
-            step, room, push = step + first * move, room + first * away, push + second * pushed
+    for _ in range(ITERATIONS):
+        mean = 0.1 * (room * push).mean(axis=1)[:, None]
+        going = mean > CENTRED
+        if not going.any():
+            break
+        off = most - np.einsum("crk,ck->cr", every, step) - room
+        want = (mean - push * off) / room
+        right = goal - np.einsum("crk,cr->ck", every, want)
+        matrix = np.einsum("crk,cr,crl->ckl", every, push / room, every)
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
+        matrix[~finite], right[~finite] = np.eye(k), 0.0
+        try:
+            move = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+        except np.linalg.LinAlgError:
+            break
+        away = off - np.einsum("crk,ck->cr", every, move)
+        pushed = (mean - push * (room + away)) / room
+        first, second = going * longest(room, away), going * longest(push, pushed)
+        step, room, push = step + first * move, room + first * away, push + second * pushed
     return np.asarray(np.clip(np.nan_to_num(step * unit), low, high))

@@ -237,8 +237,7 @@ class _Box:
 
     def solved(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
         """The outputs at n sets of inputs, n each (a lone number where nothing varies)."""
-        with np.errstate(all="ignore"):
-            return self.model(self.scenes(columns), outputs, None)[0]
+        return self.model(self.scenes(columns), outputs, None)[0]
 
     def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
         values = moved({**self.known, **columns})
@@ -268,8 +267,7 @@ class _Box:
 
         def values(points: Array) -> Array:
             columns = self.scenes(self.columns(points))
-            with np.errstate(all="ignore"):
-                solved, denominators = self.model(columns, names, sign)
+            solved, denominators = self.model(columns, names, sign)
             results = [solved[name] for name in self.outputs]
             if self.excluded:
                 left_out = self.left_out(solved)

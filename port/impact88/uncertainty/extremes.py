@@ -86,6 +86,7 @@ class Piece:
         self.function, self.size, self.margin = function, size, margin
         self.deepest, self.taken = 1.0, 0
 
+    @np.errstate(all="ignore")
     def extremes(
         self, coordinates: int, rng: np.random.Generator, known: Array | None = None
     ) -> Extremes:
@@ -153,11 +154,10 @@ class Piece:
         )
         distance = (ahead - behind).reshape(n, k, k).diagonal(axis1=1, axis2=2)
         self.taken += 2 * n * k
-        with np.errstate(all="ignore"):
-            functions, walls = (
-                np.nan_to_num((f(ahead) - f(behind)).reshape(n, k, -1) / distance[:, :, None])
-                for f in (self.function, self.walls)
-            )
+        functions, walls = (
+            np.nan_to_num((f(ahead) - f(behind)).reshape(n, k, -1) / distance[:, :, None])
+            for f in (self.function, self.walls)
+        )
         return functions.swapaxes(1, 2), walls.swapaxes(1, 2), np.empty((n, 0, k))
 
     def stepped(self, at: Array, bound: Array, rng: np.random.Generator) -> tuple[Array, Array]:
@@ -195,8 +195,7 @@ class Piece:
         for side in (-1, 1) if len(low) else ():
             places = [low + away * side * apart for away in BESIDE_POLE]
             far, near = (self.function(points)[:, : self.size] for points in places)
-            with np.errstate(all="ignore"):
-                growing = (np.abs(near) > POLE_GROWTH * np.abs(far)) & (np.abs(far) > 0)
+            growing = (np.abs(near) > POLE_GROWTH * np.abs(far)) & (np.abs(far) > 0)
             for which, sign in enumerate((-1, 1)):
                 endless = growing & (near * sign > 0)
                 for function in np.flatnonzero(endless.any(axis=0)).tolist():

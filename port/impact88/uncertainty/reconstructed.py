@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..names import COEFFICIENTS, IMPULSES, VELOCITIES
 from ..reconstruction.adjustment import Reconstruction, pseudo_inverse
-from ..reconstruction.geometry import GEOMETRY, Geometry
+from ..reconstruction.geometry import GEOMETRY, Geometry, within_doubles
 from ..reconstruction.state import CRUSH, DIRECTIONS, State
 from ..reconstruction.system import PARAMETERS, TINY, System
 from .ascent import OUTSIDE, climb, extremes_of, spread_out
@@ -90,6 +90,7 @@ class Range:
     searched: bool = True
 
 
+@within_doubles
 def draws(
     solution: Reconstruction,
     names: Sequence[str],
@@ -121,6 +122,7 @@ def draws(
     return Draws(dict(zip(names, values.T, strict=True)), float(failed), points)
 
 
+@within_doubles
 def ranges(
     solution: Reconstruction,
     names: Sequence[str],
@@ -154,7 +156,7 @@ def ranges(
         *(box, points, functions, parts, 1, LEAST_GAIN),
         *(lambda start: box.from_nominal(start)[0], budget),
     )
-    endless = _endless(box.solver, solution.system.known, names)
+    endless = _endless(box, solution.system.known, names)
     # what divides a coefficient takes both signs
     endless |= {name for i, name in enumerate(box.ratios, len(names)) if lower[i] < 0 < upper[i]}
     found = {}
@@ -182,10 +184,16 @@ class _Box:
                 low, high = low - FAR * sd, high + FAR * sd
                 item = replace(item, kind="normal", deviation=sd)
             self.items[name] = replace(item, low=low, high=high)
-        self.solver = _Solving(solution, {n: v for n, v in known.items() if n not in self.rest})
-        self.names = names
-        self.ratios = [n for n in names if n in COEFFICIENTS and n not in self.solver.system.known]
-        self.nominal = solution.values
+        determining = {n: v for n, v in known.items() if n not in self.rest}
+        self.system = system = System(determining, adjusted=False)
+        state = solution.system.state(solution.x)
+        scaled = zip(system.variables, system.scales, strict=True)
+        self.x = np.array([np.ravel(state[n])[0] / scale for n, scale in scaled]).reshape(-1, 1)
+        jacobian = system.slopes(self.x)
+        self.inverse, null = pseudo_inverse(jacobian)
+        self.square = jacobian.shape[0] == jacobian.shape[1] and not null.shape[1]
+        self.names, self.nominal = names, solution.values
+        self.ratios = [n for n in names if n in COEFFICIENTS and n not in system.known]
         shares = [self._share(n, adjusted[n]) for n in self.kept]
         self.middle = np.clip(np.array([shares]), 0.0, 1.0).reshape(1, len(shares))
 
@@ -206,10 +214,10 @@ class _Box:
 
     def _told(self, state: State) -> Any:
         """Functions, then walls of impacts, real or complex."""
-        known = self.solver.system.known
         columns = [state.values["PN"]]  # for the shape
         for name in self.names:
-            value = state.values[name] if name in known and name in PARAMETERS else state[name]
+            own = name in self.system.known and name in PARAMETERS
+            value = state.values[name] if own else state[name]
             columns.append(_near(name, value, self.nominal.get(name)))
         columns += [state.quotient(name)[1] for name in self.ratios]
         for name in self.rest:
@@ -217,8 +225,7 @@ class _Box:
         return np.stack(np.broadcast_arrays(*columns))[1:]
 
     def _found(self, x: Floats, state: State, usable: Flags) -> Point:
-        with np.errstate(all="ignore"):
-            columns = self._told(state).T
+        columns = self._told(state).T
         count = len(self.names) + len(self.ratios)
         functions, walls = columns[:, :count], columns[:, count:]
         usable = usable & np.isfinite(walls).all(axis=1)
@@ -226,31 +233,74 @@ class _Box:
 
     def from_nominal(self, u: Floats, guess: Floats | None = None) -> Point:
         """As `at`, reached from the nominal impact, or from a ``guess`` of each, s x n."""
-        return self._found(*self.solver(self.data(u), len(u), guess))
+        data, geometry = self.data(u), None
+        x = start = np.repeat(self.x, len(u), axis=1) if guess is None else guess
+        if set(data) & set(GEOMETRY):
+            geometry = Geometry.of({**self.system.constants, **data})
+        residual = self._left(x, data, geometry)
+        left = np.abs(residual).max(axis=0, initial=0.0)
+        for more in reversed(range(CHORDS)):
+            before = left
+            x = x - self.inverse @ residual
+            residual = self._left(x, data, geometry)
+            left = np.abs(residual).max(axis=0, initial=0.0)
+            # what is left over shrinks each time by the same factor
+            if not ((left > SETTLED) & (left * (left / before) ** more <= SETTLED)).any():
+                break
+        settled = left <= SETTLED
+        if not settled.all():
+            wild = ~settled
+            part = {n: column[wild] for n, column in data.items()}
+            x[:, wild], settled[wild] = self._newton(part, start[:, wild])
+        return self._found(x, self.system.state(x, data, geometry), settled)
 
     def at(self, u: Floats, guess: Floats) -> Point:
         """`ascent.Landscape`."""
         data = self.data(u)
-        with np.errstate(all="ignore"):
-            x, settled = self.solver.newton(data, guess)
-        return self._found(x, self.solver.system.state(x, data), settled)
+        x, settled = self._newton(data, guess)
+        return self._found(x, self.system.state(x, data), settled)
+
+    def _left(
+        self, x: Floats, data: Mapping[str, Floats], geometry: Geometry | None = None
+    ) -> Floats:
+        return np.asarray(self.system.left(self.system.state(x, data, geometry), data))
+
+    def _newton(self, data: Mapping[str, Floats], x: Floats) -> tuple[Floats, Flags]:
+        """Impacts with the known values ``data`` by Newton's method from the impacts ``x``, and
+        which of them meet all conditions. A point that comes no nearer a solution in three steps
+        has none in reach."""
+        x, count = x.copy(), x.shape[1]
+        least, idle = np.full(count, np.inf), np.zeros(count, int)
+        going = np.arange(count)
+        for _ in range(NEWTONS):
+            here, known = x[:, going], {name: column[going] for name, column in data.items()}
+            residual, jacobian = self.system.linearized(here, self.system.left, known, known)
+            left = np.abs(residual).max(axis=0, initial=0.0)
+            idle = np.where(left < 0.5 * least, 0, idle + 1)
+            least = np.fmin(least, left)
+            more = (left > SETTLED) & (idle <= 3)
+            going, least, idle = going[more], least[more], idle[more]
+            if not len(going):
+                break
+            right = residual[:, more].T[:, :, None]
+            step = _solved(jacobian[:, :, more].transpose(2, 0, 1), right)[:, :, 0]
+            x[:, going] = here[:, more] - np.nan_to_num(step.T)
+        return x, np.abs(self._left(x, data)).max(axis=0, initial=0.0) <= 100 * SETTLED
 
     def slopes(self, u: Floats, x: Floats) -> tuple[Floats, Floats, Floats]:
         """`ascent.Landscape`: by the derivatives of the conditions, without error."""
-        system, data = self.solver.system, self.data(u)
-        sides = np.eye(len(self.kept))[:, :, None]
-        with np.errstate(all="ignore"):
-            jacobian = system.linearized(x, system.left, data, data)[1].transpose(2, 0, 1)
-            moved: dict[str, Any] = {}
-            for name, side in zip(self.kept, sides, strict=True):
-                item = self.items[name]
-                moved[name] = data[name] + 1j * TINY * (item.high - item.low) * side
-            still = x[:, None].astype(complex)
-            left = np.imag(system.left(system.state(still, moved), moved)) / TINY
-            right = np.broadcast_to(left, (len(left), len(sides), len(u)))
-            turns = -_solved(jacobian, right.transpose(2, 0, 1))
-            state = system.state(still + 1j * TINY * turns.transpose(1, 2, 0), moved)
-            told = np.nan_to_num(np.imag(self._told(state)) / TINY).transpose(2, 0, 1)
+        system, data = self.system, self.data(u)
+        jacobian = system.linearized(x, system.left, data, data)[1].transpose(2, 0, 1)
+        moved: dict[str, Any] = {}
+        for name, side in zip(self.kept, np.eye(len(self.kept))[:, :, None], strict=True):
+            item = self.items[name]
+            moved[name] = data[name] + 1j * TINY * (item.high - item.low) * side
+        still = x[:, None].astype(complex)
+        left = np.imag(system.left(system.state(still, moved), moved)) / TINY
+        right = np.broadcast_to(left, (len(left), len(self.kept), len(u)))
+        turns = -_solved(jacobian, right.transpose(2, 0, 1))
+        state = system.state(still + 1j * TINY * turns.transpose(1, 2, 0), moved)
+        told = np.nan_to_num(np.imag(self._told(state)) / TINY).transpose(2, 0, 1)
         count = len(self.names) + len(self.ratios)
         return told[:, :count], told[:, count:], turns
 
@@ -261,9 +311,9 @@ class _Box:
 
         With the laws L (Equations 15, 16 and 18), the impulse P and a coefficient c that is not
         known, |dL/dP| over |d(laws and known values)/d(velocities, P)| and each |dL/dc|."""
-        if not (self.solver.square and self.limited):
+        if not (self.square and self.limited):
             return np.zeros(len(u))
-        system, data = self.solver.system, self.data(u)
+        system, data = self.system, self.data(u)
         jacobian = system.linearized(x, system.left, data, data)[1]
         state = system.state(x, data)
         laws = [n for n in COEFFICIENTS if not (system.point and n == "EM")]
@@ -308,8 +358,7 @@ class _Box:
 
     def proper_density(self, u: Floats, x: Floats, walls: Floats) -> Floats:
         """`density` over the velocities before, the coefficients and the vehicles."""
-        with np.errstate(all="ignore"):
-            whole = self.density(u, walls) + self.log_volume(u, x)
+        whole = self.density(u, walls) + self.log_volume(u, x)
         return np.where(np.isnan(whole), -np.inf, whole)
 
     def density(self, u: Floats, walls: Floats, beyond: Floats | float = 0.0) -> Floats:
@@ -410,73 +459,6 @@ def _walked(
     return points, values
 
 
-class _Solving:
-    """Impacts from known values, as many as unknowns: n of each -> n impacts."""
-
-    def __init__(self, solution: Reconstruction, known: Mapping[str, Uncertain]) -> None:
-        self.system = System(known, adjusted=False)
-        adjusted = solution.system.state(solution.x)
-        names, scales = self.system.variables, self.system.scales
-        self.x = np.array(
-            [np.ravel(adjusted[n])[0] / scale for n, scale in zip(names, scales, strict=True)]
-        ).reshape(-1, 1)
-        jacobian = self.system.slopes(self.x)
-        self.inverse, null = pseudo_inverse(jacobian)
-        self.square = jacobian.shape[0] == jacobian.shape[1] and not null.shape[1]
-
-    def __call__(
-        self, data: Mapping[str, Floats], count: int, guess: Floats | None = None
-    ) -> tuple[Floats, State, Flags]:
-        """The ``count`` impacts, as variables and states, and which of them meet all conditions."""
-        x = start = np.repeat(self.x, count, axis=1) if guess is None else guess
-        geometry = None
-        if set(data) & set(GEOMETRY):
-            geometry = Geometry.of({**self.system.constants, **data})
-        with np.errstate(all="ignore"):
-            residual = self.left(x, data, geometry)
-            left = np.abs(residual).max(axis=0, initial=0.0)
-            for more in reversed(range(CHORDS)):
-                before = left
-                x = x - self.inverse @ residual
-                residual = self.left(x, data, geometry)
-                left = np.abs(residual).max(axis=0, initial=0.0)
-                # what is left over shrinks each time by the same factor
-                if not ((left > SETTLED) & (left * (left / before) ** more <= SETTLED)).any():
-                    break
-            settled = left <= SETTLED
-            if not settled.all():
-                wild = ~settled
-                part = {n: column[wild] for n, column in data.items()}
-                x[:, wild], settled[wild] = self.newton(part, start[:, wild])
-        return x, self.system.state(x, data, geometry), settled
-
-    def left(
-        self, x: Floats, data: Mapping[str, Floats], geometry: Geometry | None = None
-    ) -> Floats:
-        return np.asarray(self.system.left(self.system.state(x, data, geometry), data))
-
-    def newton(self, data: Mapping[str, Floats], x: Floats) -> tuple[Floats, Flags]:
-        """The same by Newton's method, from the impacts ``x``. A point that comes no nearer a
-        solution in three steps has none in reach."""
-        x, count = x.copy(), x.shape[1]
-        least, idle = np.full(count, np.inf), np.zeros(count, int)
-        going = np.arange(count)
-        for _ in range(NEWTONS):
-            here, known = x[:, going], {name: column[going] for name, column in data.items()}
-            residual, jacobian = self.system.linearized(here, self.system.left, known, known)
-            left = np.abs(residual).max(axis=0, initial=0.0)
-            idle = np.where(left < 0.5 * least, 0, idle + 1)
-            least = np.fmin(least, left)
-            more = (left > SETTLED) & (idle <= 3)
-            going, least, idle = going[more], least[more], idle[more]
-            if not len(going):
-                break
-            right = residual[:, more].T[:, :, None]
-            step = _solved(jacobian[:, :, more].transpose(2, 0, 1), right)[:, :, 0]
-            x[:, going] = here[:, more] - np.nan_to_num(step.T)
-        return x, np.abs(self.left(x, data)).max(axis=0, initial=0.0) <= 100 * SETTLED
-
-
 def _solved(matrices: Floats, right: Floats) -> Floats:
     """The solutions of n systems of equations, n x rows x columns, for several right sides each, n
     x rows x m; the least ones where a matrix is singular or not square, none (0) where it is not
@@ -523,14 +505,13 @@ def _rank(rows: Floats) -> int:
     return int(rows.shape[1] - pseudo_inverse(rows)[1].shape[1])
 
 
-def _endless(solver: _Solving, known: Mapping[str, Uncertain], names: Sequence[str]) -> set[str]:
+def _endless(box: _Box, known: Mapping[str, Uncertain], names: Sequence[str]) -> set[str]:
     """The quantities that nothing determines when E is 0, where it may be."""
-    system = solver.system
-    if "E" not in system.laws or not known["E"].low <= 0 <= known["E"].high:
+    if "E" not in box.system.laws or not known["E"].low <= 0 <= known["E"].high:
         return set()
-    nothing = System({**system.known, "E": fixed(0.0)}, adjusted=False)
-    _, null = pseudo_inverse(nothing.slopes(solver.x))
-    slopes = {name: nothing.gradient(solver.x, name) for name in names}
+    nothing = System({**box.system.known, "E": fixed(0.0)}, adjusted=False)
+    _, null = pseudo_inverse(nothing.slopes(box.x))
+    slopes = {name: nothing.gradient(box.x, name) for name in names}
     return {
         name
         for name, slope in slopes.items()
