@@ -10,7 +10,7 @@ correlations come from the same equations.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -303,7 +303,6 @@ class Reconstruction:
     adjusted: tuple[Adjusted, ...]
     redundancy: int
     squares: float
-    left_over: float
     assumed: bool = False
     against_sign: bool = False
 
@@ -331,8 +330,8 @@ class Reconstruction:
         """Further values that would determine all that is not; none where none would."""
         _, null = pseudo_inverse(self.system.slopes(self.x))
         rows, names = np.zeros((0, null.shape[1])), []
-        for name in dict.fromkeys((*_HELPFUL_FIRST, *self.undetermined)):
-            gradient = self.system.gradient(self.x, name)
+        wanted = [*dict.fromkeys((*_HELPFUL_FIRST, *self.undetermined))]
+        for name, gradient in zip(wanted, self.system.gradients(self.x, wanted), strict=True):
             if name in self.undetermined and np.isfinite(gradient).all():
                 row = gradient @ null / np.abs(gradient).max(initial=1e-300)
                 tried = np.vstack([rows, row])
@@ -355,9 +354,7 @@ class Reconstruction:
     def responses(self, names: Sequence[str]) -> Floats:
         """What an error of each known value (column) by its standard deviation does to quantities
         (rows), to first order."""
-        rows = np.array([self.system.gradient(self.x, name) for name in names])
-        # not -1: where nothing is uncertain there are no rows to tell the columns from
-        return np.asarray(rows.reshape(len(names), len(self._responses)) @ self._responses)
+        return np.asarray(self.system.gradients(self.x, names) @ self._responses)
 
     @within_doubles
     def deviations(self, names: Sequence[str]) -> dict[str, float]:
@@ -432,7 +429,8 @@ def reconstruct(
     for fits in (False, True):
         for reading in readings:
             try:
-                found += _solutions(reading, fits, progress)
+                search = _Search(reading, progress)
+                found += search.found() if search.assumed == fits else []
             except UserError as error:
                 failure = error
         agreeing = [s for s in found if mu is None or _agrees(s, mu.nominal)]
@@ -490,82 +488,73 @@ def _agrees(solution: Reconstruction, mu: float) -> bool:
     return not known or typed_friction(solution.system.state(solution.x), signed) == mu
 
 
-def _solutions(
-    known: Mapping[str, Uncertain], fits: bool, progress: Progress
-) -> list[Reconstruction]:
-    """The impacts nearest to what is known, friction signed; ``fits``: of exact values that
-    contradict one another only, else of all others."""
-    begin, at_hand, found = _starts(known, progress)
-    system = found.system
-    if found.assumed != fits:
-        return []
-    ends, over = straight(system, begin)
-    squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
-    for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
-        if found.is_open and len(found.followed) >= _FEW:
-            break
-        if over[i] <= _NEARLY:
-            found.follow(ends[:, i : i + 1])
-    met = bool((over <= _NEARLY).any())
-    few, more = begin[:, :_TIGHTENED_FIRST], begin[:, _TIGHTENED_FIRST:_TIGHTENED]
-    for some in () if at_hand else (few, more):
-        settled = begin.shape[1] == 1 or (some is more and not found.is_open)
-        if found.solutions and settled:
-            break
-        for one in some.T:
-            nearby, left_over = tightened(system, one[:, None])
-            if left_over <= _NEARLY:
-                met = True
-                found.follow(nearby)
-    if not (met or np.isfinite(over).any()):
-        raise np.linalg.LinAlgError("not finite")
-    if met and not found.solutions:
-        raise UnsolvableError(
-            "the search for the impact nearest to what is known came to no end; expected wider "
-            "tolerances, or fewer values"
-        )
-    if not found.solutions:
-        raise UnsolvableError(
-            "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
-            "what is measured"
-        )
-    return found.solutions
+class _Search:
+    """The impacts nearest to what is known, friction signed, each once.
 
+    ``begin``: where to begin, a column each; ``at_hand``: whether measured values agree with one
+    another there; ``assumed``: exact values contradict one another, and the known velocities were
+    given tolerances."""
 
-def _starts(known: Mapping[str, Uncertain], progress: Progress) -> tuple[Floats, bool, _Found]:
-    """Where to begin, a column each; whether measured values agree with one another there; and
-    what is to be found."""
-    rng = np.random.default_rng(1988)
-    plain = System(known, adjusted=False, progress=progress)
-    loose = any(known[name].varies for name in PARAMETERS if name in known)
-    count = 1 if plain.linear and not loose else _STARTS  # one valley, without bends
-    # more conditions than variables: no start meets them, unless all do
-    tried = 1 if len(plain.conditions) > len(plain.variables) else count
-    x, left_over = straight(plain, _start(plain, rng, tried))
-    at_hand = left_over <= _HOLDS
-    assumed = False
-    if not at_hand.any():
-        known, assumed = _with_tolerances(known)
-    system = System(known, adjusted=True, progress=progress)
-    if at_hand.any():
-        state = plain.state(x[:, at_hand])
-        begin = _start(system, rng, int(at_hand.sum()))
-        for row, name in enumerate(system.variables):
-            if name in VELOCITIES or name in IMPULSES:
-                begin[row] = state[name] / system.scales[row]
-    else:
-        begin = _start(system, rng, count)
-    return begin, bool(at_hand.any()), _Found(system, assumed)
+    def __init__(self, known: Mapping[str, Uncertain], progress: Progress) -> None:
+        self.solutions: list[Reconstruction] = []
+        self.followed: list[Floats] = []
+        rng = np.random.default_rng(1988)
+        plain = System(known, adjusted=False, progress=progress)
+        loose = any(known[name].varies for name in PARAMETERS if name in known)
+        count = 1 if plain.linear and not loose else _STARTS  # one valley, without bends
+        # more conditions than variables: no start meets them, unless all do
+        tried = 1 if len(plain.conditions) > len(plain.variables) else count
+        x, left_over = straight(plain, _start(plain, rng, tried))
+        x = x[:, left_over <= _HOLDS]
+        self.at_hand = bool(x.shape[1])
+        self.assumed = not self.at_hand and not any(item.varies for item in known.values())
+        if self.assumed:
+            for name in (n for n in (*VELOCITIES, *FINAL_STATE) if n in known):
+                deviation = 1 / plain.gyration if name in SPINS else 1.0
+                loose_one = Uncertain("normal", known[name].nominal, -np.inf, np.inf, deviation)
+                known = {**known, name: loose_one}
+        self.system = System(known, adjusted=True, progress=progress)
+        self.begin = _start(self.system, rng, x.shape[1] or count)
+        if self.at_hand:
+            state = plain.state(x)
+            for row, name in enumerate(self.system.variables):
+                if name in VELOCITIES or name in IMPULSES:
+                    self.begin[row] = state[name] / self.system.scales[row]
 
-
-@dataclass
-class _Found:
-    """The solutions of a system, each once."""
-
-    system: System
-    assumed: bool
-    solutions: list[Reconstruction] = field(default_factory=list)
-    followed: list[Floats] = field(default_factory=list)
+    def found(self) -> list[Reconstruction]:
+        """The solutions. Raises UnsolvableError where there are none."""
+        system, begin = self.system, self.begin
+        ends, over = straight(system, begin)
+        squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
+        for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
+            if self.is_open and len(self.followed) >= _FEW:
+                break
+            if over[i] <= _NEARLY:
+                self.follow(ends[:, i : i + 1])
+        met = bool((over <= _NEARLY).any())
+        few, more = begin[:, :_TIGHTENED_FIRST], begin[:, _TIGHTENED_FIRST:_TIGHTENED]
+        for some in () if self.at_hand else (few, more):
+            settled = begin.shape[1] == 1 or (some is more and not self.is_open)
+            if self.solutions and settled:
+                break
+            for one in some.T:
+                nearby, left_over = tightened(system, one[:, None])
+                if left_over <= _NEARLY:
+                    met = True
+                    self.follow(nearby)
+        if not (met or np.isfinite(over).any()):
+            raise np.linalg.LinAlgError("not finite")
+        if met and not self.solutions:
+            raise UnsolvableError(
+                "the search for the impact nearest to what is known came to no end; expected wider "
+                "tolerances, or fewer values"
+            )
+        if not self.solutions:
+            raise UnsolvableError(
+                "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
+                "what is measured"
+            )
+        return self.solutions
 
     @property
     def is_open(self) -> bool:
@@ -583,7 +572,7 @@ class _Found:
             return  # something is not finite there
         if not left_over <= _HOLDS:
             return
-        solution = _described(self.system, x, left_over, self.assumed)
+        solution = _described(self.system, x, self.assumed)
         if solution.undetermined:  # from elsewhere it would only come out otherwise
             both = (*self.solutions, solution)
             self.solutions = [min(both, key=lambda one: round(one.squares, 9))]
@@ -591,37 +580,25 @@ class _Found:
             self.solutions.append(solution)
 
 
-def _with_tolerances(known: Mapping[str, Uncertain]) -> tuple[Mapping[str, Uncertain], bool]:
-    """The same with one tolerance for all known velocities, where nothing has any."""
-    if any(item.varies for item in known.values()):
-        return known, False
-    length = System(known, adjusted=False).gyration
-    measured = {}
-    for name in {*known} & {*VELOCITIES, *FINAL_STATE}:
-        deviation = 1 / length if name in SPINS else 1.0
-        measured[name] = Uncertain("normal", known[name].nominal, -np.inf, np.inf, deviation)
-    return {**known, **measured}, True
-
-
-def _described(system: System, x: Floats, residual: float, assumed: bool) -> Reconstruction:
-    state = system.state(x)
-    rest = system.left(state)[:, 0]
-    rows = system.slopes(x)
+def _described(system: System, x: Floats, assumed: bool) -> Reconstruction:
+    state, rows = system.state(x), system.slopes(x)
+    rest = system.left(state)[len(system.conditions) :, 0]
     _, null = pseudo_inverse(rows)
-    values = {n: float(np.ravel(state.values[n])[0]) for n in ("M", *GEOMETRY)}
+
+    def value(of: Any) -> float:
+        return float(np.ravel(of)[0])
+
+    values = {n: value(state.values[n]) for n in ("M", *GEOMETRY)}
     undetermined = []
-    for name in QUANTITIES:
+    for name, gradient in zip(QUANTITIES, system.gradients(x, QUANTITIES), strict=True):
         if system.point and name in (*SPINS, "PM", "EM"):
             continue
-        if name in COEFFICIENTS and name in system.known:
-            values[name] = float(np.ravel(state.values[name])[0])
-            continue
-        gradient = system.gradient(x, name)
+        known = name in COEFFICIENTS and name in system.known
+        size = value(state.values[name] if known else state[name])
         largest = np.abs(gradient).max(initial=0.0)
-        value = float(np.ravel(state[name])[0])
         is_open = np.abs(gradient @ null).max(initial=0.0) > _OPEN * largest
-        if np.isfinite(value) and np.isfinite(largest) and not is_open:
-            values[name] = value
+        if known or (np.isfinite(size) and np.isfinite(largest) and not is_open):
+            values[name] = size
         elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):
             undetermined.append(name)
     unknown = [n for n in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS) if n not in system.known]
@@ -629,14 +606,10 @@ def _described(system: System, x: Floats, residual: float, assumed: bool) -> Rec
         raise UnsolvableError(
             f"nothing of {' '.join(unknown)} is determined by what is known; expected more of it"
         )
-    adjusted = []
-    for name in system.observations:
-        item = system.known[name]
-        value = float(np.ravel(system.measured(state, name))[0])
-        adjusted.append(Adjusted(name, item.nominal, item.tolerance, value))
-    rest = rest[len(system.conditions) :]
+    items = [(n, system.known[n], value(system.measured(state, n))) for n in system.observations]
+    adjusted = tuple(Adjusted(n, item.nominal, item.tolerance, now) for n, item, now in items)
     redundancy = len(rows) - (rows.shape[1] - null.shape[1])
     return Reconstruction(
-        *(system, x, values, tuple(undetermined), tuple(adjusted), redundancy),
-        *(float(rest @ rest), residual, assumed),
+        *(system, x, values, tuple(undetermined), adjusted, redundancy, float(rest @ rest)),
+        assumed,
     )

@@ -8,7 +8,7 @@ all is linear but speeds, directions, changes of velocity and energies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from typing import Any
 
@@ -196,8 +196,13 @@ class System:
         """Of what conditions and observations leave over, for one impact."""
         return self.linearized(x, self.left)[1][:, :, 0]
 
-    def gradient(self, x: Array, name: str) -> Floats:
-        """Of a quantity, or of a known value that is adjusted, over the scaled variables."""
-        if name in self.variables and name not in QUANTITIES:
-            return np.asarray(self.scales * (np.array(self.variables) == name))
-        return self.linearized(x, lambda state, _: np.asarray(state[name])[None])[1][0, :, 0]
+    def gradients(self, x: Array, names: Sequence[str]) -> Floats:
+        """Of quantities, or of known values that are adjusted (rows), over the scaled variables."""
+        adjusted = {*self.variables} - {*QUANTITIES}
+
+        def rows(state: State, _: Any) -> Array:
+            every = (state.values[n] if n in adjusted else state[n] for n in names)
+            # with the impulse, for the shape where there are none
+            return np.stack(np.broadcast_arrays(state.values["PN"], *every))[1:]
+
+        return self.linearized(x, rows)[1][:, :, 0]

@@ -57,9 +57,8 @@ FREE, ENOUGH = 4096, 100
 NEAR, RIDGE = 1.5, 1e-9
 """Walls are learnt no farther from the middle between them, where a quotient's pole would spoil
 them; the ridge holds still what the places met do not tell."""
-_SINGULAR, _GROWS = 1e-12, 1e10
-"""Singular values of so little of the largest are none; so much larger than its right side a
-solution may be a singular matrix's."""
+_SINGULAR = 1e-12
+"""Singular values of so little of the largest are none."""
 
 
 @dataclass(frozen=True)
@@ -467,15 +466,10 @@ def _solved(matrices: Floats, right: Floats) -> Floats:
     rows, columns = matrices.shape[1:]
     matrices = np.where(finite[:, None, None], matrices, np.eye(rows, columns))
     right = np.where(finite[:, None, None], right, 0.0)
-    solution = np.full((len(right), columns, right.shape[2]), np.nan)
     if rows == columns:
         with suppress(np.linalg.LinAlgError):  # one is singular
-            solution = np.linalg.solve(matrices, right)
-    grown = np.abs(matrices).max((1, 2), initial=0.0) * np.abs(solution).max((1, 2), initial=0.0)
-    far = ~(grown <= _GROWS * np.abs(right).max((1, 2), initial=0.0))
-    if far.any():
-        solution[far] = np.linalg.pinv(matrices[far], rcond=_SINGULAR) @ right[far]
-    return np.asarray(solution, np.float64)
+            return np.asarray(np.linalg.solve(matrices, right), np.float64)
+    return np.asarray(np.linalg.pinv(matrices, rcond=_SINGULAR) @ right)
 
 
 def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
@@ -511,9 +505,7 @@ def _endless(box: _Box, known: Mapping[str, Uncertain], names: Sequence[str]) ->
         return set()
     nothing = System({**box.system.known, "E": fixed(0.0)}, adjusted=False)
     _, null = pseudo_inverse(nothing.slopes(box.x))
-    slopes = {name: nothing.gradient(box.x, name) for name in names}
-    return {
-        name
-        for name, slope in slopes.items()
-        if np.abs(slope @ null).max(initial=0.0) > 1e-7 * np.abs(slope).max(initial=0.0)
-    }
+    slopes = nothing.gradients(box.x, names)
+    left_open = np.abs(slopes @ null).max(axis=1, initial=0.0)
+    endless = left_open > 1e-7 * np.abs(slopes).max(axis=1, initial=0.0)
+    return {name for name, without_end in zip(names, endless, strict=True) if without_end}
