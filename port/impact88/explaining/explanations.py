@@ -304,7 +304,7 @@ def _described(page: PageEvidence, change: Change) -> dict[str, Any]:
             index = next(at for at in range(len(printed)) if printed[at] != would_be[at])
             asked = f"{printed[index]} {'an' if would_be[index] == '8' else 'a'} {would_be[index]}"
             if index < len(reading.region):
-                at = page.shown.place(reading.region[index].offset)
+                at = page.shown.page.place(reading.region[index].offset)
         look = f"line {at[0]}, column {at[1]}: is this {asked}?"
     return {
         "kind": kind, "field": name, "printed": printed, "would_be": would_be,

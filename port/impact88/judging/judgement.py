@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from ..fields import ANGLES, FIELDS, FINAL_SPINS
 from ..reading.glyphs import Region
 from ..reading.numerals import Doubt, Match, Spot, compare, cut_as
-from ..reading.printout import Printout, Reading
+from ..reading.printout import Printout, Reading, reading_of
 from ..recovery.recovered import Recovered, reply_ways, without_mark
 from ..recovery.typedtext import stored_and_printed
 
@@ -155,7 +155,7 @@ def _fields(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
     row = _angle_row(shown, recovered)
     for name in FIELDS:
         text = recovered.outcome.fields.get(name)
-        reading = shown.reading(row[name]) if name in row else shown.fields.get(name)
+        reading = reading_of(shown.page, row[name]) if name in row else shown.fields.get(name)
         if reading is None and text is None:
             expected = recovered.missing and not shown.ending
             if not expected or (name in FINAL_SPINS and recovered.scene["M"] != "6"):
@@ -217,7 +217,7 @@ def _angle_row(shown: Printout, recovered: Recovered) -> dict[str, Region]:
 def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
     starts = [*(glyph.offset for glyph in reading.region), reading.stop]
     return [
-        Doubtful(*shown.place(starts[one.at]), starts[one.at], *one[1:3], str(one.doubt))
+        Doubtful(*shown.page.place(starts[one.at]), starts[one.at], *one[1:3], str(one.doubt))
         for one in spots
     ]
 

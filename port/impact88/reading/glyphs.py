@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from enum import IntEnum
 from functools import lru_cache
 from importlib import resources
-from itertools import repeat
+from itertools import pairwise, repeat
 from math import log10
 from typing import NamedTuple
 
@@ -56,14 +56,16 @@ Region = tuple[Glyph, ...]
 
 
 class Page:
-    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order; ``width``: where
-    its lines were broken or cut off, 0 where they were not."""
+    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order, ``lines``: those of
+    each line; ``width``: where lines were broken or cut off, 0 where they were not."""
 
     def __init__(self, text: str) -> None:
         self.text = text
         self._lines = [0, *(match.end() for match in re.finditer("\n", text))]
         self.width = _wrapping_width(text)
         self.glyphs = tuple(self._read())
+        starts = [at for at, glyph in enumerate(self.glyphs) if glyph.gap is Gap.LINE]
+        self.lines = [range(*one) for one in pairwise([*starts, len(self.glyphs)])]
 
     def _read(self) -> Iterator[Glyph]:
         last = 0  # where the glyph before ended

@@ -106,23 +106,24 @@ class Piece(NamedTuple):
 class Printout:
     """One printout as read.
 
-    ``line``, ``column``, ``start``, ``stop``: where it stands in the text; ``page``: that text as
-    glyphs. ``fields``: name -> reading, for every number found; ``replies``: the velocities typed
-    at the prompts, where the transcript shows them; ``angles``: ways to cut the row of five angles
-    with what each costs, the likeliest first, where blanks alone do not tell, and ``angle_row`` its
-    glyphs then; ``ending``: ``ZERO DETERMINANT`` or an Applesoft error as printed, with its line;
-    ``ended``: whether anything of the last row of asterisks is there; ``has_final_spins``: whether
-    the final WA, WB line is, read or not: then M = N; ``left_over``: text that belongs nowhere;
-    ``remarks``: what could not be read, and where; ``labels``: how each number is named; ``notes``:
-    what was normalised or passed over; ``unread``: why the text was not read to its end;
-    ``misread_letters``: how many letters of labels and asterisks were read as others.
+    ``page``: the text as glyphs; ``line``, ``column``, ``start``, ``stop``: where the printout
+    stands in it. ``fields``: name -> reading, for every number found; ``replies``: the velocities
+    typed at the prompts, where the transcript shows them; ``angles``: ways to cut the row of five
+    angles with what each costs, the likeliest first, where blanks alone do not tell, and
+    ``angle_row`` its glyphs then; ``ending``: ``ZERO DETERMINANT`` or an Applesoft error as
+    printed, with its line; ``ended``: whether anything of the last row of asterisks is there;
+    ``has_final_spins``: whether the final WA, WB line is, read or not: then M = N; ``left_over``:
+    text that belongs nowhere; ``remarks``: what could not be read, and where; ``labels``: how each
+    number is named; ``notes``: what was normalised or passed over; ``unread``: why the text was not
+    read to its end; ``misread_letters``: of labels and asterisks, how many were read as others.
     """
 
-    line: int
-    column: int
-    start: int
-    stop: int
     page: Page = field(repr=False)
+    _states: Mapping[int, int] = field(repr=False)
+    line: int = 0
+    column: int = 0
+    start: int = 0
+    stop: int = 0
     fields: dict[str, Reading] = field(default_factory=dict)
     replies: dict[str, Reading] = field(default_factory=dict)
     angles: list[tuple[tuple[str, ...], float]] = field(default_factory=list)
@@ -137,6 +138,31 @@ class Printout:
     unread: str = ""
     misread_letters: int = 0
 
+    def __post_init__(self) -> None:
+        glyphs, states = self.page.glyphs, self._states
+        self._slots: dict[str, tuple[int, int]] = {}  # of every number its glyphs
+        for index, state in states.items():
+            if STATES[state].kind == "number":
+                name = STATES[state].name
+                self._slots[name] = (self._slots.get(name, (index, 0))[0], index + 1)
+        # a word that stands apart from the number before it, and is joined to the next by its
+        # equals sign, is no part of either
+        self._words: set[int] = set()
+        for first, sign in words_before(self.page, self._slots).values():
+            self._words.update(range(first, sign))
+            for name, (start, stop) in self._slots.items():
+                if start < first < stop and glyphs[first].gap:
+                    self._slots[name] = (start, first)
+                elif first <= start <= sign < stop - 1:
+                    self._slots[name] = (sign + 1, stop)
+        self._exact = {
+            index: STATES[state].line
+            for index, state in states.items()
+            if letter_of(state) == glyphs[index].char
+        }
+        self.start, self.stop = self.page.span(min(states), max(states) + 1)
+        self.line, self.column = self.page.place(self.start)
+
     @property
     def mislabelled(self) -> list[LabelCheck]:
         """The labels that say another number than the one that stands there."""
@@ -144,10 +170,13 @@ class Printout:
 
     @property
     def marks(self) -> int:
-        """How many marks of an optical reader its numbers bear: foreign glyphs and blanks within
-        them, specks beside them."""
+        """How many marks of an optical reader its numbers bear: those that nobody types so, in
+        pieces or with more than O for 0 and l for 1, and specks beside them."""
         specks = (one.beside and not one.whole and len(one.text) <= 3 for one in self.left_over)
-        return sum(map(_damaged, self.fields.values())) + sum(specks)
+        return sum(specks) + sum(
+            any(glyph.gap for glyph in one.region[1:]) or not _TYPED.issuperset(letters(one.region))
+            for one in self.fields.values()
+        )
 
     @property
     def machine_read(self) -> bool:
@@ -171,24 +200,206 @@ class Printout:
         """Whether nothing of the results is there, and no message that says why."""
         return self.ending is None and self.fields.keys().isdisjoint(("VAX", "VAY", "VBX", "VBY"))
 
-    def place(self, offset: int) -> tuple[int, int]:
-        """Line and column, counted from 1, of an offset in the text."""
-        return self.page.place(offset)
-
-    def reading(self, region: Region) -> Reading | None:
-        """A part of the row of angles as a number; None when it is none."""
-        return _reading(self.page, region)
-
     def text(self, name: str) -> str | None:
         """The text of a field, None when it was not read."""
         reading = self.fields.get(name)
         return reading.text if reading else None
 
+    def _letter(self, index: int) -> str:
+        """The letter of a label that a glyph is taken for, "" where it is taken for none."""
+        return letter_of(self._states.get(index, 0))
 
-def _damaged(reading: Reading) -> bool:
-    """Whether nobody types a number so: in pieces, or with more than O for 0 and l for 1."""
-    parted = any(glyph.gap for glyph in reading.region[1:])
-    return parted or not all(glyph.char in _TYPED for glyph in reading.region)
+    def _line(self, index: int) -> int:
+        """The line of the program's page that a glyph belongs to."""
+        return STATES[self._states.get(index, 0)].line
+
+    def read(self) -> bool:
+        """Read the numbers; whether there are any, or a prompt."""
+        self._crop()
+        for name, (start, stop) in self._slots.items():
+            if name not in (REPLY_A, REPLY_B):
+                self._read_number(name, start, stop)
+        if not self._worth_telling():
+            return False
+        self.has_final_spins = [*self._exact.values()].count(SPINS) >= 2
+        for name in () if self.has_final_spins else FINAL_SPINS:  # a footer, a page number
+            self.fields.pop(name, None)
+            self._slots.pop(name, None)
+        for side, name in (("A", REPLY_A), ("B", REPLY_B)):
+            if name in self._slots:
+                self._read_reply(REPLIES[side], self._slots[name][0])
+        self._read_angles()
+        self.ended = any(self._line(index) == STARS[1] for index in self._states)
+        return True
+
+    def end(self, message: re.Match[str], text: str) -> int:
+        """The run ended with a message in the glyphs' text; the glyph after it."""
+        begin, stop = message.span()
+        self.ending = _ENDINGS[message[1].replace("'", "")]
+        if self.ending != ZERO_DETERMINANT and (line := _IN_LINE.match(text, stop)):
+            self.ending += f" IN {line[1].translate(_DIGITS)}"
+            stop = line.end()
+        self.stop = self.page.span(begin, stop)[1]
+        self._exact |= dict.fromkeys(range(begin, stop), -1)
+        return stop
+
+    def check_labels(self) -> None:
+        """How the numbers are named, and what of the letters was misread."""
+        read = {name: self._slots[name] for name in self.fields if name in self._slots}
+        marks = self.marks + self._misread("*") if len(self.fields) >= _PART else READERS
+        found = [
+            (name, text, [at for at, state in self._states.items() if state in own])
+            for name, text, own in LABELS
+        ]
+        self.labels = label_checks(self.page, found, read, marks)
+        wrong = {one.name for one in self.mislabelled}
+        self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
+
+    def _crop(self) -> None:
+        """Where most lines that begin with a label lack its first letter, three at least, the
+        margin is cut off, and what a line begins with is not to be relied on."""
+        seen = set(self._states.values())
+        first = [index for index in self._states if self.page.glyphs[index].gap is Gap.LINE]
+        labels = [index for index in first if self._letter(index) not in ("", "*")]
+        before = [self._states[index] - 1 for index in labels]
+        lost = sum(bool(letter_of(state)) and state not in seen for state in before)
+        if lost > max(2, len(labels) / 2):
+            for name, (start, _) in [*self._slots.items()]:
+                if start in first:
+                    self._remark(name, start, "begins where the margin is cut off")
+                    del self._slots[name]
+
+    def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
+        """How many of some letters of labels, but of wrong ones, and asterisks were read as other
+        letters or figures."""
+        others = {state for one in LABELS if one.name in wrong for state in one.states}
+        return sum(
+            self.page.glyphs[index].char != letter and self.page.glyphs[index].char.isalnum()
+            for index, state in self._states.items()
+            if state not in others and state != self._states.get(index - 1)
+            and (letter := letter_of(state)) and letter in letters_of
+        )  # fmt: skip
+
+    def _worth_telling(self) -> bool:
+        """Whether a label and its number, or a prompt, was read."""
+        if sum(line < PROMPTS for line in self._exact.values()) >= _PROMPT_LETTERS:
+            return True
+        numbers = {name for name, one in self.fields.items() if any(map(str.isdigit, one.text))}
+        if not numbers.issuperset(ANGLES[:-1]):
+            numbers -= set(ANGLES)
+        read = {self._states[index] for index in self._exact}
+        labelled = {one.name for one in LABELS if not read.isdisjoint(one.states)} | {*ANGLES}
+        count = len(numbers & labelled)
+        return count >= 1 and count + len(self._exact) >= 5
+
+    def _remark(self, name: str, index: int, message: str, read: str = "") -> None:
+        """What could not be read at a glyph: what stands there, and what is wrong with it."""
+        line, column = self.page.place(self.page.glyphs[index].offset)
+        read = repr(read if len(read) <= 30 else read[:27] + "...") if read else ""
+        self.remarks.append(f"line {line}, column {column}: {name}: {read}{message}")
+
+    def _read_number(self, name: str, start: int, stop: int) -> None:
+        signed = self._letter(start - 1) == "=" == self.page.glyphs[start - 1].char
+        region = self.page.glyphs[start:stop]
+        reading = reading_of(self.page, region, not signed and name not in ANGLES)
+        if reading is None:
+            self._remark(name, start, ": expected a number", self.page.shown(start, stop))
+        else:
+            self.fields[name] = reading
+
+    def _read_angles(self) -> None:
+        glyphs = self.page.glyphs
+        places = [self._slots[name] for name in ANGLES if name in self._slots]
+        clean = all(name in self.fields and self.fields[name].clean for name in ANGLES)
+        if not places or (clean and all(glyphs[start].gap for start, _ in places[1:])):
+            return
+        start, stop = min(places)[0], max(stop for _, stop in places)
+        self.angle_row = glyphs[start:stop]
+        self.angles = numerals.cut_in_five(self.angle_row)
+        if not self.angles and len(places) < len(ANGLES):
+            row = self.page.shown(start, stop)
+            self._remark("PA", start, ": expected five angles, PA PB TA TB GA", row)
+
+    def _read_reply(self, names: Sequence[str], start: int) -> None:
+        """The three numbers typed at a prompt, after any that INPUT refused."""
+        stop, line, glyphs = start, self._line(start), self.page.glyphs
+        while self._states.get(stop) and (not self._letter(stop) or self._line(stop) == line):
+            stop += 1
+        parts = _reply_parts(glyphs[start:stop])
+        # a prompt's end whose mark was not read, before what is printed below
+        value = numerals.value_of(self.text(names[0]) or "")
+        first = letters(parts[0])
+        for at in range(1, min(len("Wa ?"), len(first))):
+            if value is not None and numerals.value_of(first[at:]) == value:
+                if glyphs[start - 1].char != "?":
+                    self._remark("reply", start, " before the first number", first[:at])
+                    parts[0] = parts[0][at:]
+                break
+        if len(parts) > len(names) and all(map(numerals.clean, parts[:3])):
+            extra = "".join(map(letters, parts[3:]))
+            self._remark("reply", start, " after the third number", extra)
+            parts = parts[:3]
+        if len(parts) == len(names):
+            for name, region in zip(names, parts, strict=True):
+                reading = reading_of(self.page, region)
+                if reading is not None and ILLEGIBLE not in reading.text:
+                    self.replies[name] = reading
+        elif parts != [()]:
+            self._remark("reply", start, " is not three numbers", self.page.shown(start, stop))
+
+    def roles(self) -> dict[int, str]:
+        """What each glyph is: of a number, an exact letter of a label, a damaged one;
+        not others between lines or put into labels."""
+        roles = dict.fromkeys(self._exact, "exact")
+        for index, state in self._states.items():
+            letter, figure = letter_of(state), self.page.glyphs[index].char.isdigit()
+            again = state == self._states.get(index - 1) or (letter in "%()=" and figure)
+            if letter and again:
+                roles.pop(index, None)
+            elif letter:
+                roles.setdefault(index, "letter")
+        roles = dict.fromkeys(self._words, "letter") | roles
+        for span in self._slots.values():
+            roles |= dict.fromkeys(range(*span), "number")
+        return roles
+
+
+def reading_of(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
+    """A region of a page as a number, None when nothing of one is there."""
+    text = numerals.clean(region)
+    if text is None:
+        ways = numerals.candidates(region, 1, sign_free)
+        # a glyph that looks like no figure within a number is illegible
+        strange = [
+            not (glyph.char in NUMERIC or printed_for(glyph.char) or glyph.gap) for glyph in region
+        ]
+        figures = [at for at, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
+        if ways and not any(strange[figures[0] + 1 : figures[-1]]):
+            text = ways[0][0]
+        else:
+            marked = (one.char if one.char in NUMERIC else ILLEGIBLE for one in region)
+            text = "".join(marked)[: numerals.LONGEST]
+            if not any(map(str.isdigit, text)) and text not in ("?", "??", "???"):
+                return None
+    begin, end = region[0].offset, region[-1].offset + 1
+    cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
+    cut = cut or page.place(end - 1)[1] == page.width
+    return Reading(text, *page.place(begin), begin, end, region, cut, sign_free)
+
+
+def _reply_parts(region: Region) -> list[Region]:
+    """The glyphs of a reply, parted at its commas, or where INPUT asked for more; after what it
+    refused, before what it ignored."""
+    asked = re.search(r"(?:.*REENTER)?\?*(.*?)(?:\?EXTRAIGNORED|PR#|$)", letters(region))
+    region = region[slice(*asked.span(1))] if asked else ()
+    parts: list[Region] = [()]
+    for place, glyph in enumerate(region):
+        more = glyph.gap is Gap.LINE and letters(region[place : place + 2]) == "??"
+        if glyph.char in ",;" or more:
+            parts.append(())
+        elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
+            parts[-1] += (glyph,)
+    return parts
 
 
 def read_bytes(data: bytes, where: str) -> list[Printout]:
@@ -209,22 +420,65 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     text = pasted.laid_out(text, where)
     page = Page(pasted.unwrapped(text))
     budget = Budget()
-    readers = [*_readers(page, budget)]
+    found = [*_printouts(page, budget)]
     reason = ""
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
         reason = f"what follows line {line}, column {column} was not read: there is too much of it"
-        readers = [one for one in readers if len(one.shown.fields) >= _PART]
-    shown = [reader.shown for reader in readers]
-    if not shown:
+        found = [one for one in found if len(one.fields) >= _PART]
+    if not found:
         expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
         raise UserError(f"no printout of the program in it; {reason or expected}", where)
-    shown[-1].unread = reason
-    _keep_left_over(page, readers)
-    for reader in readers:
-        reader.check_labels()
-    shown[0].notes += _left_out(text, page.text)
-    return shown
+    found[-1].unread = reason
+    _keep_left_over(page, found)
+    for one in found:
+        one.check_labels()
+        one.notes += _normalised(page.text[one.start : one.stop])
+    found[0].notes += _left_out(text, page.text)
+    return found
+
+
+_ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
+_DIGITS = str.maketrans("OQIL|!", "001111")
+_MESSAGES = {f"{one}ERROR": f"?{one} ERROR" for one in CODES} | {ZERO_DETERMINANT: ZERO_DETERMINANT}
+_ENDINGS = {re.sub("[ ']", "", said).translate(_ALIKE): shown for said, shown in _MESSAGES.items()}
+_ENDING = re.compile(r"\??(" + "|".join(map("'?".join, _ENDINGS)) + ")")
+_IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
+
+
+def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
+    """The printouts of each stretch of text up to where a run ended early."""
+    text = letters(page.glyphs)
+    commands = {at for one in _SLOT_COMMAND.finditer(text) for at in range(*one.span())}
+    start = 0
+    for message in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
+        stop = message.start() if message else len(text)
+        aligned = [*align(page.glyphs, start, stop, budget, commands)]
+        if notes := _notes(page, start, stop, aligned):
+            aligned = [*align(page.glyphs, start, stop, budget, notes | commands)]
+        found = [one for states in aligned if (one := Printout(page, states)).read()]
+        if message and found:
+            start = found[-1].end(message, text)
+        yield from found
+        if budget.stopped is not None:
+            return
+
+
+def _notes(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]) -> set[int]:
+    """The glyphs of lines whose numbers were taken for the page's, but of whose letters more than
+    half, five at least and four a number, are none of its labels'."""
+    read = {at: state for states in found for at, state in states.items()}
+    notes: set[int] = set()
+    for every in page.lines:
+        line = [at for at in every if start <= at < stop]
+        taken = (STATES[read.get(at, 0)] for at in line)
+        if any(state.kind == "number" and state.name in FIELDS for state in taken):
+            words = [at for at in line if page.glyphs[at].char.isalpha()]
+            strange = sum(letter_of(read.get(at, 0)) != page.glyphs[at].char for at in words)
+            text = "".join(" "[: page.glyphs[at].gap] + page.glyphs[at].char for at in line)
+            if strange >= max(_NOTE, 4 * len(re.findall(r"[0-9.]+", text)), len(words) / 2):
+                notes.update(line)
+    return notes
 
 
 # --- what else stands on the page ---
@@ -237,34 +491,29 @@ _LABEL_WORDS = frozenset(
 )
 
 
-def _keep_left_over(page: Page, readers: Sequence["_Reader"]) -> None:
+def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
     """What no printout has taken of its lines, and every other line, whole: with the printout above
     it, or with the first. A line is of the page where a number stands on it, half of its glyphs are
     letters as they are printed, or it is a row of asterisks; what stands beside a number
     may bear on the page, and so may another line that holds a number or one of the labels."""
-    roles = {index: role for reader in readers for index, role in reader.roles().items()}
-    printouts = [reader.shown for reader in readers]
-    numbers = [page.place(glyph.offset)[0] for glyph in page.glyphs]
-    for number, group in groupby(range(len(numbers)), numbers.__getitem__):
-        line = [*group]
+    roles = {index: role for one in found for index, role in one.roles().items()}
+    for line in page.lines:
         kinds = [roles.get(index) for index in line]
         numbered = "number" in kinds
         alike = sum(label_cost("*", page.glyphs[index].char) < 40 for index in line)
         stars = len(line) <= len("*****") + 2 and 2 * alike > len(line)
         whole = not (numbered or stars or 2 * kinds.count("exact") >= len(kinds))
-        loose = line if whole else [at for at in line if at not in roles]
+        loose = [at for at in line if whole or at not in roles]
         for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
             run = [index for _, index in pairs]
-            if not _SLOT_COMMAND.fullmatch("".join(page.glyphs[index].char for index in run)):
-                span = page.span(run[0], run[-1] + 1)
-                text = " ".join(page.text[slice(*span)].split())
+            start, stop = run[0], run[-1] + 1
+            if not _SLOT_COMMAND.fullmatch(letters(page.glyphs[start:stop])):
+                text, span = page.shown(start, stop), page.span(start, stop)
+                number, column = page.place(span[0])
                 figure = not stars and any(map(str.isdigit, text))
                 beside = _bears(text) if whole else numbered or figure
-                piece = Piece(text, *page.place(span[0]), *span, beside, whole)
-                above = [one for one in printouts if one.line <= number] or printouts[:1]
-                above[-1].left_over.append(piece)
-    for one in printouts:
-        one.notes += _normalised(page.text[one.start : one.stop])
+                above = [one for one in found if one.line <= number] or found[:1]
+                above[-1].left_over.append(Piece(text, number, column, *span, beside, whole))
 
 
 def _bears(text: str) -> bool:
@@ -297,326 +546,3 @@ def _left_out(text: str, unwrapped: str) -> list[str]:
     what = "1 line is" if len(lines) == 1 else f"{len(lines)} lines are"
     what += " markup or lines of a BASIC program, and not read: the first is line "
     return [f"{what}{lines[0]}"] if lines else []
-
-
-# --- printouts -----------------------------------------------------------------------------------
-
-_ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
-_DIGITS = str.maketrans("OQIL|!", "001111")
-_MESSAGES = {f"{one}ERROR": f"?{one} ERROR" for one in CODES} | {ZERO_DETERMINANT: ZERO_DETERMINANT}
-_ENDINGS = {re.sub("[ ']", "", said).translate(_ALIKE): shown for said, shown in _MESSAGES.items()}
-_ENDING = re.compile(r"\??(" + "|".join(map("'?".join, _ENDINGS)) + ")")
-_IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
-
-
-def _readers(page: Page, budget: Budget) -> Iterator["_Reader"]:
-    """The printouts of each stretch of text up to where a run ended early, read."""
-    text = letters(page.glyphs)
-    commands = {at for one in _SLOT_COMMAND.finditer(text) for at in range(*one.span())}
-    start = 0
-    for match in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
-        stop = match.start() if match else len(text)
-        aligned = [*align(page.glyphs, start, stop, budget, commands)]
-        if notes := _notes(page.glyphs, start, stop, aligned):
-            aligned = [*align(page.glyphs, start, stop, budget, notes | commands)]
-        found = [reader for states in aligned if (reader := _Reader(page, states)).read()]
-        if match and found:
-            last, (begin, start) = found[-1], match.span()
-            ending = _ENDINGS[match[1].replace("'", "")]
-            if ending != ZERO_DETERMINANT and (line := _IN_LINE.match(text, start)):
-                ending += f" IN {line[1].translate(_DIGITS)}"
-                start = line.end()
-            last.shown.ending, last.shown.stop = ending, page.span(begin, start)[1]
-            last.ending = range(begin, start)
-        yield from found
-        if budget.stopped is not None:
-            return
-
-
-def _slots_of(states: Mapping[int, int]) -> dict[str, tuple[int, int]]:
-    """Where each number stands: the field -> glyphs ``(start, stop)``."""
-    slots: dict[str, tuple[int, int]] = {}
-    for index, state in states.items():
-        if STATES[state].kind == "number":
-            name = STATES[state].name
-            slots[name] = (slots.get(name, (index, 0))[0], index + 1)
-    return slots
-
-
-def _notes(glyphs: Region, start: int, stop: int, found: Sequence[Mapping[int, int]]) -> set[int]:
-    """The glyphs of lines whose numbers were taken for the page's, but of whose letters more than
-    half, five at least and four a number, are none of its labels'."""
-    own: set[int] = set()
-    numbers: set[int] = set()
-    for states in found:
-        own.update(at for at, state in states.items() if letter_of(state) == glyphs[at].char)
-        for name, span in _slots_of(states).items():
-            numbers.update(range(*span) if name in FIELDS else ())
-    lines: list[list[int]] = [[]]
-    last = max(numbers, default=start)
-    for index in range(start, stop):
-        if glyphs[index].gap is Gap.LINE:
-            if index > last:
-                break
-            lines.append([])
-        lines[-1].append(index)
-    notes: set[int] = set()
-    for line in lines:
-        words = {index for index in line if glyphs[index].char.isalpha()}
-        text = "".join(" "[: glyphs[index].gap] + glyphs[index].char for index in line)
-        least = max(_NOTE, 4 * len(re.findall(r"[0-9.]+", text)), len(words) / 2)
-        if not numbers.isdisjoint(line) and len(words - own) >= least:
-            notes.update(line)
-    return notes
-
-
-class _Reader:
-    """Reads one printout from what its glyphs are taken for."""
-
-    def __init__(self, page: Page, states: dict[int, int]) -> None:
-        self._page, self._glyphs, self._states = page, page.glyphs, states
-        self._slots = _slots_of(states)
-        self.ending = range(0)
-        self._words: set[int] = set()
-        # a word that stands apart from the number before it, and is joined to the next by its
-        # equals sign, is no part of either
-        for first, sign in words_before(page, self._slots).values():
-            self._words.update(range(first, sign))
-            for name, (start, stop) in self._slots.items():
-                if start < first < stop and self._glyphs[first].gap:
-                    self._slots[name] = (start, first)
-                elif first <= start <= sign < stop - 1:
-                    self._slots[name] = (sign + 1, stop)
-        self._part_row()
-        self._exact = {
-            index: STATES[state].line
-            for index, state in self._states.items()
-            if letter_of(state) == self._glyphs[index].char
-        }
-        start, stop = page.span(min(states), max(states) + 1)
-        self.shown = Printout(*page.place(start), start, stop, page)
-
-    def _part_row(self) -> None:
-        """A line of five clean numbers is the row of angles; what stands below it is none of it."""
-        places = [index for name in ANGLES for index in self._slots.get(name, ())]
-        starts = places[:1]
-        for index in range(min(places, default=0) + 1, max(places, default=0)):
-            if self._glyphs[index].gap is Gap.LINE:
-                parts = list(zip(starts, [*starts[1:], index], strict=True))
-                clean = all(numerals.clean(self._glyphs[i:j]) for i, j in parts)
-                if clean and len(parts) == len(ANGLES):
-                    self._slots.update(zip(ANGLES, parts, strict=True))
-                return
-            if self._glyphs[index].gap:
-                starts.append(index)
-
-    def _letter(self, index: int) -> str:
-        """The letter of a label that a glyph is taken for, "" where it is taken for none."""
-        return letter_of(self._states.get(index, 0))
-
-    def _line(self, index: int) -> int:
-        """The line of the program's page that a glyph belongs to."""
-        return STATES[self._states.get(index, 0)].line
-
-    def read(self) -> bool:
-        """Read the printout; whether there is anything of one."""
-        shown = self.shown
-        self._crop()
-        for name, (start, stop) in self._slots.items():
-            if name not in (REPLY_A, REPLY_B):
-                self._read_number(name, start, stop)
-        if not self._worth_telling():
-            return False
-        shown.has_final_spins = [*self._exact.values()].count(SPINS) >= 2
-        for name in () if shown.has_final_spins else FINAL_SPINS:  # a footer, a page number
-            shown.fields.pop(name, None)
-            self._slots.pop(name, None)
-        for side, name in (("A", REPLY_A), ("B", REPLY_B)):
-            if name in self._slots:
-                self._read_reply(REPLIES[side], self._slots[name][0])
-        self._read_angles()
-        shown.ended = any(self._line(index) == STARS[1] for index in self._states)
-        return True
-
-    def check_labels(self) -> None:
-        """How the numbers are named, and what of the letters was misread."""
-        shown = self.shown
-        read = {name: self._slots[name] for name in shown.fields if name in self._slots}
-        marks = shown.marks + self._misread("*") if len(shown.fields) >= _PART else READERS
-        found = [
-            (name, text, [at for at, state in self._states.items() if state in own])
-            for name, text, own in LABELS
-        ]
-        shown.labels = label_checks(self._page, found, read, marks)
-        wrong = {one.name for one in shown.mislabelled}
-        shown.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
-
-    def _crop(self) -> None:
-        """Where most lines that begin with a label lack its first letter, three at least, the
-        margin is cut off, and what a line begins with is not to be relied on."""
-        seen = set(self._states.values())
-        first = [index for index in self._states if self._glyphs[index].gap is Gap.LINE]
-        labels = [index for index in first if self._letter(index) not in ("", "*")]
-        before = [self._states[index] - 1 for index in labels]
-        lost = sum(bool(letter_of(state)) and state not in seen for state in before)
-        if lost > max(2, len(labels) / 2):
-            for name, (start, _) in [*self._slots.items()]:
-                if start in first:
-                    self._remark(name, "begins where the margin is cut off", start)
-                    del self._slots[name]
-
-    def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
-        """How many of some letters of labels, but of wrong ones, and asterisks were read as other
-        letters or figures."""
-        others = {state for one in LABELS if one.name in wrong for state in one.states}
-        return sum(
-            self._glyphs[index].char != letter and self._glyphs[index].char.isalnum()
-            for index, state in self._states.items()
-            if state not in others and state != self._states.get(index - 1)
-            and (letter := letter_of(state)) and letter in letters_of
-        )  # fmt: skip
-
-    def _worth_telling(self) -> bool:
-        """Whether a label and its number, or a prompt, was read."""
-        if sum(line < PROMPTS for line in self._exact.values()) >= _PROMPT_LETTERS:
-            return True
-        shown = self.shown.fields
-        numbers = {name for name, one in shown.items() if any(map(str.isdigit, one.text))}
-        if not numbers.issuperset(ANGLES[:-1]):
-            numbers -= set(ANGLES)
-        labelled = sum(map(self._labelled, numbers))
-        return labelled >= 1 and labelled + len(self._exact) >= 5
-
-    def _labelled(self, name: str) -> bool:
-        """Whether a letter right before a number was read as its label's."""
-        index = self._slots[name][0] - 1
-        while letter := self._letter(index):
-            if letter.isalpha() and self._glyphs[index].char == letter:
-                return True
-            index -= 1
-        return name in ANGLES
-
-    def _remark(self, name: str, message: str, index: int) -> None:
-        line, column = self._page.place(self._glyphs[index].offset)
-        self.shown.remarks.append(f"line {line}, column {column}: {name}: {message}")
-
-    def _read_number(self, name: str, start: int, stop: int) -> None:
-        signed = self._letter(start - 1) == "=" == self._glyphs[start - 1].char
-        region = self._glyphs[start:stop]
-        reading = _reading(self._page, region, not signed and name not in ANGLES)
-        if reading is None:
-            shown = _quoted(self._page.shown(start, stop))
-            self._remark(name, f"{shown}: expected a number", start)
-        else:
-            self.shown.fields[name] = reading
-
-    def _read_angles(self) -> None:
-        shown = self.shown
-        places = [self._slots[name] for name in ANGLES if name in self._slots]
-        clean = all(name in shown.fields and shown.fields[name].clean for name in ANGLES)
-        if not places or (clean and all(self._glyphs[start].gap for start, _ in places[1:])):
-            return
-        start, stop = min(places)[0], max(stop for _, stop in places)
-        shown.angle_row = self._glyphs[start:stop]
-        shown.angles = numerals.cut_in_five(shown.angle_row)
-        if not shown.angles and len(places) < len(ANGLES):
-            what = _quoted(self._page.shown(start, stop))
-            self._remark("PA", f"{what}: expected five angles, PA PB TA TB GA", start)
-
-    def _read_reply(self, names: Sequence[str], start: int) -> None:
-        """The three numbers typed at a prompt, after any that INPUT refused."""
-        stop, line = start, self._line(start)
-        others = {begins for begins, _ in self._slots.values()} - {start}
-        while self._states.get(stop) and (not self._letter(stop) or self._line(stop) == line):
-            stop += 1
-            if stop in others:  # a number whose label is missing
-                break
-        parts = _reply_parts(self._glyphs[start:stop])
-        before = _before_reply(parts[0], self.shown.text(names[0]))
-        if before and self._glyphs[start - 1].char != "?":
-            what = _quoted(letters(parts[0][:before]))
-            self._remark("reply", f"{what} before the first number", start)
-            parts[0] = parts[0][before:]
-        if len(parts) > len(names) and all(map(numerals.clean, parts[:3])):
-            extra = _quoted("".join(map(letters, parts[3:])))
-            self._remark("reply", f"{extra} after the third number", start)
-            parts = parts[:3]
-        if len(parts) == len(names):
-            for name, region in zip(names, parts, strict=True):
-                reading = _reading(self._page, region)
-                if reading is not None and ILLEGIBLE not in reading.text:
-                    self.shown.replies[name] = reading
-        elif parts != [()]:
-            what = _quoted(self._page.shown(start, stop))
-            self._remark("reply", f"{what} is not three numbers", start)
-
-    def roles(self) -> dict[int, str]:
-        """What each glyph is: of a number, an exact letter of a label, a damaged one;
-        not others between lines or put into labels."""
-        roles = dict.fromkeys(self._exact, "exact")
-        for index, state in self._states.items():
-            letter, figure = letter_of(state), self._glyphs[index].char.isdigit()
-            again = state == self._states.get(index - 1) or (letter in "%()=" and figure)
-            if letter and again:
-                roles.pop(index, None)
-            elif letter:
-                roles.setdefault(index, "letter")
-        roles = dict.fromkeys(self._words, "letter") | roles
-        for span in self._slots.values():
-            roles |= dict.fromkeys(range(*span), "number")
-        return roles | dict.fromkeys(self.ending, "exact")
-
-
-def _reading(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
-    """A region of a page as a number, None when nothing of one is there."""
-    text = numerals.clean(region)
-    if region and text is None:
-        ways = numerals.candidates(region, 1, sign_free)
-        # a glyph that looks like no figure within a number is illegible
-        strange = [
-            not (glyph.char in NUMERIC or printed_for(glyph.char) or glyph.gap) for glyph in region
-        ]
-        figures = [at for at, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
-        if ways and not any(strange[figures[0] + 1 : figures[-1]]):
-            text = ways[0][0]
-        else:
-            marked = (one.char if one.char in NUMERIC else ILLEGIBLE for one in region)
-            text = "".join(marked)[: numerals.LONGEST]
-            if not any(map(str.isdigit, text)) and text not in ("?", "??", "???"):
-                return None
-    if text is None:
-        return None
-    begin, end = region[0].offset, region[-1].offset + 1
-    cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
-    cut = cut or page.place(end - 1)[1] == page.width
-    return Reading(text, *page.place(begin), begin, end, region, cut, sign_free)
-
-
-def _reply_parts(region: Region) -> list[Region]:
-    """The glyphs of a reply, parted at its commas, or where INPUT asked for more; after what it
-    refused, before what it ignored."""
-    asked = re.search(r"(?:.*REENTER)?\?*(.*?)(?:\?EXTRAIGNORED|PR#|$)", letters(region))
-    region = region[slice(*asked.span(1))] if asked else ()
-    parts: list[Region] = [()]
-    for place, glyph in enumerate(region):
-        more = glyph.gap is Gap.LINE and letters(region[place : place + 2]) == "??"
-        if glyph.char in ",;" or more:
-            parts.append(())
-        elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
-            parts[-1] += (glyph,)
-    return parts
-
-
-def _before_reply(first: Region, printed: str | None) -> int:
-    """How many glyphs of a prompt whose mark was not read stand before the first number of a reply,
-    where that is then what is printed below; a reply never outranks a printed number."""
-    value = numerals.value_of(printed or "")
-    if value is None:
-        return 0
-    text = letters(first)
-    places = range(1, min(len("Wa ?"), len(first)))
-    return next((at for at in places if numerals.value_of(text[at:]) == value), 0)
-
-
-def _quoted(text: str) -> str:
-    return repr(text if len(text) <= 30 else text[:27] + "...")

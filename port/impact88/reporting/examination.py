@@ -120,7 +120,7 @@ def _printed(
             )  # fmt: skip
             return
         if copy:
-            end = shown.place(shown.stop)[0] if number < len(every) else len(lines)
+            end = shown.page.place(shown.stop)[0] if number < len(every) else len(lines)
             own = {line: besides.pop(line) for line in sorted(besides) if line <= end}
             result = _against(pages, pages.judged(shown, recover(shown, given), own))
             result.renumber(lines)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from .ink import Floats, Image, Points, points_of, slopes
+from .ink import Floats, Image, Points, points_of, resized, slopes
 
 CELL_WIDTH = 16
 """Pixels across a cell after sampling: the least at which 3 and 8 of a dot matrix stay apart."""
@@ -192,7 +192,7 @@ def grids_of(ink: Image, turns: int, fold: int) -> list[Grid]:
     ``fold``: pixels a side that are taken together to find them."""
     ink = np.ascontiguousarray(np.rot90(ink, turns))
     points = points_of(ink, fold)
-    if points.few:
+    if len(points.x) < 500:  # too little ink for a page
         return []
     slope, keystone = slopes(points)
     grids = [_grid(ink, part, slope, keystone, turns) for part in _columns(points, slope)]
@@ -238,7 +238,7 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
     middles = np.array([(top + bottom) / 2 for top, bottom in lines])
     rise, drifts = _risen(across - left, level, middles, height, scale)
     middles = middles + drifts
-    small = _resized(ink, scale)
+    small = resized(ink, scale)
     tall = round(1.7 * height * scale)
 
     def place(u: Floats, v: Floats) -> tuple[Floats, Floats]:
@@ -318,11 +318,3 @@ def _risen(
         rise = np.linalg.solve(normal, (common * sure) @ off)
         sure = 1 / (1 + ((off - rise @ common) / 1.5) ** 2)
     return rise[:4] / scale, rise[4:] / scale
-
-
-def _resized(ink: Image, scale: float) -> Image:
-    from PIL import Image as Pillow
-
-    height, width = ink.shape
-    size = (max(1, round(width * scale)), max(1, round(height * scale)))
-    return np.asarray(Pillow.fromarray(ink).resize(size, Pillow.Resampling.BILINEAR), np.float32)

@@ -2,21 +2,24 @@
 
 import io
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+import PIL.Image
+from PIL import ImageOps
 
 from ..errors import UserError
 from ..files import called
 from .ink import Image
 
 _DOTS_PER_INCH = 300
+"""Of a PDF's page: the least at which office scanners write text; a cell then has 20 to 40."""
 _MOST_PIXELS = 60_000_000
+"""Of a page: A3 at 500 dots an inch; its arrays take a gigabyte."""
 _MOST_PAGES = 200
 
 
-@dataclass
-class Page:
+class Page(NamedTuple):
     """One page: its number, its picture in grey, and the text layer of a PDF ("": none)."""
 
     number: int
@@ -26,12 +29,8 @@ class Page:
 
 def pages_of(data: bytes, path: str) -> Iterator[Page]:
     """The pages of a file. Raises UserError when it cannot be read."""
-    try:
-        import PIL.Image
-    except ImportError:
-        raise UserError(_lacking(path, "pillow")) from None
     if data.startswith(b"%PDF-"):
-        yield from _pdf(data, path)
+        yield from _pdf(data, called(path))
         return
     try:
         with PIL.Image.open(io.BytesIO(data)) as picture:
@@ -49,31 +48,28 @@ def pages_of(data: bytes, path: str) -> Iterator[Page]:
         raise UserError(f"{called(path)}: is not a picture that can be read: {message}") from None
 
 
-def _grey(picture: object) -> Image:
-    from PIL import Image as Pillow
-    from PIL import ImageOps
-
-    assert isinstance(picture, Pillow.Image)
+def _grey(picture: PIL.Image.Image) -> Image:
     upright = ImageOps.exif_transpose(picture)
     if upright.mode in ("RGBA", "LA", "P", "PA"):  # what is transparent is paper
         upright = upright.convert("RGBA")
-        paper = Pillow.new("RGBA", upright.size, "white")
-        upright = Pillow.alpha_composite(paper, upright)
+        paper = PIL.Image.new("RGBA", upright.size, "white")
+        upright = PIL.Image.alpha_composite(paper, upright)
     if upright.mode.startswith(("I", "F")):
         values = np.asarray(upright, np.float32)
         return values * np.float32(255 / max(float(values.max(initial=1)), 1))
     return np.asarray(upright.convert("L"), np.float32)
 
 
-def _pdf(data: bytes, path: str) -> Iterator[Page]:
+def _pdf(data: bytes, where: str) -> Iterator[Page]:
     try:
         import pypdfium2
-    except ImportError:
-        raise UserError(_lacking(path, "pypdfium2")) from None
-    try:
+
         document = pypdfium2.PdfDocument(data)
+    except ImportError:
+        missing = "PDFs need pypdfium2, which is not installed; pip install 'impact88[scan]'"
+        raise UserError(f"{where}: {missing}") from None
     except pypdfium2.PdfiumError:
-        raise UserError(f"{called(path)}: is not a PDF that can be read") from None
+        raise UserError(f"{where}: is not a PDF that can be read") from None
     for number in range(min(len(document), _MOST_PAGES)):
         page = document[number]
         width, height = page.get_size()
@@ -81,10 +77,3 @@ def _pdf(data: bytes, path: str) -> Iterator[Page]:
         bitmap = page.render(scale=scale, grayscale=True)
         text = page.get_textpage().get_text_bounded()
         yield Page(number + 1, np.asarray(bitmap.to_numpy(), np.float32).squeeze(), text)
-
-
-def _lacking(path: str, package: str) -> str:
-    return (
-        f"{called(path)}: pictures need {package}, which is not installed; "
-        "pip install 'impact88[scan]'"
-    )
