@@ -20,33 +20,32 @@ from .glyphs import COSTS, GAP_COSTS, NUMERIC, Gap, Glyph, label_cost, letters, 
 
 Costs = NDArray[np.int16]
 
-REPLY_A, REPLY_B = "REPLY_A", "REPLY_B"
-"""Slots of the replies to the two prompts."""
-
 LINES = (
-    "ENTERTHEINITIALVELOCITYCOMPONENTSOFMA:VAX,VAY,WA?{REPLY_A}",
-    "ENTERTHEINITIALVELOCITYCOMPONENTSOFMB:VBX,VBY,WB?{REPLY_B}",
-    "MA={MA}MB={MB}IA={IA}IB={IB}",
-    "DA={DA}DB={DB}",
-    "PAPBTATBGA",
-    "{PA}{PB}{TA}{TB}{GA}",
-    "PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}",
-    "UX={UX}UY={UY}WA={WA}XA={XA}YA={YA}",
-    "VX={VX}VY={VY}WB={WB}XB={XB}YB={YB}",
-    "E={E}MU={MUP}EM={EM}",
-    "INITIALKE={KI}KELOSS={LOSS}%",
+    "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?{REPLY_A}",
+    "ENTER THE INITIAL VELOCITY COMPONENTS OF MB :Vbx,Vby,Wb ?{REPLY_B}",
+    "MA= {MA} MB= {MB} IA= {IA} IB= {IB}",
+    "DA= {DA} DB= {DB}",
+    " PA PB TA TB GA",
+    " {PA}      {PB}      {TA}      {TB}      {GA}",
+    "UX= {UX} UY= {UY} WA= {WA} XA= {XA} YA= {YA}",
+    "VX= {VX} VY= {VY} WB= {WB} XB= {XB} YB= {YB}",
+    " E= {E} MU= {MUP} EM= {EM}",
+    "INITIAL KE= {KI} KE LOSS= {LOSS} %",
     "*****",
-    "VAX={VAX}VAY={VAY}(XA={XAF}YA={YAF})",
-    "VBX={VBX}VBY={VBY}(XB={XBF}YB={YBF})",
-    "WA={WAF}WB={WBF}",
+    "VAX= {VAX} VAY= {VAY} (XA={XAF} YA= {YAF})",
+    "VBX= {VBX} VBY= {VBY} (XB={XBF} YB= {YBF})",
+    " WA= {WAF} WB= {WBF}",
     "*****",
 )
-"""What lines 200 to 770 print, fields in braces; angles also as some people retype them."""
-PROMPTS, HEADING, ANGLE_ROW, LABELLED_ANGLES, SPINS = 2, 4, 5, 6, 14
-"""Places in `LINES`; the prompts are those before the first."""
-STARS = (11, 15)
-OPTIONAL = (0, 1, HEADING, LABELLED_ANGLES, STARS[0], SPINS, STARS[1])
-"""Lines that may be missing: prompts, heading, retyped angles, asterisks, spins."""
+"""What lines 200 to 770 print, fields in braces."""
+MAY_BE_MISSING = (0, 1, 10, 13, 14)
+"""Lines that genuine pages lack: the prompts, rows of asterisks, the final spins where M = 4."""
+_LABELLED = "PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}"
+"""The angles as some people retype them."""
+_ROWS = [line.replace(" ", "").upper() for line in (*LINES[:6], _LABELLED, *LINES[6:])]
+PROMPTS, HEADING, ANGLE_ROW, SPINS, STARS = 2, 4, 5, 14, 15
+"""Lines of a page in which the angles may also stand retyped, the sixth; prompts come before."""
+_OPTIONAL = (0, 1, HEADING, 6, 11, SPINS, STARS)
 _LOOSE_WORDS = {"INITIALKE=": 7, "KELOSS=": 2}
 """Letters of labels that retyped pages leave out, as they do prompts."""
 _MOST: int = np.iinfo(np.int16).max // 3
@@ -54,7 +53,7 @@ _MOST: int = np.iinfo(np.int16).max // 3
 
 class State(NamedTuple):
     """A state: ``kind`` (outside, between, letter, loose, number), a letter of a label or a
-    number's field, and its place in `LINES`."""
+    number's field, and the line of the page."""
 
     kind: str
     name: str
@@ -73,7 +72,7 @@ class Label(NamedTuple):
 def _page() -> tuple[list[State], list[Label]]:
     states = [State("outside", "", -1)]
     labels = []
-    for number, line in enumerate(LINES):
+    for number, line in enumerate(_ROWS):
         states.append(State("between", "", number))
         for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", line):
             loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
@@ -112,7 +111,7 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
     passed = np.triu(missed[None] - missed[:, None]) + np.tril(
         np.full((size, size), _MOST, np.int32), -1
     )
-    absent = [COSTS["line may be missing" if n in OPTIONAL else "line"] for n in range(len(LINES))]
+    absent = [COSTS["line may be missing" if n in _OPTIONAL else "line"] for n in range(len(_ROWS))]
     skipped = np.where(np.eye(size), 0, _MOST).astype(np.int32)
     for number, start in enumerate(between):
         skipped[0, start] = COSTS["begins"]

@@ -56,8 +56,8 @@ Region = tuple[Glyph, ...]
 
 
 class Page:
-    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order, ``lines``: those of
-    each line; ``width``: where lines were broken or cut off, 0 where they were not."""
+    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order, ``lines``: those
+    of each line; ``width``: where lines were broken or cut off, 0 where they were not."""
 
     def __init__(self, text: str) -> None:
         self.text = text

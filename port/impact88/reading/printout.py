@@ -21,8 +21,6 @@ from . import plaintext as pasted
 from .alignment import (
     LABELS,
     PROMPTS,
-    REPLY_A,
-    REPLY_B,
     SPINS,
     STARS,
     STATES,
@@ -217,7 +215,7 @@ class Printout:
         """Read the numbers; whether there are any, or a prompt."""
         self._crop()
         for name, (start, stop) in self._slots.items():
-            if name not in (REPLY_A, REPLY_B):
+            if name in FIELDS:
                 self._read_number(name, start, stop)
         if not self._worth_telling():
             return False
@@ -225,11 +223,11 @@ class Printout:
         for name in () if self.has_final_spins else FINAL_SPINS:  # a footer, a page number
             self.fields.pop(name, None)
             self._slots.pop(name, None)
-        for side, name in (("A", REPLY_A), ("B", REPLY_B)):
-            if name in self._slots:
-                self._read_reply(REPLIES[side], self._slots[name][0])
+        for side, names in REPLIES.items():
+            if slot := self._slots.get(f"REPLY_{side}"):
+                self._read_reply(names, slot[0])
         self._read_angles()
-        self.ended = any(self._line(index) == STARS[1] for index in self._states)
+        self.ended = any(self._line(index) == STARS for index in self._states)
         return True
 
     def end(self, message: re.Match[str], text: str) -> int:

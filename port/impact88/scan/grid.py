@@ -70,27 +70,18 @@ class Grid:
         height, width = self.size
         return bool(x.min() > -slack and x.max() < width + slack and 0 <= y.mean() < height)
 
-    def cells(self, line: int) -> Image:
-        """The cells of a line with their slack, shape (cells, height, width)."""
-        picture = self.pictures[line]
-        count = (picture.shape[1] - 2 * SLACK) // CELL_WIDTH
-        width = CELL_WIDTH + 2 * SLACK
-        starts = range(0, count * CELL_WIDTH, CELL_WIDTH)
-        return np.stack([picture[:, start : start + width] for start in starts])
-
     def odds(self) -> list[Floats]:
-        """The log odds that each cell of each line is inked, within 6 of even."""
-        return [self._odds(self.cells(line)) for line in range(len(self.pictures))]
-
-    @staticmethod
-    def _odds(cells: Image) -> Floats:
-        # a dot, or as much ink along a line: the hair of a thin dash
-        edge = SLACK + 1
-        inner = np.s_[:, edge:-edge, edge + 1 : -edge - 1]
-        hair = np.s_[:, edge:-edge, edge + 4 : -edge - 4]
-        dots = ndimage.uniform_filter(cells, (1, 3, 3))[inner].max(axis=(1, 2))
-        hairs = ndimage.uniform_filter(cells, (1, 1, 9))[hair].max(axis=(1, 2))
-        odds: Floats = np.clip(20 * (np.maximum(dots, hairs).astype(float) - _INKED), -6, 6)
+        """The log odds that each cell of each line is inked, within 6 of even: by a dot, or by as
+        much ink along a line, the hair of a thin dash."""
+        edge, width = SLACK + 1, CELL_WIDTH + 2 * SLACK
+        odds = []
+        for line in self.pictures:
+            starts = range(0, line.shape[1] - width + 1, CELL_WIDTH)
+            cells = np.stack([line[:, start : start + width] for start in starts])
+            dots = ndimage.uniform_filter(cells, (1, 3, 3))[:, edge:-edge, edge + 1 : -edge - 1]
+            hairs = ndimage.uniform_filter(cells, (1, 1, 9))[:, edge:-edge, edge + 4 : -edge - 4]
+            most = np.maximum(dots.max(axis=(1, 2)), hairs.max(axis=(1, 2)))
+            odds.append(np.clip(20 * (most.astype(float) - _INKED), -6, 6))
         return odds
 
 
@@ -230,10 +221,9 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
         return None
     bend, clarity = _bend(xs, ys, pitch, span)
     across = x + bend @ _terms(x, y, span)
-    everything = across[np.concatenate(members)]
-    first, last = np.floor(everything.min() / pitch) - 1, np.ceil(everything.max() / pitch) + 1
-    left = first * pitch
-    count = int(last - first)
+    inside = across[np.concatenate(members)]
+    left = (np.floor(inside.min() / pitch) - 1) * pitch
+    count = round(np.ceil(inside.max() / pitch) + 1 - left / pitch)
     scale = CELL_WIDTH / pitch
     middles = np.array([(top + bottom) / 2 for top, bottom in lines])
     rise, drifts = _risen(across - left, level, middles, height, scale)
@@ -256,22 +246,17 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
         v = middles[line] + (np.arange(tall + 2 * SLACK) - SLACK - tall / 2 + 0.5) / scale
         # the map bends slowly: it is worked out at every eighth point
         coarse = np.linspace(0, len(u) - 1, len(u) // 8)
-        u_at, v_at = np.meshgrid(u[0] + coarse / scale, v[[0, -1]])
-        across, down = place(u_at, v_at)
-        t = np.linspace(0, 1, len(v))[:, None]
-        at_x = np.stack([np.interp(np.arange(len(u)), coarse, row) for row in across])
-        at_y = np.stack([np.interp(np.arange(len(u)), coarse, row) for row in down])
-        at_x, at_y = (at[0] * (1 - t) + at[1] * t for at in (at_x, at_y))
-        where = np.stack([at_y * scale - 0.5, at_x * scale - 0.5])
+        across, down = place(*np.meshgrid(u[0] + coarse / scale, v[[0, -1]]))
+        fine, where = np.arange(len(u)), []
+        for at in (down, across):
+            top, foot = (np.interp(fine, coarse, row) * scale - 0.5 for row in at)
+            where.append(np.linspace(top, foot, len(v)))
         picture: Image = ndimage.map_coordinates(small, where, order=1, cval=0.0)
         return picture
 
     pictures = [sampled(line) for line in range(len(lines))]
-    corners = []
     edges, ends = left + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
-    for middle in middles:
-        u, v = np.meshgrid(edges, middle + ends)
-        corners.append(np.stack(place(u, v), axis=-1).transpose(1, 0, 2))
+    corners = [np.stack(place(*np.meshgrid(edges, one + ends))).T for one in middles]
     return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns)
 
 
@@ -301,7 +286,6 @@ def _risen(
     if not profiles:
         return np.zeros(4), np.zeros(len(middles))
     every, at = np.array(profiles), np.array(places)
-    lines = at[:, 0].astype(int)
     size = 2 * half - 2 * reach
     moves = np.zeros(len(every), int)
     for _ in range(3):
@@ -311,7 +295,7 @@ def _risen(
         fits = np.stack([every[:, k : k + size] @ mean for k in range(2 * reach + 1)], axis=1)
         moves = np.argmax(fits, axis=1) - reach
     off = moves - np.median(moves)
-    common = np.vstack([_bows(at[:, 1], at[:, 2]), np.eye(len(middles))[:, lines]])
+    common = np.vstack([_bows(at[:, 1], at[:, 2]), np.eye(len(middles))[:, at[:, 0].astype(int)]])
     sure = np.ones(len(off))
     for _ in range(6):  # what is far off counts less
         normal = (common * sure) @ common.T + 1e-3 * np.eye(len(common))

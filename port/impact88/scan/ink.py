@@ -3,6 +3,7 @@
 The geometry works on points (places of inked pixels), so it does not depend on the resolution.
 """
 
+from collections.abc import Iterable
 from itertools import product
 from typing import NamedTuple
 
@@ -49,7 +50,8 @@ def ink_of(grey: Image) -> Image:
         between = (total / below - total[-1] / below[-1]) ** 2 * below / (below[-1] - below)
     best = int(np.argmax(np.nan_to_num(between[:-1])))
     level = float(np.mean(inked[inked >= (edges[best] + edges[best + 1]) / 2]))
-    return np.clip(ink / max(level, 0.1), 0, 1.5).astype(np.float32)
+    ink = np.clip(ink / max(level, 0.1), 0, 1.5)
+    return ink
 
 
 class Points(NamedTuple):
@@ -78,29 +80,31 @@ def points_of(ink: Image, fold: int = 1) -> Points:
     return Points(fold * across - width / 2, fold * down - height / 2, float(max(ink.shape)))
 
 
-def slopes(points: Points) -> tuple[float, float]:
+Slope = tuple[float, float]
+
+
+def slopes(points: Points) -> Slope:
     """How lines of text run: y - x (slope + keystone y / span) is constant along each."""
     x, y, span = points
     step = max(1.0, span / 1200)
     if len(x) > 40_000:
         x, y = x[:: len(x) // 20_000], y[:: len(y) // 20_000]
-    few = slice(None, None, max(1, len(x) // 15_000))
 
-    def sharpest(tried: list[tuple[float, float]], some: slice, width: float) -> tuple[float, float]:
+    def sharpest(tried: Iterable[Slope], part: int, width: float) -> Slope:
         """Those along which the page is divided most sharply into lines and gaps."""
 
-        def sharpness(one: tuple[float, float]) -> float:
-            level = (y - x * (one[0] + one[1] * y / span))[some]
+        def sharpness(one: Slope) -> float:
+            level = (y - x * (one[0] + one[1] * y / span))[::part]
             counts = np.bincount(((level - level.min()) / width).astype(int)).astype(float)
             return float(np.sum(np.diff(counts) ** 2))
 
         return max(tried, key=sharpness)
 
-    slope, key = sharpest([(s, 0.0) for s in np.arange(-0.1, 0.1001, 0.004)], few, 2 * step)
+    few = max(1, len(x) // 15_000)
+    slope, key = sharpest(((one, 0.0) for one in np.arange(-0.1, 0.1001, 0.004)), few, 2 * step)
     keystones = product(np.arange(-0.12, 0.1201, 0.02), (-0.002, 0, 0.002))
-    slope, key = sharpest([(slope + turn, one) for one, turn in keystones], few, 1.5 * step)
+    slope, key = sharpest(((slope + turn, one) for one, turn in keystones), few, 1.5 * step)
     for width in (0.002, 0.001, 0.0005):
         steps = product((-1, 0, 1), (-8, -4, 0, 4, 8))
-        around = [(slope + i * width, key + j * width) for i, j in steps]
-        slope, key = sharpest(around, slice(None), step)
+        slope, key = sharpest([(slope + i * width, key + j * width) for i, j in steps], 1, step)
     return float(slope), float(key)

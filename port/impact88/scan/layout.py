@@ -5,36 +5,17 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from itertools import pairwise
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
+from ..reading.alignment import LINES, MAY_BE_MISSING
 from .ink import Floats
 
-LINES = (
-    "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?{REPLY_A}",
-    "ENTER THE INITIAL VELOCITY COMPONENTS OF MB :Vbx,Vby,Wb ?{REPLY_B}",
-    "MA= {MA} MB= {MB} IA= {IA} IB= {IB}",
-    "DA= {DA} DB= {DB}",
-    " PA PB TA TB GA",
-    " {PA}      {PB}      {TA}      {TB}      {GA}",
-    "UX= {UX} UY= {UY} WA= {WA} XA= {XA} YA= {YA}",
-    "VX= {VX} VY= {VY} WB= {WB} XB= {XB} YB= {YB}",
-    " E= {E} MU= {MUP} EM= {EM}",
-    "INITIAL KE= {KI} KE LOSS= {LOSS} %",
-    "*****",
-    "VAX= {VAX} VAY= {VAY} (XA={XAF} YA= {YAF})",
-    "VBX= {VBX} VBY= {VBY} (XB={XBF} YB= {YBF})",
-    " WA= {WAF} WB= {WBF}",
-    "*****",
-)
-"""Listing lines 200 to 770, as a person sees them."""
 VARIANTS = {k: re.sub(",([VW])", r", \1", LINES[k].replace(" :", ": ")) for k in (0, 1)}
 VARIANTS[4] = " PA      PB      TA      TB      GA"
 """Lines as the chapter has them, too."""
-OPTIONAL = (0, 1, 10, 13, 14)
-"""Lines that genuine pages lack: the prompts, the final spins where M = 4, rows of asterisks."""
 SPACED = (4, 5)
 """The lines of the angles, whose blanks people retype by eye."""
 REPLY_LENGTHS, NUMBER_LENGTHS = (5, 42), (1, 15)
@@ -104,7 +85,7 @@ class Sheet:
     @property
     def whole(self) -> bool:
         """Whether every line that a printout must have was found."""
-        return all(line in self.rows for line in range(len(LINES)) if line not in OPTIONAL)
+        return all(line in self.rows for line in range(len(LINES)) if line not in MAY_BE_MISSING)
 
     def beyond(self, place: Place) -> bool:
         """Whether a place is right of where this printout's lines are broken."""
@@ -126,9 +107,19 @@ def parts(line: str) -> tuple[tuple[str, str], ...]:
     return tuple((name, text) for name, text in found)
 
 
-def _gains(line: str, inked: Floats, blank: Floats) -> tuple[Floats, list[Floats]]:
-    """How well rows of cells divide into the parts of a line: the best gain of each row, and the
-    gains after each part by the cell it ends before, each of shape (rows, cells + 1)."""
+def _lengths(name: str, text: str, first: bool) -> tuple[int, int]:
+    """The least and most cells of a part."""
+    if name:
+        return REPLY_LENGTHS if name.startswith("REPLY") else NUMBER_LENGTHS
+    if text.strip() or (len(text) == 1 and not first):
+        return len(text), len(text)
+    return _GAPS if len(text) > 1 else (0, 1)
+
+
+def _divided(line: str, inked: Floats, blank: Floats) -> tuple[list[Floats], list[Floats]]:
+    """Rows of cells divided into the parts of a line: the best gains before and after each part by
+    the cell it ends before, the last with the rest of the row; and what a part of any length gains
+    up to each cell. Each of shape (rows, cells + 1)."""
     rows, cells = inked.shape
     edge = np.zeros((rows, 1))
     filled, emptied, typed = (
@@ -137,51 +128,40 @@ def _gains(line: str, inked: Floats, blank: Floats) -> tuple[Floats, list[Floats
     )
     best = np.full((rows, cells + 1), -np.inf)
     best[:, 0] = 0.0
-    after = [best]
+    after, runs = [best], list[Floats]()
     for name, text in parts(line):
+        run = emptied if not name else typed if name.startswith("REPLY") else filled
+        least, most = _lengths(name, text, first=not runs)
         new = np.full_like(best, -np.inf)
-        lengths = _lengths(name, text, first=len(after) == 1)
-        if lengths:
-            run = emptied if not name else typed if name.startswith("REPLY") else filled
+        if least < most:
             start = best - run
-            for length in range(lengths[0], min(lengths[1], cells) + 1):
+            for length in range(least, min(most, cells) + 1):
                 part = new[:, length:]
                 np.maximum(part, start[:, : cells + 1 - length], out=part)
             new += run
-        elif len(text) <= cells:
-            size = cells + 1 - len(text)
-            value = best[:, :size].copy()
+        elif least <= cells:
+            size = cells + 1 - least
+            new[:, least:] = best[:, :size]
             for offset, char in enumerate(text):
-                value += (blank if char == " " else inked)[:, offset : offset + size]
-            new[:, len(text) :] = value
+                new[:, least:] += (blank if char == " " else inked)[:, offset : offset + size]
         best = new
         after.append(best)
-    rest = np.hstack([np.cumsum(blank[:, ::-1], axis=1)[:, ::-1], edge])
-    after.append(best + rest)
-    return after[-1].max(axis=1), after
+        runs.append(run)
+    after[-1] = best + np.hstack([np.cumsum(blank[:, ::-1], axis=1)[:, ::-1], edge])
+    return after, runs
 
 
-def _lengths(name: str, text: str, first: bool) -> tuple[int, int] | None:
-    """The least and most cells of a part; None where it has as many as its text."""
-    if name:
-        return REPLY_LENGTHS if name.startswith("REPLY") else NUMBER_LENGTHS
-    if text.strip() or (len(text) == 1 and not first):
-        return None
-    return _GAPS if len(text) > 1 else (0, 1)
-
-
-def _ends(line: str, inked: Floats, blank: Floats) -> list[int]:
-    """Where the parts of a line end in the best division of one row of cells."""
-    _, after = _gains(line, inked[None], blank[None])
-    ends = [int(np.argmax(after[-1][0]))]
-    cuts = [np.r_[0.0, np.cumsum(v)] for v in (inked, blank, np.maximum(inked, _BLANK_IN_REPLY))]
-    for which, (name, text) in reversed(list(enumerate(parts(line)))):
-        at, before = ends[-1], after[which][0]
-        lengths = _lengths(name, text, first=which == 0) or (len(text), len(text))
-        run = cuts[1 if not name else 2 if name.startswith("REPLY") else 0]
-        starts = np.arange(max(0, at - lengths[1]), at - lengths[0] + 1)
-        ends.append(int(starts[np.argmax(before[starts] - run[starts])]))
-    return ends[::-1]
+def _pieces(row: Row, inked: Floats, blank: Floats) -> list[Piece]:
+    """The parts of a line in the best division of its cells."""
+    after, runs = _divided(row.text, inked[None], blank[None])
+    stop, pieces = int(np.argmax(after[-1])), list[Piece]()
+    for which, (name, text) in reversed(list(enumerate(parts(row.text)))):
+        least, most = _lengths(name, text, first=not which)
+        starts = np.arange(max(0, stop - most), stop - least + 1)
+        start = int(starts[np.argmax((after[which] - runs[which])[0, starts])])
+        pieces.append(Piece(name, text, [row.place(column) for column in range(start, stop)]))
+        stop = start
+    return pieces[::-1]
 
 
 def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
@@ -191,94 +171,87 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     begins = [int(np.argmax(row > 0)) for row in odds if np.any(row > 0)]
     first = int(np.bincount(begins).argmax()) if begins else 0
     margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
-    keys, rows = [], []
-    for margin in margins:
-        for start in range(len(odds)):
-            keys.append((margin, start, 1))
-            whole = Row(start, 1, margin, "").cells(odds)
-            rows.append(whole)
-            followed = start + 1 < len(odds) and tops[start + 1] - tops[start] <= 3.2
-            if followed and len(whole) >= WRAP and not np.any(whole[WRAP:] > 2):
-                keys.append((margin, start, 2))
-                rows.append(Row(start, 2, margin, "").cells(odds))
-    width = max(map(len, rows))
-    padded = np.stack([np.pad(row, (0, width - len(row))) for row in rows])
+    tried: list[tuple[Row, Floats]] = []
+    for margin, start in product(margins, range(len(odds))):
+        cells = Row(start, 1, margin, "").cells(odds)
+        tried.append((Row(start, 1, margin, ""), cells))
+        followed = start + 1 < len(odds) and tops[start + 1] - tops[start] <= 3.2
+        if followed and len(cells) >= WRAP and not np.any(cells[WRAP:] > 2):
+            broken = Row(start, 2, margin, "")
+            tried.append((broken, broken.cells(odds)))
+    width = max(len(cells) for _, cells in tried)
+    padded = np.stack([np.pad(cells, (0, width - len(cells))) for _, cells in tried])
     # what cells gain when they are taken for inked or blank
     inked, blank = np.clip(padded, -6, 6) / 2, -np.clip(padded, 0, 6) / 2
-    before = [np.r_[0.0, np.cumsum(np.clip(row, 0, None))] for row in odds]
+    left = [np.r_[0.0, np.cumsum(np.clip(row, 0, None))] for row in odds]
     lost = [
-        sum(before[at][max(margin, 0)] for at in range(start, start + used))
-        + _WRAPPED * (used == 2)
-        for margin, start, used in keys
+        sum(one[max(row.margin, 0)] for one in left[row.start : row.start + row.used])
+        + _WRAPPED * (row.used == 2)
+        for row, _ in tried
     ]
-    fits: dict[int, dict[tuple[int, int, int], tuple[float, str]]]
-    fits = {margin: {} for margin in margins}
+    fits: dict[int, _Fits] = {margin: {} for margin in margins}
     for line in range(len(LINES)):
         texts = [LINES[line], *([VARIANTS[line]] if line in VARIANTS else [])]
-        gains = np.stack([_gains(text, inked, blank)[0] for text in texts])
-        which = gains.argmax(axis=0)
-        for row, (margin, start, used) in enumerate(keys):
-            gain = float(gains[which[row], row] - lost[row])
-            fits[margin][start, used, line] = gain, texts[which[row]]
+        gains = np.stack([_divided(text, inked, blank)[0][-1].max(axis=1) for text in texts])
+        for at, ((row, _), which) in enumerate(zip(tried, gains.argmax(axis=0), strict=True)):
+            gain = float(gains[which, at] - lost[at])
+            fit = gain, at, row._replace(text=texts[which])
+            fits[row.margin][row.start, row.used, line] = fit
     alone = [float(np.clip(row, 0, 6).sum()) for row in odds]
-    aligned = {m: _aligned(fits[m], len(odds), alone) for m in margins}
+    aligned = {margin: _aligned(fits[margin], alone) for margin in margins}
     margin = max(margins, key=lambda one: aligned[one][0])
     sheets = [Sheet()]
-    for start, used, line in aligned[margin][1]:
-        if used == 0:
+    for key in aligned[margin][1]:
+        if key is None:
             sheets.append(Sheet())
             continue
-        gain, text = fits[margin][start, used, line]
-        row = keys.index((margin, start, used))
+        gain, at, row = fits[margin][key]
         sheets[-1].gain += gain
-        laid = sheets[-1].rows[line] = Row(start, used, margin, text)
-        ends = pairwise(_ends(text, inked[row], blank[row]))
-        sheets[-1].pieces[line] = [
-            Piece(*part, [laid.place(column) for column in range(*span)])
-            for part, span in zip(parts(text), ends, strict=True)
-        ]
+        sheets[-1].rows[key[2]] = row
+        sheets[-1].pieces[key[2]] = _pieces(row, inked[at], blank[at])
     return [sheet for sheet in sheets if len(sheet.numbers) >= _FEWEST]
 
 
-def _aligned(
-    fits: dict[tuple[int, int, int], tuple[float, str]], count: int, alone: Sequence[float]
-) -> tuple[float, list[tuple[int, int, int]]]:
+_Key = tuple[int, int, int]
+_Fits = dict[_Key, tuple[float, int, Row]]
+"""By line of the grid, how many of its lines are taken, and line of print: the gain, and the row
+with its place among those tried."""
+
+
+def _aligned(fits: _Fits, alone: Sequence[float]) -> tuple[float, list[_Key | None]]:
     """Lines of paper and lines of print side by side, one printout or several: the total gain, and
-    the lines found: line of the grid, how many of them it takes (0: another printout begins), line
-    of print."""
-    last = len(LINES)
-    # best[i][j]: i lines of the paper are used, j lines of the print are behind
-    best = np.full((count + 1, last + 1), -np.inf)
-    back: dict[tuple[int, int], tuple[int, int, int]] = {}
-    best[0, 0] = 0.0
+    the lines found, None where another printout begins. ``alone``: how much ink a line has."""
+    count, last = len(alone), len(LINES)
+    # best[i, j]: i lines of the paper are used, j lines of the print are behind
+    best = {(0, 0): (0.0, (0, 0), False)}
     for i in range(count + 1):
         for j in [*range(last + 1), 0]:  # once more from 0: a printout that ended begins another
-            now = best[i, j]
-            if not np.isfinite(now):
+            if (i, j) not in best:
                 continue
+            now = best[i, j][0]
             steps = []
             if j == last:
-                steps.append((i, 0, now - 1.0, 0))
+                steps.append((i, 0, now - 1.0, True))
             else:
-                steps.append((i, j + 1, now - (0.5 if j in OPTIONAL else _ABSENT), 0))
+                missed = 0.5 if j in MAY_BE_MISSING else _ABSENT
+                steps.append((i, j + 1, now - missed, False))
             if i < count:
                 lost = alone[i] * 0.5 if 0 < j < last else 0.0
-                steps.append((i + 1, j, now - _STRANGE - lost, 0))
-                for used in (1, 2):
-                    if j < last and (i, used, j) in fits:
-                        steps.append((i + used, j + 1, now + fits[i, used, j][0], used))
-            for to_i, to_j, value, used in steps:
-                if value > best[to_i, to_j]:
-                    best[to_i, to_j] = value
-                    back[to_i, to_j] = (i, j, used)
-    ends = [j for j in (0, last) if np.isfinite(best[count, j])]
-    if not ends:
-        return -np.inf, []
-    at = (count, max(ends, key=lambda j: float(best[count, j])))
-    total, found = float(best[at]), []
-    while at in back:
-        i, j, used = back[at]
-        if (j, at[1]) == (last, 0) or used:
-            found.append((i, used, j))
-        at = (i, j)
+                steps.append((i + 1, j, now - _STRANGE - lost, False))
+                steps += [
+                    (i + used, j + 1, now + fits[i, used, j][0], True)
+                    for used in (1, 2)
+                    if (i, used, j) in fits
+                ]
+            for to_i, to_j, value, told in steps:
+                if (to_i, to_j) not in best or value > best[to_i, to_j][0]:
+                    best[to_i, to_j] = value, (i, j), told
+    at = max(((count, 0), (count, last)), key=lambda one: best[one][0])
+    total, found = best[at][0], list[_Key | None]()
+    while at != (0, 0):
+        _, before, told = best[at]
+        if told:
+            used = at[0] - before[0]
+            found.append((before[0], used, before[1]) if used else None)
+        at = before
     return total, found[::-1]

@@ -13,11 +13,12 @@ from types import MappingProxyType
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
 from ..fields import ANGLES, INPUTS, REPLIES, scene_name
+from ..reading.alignment import LINES
 from ..reading.printout import read_printouts
 from ..recovery.recovered import recover
 from ..recovery.replays import Outcome, run_all
 from .ink import Floats
-from .layout import LINES, Sheet, parts
+from .layout import Sheet, parts
 from .typeface import READABLE
 
 WORST = 6.0

@@ -9,11 +9,12 @@ import numpy as np
 
 from ..fields import INPUTS
 from ..judging.judgement import Verdict
+from ..reading.alignment import MAY_BE_MISSING
 from .evidence import Judged, judged, state
 from .grid import Grid, grids_of
 from .holding import Cell, held
 from .ink import Image, ink_of
-from .layout import OPTIONAL, Sheet, sheets_of
+from .layout import Sheet, sheets_of
 from .scenes import Candidate, Read, borne_out, scene_of
 from .typeface import BLANK, read_numbers
 
@@ -134,7 +135,7 @@ def _mistaken(cells: Sequence[Cell], sheets: Sequence[Sheet]) -> bool:
     found = False
     for which, sheet in enumerate(sheets):
         own = [cell for cell in cells if cell.sheet == which and not cell.name]
-        for line in [line for line in OPTIONAL if line in sheet.rows]:
+        for line in [line for line in MAY_BE_MISSING if line in sheet.rows]:
             row = sheet.rows[line]
             of_line = range(row.start, row.start + row.used)
             labels = [state(c) for c in own if c.place.line in of_line and c.predicted != BLANK]
