@@ -111,6 +111,22 @@ def test_what_cannot_be_read_is_named_with_its_place() -> None:
     assert remark.startswith("line 1, column 24: IA: ")
 
 
+@pytest.mark.parametrize(
+    ("typed", "numbers", "remarks"),
+    [
+        ("-29.04,0,0", 3, ""),
+        ("-29.04,0,0,7", 3, "'7' after the third number"),
+        ("-29.04,0", 0, "'-29.04,0' is not three numbers"),
+    ],
+)
+def test_a_reply_is_three_numbers(typed: str, numbers: int, remarks: str) -> None:
+    """INPUT ignores what follows the third, and asks again after two."""
+    prompt = "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?"
+    (shown,) = read_printouts(f"{prompt}{typed}\n\n{SAMPLE}")
+    assert [one.text for one in shown.replies.values()] == ["-29.04", "0", "0"][:numbers]
+    assert [one.partition("reply: ")[2] for one in shown.remarks] == [remarks] * bool(remarks)
+
+
 def test_several_printouts_with_text_between() -> None:
     text = (
         f"Exhibit 7, DATE= 1989\n{SAMPLE}\nSee MA below.\f{SAMPLE.replace('143.5', '96')}appendix"

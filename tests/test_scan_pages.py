@@ -212,7 +212,8 @@ def test_the_hair_of_a_thin_dash_is_ink_and_a_speck_is_none() -> None:
     cells[0, 14, 5:15] = 0.7  # a dash
     cells[1, 14, 9:11] = 1.0  # a speck
     cells[2, 14, 0:3] = 1.0  # the end of the neighbour's
-    inked = Grid._odds(cells)
+    odds = Grid([*cells], np.zeros(4), [], 10.0, 1.0, (28, 20), 0).odds()
+    inked = np.concatenate(odds)
     assert inked[0] > 2
     assert max(inked[1:]) < 0
 
