@@ -219,7 +219,7 @@ def test_the_hair_of_a_thin_dash_is_ink_and_a_speck_is_none() -> None:
 
 
 def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> None:
-    from impact88.reporting.casefile import report
+    from impact88.report.casefile import report
 
     cells = examined("clean-001.png")[0].cells
     chosen = [
