@@ -321,8 +321,11 @@ class Printout:
     def _read_reply(self, names: Sequence[str], start: int) -> None:
         """The three numbers typed at a prompt, after any that INPUT refused."""
         stop, line, glyphs = start, self._line(start), self.page.glyphs
+        others = {begin for begin, _ in self._slots.values()} - {start}  # one may lack its label
         while self._states.get(stop) and (not self._letter(stop) or self._line(stop) == line):
             stop += 1
+            if stop in others:
+                break
         parts = _reply_parts(glyphs[start:stop])
         # a prompt's end whose mark was not read, before what is printed below
         value = numerals.value_of(self.text(names[0]) or "")
