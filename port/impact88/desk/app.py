@@ -8,7 +8,9 @@ question replaced by a newer one is 409.
 import json
 import threading
 from base64 import b64decode
-from typing import Any, TypeGuard
+from collections.abc import Callable, Collection
+from functools import partial
+from typing import Any
 
 import flask
 from flask import Blueprint, Flask, Response, abort, request
@@ -30,6 +32,7 @@ BENCHES = {
     **{"bounds": "collision", "reconstruction": "reconstruction"},
 }
 """What takes long, and the module that does it; the text being edited overtakes papers waiting."""
+_FORM = ("values", "units")
 
 
 class Desk:
@@ -37,14 +40,12 @@ class Desk:
 
     def __init__(self) -> None:
         self.benches = {name: Bench(module) for name, module in BENCHES.items()}
-        self._warm = False
+        self._starts = [*(bench.warm for bench in self.benches.values()), collision.warm]
 
     def warm(self) -> None:
         """Start, once and in the background, what the first questions will need."""
-        if not self._warm:
-            self._warm = True
-            starts = [*(bench.warm for bench in self.benches.values()), collision.warm]
-            threading.Thread(target=lambda: [start() for start in starts], daemon=True).start()
+        starts, self._starts = self._starts, []
+        threading.Thread(target=lambda: [start() for start in starts], daemon=True).start()
 
     def close(self) -> None:
         """End all processes."""
@@ -111,7 +112,10 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.get("/signs.svg")
     def signs() -> Response:
-        return Response(collision.sign_diagram(), content_type="image/svg+xml")
+        from ..figures.canvas import svg
+        from ..figures.freebody import planar
+
+        return Response(svg(planar()), content_type="image/svg+xml")
 
     @routes.post("/judge")
     def judge() -> Any:
@@ -127,12 +131,18 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/report")
     def report() -> Response:
-        written = asked("edit", "report", papers=_papers(), words=_texts("words"))
+        parts = _parts("papers", "words")
+        try:
+            for paper in parts["papers"]:
+                b64decode(paper.get("data", "?"), validate=True)
+        except ValueError:
+            raise UserError("'data' of a paper is not base 64") from None
+        written = asked("edit", "report", **parts)
         return _saved(written, "text/html", "report.html")
 
     @routes.post("/collision")
     def collision_answer() -> Any:
-        answer = collision.answer(**_form())
+        answer = collision.answer(**_parts(*_FORM))
         if "answer" in answer:
             answer["first"] = table("first", answer["answer"])
             answer["all"] = table("results", answer["results"])
@@ -140,19 +150,19 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/figure")
     def figure() -> Response:
-        drawn = collision.figure(**_form(), title=_text("title"))
+        drawn = collision.figure(**_parts(*_FORM, "title"))
         return Response(drawn, content_type="image/svg+xml")
 
     @routes.post("/bounds")
     def bounds() -> Any:
-        found = asked("bounds", "bounds_answer", **_form())
+        found = asked("bounds", "bounds_answer", **_parts(*_FORM))
         return {"found": found, "table": table("bounds", found)}
 
     def file_of(view: str) -> tuple[str, str]:
         if view == "collision":
-            return collision.scene_file(**_form(), title=_text("title")), "scene.toml"
+            return collision.scene_file(**_parts(*_FORM, "title")), "scene.toml"
         if view == "reconstruction":
-            return reconstruction.known_file(**_form()), "known.toml"
+            return reconstruction.known_file(**_parts(*_FORM)), "known.toml"
         abort(404)
 
     @routes.post("/file/<view>")
@@ -166,18 +176,16 @@ def _addresses(desk: Desk) -> Blueprint:
         written = asked("bounds", "case_report", text=text, name=name)
         return _saved(written, "text/html", "case.html")
 
-    @routes.post("/scene")
-    def scene() -> Any:
-        return filled_in(request.get_data(), _name(), SCENE)
+    def file_read(names: Collection[str]) -> Any:
+        return filled_in(request.get_data(), request.args.get("name", "the file")[:200], names)
+
+    routes.post("/scene", endpoint="scene")(partial(file_read, SCENE))
+    routes.post("/known", endpoint="known")(partial(file_read, KNOWABLE))
 
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
-        answer = asked("reconstruction", "answer", **_form())
+        answer = asked("reconstruction", "answer", **_parts(*_FORM))
         return {**answer, "tables": table("solutions", answer["solutions"])}
-
-    @routes.post("/known")
-    def known() -> Any:
-        return filled_in(request.get_data(), _name(), KNOWABLE)
 
     @routes.post("/stop/<bench>")
     def stop(bench: str) -> Any:
@@ -198,7 +206,24 @@ def _saved(text: str, kind: str, name: str) -> Response:
     )
 
 
-def _object() -> dict[str, Any]:
+def _are_texts(value: object) -> bool:
+    return isinstance(value, dict) and all(isinstance(text, str) for text in value.values())
+
+
+def _are_papers(value: object) -> bool:
+    return isinstance(value, list) and all(map(_are_texts, value))
+
+
+_KINDS: dict[str, tuple[str, Callable[[Any], bool]]] = {
+    **dict.fromkeys(("units", "title"), ("text", lambda part: isinstance(part, str | None))),
+    **dict.fromkeys(("values", "words"), ("an object of texts", _are_texts)),
+    "papers": ("a list of objects of texts", _are_papers),
+}
+
+
+def _parts(*names: str) -> dict[str, Any]:
+    """Parts of the request's JSON, a text that is missing empty. Raises UserError, also for a
+    system of ``units`` there is not."""
     try:
         whole = json.loads(request.get_data())
         json.dumps(whole, ensure_ascii=False).encode()  # half a pair of surrogates is not text
@@ -206,48 +231,11 @@ def _object() -> dict[str, Any]:
         raise UserError("the request is not JSON; expected an object") from None
     if not isinstance(whole, dict):
         raise UserError("the request is not a JSON object")
-    return whole
-
-
-def _name() -> str:
-    return request.args.get("name", "the file")[:200]
-
-
-def _form() -> dict[str, Any]:
-    """A form's ``values``, texts by name, and its system of ``units``, empty for any consistent
-    ones. Raises UserError."""
-    units = _text("units")
+    for name in names:
+        kind, fits = _KINDS[name]
+        if not fits(whole.get(name)):
+            raise UserError(f"{name!r} is not {kind}")
     known = dict(page.SYSTEMS)
-    if units and units not in known:
+    if "units" in names and (units := whole.get("units")) and units not in known:
         raise UserError(f"{units!r} is not a system of units; expected {', '.join(known)}")
-    return {"values": _texts("values"), "units": units}
-
-
-def _text(name: str) -> str:
-    text = _object().get(name)
-    if not isinstance(text, str | None):
-        raise UserError(f"{name!r} is not text")
-    return text or ""
-
-
-def _is_texts(value: object) -> TypeGuard[dict[str, str]]:
-    return isinstance(value, dict) and all(isinstance(one, str) for one in value.values())
-
-
-def _texts(name: str) -> dict[str, str]:
-    values = _object().get(name)
-    if not _is_texts(values):
-        raise UserError(f"{name!r} is not an object of texts")
-    return values
-
-
-def _papers() -> list[dict[str, str]]:
-    papers = _object().get("papers")
-    if not isinstance(papers, list) or not all(map(_is_texts, papers)):
-        raise UserError("'papers' is not a list of objects of texts")
-    for paper in papers:
-        try:
-            b64decode(paper.get("data", "?"), validate=True)
-        except ValueError:
-            raise UserError("'data' of a paper is not base 64") from None
-    return [{"name": "", **paper} for paper in papers]
+    return {name: "" if whole.get(name) is None else whole[name] for name in names}

@@ -26,6 +26,7 @@ from ..scene import (
 )
 from ..schemas import stamped
 from ..uncertainty import uncertain
+from ..units import System, system_of
 from .forms import OUTLINES, entries, outline_lines, units_shown, without_rounding
 
 DRAWS = 20_000
@@ -53,9 +54,9 @@ _ANSWER = (
 
 
 class Form(NamedTuple):
-    """The form as read: ``texts`` for the program, and the ``entries`` they were made of, in base
-    units of the system ``units``; the names given as ``ranges``; ``problems`` by name; the names
-    still ``missing``; how entries were understood (``remarks``)."""
+    """The form as read: ``texts`` for the program, the ``entries`` they were made of, in base units
+    of the system ``units``; the names given as ``ranges``; ``problems`` by name; the names still
+    ``missing``; how entries were understood (``remarks``)."""
 
     texts: dict[str, str]
     entries: dict[str, str]
@@ -67,7 +68,6 @@ class Form(NamedTuple):
 
     @property
     def whole(self) -> bool:
-        """Whether there is a scene."""
         return not self.problems and not self.missing
 
 
@@ -116,10 +116,11 @@ def _number_text(name: str, text: str, ranges: list[str]) -> str:
 def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     """The answer for a form: ``problems``, ``missing``, ``ranges``, ``remarks`` as `Form`,
     ``units`` as `units_shown`; for a complete scene also ``answer`` (`_answer`), ``oracle``, what
-    `impact88 oracle` answers, its ``page``, ``screen`` (`_screen`), ``results`` and ``warnings``.
-    """
+    `impact88 oracle` answers, its ``page``, ``results`` and ``warnings``, and the ``screen`` from
+    the emulator's memory."""
     from ..checking.oracle import oracle
     from ..judging import beside
+    from ..program.emulated import finished, loaded
     from ..program.run import page
 
     form = read(values, units)
@@ -129,27 +130,26 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     if form.whole:
         scene = Scene(form.texts, source="the form")
         known = oracle([scene], reference=False)[0]
+        results, system, machine = known["results"], system_of(form.units), loaded(scene)
+        exact = {n: one["double"] for n, one in results.items() if one["double"] is not None}
+        finished(machine)
         whole |= {
             "oracle": stamped("oracle", {"id": None, "scene": dict(scene), **known}),
-            "answer": _answer(scene, known["results"], form.units),
+            "answer": _answer(scene, exact, system),
             "page": page(known["printout"]),
-            "screen": _screen(scene),
-            "results": _rows(known["results"], form.units),
+            "screen": [screen_runs(row) for row in machine.screen_rows()],
+            "results": _rows(results, without_rounding(exact, _ROUNDING), system),
             "warnings": beside.warnings(scene),
         }
     return whole
 
 
-def _answer(
-    scene: Scene, results: Mapping[str, Mapping[str, Any]], units: str | None
-) -> list[dict[str, Any]]:
+def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:
     """Rows of ``words``, a ``unit``, and ``values``: name and text, one or one for each vehicle."""
     from ..reconstruction.solutiontable import completed
-    from ..units import system_of
 
-    system = system_of(units)
     given = {name: double(text) for name, text in scene.items()}
-    values = without_rounding(completed(given | _doubles(results), None), _ROUNDING)
+    values = without_rounding(completed({**given, **exact}, None), _ROUNDING)
     rows = []
     for words, *names in _ANSWER:
         if not values.keys() >= set(names):
@@ -164,19 +164,6 @@ def _answer(
     return rows
 
 
-def _doubles(results: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
-    return {name: one["double"] for name, one in results.items() if one["double"] is not None}
-
-
-def _screen(scene: Scene) -> list[list[tuple[str, str]]]:
-    """The rows of the Apple's screen after the run, from the emulator's memory (`screen_runs`)."""
-    from ..program.emulated import finished, loaded
-
-    machine = loaded(scene)
-    finished(machine)
-    return [screen_runs(row) for row in machine.screen_rows()]
-
-
 def screen_runs(row: bytes) -> list[tuple[str, str]]:
     """A row of screen memory as stretches of one kind, each with its text."""
     # what the two high bits of a byte on the screen say
@@ -184,26 +171,18 @@ def screen_runs(row: bytes) -> list[tuple[str, str]]:
     return [(kind, "".join(map(shown_character, codes))) for kind, codes in kinds]
 
 
-def _rows(results: Mapping[str, Mapping[str, Any]], units: str | None) -> list[dict[str, Any]]:
+def _rows(
+    results: Mapping[str, Mapping[str, Any]], doubles: Mapping[str, float], system: System
+) -> list[dict[str, Any]]:
     """The results as a table's rows; ``shown``, and ``value`` with all its digits: in the units of
     the form, ``label``."""
-    from ..units import system_of
-
-    system = system_of(units)
     rows = []
-    for name, exact in without_rounding(_doubles(results), _ROUNDING).items():
-        value, label = exact * system.factor(name), system.unit(name)
+    for name, exact in doubles.items():
         if name != "STATUS":
-            rows.append(
-                {
-                    **RESULTS[name]._asdict(),
-                    "printed": results[name]["printed"] or "",
-                    "exact": number(exact, _DIGITS),
-                    "shown": f"{number(value)} {label}" if label else "",
-                    "value": value,
-                    "label": label,
-                }
-            )
+            value, label = exact * system.factor(name), system.unit(name)
+            row = {**RESULTS[name]._asdict(), "printed": results[name]["printed"] or ""}
+            row |= {"exact": number(exact, _DIGITS), "value": value, "label": label}
+            rows.append({**row, "shown": f"{number(value)} {label}" if label else ""})
     return rows
 
 
@@ -212,7 +191,6 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     from ..figures.canvas import svg
     from ..figures.sceneview import scene_drawing
     from ..judging import beside
-    from ..units import system_of
 
     form = read(values, units)
     if not form.whole:
@@ -223,14 +201,6 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     outlines = {n: double(t) for n, t in in_base_units(given, "", units or None)[0].items()}
     title, system = title or "Scene from above", system_of(form.units)
     return svg(scene_drawing(scene, result, title=title, units=system, outlines=outlines))
-
-
-def sign_diagram() -> str:
-    """Axes, angles and impulses of a scene, as `impact88 figure planar` draws them."""
-    from ..figures.canvas import svg
-    from ..figures.freebody import planar
-
-    return svg(planar())
 
 
 def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
@@ -257,7 +227,7 @@ def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
 
 
 def sample_scene(which: int) -> dict[str, Any]:
-    """The same of a published run. Raises UserError."""
+    """A published run as a file is read. Raises UserError."""
     scene = sample(which)
     return {"values": dict(scene), "title": scene.title or "", "units": ""}
 

@@ -9,10 +9,12 @@ from ..estimates import SIZES, WORD
 from ..files import decode
 from ..names import CHAPTER, RESULTS, SCENE, check_names, quantity
 from ..scene import OWN_AXES, SOURCE, entries_of, in_base_units, toml_texts
+from ..units import base_of, system_of
 
 UNITS = "units"
 """The problem that belongs to no single value."""
 LARGEST = 1_000_000
+"""Bytes of a file that is filled in; the template of all that may be known has 3,500."""
 OUTLINES = tuple(name for pair in SIZES.values() for name in pair)
 """Lengths and widths, which a form keeps for its drawing and its file."""
 _WHOSE_BASE = {"us": "chapter", "metric": "si"}
@@ -49,8 +51,6 @@ def entries(values: Mapping[str, str], units: str) -> Entries:
 def units_shown(units: str | None) -> dict[str, Any]:
     """The system's ``name``, its ``base`` in words, ``labels`` of bare numbers by what they
     measure."""
-    from ..units import base_of, system_of
-
     system = system_of(units)
     rules = {row.unit for table in (SCENE, RESULTS, CHAPTER) for row in table.values()}
     labels = {rule: system.label(rule) for rule in sorted(rules)}

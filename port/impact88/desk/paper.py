@@ -93,5 +93,5 @@ def report(papers: Sequence[Mapping[str, str]], words: Mapping[str, str]) -> str
             raise UserError(f"has more than {LONGEST_WORDS} characters", name)
     if not papers:
         raise UserError("there is nothing to report on")
-    examined = [_examined(one["name"], b64decode(one["data"])) for one in papers]
+    examined = [_examined(one.get("name", ""), b64decode(one["data"])) for one in papers]
     return report_page(examined, given["date"], given["case"], given["examiner"])

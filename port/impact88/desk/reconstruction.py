@@ -1,11 +1,9 @@
 """The answers of the Reconstruction view: what `impact88 reconstruct` finds. What computes is
 imported on first use: the page is shown before numpy is there."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import UserError
 from ..names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
@@ -14,22 +12,22 @@ from ..reconstruction.knowable import KNOWABLE
 from ..scene import known_template, sample
 from ..schemas import stamped
 from ..uncertainty import uncertain
+from ..uncertainty.uncertain import Uncertain
+from ..units import system_of
 from .forms import OUTLINES, Entries, entries, outline_lines, units_shown, without_rounding
 from .page import digits
 
-if TYPE_CHECKING:
-    from ..uncertainty.uncertain import Uncertain
-
-DRAWS = 20_000
-"""Random draws for the quantiles."""
-_DIGITS = 6
-_COLUMNS = {"±": 3, "5 %": 6, "95 %": 6, "lower": 6, "upper": 6, "error amplified": 3}
-"""Columns of a table, and the digits shown."""
+DRAWS, _DIGITS, _DIGITS_TO_GO_ON = 20_000, 6, 12
+"""Random draws for the quantiles, as many as for a collision's bounds; digits of a value shown, as
+the command prints, and of one that goes on into another computation."""
+_COLUMNS = {
+    **{"±": (3, "first_order"), "5 %": (6, "0.05"), "95 %": (6, "0.95"), "lower": (6, "lower")},
+    **{"upper": (6, "upper"), "error amplified": (3, "amplified")},
+}
+"""Columns of a table, the digits shown, and what stands there."""
 _ROUNDING = 1e-9
 """Share of the largest value of its kind below which a value is shown as 0: values go on with
 twelve digits, and the published runs amplify errors up to 300 times."""
-_DIGITS_TO_GO_ON = 12
-"""Digits of a value that goes on into another computation."""
 _ASKED = ("DVA", "DVB", "LOSS")
 """Shown with what was solved for."""
 _SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
@@ -71,7 +69,6 @@ def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dic
     from ..reconstruction import adjustment
     from ..reconstruction.solutiontable import Exact, Impact
     from ..uncertainty.reconstructedtable import Measured
-    from ..units import system_of
 
     found: Sequence[Impact]
     if adjustment.needs_adjustment(known):
@@ -88,8 +85,6 @@ def _read(name: str, text: str, units: str | None) -> Uncertain:
 
 
 def _solution(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, Any]:
-    from ..units import system_of
-
     system = system_of(given.units)
 
     def what(name: str) -> dict[str, Any]:
@@ -101,21 +96,15 @@ def _solution(given: Entries, values: Mapping[str, Any], printed: str) -> dict[s
     rows = []
     for name, value in found.items():
         spread = values.get("uncertainty", {}).get(name, {})
-        quantiles = spread.get("quantiles", {})
-        numbers = {
-            "±": spread.get("first_order"),
-            "5 %": quantiles.get("0.05"),
-            "95 %": quantiles.get("0.95"),
-            "lower": spread.get("lower"),
-            "upper": spread.get("upper"),
-            "error amplified": values.get("amplification", {}).get(name),
-        }
+        amplified = values.get("amplification", {}).get(name)
+        parts = {**spread, **spread.get("quantiles", {}), "amplified": amplified}
+        numbers = {head: parts.get(part) for head, (_, part) in _COLUMNS.items()}
         row = {**what(name), "value": value, "known": name in values["known"], "numbers": numbers}
         row["text"] = digits(shown.get(name), _DIGITS)
         row["solved"] = name in values.get("solved_for", _SOUGHT) and not row["known"]
-        row["columns"] = {head: digits(x, _COLUMNS[head]) for head, x in numbers.items()}
+        row["columns"] = {head: digits(x, _COLUMNS[head][0]) for head, x in numbers.items()}
         rows.append(row)
-    shown_digits = {"measured": _DIGITS, "tolerance": _COLUMNS["±"], "adjusted": _DIGITS}
+    shown_digits = {"measured": _DIGITS, "tolerance": _COLUMNS["±"][0], "adjusted": _DIGITS}
     adjusted = [
         {
             **what(one["name"]),

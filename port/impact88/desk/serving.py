@@ -1,5 +1,7 @@
 """The socket, the address with its token, and how the desk starts and ends."""
 
+import logging
+import mimetypes
 import secrets
 import socket
 import sys
@@ -13,13 +15,10 @@ from ..errors import UserError
 from .guard import LARGEST_BODY
 
 HOST = "127.0.0.1"
-THREADS = 8
-"""Requests answered at a time; computing waits in one."""
-LARGEST_HEADER = 32_768
-"""Bytes of a request's header; a browser sends a thousand."""
-CONNECTIONS = 256
-"""Connections at a time: four times those that may wait (`halfopen.WAITING`), and fewer than the
-512 sockets that `select` takes on Windows."""
+THREADS, LARGEST_HEADER, CONNECTIONS = 8, 32_768, 256
+"""Requests answered at a time (computing waits in one); bytes of a header, of which a browser
+sends a thousand; connections: four times those that may wait (`halfopen.WAITING`), and fewer than
+the 512 sockets that `select` takes on Windows."""
 
 
 def listening(port: int) -> socket.socket:
@@ -62,9 +61,6 @@ def serve(port: int, browser: bool, announce: Callable[[str], object]) -> None:
 
 
 def _run(listener: socket.socket, port: int, token: str) -> None:
-    import logging
-    import mimetypes
-
     from waitress.server import create_server  # type: ignore[import-untyped]
 
     from .app import Desk, application
