@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from ..doubles import double, is_number
+from ..doubles import double, doubles_of, is_number
 from ..emulator.screen import shown_character
 from ..errors import UserError
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
@@ -188,15 +188,15 @@ def _rows(
 
 def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     """The scene from above as SVG, as `impact88 figure scene` draws it. Raises UserError."""
+    from ..closedform.solve import solve
     from ..figures.canvas import svg
     from ..figures.sceneview import scene_drawing
-    from ..judging import beside
 
     form = read(values, units)
     if not form.whole:
         raise UserError("there is no whole scene to draw")
     scene = Scene(form.texts, source="the form")
-    result = beside.solved(scene, [*FINAL_VELOCITIES, "STATUS"])
+    result = solve(doubles_of(scene), [*FINAL_VELOCITIES, "STATUS"])
     given = {name: values[name] for name in OUTLINES if values.get(name)}
     outlines = {n: double(t) for n, t in in_base_units(given, "", units or None)[0].items()}
     title, system = title or "Scene from above", system_of(form.units)

@@ -11,7 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..errors import UserError
 from ..fields import ANGLES, FIELDS, ZERO_DETERMINANT, outcome_fields, scene_name
@@ -75,9 +77,13 @@ class CopyPages:
         kept = "\n".join("" if at in besides else lines[at] for at in order)
         return Prepared(kept, [at + 1 for at in order], {at + 1: lines[at] for at in besides})
 
-    def outcomes(self, scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
-        """What the copy prints for each scene, by field."""
-        return [self._run(scene)[0] for scene in scenes]
+    def run_columns(
+        self, scenes: Sequence[Mapping[str, str]], names: Sequence[str]
+    ) -> tuple[list[str], dict[str, Any]]:
+        """What the copy prints for each scene, as `replays.run_columns` has it."""
+        found = [self._run(scene)[0] for scene in scenes]
+        columns = {name: np.array([one.fields.get(name, "") for one in found]) for name in names}
+        return [one.ending or "" for one in found], columns
 
     def _run(self, scene: Mapping[str, str]) -> tuple[Outcome, list[str]]:
         """What the copy prints for a scene: by field, and its lines."""

@@ -18,7 +18,6 @@ from ..fields import FIELDS, scene_name
 from ..judging import beside
 from ..judging.judgement import Judged, Status, Verdict, judge
 from ..judging.lookingpast import looked_past
-from ..judging.unseen import Program, unseen
 from ..mappings import texts
 from ..names import SCENE
 from ..reading.plaintext import decoded
@@ -223,7 +222,7 @@ def _against(pages: CopyPages, found: Judged) -> Verification:
     result.findings = verification.of_copy(copy, found, restored(found))
     changed = [line._asdict() for line in copy.changed_lines()]
     result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed}
-    return completed(result, pages.outcomes)
+    return completed(result, pages.run_columns)
 
 
 def _result(found: Judged) -> Verification:
@@ -241,11 +240,12 @@ def _result(found: Judged) -> Verification:
     )  # fmt: skip
 
 
-def completed(result: Verification, *program: Program) -> Verification:
+def completed(result: Verification, *program: beside.Program) -> Verification:
     """The same with what stands beside the verdict: what the page cannot show of what ``program``,
     by default the restored listing, prints, exact values and warnings."""
     if scene := result.complete_scene:
-        result.unseen = unseen(scene, *program)
+        printed = {check.name: check.recomputed or "" for check in result.fields}
+        result.unseen = beside.unseen(scene, printed, *program)
         beside.add_exact_values(scene, result.fields)
         result.warnings = beside.warnings(scene)
     return result
