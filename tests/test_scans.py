@@ -216,9 +216,9 @@ def test_settled_by_its_own_rule() -> None:
     assert shown.machine_read
     assert not read_printouts(SAMPLE)[0].machine_read
     checks = verify(shown).fields
-    assert settled(True, checks, [])
+    assert settled(checks, [])
     checks[3].status = Status.NOT_READ
-    assert not settled(True, checks, [])
+    assert not settled(checks, [])
 
 
 @pytest.mark.parametrize("elsewhere", range(4))

@@ -11,19 +11,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..errors import UserError
-from ..fields import ANGLES, FIELDS, ZERO_DETERMINANT, outcome_fields, scene_name
+from ..fields import ANGLES, ZERO_DETERMINANT, outcome_fields, scene_name
 from ..program.emulated import ListingCopy
 from ..program.run import run
 from ..reading.fieldlabels import LabelState
 from ..reading.numerals import value_of
 from ..reading.printout import Printout, read_printouts
 from ..recovery.recovered import Recovered
-from ..recovery.replays import Outcome, run_once
+from ..recovery.replays import Outcome
 from ..recovery.typedtext import opposite, texts_that_print, with_opposite_mu
 from ..scene import sample
 from .judgement import FieldCheck, Judged, Status, judge
@@ -31,16 +31,6 @@ from .judgement import FieldCheck, Judged, Status, judge
 _TEXTS = 4
 """Texts that are tried for an angle: as printed, rounded, and two that the Apple prints so."""
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
-
-
-class Prepared(NamedTuple):
-    """A text as `read_printouts` takes it: its lines in the restored listing's order, those left
-    empty that only the copy prints; for every line the number, from 1, that it had; and the lines
-    left empty, by their numbers now."""
-
-    text: str
-    numbers: list[int]
-    besides: dict[int, str]
 
 
 class CopyPages:
@@ -53,13 +43,15 @@ class CopyPages:
         self._order, self._own_order = _labelled(restored), _labelled(own)
         kinds, others = ({_plain(line, "#") for line in one.split("\n")} for one in (restored, own))
         self._besides = others - kinds
-        text = self.prepared(own).text
-        printed = _read(text)
-        self._labels = {one.name: one.read for one in printed.labels} if printed else {}
+        text, *_ = self.prepared(own)
+        printed = read_printouts(text, copy.file)[0]
+        self._labels = {one.name: one.read for one in printed.labels}
         self._as_listed = _texts(printed) == outcome_fields(text)
 
-    def prepared(self, text: str) -> Prepared:
-        """A text to be read."""
+    def prepared(self, text: str) -> tuple[str, list[int], dict[int, str]]:
+        """A text as `read_printouts` takes it: its lines in the restored listing's order, those
+        left empty that only the copy prints; for every line the number, from 1, that it had; and
+        the lines left empty, by their numbers now."""
         lines = text.split("\n")
         besides = {at for at, line in enumerate(lines) if _plain(line, "#") in self._besides}
         order = list(range(len(lines)))
@@ -75,7 +67,7 @@ class CopyPages:
             for place, at in zip(group, by_order, strict=True):
                 order[place] = at
         kept = "\n".join("" if at in besides else lines[at] for at in order)
-        return Prepared(kept, [at + 1 for at in order], {at + 1: lines[at] for at in besides})
+        return kept, [at + 1 for at in order], {at + 1: lines[at] for at in besides}
 
     def run_columns(
         self, scenes: Sequence[Mapping[str, str]], names: Sequence[str]
@@ -88,8 +80,14 @@ class CopyPages:
     def _run(self, scene: Mapping[str, str]) -> tuple[Outcome, list[str]]:
         """What the copy prints for a scene: by field, and its lines."""
         done = self.copy.run(scene)
-        text = self.prepared(done.page).text
-        fields = outcome_fields(text) if self._as_listed else _texts(_read(text))
+        text, *_ = self.prepared(done.page)
+        if self._as_listed:
+            fields = outcome_fields(text)
+        else:
+            try:
+                fields = _texts(read_printouts(text)[0])
+            except UserError:  # it ended before it printed any
+                fields = {}
         ending = ZERO_DETERMINANT if ZERO_DETERMINANT in done.printout else done.error
         return Outcome(fields, ending), done.page.split("\n")
 
@@ -103,7 +101,8 @@ class CopyPages:
         best = None
         for scene in self._scenes(shown, recovered.scene):
             found = self._judged(shown, recovered, scene, besides)
-            best = found if best is None else min(best, found, key=wrong)
+            if best is None or wrong(found) < wrong(best):
+                best = found
             if not wrong(best):
                 break
         assert best is not None
@@ -174,22 +173,8 @@ pages_of = lru_cache(maxsize=1)(CopyPages)
 """The pages of the copy that was asked for last: many files are held against one."""
 
 
-def restored(found: Judged) -> dict[str, str]:
-    """What the restored listing prints for the scene, by field."""
-    return run_once(found.recovered.scene).fields
-
-
-def _read(text: str) -> Printout | None:
-    """The printout in what the copy prints; None where none is found."""
-    try:
-        return read_printouts(text)[0]
-    except UserError:
-        return None
-
-
-def _texts(printed: Printout | None) -> dict[str, str]:
-    found = printed.fields if printed else {}
-    return {name: found[name].text for name in FIELDS if name in found}
+def _texts(printed: Printout) -> dict[str, str]:
+    return {name: reading.text for name, reading in printed.fields.items()}
 
 
 def _letters(line: str) -> str:

@@ -117,14 +117,8 @@ class Judged:
 def judge(shown: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
     """The printout, judged. ``others``: replies that were compared elsewhere."""
     replies = [_reply(shown, recovered, name, one) for name, one in shown.replies.items()]
-    found = Judged(
-        shown,
-        recovered,
-        _fields(shown, recovered),
-        [*replies, *others],
-        _ending(shown, recovered),
-        Verdict.IDENTICAL,
-    )
+    every = _fields(shown, recovered), [*replies, *others], _ending(shown, recovered)
+    found = Judged(shown, recovered, *every, Verdict.IDENTICAL)
     found.verdict = _verdict(found)
     return found
 
@@ -226,37 +220,29 @@ def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Do
 
 
 def _reply(shown: Printout, recovered: Recovered, name: str, reading: Reading) -> FieldCheck:
-    """A reply shown at a prompt against the velocity of the scene, as a number."""
-    value = None if name in recovered.missing else recovered.scene.get(name)
+    """A reply shown at a prompt against the velocity of the scene, as a number; laid beside its
+    text as typed or as printed, with or without its first glyph, whichever explains it best."""
+    value = recovered.scene[name]
+    if name in recovered.missing:
+        return _check(name, reading, None)
     check = _check(name, reading, value)
-    if value is None:
-        return check
     if reading.clean and same_value(reading.text, value):
         check.status = Status.READ
         return check
-    how = Doubt.ILLEGIBLE
-    check.status = Status.NOT_READ
-    part, match = _likest(reading, value)
-    if any(same_value(text, value) for text, _, _ in reply_ways(reading)):
-        check.status, how = Status.DOUBTFUL, Doubt.LOOK_ALIKE
-    elif match.contradicts and (reading.clean or not _hardly_read(match, value)):
-        check.status, check.doubts = Status.CONTRADICTED, _doubts(shown, part, match.spots)
-        return check
-    elif reading.clean:
-        check.status, how = Status.CONTRADICTED, Doubt.CONTRADICTS
-    place = reading.line, reading.column, reading.start
-    check.doubts = [Doubtful(*place, reading.text, value, str(how))]
-    return check
-
-
-def _likest(reading: Reading, value: str) -> tuple[Reading, Match]:
-    """A reply, with or without its first glyph, laid beside a value as typed or as printed: the way
-    that explains it best."""
     seen = stored_and_printed(value)
     texts = sorted({value, seen[1]} if seen else {value})
     parts = filter(None, (reading, without_mark(reading)))
     ways = [(part, compare(part.region, text)) for part in parts for text in texts]
-    return min(ways, key=lambda way: way[1].cost)
+    part, match = min(ways, key=lambda way: way[1].cost)
+    check.status, how = Status.NOT_READ, Doubt.ILLEGIBLE
+    if any(same_value(text, value) for text, _, _ in reply_ways(reading)):
+        check.status, how = Status.DOUBTFUL, Doubt.LOOK_ALIKE
+    elif reading.clean or (match.contradicts and not _hardly_read(match, value)):
+        check.status, check.doubts = Status.CONTRADICTED, _doubts(shown, part, match.spots)
+        return check
+    place = reading.line, reading.column, reading.start
+    check.doubts = [Doubtful(*place, reading.text, value, str(how))]
+    return check
 
 
 def same_value(one: str, other: str) -> bool:
@@ -268,9 +254,7 @@ def same_value(one: str, other: str) -> bool:
 def _ending(shown: Printout, recovered: Recovered) -> FieldCheck:
     """How the printout ends against how the replay does; one that is cut off shows no message."""
     recomputed = recovered.outcome.ending
-    status = Status.READ if shown.ending == recomputed else Status.CONTRADICTED
-    if recovered.missing:
-        status = Status.NOT_COMPARED if shown.ending else Status.READ
-    elif status is Status.CONTRADICTED and shown.ending is None:
-        status = Status.NOT_COMPARED
+    unsure = recovered.missing or shown.ending is None
+    status = Status.NOT_COMPARED if unsure else Status.CONTRADICTED
+    status = Status.READ if shown.ending == recomputed else status
     return FieldCheck("ENDING", shown.ending, recomputed, status)

@@ -43,7 +43,7 @@ def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
         if one.cost <= least + _AS_WELL:
             other = replace(recovered, scene=one.scene, assumed=one.assumed, outcome=one.outcome)
             judged = judge(shown, other)
-            if not settled(shown.machine_read, judged.fields, judged.replies):
+            if not settled(judged.fields, judged.replies):
                 return None
             best = best or judged
     assert best is not None
@@ -54,9 +54,7 @@ def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
     return best
 
 
-def settled(
-    machine_read: bool, checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]
-) -> bool:
+def settled(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
     """Whether all that a machine-read page contradicts is its reader's doing.
 
     A reader loses and adds signs and points, and a digit of a number here and there, and where it
@@ -71,8 +69,7 @@ def settled(
     read = sum(check.status in (Status.READ, Status.DOUBTFUL) for check in every)
     swapped = Counter(pair for check in every for pair in check.swapped())
     return (
-        machine_read
-        and read >= _READ_WELL * len(every)
+        read >= _READ_WELL * len(every)
         and 1 not in swapped.values()
         and all(_digits_lost_or_added(check) <= 1 for check in wrong)
         and sum(not check.swapped() for check in wrong) <= _LOST_AND_ADDED

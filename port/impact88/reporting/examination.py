@@ -212,14 +212,12 @@ def _verified(shown: Printout, given: Mapping[str, str] | None) -> Verification:
 
 def _against(pages: CopyPages, found: Judged) -> Verification:
     """The verdict on a printout as a page of an office's copy of the listing."""
-    from ..judging.copies import restored
-
     copy, result = pages.copy, _result(found)
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain_copy
 
         result.explanations = explain_copy(found, pages.put_right)
-    result.findings = verification.of_copy(copy, found, restored(found))
+    result.findings = verification.of_copy(copy, found)
     changed = [line._asdict() for line in copy.changed_lines()]
     result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed}
     return completed(result, pages.run_columns)

@@ -19,6 +19,7 @@ from ..plaintable import table
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt
 from ..reading.printout import Piece
+from ..recovery.replays import run_once
 from ..recovery.typedtext import stored_and_printed
 from ..schemas import stamped
 
@@ -370,9 +371,9 @@ def put_down(found: Judged) -> Iterator[str]:
         )
 
 
-def of_copy(copy: ListingCopy, found: Judged, restored: Mapping[str, str]) -> list[str]:
-    """What an office's copy of the listing prints, and in which lines it is another program;
-    ``restored``: what the restored listing prints for the scene."""
+def of_copy(copy: ListingCopy, found: Judged) -> list[str]:
+    """What an office's copy of the listing prints, and in which lines it is another program."""
+    restored = run_once(found.recovered.scene).fields
     agrees = found.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
     others = ", ".join(
         f"{check.name} {restored.get(check.name, 'nothing')}"
