@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from dataclasses import field as default
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -102,6 +103,7 @@ class PageEvidence:
             for name, reading in self.shown.fields.items()
             if reading.clean and value_of(reading.text) is not None
         }
+        self.numbers = {name: [float(text)] for name, text in self.texts.items()} | self.results
         printed = as_printed(self.recovered.outcome)
         self._contradicted = {name: one for name, one in printed.items() if name in self.base}
 
@@ -133,40 +135,33 @@ class PageEvidence:
             misfits += ~np.any(near, axis=0) if near else 0
         return misfits <= self.most_left
 
-    def unexplained(
-        self, predicted: Mapping[str, Range], ending: str | None, inputs: Mapping[str, str]
+    def left(
+        self,
+        scene: Mapping[str, str],
+        outcome: Outcome,
+        right: Iterable[Change] = (),
+        otherwise: Mapping[str, Range] = MappingProxyType({}),
+        spared: frozenset[str] = frozenset(),
     ) -> frozenset[str]:
-        """The names in which the page is not what is predicted; ``inputs``: texts of those that are
-        to be compared, too."""
-        wrong = set()
-        for name, numbers in self.results.items():
+        """What a scene leaves unexplained: results that are not as its outcome has them, or
+        ``otherwise``; printed inputs but those that are ``spared``, or that a change puts
+        ``right``; the ending; replies that are not its values."""
+        predicted = {**as_printed(outcome), **otherwise}
+        inputs = set(INPUTS) - {change.field for change in right}
+        wrong = self.base & inputs - {"MUP"}
+        compared = self.results.keys() | self.texts.keys() & predicted.keys() & inputs - spared
+        for name in compared:
             low, high = predicted.get(name, (math.nan, math.nan))
-            if not any(low <= one <= high for one in numbers):
-                wrong.add(name)
+            if not any(low <= one <= high for one in self.numbers[name]):
+                wrong |= {name}
         # what contradicts the program's number contradicts a cause that predicts the same
         wrong |= {n for n, one in self._contradicted.items() if predicted.get(n, one) == one}
-        for name in INPUTS:
-            text, own = inputs.get(name), self.texts.get(name)
-            if text is not None and own is not None and float(text) != float(own):
-                wrong.add(name)
-        if self.shown.ending is not None and ending != self.shown.ending:
-            wrong.add("ENDING")
-        return frozenset(wrong)
-
-    def left(
-        self, wrong: frozenset[str], scene: Mapping[str, str], changes: Iterable[Change]
-    ) -> frozenset[str]:
-        """What a scene leaves unexplained: ``wrong``, replies that are not its values, and printed
-        inputs that differ and that no change puts right."""
-        replies = {
-            f"reply {check.name}"
-            for check in self.found.replies
-            if check.printed is not None
-            and check.status in (Status.READ, Status.CONTRADICTED)
-            and not same_value(check.printed, scene.get(check.name, ""))
-        }
-        inputs = self.base & frozenset(INPUTS) - {"MUP"} - {change.field for change in changes}
-        return wrong | replies | inputs
+        wrong |= {"ENDING"} if self.shown.ending not in (None, outcome.ending) else set()
+        for check in self.found.replies:
+            read = check.status in (Status.READ, Status.CONTRADICTED)
+            if read and not same_value(check.printed or "", scene.get(check.name, "")):
+                wrong |= {f"reply {check.name}"}
+        return wrong
 
     @cached_property
     def only_last_places(self) -> bool:
@@ -191,16 +186,6 @@ def differing(found: Judged) -> frozenset[str]:
 def as_printed(outcome: Outcome) -> dict[str, Range]:
     """What a run prints, as ranges of one number."""
     return {name: (float(text), float(text)) for name, text in outcome.fields.items()}
-
-
-def around(value: float, slack: float) -> Range:
-    """A value and what is that near to it."""
-    return value - slack, value + slack
-
-
-def places_of(name: str) -> int:
-    """The decimals that the listing brings a result to."""
-    return FIELDS[name].places or 0
 
 
 def decimals_of(text: str) -> int:

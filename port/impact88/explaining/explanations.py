@@ -9,7 +9,7 @@ share a rank: the page cannot tell them apart.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -142,7 +142,7 @@ def _reread(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:
     """Inputs put right, with what results are then still a slip away."""
     best = math.inf
     for one in rereads:
-        wrong = _wrong(page, one, one.changes)
+        wrong = page.left(one.scored.scene, one.scored.outcome, one.changes)
         least = sum(map(_believed, one.changes)) + _SLIP * (len(wrong) - page.most_left)
         if one.changes and least <= min(best + _WORSE, _MOST_BITS):
             cause = _slipped(page, one.changes, wrong, one.scored.outcome.fields)
@@ -157,7 +157,8 @@ def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading)
         for one in rereading.best(1, texts):
             changes = (*exchanged, *one.changes)
             bits = row.bits + sum(map(_believed, one.changes))
-            cause = _slipped(page, changes, _wrong(page, one, changes))
+            left = page.left(one.scored.scene, one.scored.outcome, changes)
+            cause = _slipped(page, changes, left)
             yield replace(cause, bits=bits, note=row.note)
 
 
@@ -176,14 +177,6 @@ def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[Change]:
     }
     order = np.argsort(page.far(found, len(tried) + 1)[1:], kind="stable")
     return [tried[index] for index in order]
-
-
-def _wrong(page: PageEvidence, one: Reread, changes: Sequence[Change]) -> frozenset[str]:
-    """What differs from the page of a scene put right; a number that contradicted the same text
-    before still does."""
-    now, before = one.scored.outcome.fields, page.recovered.outcome.fields
-    still = {n for n in page.base if n not in INPUTS and n in now and now[n] == before.get(n)}
-    return page.left(one.scored.wrong | still, one.scored.scene, changes)
 
 
 def _slips(

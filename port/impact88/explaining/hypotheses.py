@@ -28,8 +28,6 @@ from .causes import (
     Cause,
     PageEvidence,
     Range,
-    around,
-    as_printed,
     decimals_of,
     digits_of,
 )
@@ -53,12 +51,12 @@ class Row(NamedTuple):
 
 
 class Hypothesis(NamedTuple):
-    """A row, the scene it means for a page, and how far what was typed may be from what the scene
-    has."""
+    """A row, the scene it means for a page, and ``within``: of what was converted its value and how
+    far from it the number typed may be."""
 
     row: Row
     scene: dict[str, str]
-    within: Mapping[str, float] = {}
+    within: Mapping[str, tuple[float, float]] = {}
 
 
 @cache
@@ -92,11 +90,10 @@ class Rows:
         self._scene, self._printed = page.recovered.scene, page.recovered.assumed
         self._values = doubles_of(self._scene)
         self._places = {name: decimals_of(text.strip()) for name, text in self._scene.items()}
-        rows = (row for row in table() if row.inputs)
-        made = (one for row in rows for one in self._made(row))
         self._every = [
             one._replace(scene=scene)
-            for one in made
+            for row in table()
+            for one in self._made(row)
             for scene in (one.scene, *with_opposite_mu(one.scene))
         ]
         self._found = self._in_doubles([one.scene for one in self._every], page.results)
@@ -121,7 +118,7 @@ class Rows:
         """The inputs in each other's place that are printed on the page."""
         for row in table():
             names = all(isinstance(made, str) for made in row.inputs.values())
-            for made in self._made(row) if row.inputs and names and row.bits < _ANY_TWO else ():
+            for made in self._made(row) if names and row.bits < _ANY_TWO else ():
                 changes = self._changes(made)
                 if {change.field for change in changes} <= set(self._printed):
                     yield row, changes
@@ -134,14 +131,13 @@ class Rows:
             for index, (one, distance) in enumerate(zip(self._every, far, strict=True))
             if one.within and not one.row.results and one.scene["M"] == "6"
         ]
-        if not units:
-            return self._tested([])
-        unit = self._every[min(units)[1]]
-        columns = list(self._columns(unit))
-        search = self._page.recovered.search
-        picks = search.promising(columns, _COMBINATIONS)
-        best = min(search.replayed(columns, picks), key=lambda one: one.cost)
-        return self._tested([unit._replace(scene=best.scene)])
+        if units:
+            unit = self._every[min(units)[1]]
+            columns = list(self._columns(unit))
+            search = self._page.recovered.search
+            picks = search.promising(columns, _COMBINATIONS)
+            best = min(search.replayed(columns, picks), key=lambda one: one.cost)
+            yield from self._tested([unit._replace(scene=best.scene)])
 
     # --- the scene that a row means ---
 
@@ -149,22 +145,22 @@ class Rows:
         """A row's scene; numbers converted are the shortest that round so, or in full."""
         typed: dict[str, str] = {}
         in_full: dict[str, str] = {}
-        within: dict[str, float] = {}
-        most = max(self._places[name] for name in row.inputs)
+        within: dict[str, tuple[float, float]] = {}
+        most = max((self._places[name] for name in row.inputs), default=0)
         for name, made in row.inputs.items():
             if isinstance(made, str) and made != "x":
                 typed[name] = self._scene[made]
                 continue
             x = self._values[name]
-            found = self._value(made, x)
+            found = float(value(made, {**self._values, "x": x}))
             if not isfinite(found):
                 return
             typed[name] = in_full[name] = _short(found)
             if x and isinstance(made, tuple) and made[0] not in ("+", "-", NEGATIVE):
                 # a conversion; all were rounded to as many decimals, but what fills nine digits
                 places = self._places[name] if digits_of(self._scene[name]) >= 9 else most
-                within[name] = abs(found / x) * 0.5 * 10.0**-places
-                typed[name] = _shortest(found, within[name])
+                within[name] = found, abs(found / x) * 0.5 * 10.0**-places
+                typed[name] = _shortest(*within[name])
         for own in (typed, typed | in_full) if typed != typed | in_full else (typed,):
             if (scene := {**self._scene, **own}) != self._scene:
                 yield Hypothesis(row, scene, within)
@@ -177,16 +173,10 @@ class Rows:
             made = one.row.inputs.get(scene_name(name))
             if made and text != own:
                 printed = self._printed.get(name, own)
-                other = self._printed.get(_field(made)) if isinstance(made, str) else None
-                right = numerals.as_printed(text) or text
-                if other not in (None, printed):
-                    right = other or ""
+                other = self._printed.get("MUP" if made == "MU" else str(made), printed)
+                right = other if other != printed else numerals.as_printed(text) or text
                 changes.append(Change(one.row.kind, name, printed, right))
         return changes
-
-    def _value(self, made: Expression, x: float) -> float:
-        """An expression of a row, ``x`` being the column itself."""
-        return float(value(made, {**self._values, "x": x}))
 
     def _in_doubles(
         self, scenes: Sequence[Mapping[str, str]], names: Iterable[str]
@@ -206,52 +196,35 @@ class Rows:
             same = unit.scene[own] == self._scene[own] and name in self._printed
             texts = [self._printed[name] if same else unit.scene[own]]
             if own in unit.within:
-                exact = self._value(unit.row.inputs[own], self._values[own])
-                texts = _near(exact, unit.within[own], most)
+                texts = _near(*unit.within[own], most)
             yield Column((name,), [((text,), 0.0) for text in texts], not same)
         yield Column(("M",), [((unit.scene["M"],), 0.0)], True)
 
     # --- what it leaves unexplained ---
 
     def _tested(self, every: Sequence[Hypothesis]) -> Iterator[Cause]:
-        scenes = list({tuple(one.scene.values()): one.scene for one in every}.values())
+        scenes = [one.scene for one in every]
         names = [name for name in self._page.texts if name not in INPUTS]
         columns = self._in_doubles(scenes, names) if scenes else {}
-        runs = {}
-        for index, (scene, outcome) in enumerate(zip(scenes, replays.run_all(scenes), strict=True)):
-            values = {n: float(column[index]) for n, column in columns.items()}
-            runs[tuple(scene.values())] = outcome, as_printed(outcome), values
-        for one in every:
-            outcome, printed, values = runs[tuple(one.scene.values())]
+        for index, (one, outcome) in enumerate(zip(every, replays.run_all(scenes), strict=True)):
             row, fields, changes = one.row, outcome.fields, self._changes(one)
-            predicted = printed | dict(self._shown_otherwise(row, printed, values))
+            values = {name: float(column[index]) for name, column in columns.items()}
+            otherwise: dict[str, Range] = {}
             for name, made in row.results.items():
-                other = fields.get(made) if isinstance(made, str) else None
-                if other and name in fields and other != fields[name]:
-                    changes.append(Change(row.kind, name, other, fields[name]))
-            turned = any(change.field == "MUP" for change in changes)
-            inputs = {} if turned or "MUP" not in fields else {"MUP": fields["MUP"]}
-            wrong = self._page.unexplained(predicted, outcome.ending, inputs)
-            left = self._page.left(wrong, one.scene, changes)
+                if not isinstance(made, str):  # in another unit, to the page's decimals
+                    if name in fields and name in values:
+                        found = float(value(made, {**values, "x": values[name]}))
+                        places = self._page.decimals(name)
+                        unit = 10.0 ** -max(places, FIELDS[name].places or places)
+                        slack = 1.001 * unit + _ROUGH * abs(found)
+                        otherwise[name] = found - slack, found + slack
+                elif made in fields:
+                    text = fields[made]
+                    otherwise[name] = float(text), float(text)
+                    if fields.get(name, text) != text:
+                        changes.append(Change(row.kind, name, text, fields[name]))
+            left = self._page.left(one.scene, outcome, changes, otherwise)
             yield Cause(row.kind, row.note, row.bits, left, tuple(changes))
-
-    def _shown_otherwise(
-        self, row: Row, printed: Mapping[str, Range], values: Mapping[str, float]
-    ) -> Iterator[tuple[str, Range]]:
-        """The results that a row shows otherwise: another number's, or to the page's decimals."""
-        for name, made in row.results.items():
-            if isinstance(made, str):
-                if made in printed:
-                    yield name, printed[made]
-            elif name in printed and name in values:
-                found = float(value(made, {**values, "x": values[name]}))
-                places = self._page.decimals(name)
-                unit = 10.0 ** -max(places, FIELDS[name].places or places)
-                yield name, around(found, 1.001 * unit + _ROUGH * abs(found))
-
-
-def _field(name: str) -> str:
-    return "MUP" if name == "MU" else name
 
 
 def _short(number: float) -> str:

@@ -26,21 +26,17 @@ from .causes import (
     Cause,
     PageEvidence,
     Range,
-    around,
     as_printed,
     digits_of,
-    places_of,
 )
 
+_CUT = 13.0
+"""Bits for results rounded or truncated by the program itself; one more by another machine."""
 _SOME_LINES = 14.2
 """Bits for an office's copy that rounds on some lines: more than for another arithmetic (14), less
 than for a last place misread (18), which a rounded one looks like."""
-_CUT = 13.0
-"""Bits for results rounded or truncated by the program itself; one more by another machine."""
-_DECIMALS = 14.5
-"""Bits for results to other decimals: as for another unit."""
-_SINGLE = 14.5
-"""Bits for single precision."""
+_OTHERWISE = 14.5
+"""Bits for results to other decimals and for single precision: as for another unit."""
 _SHAKEN = 6
 """Runs in single precision; with twice as many the ranges grow by a tenth."""
 _OPEN_UNITS, _OPEN = 12, 3e-4
@@ -59,12 +55,6 @@ CUTS: dict[str, Callable[[float], int]] = {
     "truncated": math.trunc,
 }
 """How programs bring a number to so many decimals; the listing floors."""
-
-
-def _with_pi(arithmetic: Arithmetic, pi: Any) -> Arithmetic:
-    made = copy(arithmetic)
-    made._constants = {f"{_PI}": pi}
-    return made
 
 
 _DOUBLES = (("", 14.0, _PI), (" with exact pi", 14.5, math.pi), (" with pi = 3.1416", 15.0, 3.1416))
@@ -87,7 +77,10 @@ def causes(page: PageEvidence) -> Iterator[Cause]:
 
 def _causes(page: PageEvidence) -> Iterator[Cause]:
     scene = page.recovered.scene
-    typed, spared = _as_typed(page)
+    # as another machine was given it: the printed numbers
+    shown = {**page.recovered.assumed, **page.texts}
+    typed = scene | {name: shown[name] for name in INPUTS if name in shown and name != "MUP"}
+    spared = frozenset(name for name in ANGLES if digits_of(typed[name]) >= _LONG)
     numbers = (_PI, *(pi for _, _, pi in _DOUBLES), *map(float, _PIS))
     near = dict(zip(numbers, _near(page, typed, numbers), strict=True))
     if near[_PI]:
@@ -102,7 +95,7 @@ def _causes(page: PageEvidence) -> Iterator[Cause]:
             yield from _single_precision(page, typed, spared)
     for variant, bits, pi in _DOUBLES:
         if near[pi]:
-            run = _Run(page, typed, FLOAT64 if pi == _PI else _with_pi(FLOAT64, pi), spared)
+            run = _Run(page, typed, _with_pi(FLOAT64, pi), spared)
             yield run.cause(f"IEEE double arithmetic{variant}", "", bits, {})
             for how in ("rounded", "truncated"):
                 kind = f"IEEE double arithmetic, {how}, not floored"
@@ -111,6 +104,12 @@ def _causes(page: PageEvidence) -> Iterator[Cause]:
         if near[float(text)]:
             run = _Run(page, typed, _with_pi(APPLESOFT, APPLESOFT.number(text)), spared)
             yield run.cause("another pi in line 300", text, _OTHER_PI, {})
+
+
+def _with_pi(arithmetic: Arithmetic, pi: Any) -> Arithmetic:
+    made = copy(arithmetic)
+    made._constants = {f"{_PI}": pi}
+    return made
 
 
 def _near(page: PageEvidence, scene: Mapping[str, str], pis: Iterable[float]) -> list[bool]:
@@ -133,30 +132,27 @@ class _Run:
         machine: Arithmetic,
         spared: frozenset[str] = frozenset(),
     ) -> None:
-        self.page, self.scene = page, scene
-        self.outcome, values = replays.run_whole(scene, machine)
-        self.energy = values.pop("KI", 0.0) if "KI" in page.texts else 0.0
-        self.values = {name: one for name, one in values.items() if name != "KI"}
+        self.page, self.scene, self.spared = page, scene, spared
+        self.outcome, self.values = replays.run_whole(scene, machine)
+        self.energy = self.values.pop("KI", 0.0)
         self._own = as_printed(self.outcome)
-        self._inputs = {n: text for n, text in self.outcome.fields.items() if n not in spared}
-        if self.energy and math.isfinite(self.energy):
+        if "KI" in page.texts and self.energy and math.isfinite(self.energy):
             # to nine digits, halves either way, or to more, rounded or cut
-            last, slack = -page.decimals("KI"), 1.001
+            slack = 1.001 * 10.0 ** -page.decimals("KI")
             if digits_of(page.texts["KI"]) <= _APPLESOFT_DIGITS:
                 last = math.floor(math.log10(abs(self.energy))) - _APPLESOFT_DIGITS + 1
-                slack = 0.5001
-            self._own["KI"] = around(self.energy, slack * 10.0**last)
+                slack = 0.5001 * 10.0**last
+            self._own["KI"] = self.energy - slack, self.energy + slack
 
     def cause(self, kind: str, note: str, bits: float, other: Mapping[str, Range]) -> Cause:
         """What it leaves unexplained, some of its results otherwise."""
-        predicted = {**self._own, **other}
-        wrong = self.page.unexplained(predicted, self.outcome.ending, self._inputs)
-        return Cause(kind, note, bits, self.page.left(wrong, self.scene, ()))
+        left = self.page.left(self.scene, self.outcome, (), {**self._own, **other}, self.spared)
+        return Cause(kind, note, bits, left)
 
     def cut(self, how: str, lines: Iterable[int] | None = None) -> dict[str, Range]:
         """The results, or those of some lines, cut to the listing's decimals."""
         return {
-            name: cut(one, places_of(name), how)
+            name: cut(one, (FIELDS[name].places or 0), how)
             for name, one in self.values.items()
             if lines is None or FIELDS[name].line in lines
         }
@@ -191,16 +187,15 @@ def _other_decimals(run: _Run) -> Iterator[Cause]:
         number, places = float(text), page.decimals(name)
         single = digits_of(text) == _SINGLE_DIGITS
         slack = max(1.001 * 10.0**-places, abs(number) * (3e-6 if single else 2e-9))
-        near = around(value, slack)
         ranges = {how: cut(value, places, how) for how in ("rounded", "floored")}
         if 10.0**-places < (abs(number) or 1) or any(a <= number <= b for a, b in ranges.values()):
-            own[name] = near
+            own[name] = value - slack, value + slack
             if name != "KI":
                 decimals.add(places)
-                others += places != places_of(name) or "E" in text
+                others += places != (FIELDS[name].places or 0) or "E" in text
     if others >= 2:
         said = " to ".join(map(str, sorted({min(decimals), max(decimals)}))) + " decimals"
-        yield run.cause("printed with other decimals", said, _DECIMALS, own)
+        yield run.cause("printed with other decimals", said, _OTHERWISE, own)
 
 
 def cut(value: float, places: int, how: str) -> Range:
@@ -219,28 +214,21 @@ def cut(value: float, places: int, how: str) -> Range:
 def _single_precision(
     page: PageEvidence, scene: dict[str, str], spared: frozenset[str]
 ) -> Iterator[Cause]:
-    outcomes = [replays.run_once(scene, single(seed)) for seed in range(_SHAKEN + 1)]
-    exact, values = replays.run_whole(scene, FLOAT64)
-    if exact.ending or any(outcome.ending for outcome in outcomes):
+    run, exact = _Run(page, scene, single(0), spared), _Run(page, scene, FLOAT64)
+    outcomes = [replays.run_once(scene, single(seed)) for seed in range(1, _SHAKEN + 1)]
+    outcomes.append(run.outcome)
+    if exact.outcome.ending or any(outcome.ending for outcome in outcomes):
         return
     ranges = {
         name: near
-        for name in outcomes[0].fields
-        if name not in INPUTS
-        and name in page.texts
-        and (name == "KI" or page.decimals(name) <= places_of(name))
-        and (near := _left_open(name, [float(one.fields[name]) for one in outcomes]))
+        for name in run.outcome.fields.keys() & page.texts.keys() - set(INPUTS)
+        if name == "KI" or page.decimals(name) <= (FIELDS[name].places or 0)
+        if (near := _left_open(name, [float(one.fields[name]) for one in outcomes]))
     }
-    fits = dict.fromkeys(CUTS, 0)
-    for how in CUTS:
-        for name, text in page.texts.items():
-            if name in values and name != "KI":
-                low, high = cut(values[name], places_of(name), how)
-                fits[how] += low <= float(text) <= high
-    how = max(fits, key=fits.__getitem__)
+    read = exact.values.keys() & page.texts.keys()
+    how = max(CUTS, key=lambda how: sum(exact.prints(name, exact.cut(how)) for name in read))
     kind = "single-precision arithmetic" + ("" if how == "floored" else f", {how}, not floored")
-    run = _Run(page, scene, single(0), spared)
-    yield run.cause(kind, "as in GW-BASIC and similar BASICs", _SINGLE, ranges)
+    yield run.cause(kind, "as in GW-BASIC and similar BASICs", _OTHERWISE, ranges)
 
 
 def _left_open(name: str, numbers: list[float]) -> Range | None:
@@ -275,15 +263,3 @@ def single(seed: int) -> Arithmetic:
     made.write = lambda x: FLOAT64.write(float(f"{x or 0.0:.{_SINGLE_DIGITS - 1}E}"))
     made.SIN, made.COS = (lambda x: store(math.sin(x))), (lambda x: store(math.cos(x)))
     return made
-
-
-def _as_typed(page: PageEvidence) -> tuple[dict[str, str], frozenset[str]]:
-    """The scene as another machine was given it: the printed numbers, and the names of angles that
-    came back from radians a little off."""
-    scene = dict(page.recovered.scene)
-    scene |= {
-        name: text
-        for name, text in {**page.recovered.assumed, **page.texts}.items()
-        if name in INPUTS and name != "MUP"
-    }
-    return scene, frozenset(name for name in ANGLES if digits_of(scene[name]) >= _LONG)

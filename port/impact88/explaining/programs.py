@@ -17,7 +17,7 @@ from ..equations.edits import Edit, edits_of, readings
 from ..equations.evaluation import Run, chunks
 from ..equations.spelling import LISTING, SHOWN, spellings
 from ..fields import FIELDS
-from .causes import NOT_APPLESOFT, Cause, PageEvidence, places_of
+from .causes import NOT_APPLESOFT, Cause, PageEvidence
 
 _BITS = {"a changed line of the listing": 24.0, "another program": 20.0}
 """Bits of an edit: one of some 5,000 lines (12) or 500 readings (9), and an office's copy in which
@@ -33,7 +33,7 @@ def causes(page: PageEvidence) -> Iterator[Cause]:
     """The edit that explains all that differs: of those that compute the same the likeliest."""
     numbers = {name: some[0] for name, some in page.results.items() if some and name in page.texts}
     differ = page.base & set(numbers)
-    if sum(log2(1 + abs(numbers[n]) * 10.0 ** places_of(n)) for n in differ) < _CHANCE:
+    if sum(log2(1 + abs(numbers[n]) * 10.0 ** (FIELDS[n].places or 0)) for n in differ) < _CHANCE:
         return
     values = doubles_of(page.recovered.scene)
     run = Run(spellings()[LISTING], {name: np.array([value]) for name, value in values.items()})
