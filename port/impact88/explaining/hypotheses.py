@@ -223,8 +223,8 @@ class Rows:
                     otherwise[name] = float(text), float(text)
                     if fields.get(name, text) != text:
                         changes.append(Change(row.kind, name, text, fields[name]))
-            left = self._page.left(one.scene, outcome, changes, otherwise)
-            yield Cause(row.kind, row.note, row.bits, left, tuple(changes))
+            given = one.scene, outcome, changes, otherwise, frozenset(row.inputs)
+            yield Cause(row.kind, row.note, row.bits, self._page.left(*given), tuple(changes))
 
 
 def _short(number: float) -> str:
