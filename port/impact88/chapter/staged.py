@@ -15,8 +15,6 @@ The fit minimises  Σ(V - V_measured)² + 25 ft² Σ(Ω - Ω_measured)²  over t
 are linear in the impulse; e_m is then searched for alone. Units: ft, s, slug (Table 1).
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

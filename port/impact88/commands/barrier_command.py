@@ -25,7 +25,7 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 
 from ..chapter.barrier import BARRIER, BARRIER_AFTER
 from ..errors import note
-from ..reconstruction.frictionshare import share_resolved
+from ..reconstruction.adjustment import share_resolved
 from ..reconstruction.solutiontable import Exact
 from ..uncertainty.uncertain import fixed
 from ..units import system_of

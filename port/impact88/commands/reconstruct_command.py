@@ -55,11 +55,14 @@ from collections.abc import Sequence
 from ..errors import UserError, note
 from ..files import replacing
 from ..progress import progress
-from ..reconstruction.adjustment import Reconstruction, needs_adjustment, reconstruct
-from ..reconstruction.frictionshare import share_resolved
-from ..reconstruction.knowable import KNOWABLE
+from ..reconstruction.adjustment import (
+    Reconstruction,
+    needs_adjustment,
+    reconstruct,
+    share_resolved,
+)
 from ..reconstruction.solutiontable import Exact, Impact
-from ..reconstruction.state import QUANTITIES
+from ..reconstruction.state import KNOWABLE, QUANTITIES
 from ..scene import shown_texts
 from ..scene import template as scene_template
 from ..uncertainty.reconstructedtable import Measured

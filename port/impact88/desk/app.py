@@ -20,7 +20,7 @@ from werkzeug.exceptions import HTTPException
 from ..errors import UserError
 from ..files import packaged_text
 from ..names import SCENE
-from ..reconstruction.knowable import KNOWABLE
+from ..reconstruction.state import KNOWABLE
 from ..version import __version__
 from . import collision, page, reconstruction
 from .forms import filled_in

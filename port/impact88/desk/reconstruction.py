@@ -8,7 +8,7 @@ from typing import Any
 from ..errors import UserError
 from ..names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
 from ..plaintable import number
-from ..reconstruction.knowable import KNOWABLE
+from ..reconstruction.state import KNOWABLE
 from ..scene import known_template, sample
 from ..schemas import stamped
 from ..uncertainty import uncertain

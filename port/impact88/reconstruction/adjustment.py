@@ -7,8 +7,6 @@ last by Newton's method, which shows that nothing beside it is less. First-order
 correlations come from the same equations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -17,13 +15,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..closedform.solve import share_typed, solve
 from ..errors import UserError
 from ..mappings import within_limits
-from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, check_names
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, SCENE, VELOCITIES, check_names
 from ..uncertainty.uncertain import Uncertain, fixed
 from .geometry import GEOMETRY, with_point_masses, within_doubles
-from .knowable import KNOWABLE, OTHERS
-from .state import COURSES, DIRECTIONS, FORCES, QUANTITIES, SPEEDS, State
+from .state import COURSES, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SPEEDS, State
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, check_physical, solve_for, typed
 
@@ -58,6 +56,10 @@ _RANK, _OPEN = 1e-10, 1e-7
 """Singular values, and shares of a gradient in the null space, up to that are none."""
 _LIKELY = 4.0
 """Impacts with so many times the least sum of squares are reported, too."""
+_FRICTIONS = 40
+"""Frictions tried; secants need six to ten."""
+_SETTLED = 1e-12
+"""Change of P_t/P_n at which it has settled."""
 _HELPFUL_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 """Of what is not known, what can be found out best."""
 
@@ -613,3 +615,64 @@ def _described(system: System, x: Floats, assumed: bool) -> Reconstruction:
         *(system, x, values, tuple(undetermined), adjusted, redundancy, float(rest @ rest)),
         assumed,
     )
+
+
+# -- friction as a share of the critical one
+
+
+def share_resolved(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertain], str | None]:
+    """``known`` with a number, or limits, for a MU that is a share, and how it was found; as it is
+    where MU is none. Raises UserError where no friction is found that is the share.
+
+    The critical friction follows from the whole scene. Where that is known, MU is; where some of it
+    is solved for, MUP = share · MUC is one more equation, met by trying friction until it holds."""
+    item = known.get("MU")
+    if item is None or not item.share:
+        return dict(known), None
+    others = {name: value for name, value in known.items() if name != "MU"}
+    scene = {"M": 6.0} | {n: x.nominal for n, x in others.items() if n in SCENE}
+    if len(scene) == len(SCENE) - 1:
+        name, value = "MU", float(share_typed(scene, item.nominal))
+    else:
+        name, value = "MUP", _signed(others, item.nominal)
+    if value != value:
+        raise UserError("no friction ends the sliding here; expected a number", "MU")
+    scale = value / item.nominal if item.nominal else 0.0
+    low, high = sorted((item.low * scale, item.high * scale))
+    found = fixed(value)
+    if item.varies:
+        spread = abs(item.deviation * scale)
+        found = replace(item, nominal=value, low=low, high=high, deviation=spread, share=False)
+    text = f"MU is {100 * item.nominal:g} % of the critical friction: {name} = {value:.9g}"
+    return {**others, name: found}, text
+
+
+def _signed(others: Mapping[str, Uncertain], share: float) -> float:
+    """The P_t/P_n that is a share of MUC in the impact that follows from it and the others."""
+    exact = not needs_adjustment(others, None)
+    numbers = {name: item.nominal for name, item in others.items()}
+
+    def excess(mu: float) -> float:
+        scene: dict[str, Any]
+        if exact:
+            scene = {**numbers, **solve_for({**numbers, "MUP": mu})[0].values}
+        else:
+            scene = reconstruct({**others, "MUP": fixed(mu)})[0].scene()
+        scene = {name: value for name, value in scene.items() if name in SCENE}
+        return mu - share * float(solve({**scene, "MU": 0.0}, ("MUC",))["MUC"])
+
+    failure = UserError("no friction is found that is this share of the critical friction", "MU")
+    for start in (0.3, -0.3):
+        try:
+            a, b = 0.0, start
+            at_a, at_b = excess(a), excess(b)
+            for _ in range(_FRICTIONS):
+                if abs(at_b) <= _SETTLED or at_a == at_b:
+                    break
+                a, at_a, b = b, at_b, b - at_b * (b - a) / (at_b - at_a)
+                at_b = excess(b)
+            if abs(at_b) <= 1e3 * _SETTLED:
+                return b
+        except UserError as error:
+            failure = error
+    raise failure

@@ -11,13 +11,11 @@ contact point lies at the angle θ_b + φ_b from its center of gravity, so B fac
 all four together: varied apart they tear it in two.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, ParamSpec, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,7 +90,7 @@ class Geometry:
     point: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, columns: Mapping[str, Any]) -> Geometry:
+    def of(cls, columns: Mapping[str, Any]) -> Self:
         """Of scenes given by name (`GEOMETRY`, and M where not 6), angles in degrees."""
         columns = with_point_masses(columns)
         value = {name: _numbers(columns[name]) for name in GEOMETRY}

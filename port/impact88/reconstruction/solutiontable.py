@@ -20,11 +20,7 @@ from .state import CHANGES, COURSES, FORCES
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
-_BARRIERS = (
-    *("MB", "IB", "DB", "PB", "TB", "VX", "VY", "WB", "VBX", "VBY", "WBF"),
-    *("XB", "YB", "XBF", "YBF", "DVB", "DVBF", "DVBR", "CBX", "CBY", "PDOFB"),
-    *("SB", "HB", "SBF", "HBF"),
-)
+_BARRIERS = (*(name for name in _ORDER if "B" in name), "VX", "VY")
 """What a rigid barrier does not have."""
 _TURNING = (
     *("EM", "RR0", "PM", "WA", "WAF", "WB", "WBF", "IA", "IB", "DA", "DB", "PA", "PB"),

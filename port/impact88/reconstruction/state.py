@@ -6,14 +6,13 @@ of sums, products, roots and quotients, over numbers or arrays, real or complex 
 carries a derivative).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
+from .. import names
 from ..closedform.energy import kinetic_energy
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 from .geometry import Geometry, facing, sin_cos
@@ -35,6 +34,13 @@ QUANTITIES = (
     *(*CHANGES, *ENERGIES, *CONTACT, *FORCES),
 )
 """What a state can be asked for."""
+OTHERS = (
+    *(name for pair in zip(SPEEDS, COURSES, strict=True) for name in pair),
+    *(*CHANGES, *ENERGIES, *CRUSH, *CONTACT, *FORCES),
+)
+"""What `adjustment` knows and `unknowns.solve_for` does not."""
+KNOWABLE = (*names.SCENE, "MUP", *names.FINAL_VELOCITIES, *OTHERS)
+"""What may be known of an impact."""
 
 
 class State:
@@ -52,12 +58,10 @@ class State:
         self.from_after = from_after
 
     @classmethod
-    def of_known(cls, values: Mapping[str, Any]) -> State:
+    def of_known(cls, values: Mapping[str, Any]) -> Self:
         """An impact of which these velocities, before and after, and impulses are known; what they
         do not tell is NaN."""
-        early, late = (
-            [values.get(n, np.nan) for n in names] for names in (VELOCITIES, FINAL_STATE)
-        )
+        early, late = ([values.get(n, np.nan) for n in six] for six in (VELOCITIES, FINAL_STATE))
         state = cls({**dict.fromkeys(IMPULSES, np.nan), **values})
         state.before, state.after = early, late
         state.changes = [after - before for before, after in zip(early, late, strict=True)]

@@ -6,8 +6,6 @@ typical one: impulses by the reduced mass, spins by the radius of gyration. For 
 all is linear but speeds, directions, changes of velocity and energies.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from typing import Any
@@ -15,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, quantity
 from ..uncertainty.uncertain import Uncertain
 from .geometry import GEOMETRY, Geometry
 from .state import (
@@ -40,7 +38,6 @@ PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
 MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES, *CONTACT)
 TINY = 1e-30
 """The imaginary step whose derivative has no error."""
-_VELOCITY_LIKE = {*VELOCITIES, *FINAL_STATE, *SPEEDS, *CHANGES, *CONTACT} - {*SPINS}
 _COURSE_OF = {speed: course for course, speed in COURSES.items()}
 _CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
 """Quantities that more than one impact may have."""
@@ -105,31 +102,27 @@ class System:
         )
 
     def _typical_speed(self) -> Any:
-        sizes = [np.abs(v) for n, v in self.nominal.items() if n in _VELOCITY_LIKE]
-        sizes += [np.abs(v) * self.gyration for n, v in self.nominal.items() if n in SPINS]
-        energies = [np.abs(v) for n, v in self.nominal.items() if n in ("KI", "KF", "EL", *CRUSH)]
-        sizes += [np.sqrt(2 * v / self.mass) for v in energies]
-        largest = reduce(np.maximum, sizes, np.float64(0.0))
+        sizes: list[Any] = [np.float64(0.0)]
+        for name, value in self.nominal.items():
+            rule, size = quantity(name).unit, np.abs(value)
+            if rule == "length/time" or name in SPINS:
+                sizes.append(size * self.gyration if name in SPINS else size)
+            elif rule == quantity("EL").unit:
+                sizes.append(np.sqrt(2 * size / self.mass))
+        largest = reduce(np.maximum, sizes)
         return np.where(largest == 0, 1.0, largest)[()]
 
     def scale(self, name: str) -> Any:
         """What a quantity of ordinary size measures in the problem's units."""
         speed, mass, length = self.speed, self.mass, self.gyration
-        if name in SPINS:
-            return speed / length
-        if name in IMPULSES:
-            return mass * speed * (length if name == "PM" else 1.0)
-        if name in DIRECTIONS or name in ("GA", "PA", "PB", "TA", "TB"):
-            return np.degrees(1.0)
-        if name in COEFFICIENTS or name == "DT":
-            return 1.0
-        if name in ("KI", "KF", "EL", *CRUSH):
-            return mass * speed**2
-        if name in ("DA", "DB"):
-            return length
-        if name in GEOMETRY:
+        if name in ("MA", "MB", "IA", "IB"):
             return abs(self.nominal[name])
-        return 100.0 if name == "LOSS" else speed
+        return {
+            **{"1": 1.0, "percent": 100.0, "degree": np.degrees(1.0), "length": length},
+            **{"length/time": speed, "rad/time": speed / length},
+            **{"mass·length/time": mass * speed, "mass·length²/time": mass * speed * length},
+            "mass·length²/time²": mass * speed**2,
+        }[quantity(name).unit]
 
     def state(
         self, x: Array, data: Mapping[str, Array] | None = None, geometry: Geometry | None = None

@@ -13,14 +13,12 @@ line 400 chooses so that friction opposes the sliding. Where the initial velocit
 signs are tried, and each solution that agrees with its own sign is returned.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import reduce
 from itertools import combinations
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,7 +167,7 @@ class _Problem:
     point: bool
 
     @classmethod
-    def of(cls, known: Mapping[str, Any], unknown: Iterable[str] | None) -> _Problem:
+    def of(cls, known: Mapping[str, Any], unknown: Iterable[str] | None) -> Self:
         allowed = {*GEOMETRY, "M", *VELOCITIES, *FINAL_STATE, "E", "EM", "MU", "MUP"}
         values = columns(known)
         check_names(values, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
@@ -247,12 +245,12 @@ class _Problem:
 
     # -- why a set is refused
 
-    def _first(self, wanted: Sequence[str], **changes: float) -> _Problem:
+    def _first(self, wanted: Sequence[str], **changes: float) -> Self:
         """The first scene's problem with other unknowns wanted and some values changed."""
         given = {name: value.reshape(-1)[:1] for name, value in self.known.items()}
         if "MU" in given:
             given["MUP"] = given.pop("MU")
-        return _Problem.of(given | changes, wanted)
+        return self.of(given | changes, wanted)
 
     def _determines(self, wanted: Sequence[str], **changes: float) -> bool:
         """Whether all of ``wanted`` is determined in the first scene."""

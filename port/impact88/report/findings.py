@@ -14,7 +14,7 @@ from ..files import replacing
 from ..names import DEFAULT_M, SCENE, check_names, quantity
 from ..plaintable import fixed, number
 from ..reconstruction.geometry import MOVES, clock, moved, placed
-from ..reconstruction.knowable import KNOWABLE
+from ..reconstruction.state import KNOWABLE
 from ..scene import Entries
 from ..status import sentences
 from ..units import RULES, System, base_of, system_of

@@ -12,10 +12,9 @@ the six final velocities back, with MUP, the signed P_t/P_n, for MU: line 400's 
 initial velocities.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -205,7 +204,7 @@ class _Box:
         problem: str,
         sigmas: float,
         exclude: Sequence[str],
-    ) -> _Box:
+    ) -> Self:
         check_names([problem], PROBLEMS, "problem")
         given = within_limits(values)
         given.setdefault("M", fixed(6.0))

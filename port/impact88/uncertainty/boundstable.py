@@ -1,12 +1,10 @@
 """What `bounds` found: the numbers, a table to read, and JSON to process."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from textwrap import wrap
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +28,7 @@ class Spread:
     quantiles: dict[float, float]
 
     @classmethod
-    def of(cls, values: Array, quantiles: Sequence[float]) -> Spread:
+    def of(cls, values: Array, quantiles: Sequence[float]) -> Self:
         """NaN of no values."""
         if not len(values):
             return cls(math.nan, math.nan, dict.fromkeys(quantiles, math.nan))

@@ -1,8 +1,6 @@
 """A reconstruction with its tolerances, as tables to read and as JSON to process: what was measured
 and how it was adjusted, what follows, and how uncertain that is in three ways side by side."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
