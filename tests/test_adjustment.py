@@ -21,7 +21,7 @@ from impact88.reconstruction.system import System
 from impact88.reconstruction.unknowns import solve_for
 from impact88.scene import Scene, sample
 from impact88.uncertainty.reconstructed import draws, ranges
-from impact88.uncertainty.reconstructedtable import uncertainty
+from impact88.uncertainty.reconstructedtable import Measured
 from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
@@ -628,7 +628,7 @@ def test_a_value_known_more_than_needed_leaves_nothing_uncertain():
     known = VEHICLES | {name: forward[name] for name in FINAL} | {"UY": 0.0}
     known |= {"E": TABLE_3["E"], "EM": TABLE_3["EM"], "MUP": forward["MUP"]}
     (solution,) = reconstruct(known | {"VAX": read(f"{forward['VAX'] + 1!r} +- 2", "VAX")})
-    assert uncertainty(solution, 100).names == ()
+    assert Measured(solution, 100).names == []
     assert solution.values["UX"] == pytest.approx(TABLE_3["UX"], abs=1e-9)
 
 

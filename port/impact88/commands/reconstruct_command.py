@@ -118,7 +118,7 @@ def _reconstructed(
     for solution in solutions:
         with progress(None, "reconstruct", "impacts") as meter:
             given = (args.samples, args.seed, wanted, args.contact_time)
-            found.append(Measured.of(solution, *given, meter.update))
+            found.append(Measured(solution, *given, meter.update))
     return found
 
 

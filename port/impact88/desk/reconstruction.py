@@ -72,7 +72,7 @@ def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dic
 
     found: Sequence[Impact]
     if adjustment.needs_adjustment(known):
-        found = [Measured.of(impact, DRAWS) for impact in adjustment.reconstruct(known)]
+        found = [Measured(impact, DRAWS) for impact in adjustment.reconstruct(known)]
     else:
         found = Exact.all_of({name: item.nominal for name, item in known.items()})
     units = system_of(named)

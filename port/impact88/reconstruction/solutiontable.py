@@ -5,7 +5,6 @@ tolerances is `uncertainty.reconstructedtable.Measured`.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from textwrap import wrap
 from typing import Any, Self
 
@@ -66,19 +65,17 @@ def _absent(values: Mapping[str, float]) -> tuple[str, ...]:
     return (*barrier, *_TURNING) if values.get("M") == 4 else barrier
 
 
-@dataclass(frozen=True)
 class Impact:
-    """A solved impact: what is ``known`` and all ``values``, in base units."""
-
-    known: Mapping[str, Any]
-    values: dict[str, float]
+    """A solved impact: what is ``known`` and all ``values``, in base units; ``undetermined``: what
+    is told apart from the remarks, ``helpful``: further values that would determine it; ``note``:
+    what is said of several solutions."""
 
     undetermined: Sequence[str] = ()
-    """What is told apart from the remarks."""
     helpful: Sequence[str] = ()
-    """Further values that would determine it."""
-    note: str = ""
-    """What is said of several solutions."""
+    note = ""
+
+    def __init__(self, known: Mapping[str, Any], values: dict[str, float]) -> None:
+        self.known, self.values = known, values
 
     def warnings(self, units: System = RULES) -> list[str]:
         """What a reader must know, in sentences."""
@@ -265,11 +262,17 @@ def _friction(values: Mapping[str, float]) -> str:
     return text
 
 
-@dataclass(frozen=True)
 class Exact(Impact):
     """A solution of exact values, and everything that follows from it."""
 
-    solution: Solution = field(kw_only=True)
+    def __init__(
+        self, known: Mapping[str, float], solution: Solution, contact_time: float | None
+    ) -> None:
+        values = {**known, **{name: float(value) for name, value in solution.values.items()}}
+        super().__init__(known, completed(values, contact_time))
+        self.solution, self.note = solution, ": MU is known in size, and both signs agree"
+        if solution.contradictory:
+            self.note += " (each a fit of values that contradict one another)"
 
     @classmethod
     @within_doubles
@@ -282,18 +285,10 @@ class Exact(Impact):
     ) -> list[Self]:
         """Every solution of a single scene. Raises UserError; ``source`` names where the known
         values come from."""
-        found = []
         try:
-            for solution in solve_for(known, wanted):
-                values = {**known, **{n: float(value) for n, value in solution.values.items()}}
-                note = ": MU is known in size, and both signs agree"
-                if solution.contradictory:
-                    note += " (each a fit of values that contradict one another)"
-                values = completed(values, contact_time)
-                found.append(cls(known, values, note=note, solution=solution))
+            return [cls(known, solution, contact_time) for solution in solve_for(known, wanted)]
         except UserError as error:
             raise UserError(str(error), source) from None
-        return found
 
     def warnings(self, units: System = RULES) -> list[str]:
         lines = []

@@ -200,8 +200,8 @@ def _inverse(entries: Entries, source: str, samples: int, seed: int, units: Syst
     except UserError as error:
         raise UserError(str(error), source) from None
     sought = [n for n in INVERSE if n not in found[0].system.known]
-    whole = Measured.of(found[0], samples, seed, sought)
-    values, spread = whole.values, whole.spread
+    spread = Measured(found[0], samples, seed, sought)
+    values = spread.values
     spreads, drivers = {}, {}
     for name in spread.names:
         low = high = lower = upper = math.nan
@@ -214,7 +214,7 @@ def _inverse(entries: Entries, source: str, samples: int, seed: int, units: Syst
             for known, share in spread.drivers[name][:DRIVERS]
             if share >= 0.005
         ]
-    remarks = whole.warnings(units)
+    remarks = spread.warnings(units)
     if len(found) > 1:
         remarks.append(f"{len(found)} impacts agree with what is known; this is the first of them")
     scene = {n: values[n] for n in SCENE if n in values}

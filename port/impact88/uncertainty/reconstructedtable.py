@@ -3,11 +3,9 @@ and how it was adjusted, what follows, and how uncertain that is in three ways s
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import notebook
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
@@ -35,53 +33,6 @@ TOO_FAR = 3.0
 """From so many tolerances on an adjustment is called a contradiction."""
 
 
-@dataclass(frozen=True)
-class Uncertainty:
-    """First-order deviations, draws and bounds of some results of one reconstruction; ``drivers``:
-    for each the known values that make it uncertain, with their shares of its variance."""
-
-    names: tuple[str, ...]
-    deviations: dict[str, float]
-    correlations: NDArray[np.float64]
-    drivers: dict[str, list[tuple[str, float]]]
-    draws: Draws | None
-    ranges: dict[str, Range]
-
-
-@within_doubles
-def uncertainty(
-    solution: Reconstruction,
-    samples: int,
-    seed: int = 0,
-    wanted: Sequence[str] | None = None,
-    progress: Callable[[int], object] = lambda draws: None,
-) -> Uncertainty:
-    """How uncertain a reconstruction's results are: ``wanted``, or those that were not known. Draws
-    and bounds only for ``samples`` above 0 and tolerances that were given."""
-    known = solution.system.known
-    results = wanted or [
-        n for n in _RESULTS if n not in known or (n in _ANSWERS and known[n].varies)
-    ]
-    names = [name for name in results if name in solution.values]
-    if not wanted:
-        names = [name for name in names if not _along_an_axis(solution, name)]
-    deviations = solution.deviations(names)
-    # what the exact values alone determine is not uncertain
-    names = [n for n in names if deviations[n] > 1e-9 * solution.system.scale(n)]
-    drawn, bounds = None, {}
-    if samples and names and not solution.assumed:
-        drawn = draws(solution, names, samples, seed, progress)
-        bounds = ranges(solution, names, seed=seed, drawn=drawn, progress=progress)
-    drivers = {}
-    for name, responses in zip(names, solution.responses(names), strict=True):
-        shares = responses**2 / (np.square(responses).sum() or 1.0)
-        ranked = np.argsort(-shares, kind="stable")
-        drivers[name] = [(solution.system.observations[i], float(shares[i])) for i in ranked]
-    return Uncertainty(
-        tuple(names), deviations, solution.correlations(names), drivers, drawn, bounds
-    )
-
-
 def _along_an_axis(solution: Reconstruction, name: str) -> bool:
     """Whether a course says no more than the velocity's components do."""
     components = SPEEDS[COURSES[name]] if name in COURSES else ()
@@ -89,44 +40,59 @@ def _along_an_axis(solution: Reconstruction, name: str) -> bool:
     return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
 
 
-@dataclass(frozen=True)
 class Measured(Impact):
-    """A reconstruction, everything that follows from it, and how uncertain that is."""
+    """A reconstruction, everything that follows from it (`solutiontable.completed`), and how
+    uncertain the results ``wanted`` are, or those that were not known: first-order ``deviations``
+    and ``correlations``, the ``drivers`` of each and, for ``samples`` above 0 and tolerances that
+    were given, ``draws`` and bounds, ``ranges``."""
 
-    solution: Reconstruction = field(kw_only=True)
-    spread: Uncertainty = field(kw_only=True)
-
-    @classmethod
     @within_doubles
-    def of(
-        cls,
+    def __init__(
+        self,
         solution: Reconstruction,
         samples: int,
         seed: int = 0,
         wanted: Sequence[str] | None = None,
         contact_time: float | None = None,
         progress: Callable[[int], object] = lambda draws: None,
-    ) -> Self:
-        """See `uncertainty`, and `solutiontable.completed`."""
-        values = dict(solution.values)
+    ) -> None:
+        known, values = solution.system.known, dict(solution.values)
         if "MUP" in values and "UX" in values:
             values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
-        spread = uncertainty(solution, samples, seed, wanted, progress)
-        values, lacking = completed(values, contact_time), solution.undetermined
-        helpful = solution.helpful if lacking else ()
-        return cls(
-            *(solution.system.known, values, lacking, helpful), solution=solution, spread=spread
-        )
+        super().__init__(known, completed(values, contact_time))
+        self.solution, self.undetermined = solution, solution.undetermined
+        self.helpful = solution.helpful if solution.undetermined else ()
+        results = wanted or [
+            n
+            for n in _RESULTS
+            if (n not in known or (n in _ANSWERS and known[n].varies))
+            and not _along_an_axis(solution, n)
+        ]
+        names = [name for name in results if name in solution.values]
+        self.deviations = solution.deviations(names)
+        # what the exact values alone determine is not uncertain
+        names = [n for n in names if self.deviations[n] > 1e-9 * solution.system.scale(n)]
+        self.names, self.correlations = names, solution.correlations(names)
+        self.draws: Draws | None = None
+        self.ranges: dict[str, Range] = {}
+        if samples and names and not solution.assumed:
+            self.draws = draws(solution, names, samples, seed, progress)
+            self.ranges = ranges(solution, names, seed, self.draws, progress)
+        self.drivers: dict[str, list[tuple[str, float]]] = {}
+        for name, responses in zip(names, solution.responses(names), strict=True):
+            shares = responses**2 / (np.square(responses).sum() or 1.0)
+            ranked = np.argsort(-shares, kind="stable")
+            self.drivers[name] = [(solution.system.observations[i], shares[i]) for i in ranked]
 
     def spread_of(self, name: str) -> tuple[float, float, float] | None:
-        if name not in self.spread.names:
+        if name not in self.names:
             return None
-        bound = self.spread.ranges.get(name)
+        bound = self.ranges.get(name)
         ends = (bound.lower, bound.upper) if bound else (math.nan, math.nan)
-        return self.spread.deviations[name], *ends
+        return self.deviations[name], *ends
 
     def drivers_of(self, name: str) -> Sequence[tuple[str, float]]:
-        return self.spread.drivers.get(name, ())[:DRIVERS]
+        return self.drivers.get(name, ())[:DRIVERS]
 
     @within_doubles
     def warnings(self, units: System = RULES) -> list[str]:
@@ -161,7 +127,7 @@ class Measured(Impact):
                 f"the measured values contradict one another: moved, tolerances: {', '.join(moved)}"
             )
         lines += self._ill_posed(units)
-        if any(math.isnan(bound.lower) for bound in self.spread.ranges.values()):
+        if any(math.isnan(bound.lower) for bound in self.ranges.values()):
             lines.append(
                 "no impact was found that lies within the limits of all known values at once: the "
                 "draws are those of normal values with the same standard deviations"
@@ -171,23 +137,23 @@ class Measured(Impact):
                 "the search for bounds ended before its time; not searched to the end, and perhaps "
                 f"wider: {' '.join(unsearched)}"
             )
-        if self.spread.draws and self.spread.draws.failed:
-            lines.append(f"{100 * self.spread.draws.failed:.3g} % of the draws have no solution")
+        if self.draws and self.draws.failed:
+            lines.append(f"{100 * self.draws.failed:.3g} % of the draws have no solution")
         return lines + super().warnings()
 
     @property
     def not_searched(self) -> list[str]:
         """The results whose bounds may be wider: the search took all it may."""
-        return [name for name, bound in self.spread.ranges.items() if not bound.searched]
+        return [name for name, bound in self.ranges.items() if not bound.searched]
 
     def _ill_posed(self, units: System) -> list[str]:
         """Velocities that the known values hardly determine, with the number and what drives it."""
         system, lines = self.solution.system, []
-        for name in self.spread.names:
-            deviation = self.spread.deviations[name]
+        for name in self.names:
+            deviation = self.deviations[name]
             share = deviation / system.scale(name)
             if name in (*VELOCITIES, *FINAL_STATE) and share > ILL_POSED:
-                driver, part = self.spread.drivers[name][0]
+                driver, part = self.drivers[name][0]
                 size = f"{number(deviation * units.factor(name), 3)} {units.unit(name)}".rstrip()
                 lines.append(
                     f"ill-posed: {name} has a standard deviation of {size}, {100 * share:.0f} % of "
@@ -230,15 +196,15 @@ class Measured(Impact):
 
     def _spreads(self, units: System) -> list[str]:
         heading = ["result", "first order sd"]
-        if self.spread.draws:
+        if self.draws:
             heading += ["draws sd", *(f"{100 * share:g} %" for share in QUANTILES)]
             heading += ["lower bound", "upper bound"]
         rows = []
-        for name in self.spread.names:
+        for name in self.names:
             factor = units.factor(name)
-            cells = [name, number(factor * self.spread.deviations[name], 3)]
-            if self.spread.draws:
-                drawn, bound = self.spread.draws.spread(name, QUANTILES), self.spread.ranges[name]
+            cells = [name, number(factor * self.deviations[name], 3)]
+            if self.draws:
+                drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
                 cells.append(number(factor * drawn.deviation, 3))
                 limits = (*drawn.quantiles.values(), bound.lower, bound.upper)
                 cells += [number(factor * value, 5) for value in limits]
@@ -247,21 +213,21 @@ class Measured(Impact):
 
     def _connections(self) -> list[list[str]]:
         """Correlations, and what makes results uncertain."""
-        names = self.spread.names
+        names = self.names
         # the unknowns themselves: courses and speeds are made of them
         at = [i for i, n in enumerate(names) if n not in (*SPEEDS, *COURSES)][:MOST_CORRELATED]
-        matrix = self.spread.correlations
+        matrix = self.correlations
         rows = [[names[i], *(f"{matrix[i, k]:.2f}" for k in at if k <= i)] for i in at]
         correlations = table(rows, ["correlation", *(names[i] for i in at)])
         driving = [
             [name, *(f"{n} {100 * share:.0f} %" for n, share in drivers[:DRIVERS] if share >= 5e-3)]
-            for name, drivers in self.spread.drivers.items()
+            for name, drivers in self.drivers.items()
         ]
         columns = table(driving, ["uncertain through", *[""] * DRIVERS], left=(0, 1, 2, 3))
         return [correlations if len(at) > 1 else [], columns if driving else []]
 
     def more(self, units: System) -> dict[str, Any]:
-        solution, spread, adjusted = self.solution, self.spread, []
+        solution, adjusted = self.solution, []
         for a in solution.adjusted:
             sizes = {n: units.factor(a.name) * x for n, x in zip(a._fields[1:], a[1:], strict=True)}
             adjusted.append({"name": a.name, **sizes, "moved": a.moved})
@@ -271,20 +237,20 @@ class Measured(Impact):
             "redundancy": solution.redundancy,
             "sum_of_squares": solution.squares,
             "equal_tolerances_assumed": solution.assumed,
-            "uncertainty": {name: self._uncertain(name, units) for name in spread.names},
-            "correlations": {"names": spread.names, "matrix": spread.correlations},
-            "draws_without_solution": spread.draws.failed if spread.draws else None,
+            "uncertainty": {name: self._uncertain(name, units) for name in self.names},
+            "correlations": {"names": self.names, "matrix": self.correlations},
+            "draws_without_solution": self.draws.failed if self.draws else None,
             "not_searched": self.not_searched,
         }
 
     def _uncertain(self, name: str, units: System) -> dict[str, Any]:
         factor = units.factor(name)
         whole: dict[str, Any] = {
-            "first_order": self.spread.deviations[name] * factor,
-            "drivers": dict(self.spread.drivers[name]),
+            "first_order": self.deviations[name] * factor,
+            "drivers": dict(self.drivers[name]),
         }
-        if self.spread.draws:
-            drawn, bound = self.spread.draws.spread(name, QUANTILES), self.spread.ranges[name]
+        if self.draws:
+            drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
             whole |= {
                 "mean": drawn.mean * factor,
                 "deviation": drawn.deviation * factor,
@@ -303,7 +269,7 @@ class Reconstructions(list[Reconstruction]):
 
     def _repr_html_(self) -> str:
         """What `impact88 reconstruct --samples 0` prints, as a notebook shows it."""
-        return notebook.preformatted(in_turn([Measured.of(one, 0) for one in self]))
+        return notebook.preformatted(in_turn([Measured(one, 0) for one in self]))
 
 
 def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions:
