@@ -13,13 +13,13 @@ one. A bare number without any system of units stays the text it is, digit for d
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
-from .doubles import double, is_number
+from .doubles import BARE, digits, double, is_number
 from .errors import UserError, quoted
 from .names import quantity
 from .units import (
@@ -32,6 +32,7 @@ from .units import (
     SPIN,
     UNIT,
     System,
+    check_unit,
     size_of,
     system_named,
     system_using,
@@ -74,7 +75,6 @@ _PHRASES: dict[str, tuple[re.Pattern[str], tuple[str, ...]]] = {
 }
 """Phrases that hold values of their own: the pattern, and what each value measures ("": what the
 entry does). Whoever reads the entry finds the phrase again, its values in base units."""
-_BARE = frozenset("0123456789+-.eE ")
 
 
 class Amount(NamedTuple):
@@ -98,6 +98,11 @@ class Notation(NamedTuple):
     amounts: tuple[Amount | None, ...]
     share: bool = False
     layout: str = "{}"
+
+    @property
+    def units(self) -> list[str]:
+        """The units it has."""
+        return [unit for amount in self.amounts if amount for unit in amount.units]
 
 
 def parse(text: str) -> Notation:
@@ -161,28 +166,27 @@ class _Value:
     """The text of one entry, and what it measures. Raises UserError for what is not an amount."""
 
     def __init__(self, name: str, text: str, rule: str, source: str) -> None:
-        self.name, self.text, self.rule, self.source = name, text, rule, source
+        self.entry, self.rule, self.source = f"{name} = {text}", rule, source
         try:
             self.notation = parse(text)
         except ValueError:
             raise UserError(
                 f"{name} = {quoted(text)} is not an amount; {ACCEPTED}", source
             ) from None
-        for unit in self.units:
-            if size_of(unit, rule) is None:
-                measures = {NUMBER: "a ratio"}.get(rule, rule.replace("·", " "))
-                raise UserError(f"{name} = {text}: {unit} is not a unit of {measures}", source)
-        if self.notation.share and (rule == PERCENT or "%" in self.units):
-            raise UserError(f"{name} = {text}: percent of a percentage; expected '37 +- 2'", source)
+        for unit in self.notation.units:
+            check_unit(unit, rule, self.entry, source)
+        if self.notation.share and (rule == PERCENT or "%" in self.notation.units):
+            raise UserError(f"{self.entry}: percent of a percentage; expected '37 +- 2'", source)
 
     @property
-    def units(self) -> list[str]:
-        """The units it has."""
-        return [unit for amount in self.notation.amounts if amount for unit in amount.units]
+    def uses(self) -> list[tuple[str, str]]:
+        """The units it has, each with what it measures."""
+        return [(unit, self.rule) for unit in self.notation.units]
 
     def based(self, system: System, strict: bool) -> str:
         """The text in base units; ``strict``: bare numbers that measure something are refused."""
-        common = self.units[0] if len(set(self.units)) == 1 else None
+        units = set(self.notation.units)
+        common = units.pop() if len(units) == 1 else None
         numbers = []
         for at, amount in enumerate(self.notation.amounts):
             if amount is None or (at == 1 and self.notation.share):
@@ -190,9 +194,7 @@ class _Value:
                 continue
             bare = not amount.units and common is None
             if bare and strict and self.rule not in _UNITLESS and _fraction(amount.parts[0][0]):
-                raise UserError(
-                    f"{self.name} = {self.text} has no unit, and others have", self.source
-                )
+                raise UserError(f"{self.entry} has no unit, and others have", self.source)
             numbers.append(self._number(amount, common or system.usual.get(self.rule, ""), system))
         return self.notation.layout.format(*numbers).lstrip()
 
@@ -212,11 +214,10 @@ class _Value:
             value = float(sum(_fraction(number) * size for (number, _), size in parts) / scale)
         except (OverflowError, ZeroDivisionError):
             self._refuse("too large for a double")
-        text = repr(value).removesuffix(".0").upper()
-        return "0" if not value else ("-" if amount.sign == "-" else "") + text
+        return "0" if not value else ("-" if amount.sign == "-" else "") + digits(value)
 
     def _refuse(self, why: str) -> None:
-        raise UserError(f"{self.name} = {self.text}: {why}; {ACCEPTED}", self.source)
+        raise UserError(f"{self.entry}: {why}; {ACCEPTED}", self.source)
 
 
 _UNITLESS = (NUMBER, ANGLE, SPIN, PERCENT)
@@ -249,7 +250,7 @@ def nominal(text: str) -> str:
     numbers = [a.sign + a.parts[0][0] for a in (first, amounts[-1]) if a]
     if kind not in ("range", "uniform"):
         return numbers[0]
-    return repr(float(sum(map(_fraction, numbers)) / 2)).removesuffix(".0").upper()
+    return digits(float(sum(map(_fraction, numbers)) / 2))
 
 
 def _taken_apart(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
@@ -273,35 +274,34 @@ def _taken_apart(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
     return "{}", [_Value(name, text, rule, source)]
 
 
-def _uses(values: Iterable[_Value]) -> list[tuple[str, str]]:
-    """The units of some values, each with what it measures."""
-    return [(unit, value.rule) for value in values for unit in value.units]
-
-
 def in_base(
-    texts: Mapping[str, str], source: str, system: System | None = None
-) -> tuple[dict[str, str], System | None]:
-    """The texts in base units, and the system they belong to (None where nothing says). ``texts``:
-    by name, as they were written, and perhaps the entry ``units``; ``system``: of bare numbers,
-    where no entry says. Raises UserError for what is not an amount, a unit that does not measure
-    the quantity, for bare numbers among others with units, and for units of two systems where none
-    is named."""
+    texts: Mapping[str, str], source: str, units: str | None = None
+) -> tuple[dict[str, str], str | None]:
+    """The texts in base units, and the name of their system (None where nothing says). ``texts``:
+    by name, as they were written, and perhaps the entry ``units``; ``units``: the system of bare
+    numbers, where no entry says. Raises UserError for what is not an amount, a unit that does not
+    measure the quantity, for bare numbers among others with units, and for units of two systems
+    where none is named."""
     entries = dict(texts)
-    named = entries.pop(ENTRY, None)
-    if named is not None:
+    system = system_named(units, "--units") if units else None
+    if (named := entries.pop(ENTRY, None)) is not None:
         system = system_named(named, source)
-    if system is None and all(_BARE.issuperset(entries[n]) for n in entries if n not in WORDS):
-        return entries, None
     held = {name: _taken_apart(name, text, source) for name, text in entries.items()}
     strict = system is None
-    if system is None:
-        found = system_using(_uses(v for _, values in held.values() for v in values), source)
-        system = None if found is RULES else found
-        strict = system is not None
+    system = system or system_using(
+        [use for _, values in held.values() for value in values for use in value.uses], source
+    )
+    strict = strict and system is not RULES
     for name, (layout, values) in held.items():
-        if values and (system or not _BARE.issuperset(entries[name])):
-            entries[name] = layout.format(*(v.based(system or RULES, strict) for v in values))
-    return entries, system
+        if values and (system is not RULES or not BARE.issuperset(entries[name])):
+            entries[name] = layout.format(*(v.based(system, strict) for v in values))
+    return entries, system.name or None
+
+
+def converted(name: str, text: str, system: System) -> str:
+    """One entry in base units; its bare numbers are the system's. Raises UserError."""
+    layout, values = _taken_apart(name, text, "")
+    return layout.format(*(value.based(system, False) for value in values))
 
 
 def shown_text(name: str, text: str, system: System) -> str:
@@ -311,9 +311,9 @@ def shown_text(name: str, text: str, system: System) -> str:
     if factor == 1 or not is_number(text):
         return text
     value, shown = double(text), ""
-    for digits in (15, 16, 17):
-        shown = f"{value * factor:.{digits}g}".upper()
-        if double(in_base({name: shown}, name, system)[0][name]) == value:
+    for places in (15, 16, 17):
+        shown = f"{value * factor:.{places}g}".upper()
+        if double(converted(name, shown, system)) == value:
             break
     return shown
 
@@ -321,7 +321,7 @@ def shown_text(name: str, text: str, system: System) -> str:
 def units_in(name: str, text: str) -> list[tuple[str, str]]:
     """The units in a text, each with what it measures; none where it is not an amount."""
     try:
-        return _uses(_taken_apart(name, text, "")[1])
+        return [use for value in _taken_apart(name, text, "")[1] for use in value.uses]
     except UserError:
         return []
 

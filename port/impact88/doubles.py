@@ -11,6 +11,8 @@ from .applesoft import decimaltext
 
 _PLAIN = frozenset("0123456789+-.eE")
 """Characters of which Python's float makes a number only where INPUT makes the same one."""
+BARE = _PLAIN | {" "}
+"""Characters of a number without a unit."""
 
 
 def read(text: str, start: int = 0) -> tuple[float, int]:
@@ -55,3 +57,8 @@ def doubles(texts: Sequence[str]) -> list[float]:
         except ValueError:
             pass
     return list(map(double, texts))
+
+
+def digits(value: float) -> str:
+    """The fewest digits that read back to a float, as INPUT takes them."""
+    return repr(value).removesuffix(".0").upper()

@@ -19,7 +19,7 @@ from collections.abc import Mapping
 from math import inf
 
 from .amounts import nominal
-from .doubles import double
+from .doubles import digits, double
 from .errors import UserError
 from .units import INERTIA, MASS, SYMBOLS, SYSTEMS
 
@@ -59,10 +59,7 @@ def with_estimates(
         else:
             inertia = _of_weight(mass, name, source, units)
             how[name] = "1.03 W - 1206 for passenger cars, from the weight alone"
-        digits = f"{inertia:.4g}"
-        if "e" in digits:
-            digits = repr(float(digits)).removesuffix(".0").upper()
-        values[name] = digits + text.removeprefix(WORD)
+        values[name] = digits(float(f"{inertia:.4g}")) + text.removeprefix(WORD)
     return values, how, outlines
 
 

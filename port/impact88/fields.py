@@ -4,10 +4,11 @@ Reading a printout, replaying one over arrays, comparing and qualifying all take
 places and kind from here.
 """
 
+import re
 from collections import namedtuple
 
 
-class Field(namedtuple("Field", ("name", "line", "places"), defaults=(None,))):
+class Field(namedtuple("Field", ("name", "line", "places"))):
     """One printed number: its name in the project's table, the listing line that prints it, and
     the decimal places it is floored to (None: printed in full)."""
 
@@ -15,24 +16,25 @@ class Field(namedtuple("Field", ("name", "line", "places"), defaults=(None,))):
 
 
 FIELDS: dict[str, Field] = {
-    field.name: field
-    for field in (
-        *(Field(name, 620) for name in ("MA", "MB", "IA", "IB")),
-        *(Field(name, 630) for name in ("DA", "DB")),
-        *(Field(name, 650) for name in ("PA", "PB", "TA", "TB", "GA")),
-        *(Field(name, 660) for name in ("UX", "UY", "WA")),
-        *(Field(name, 660, 2) for name in ("XA", "YA")),
-        *(Field(name, 670) for name in ("VX", "VY", "WB")),
-        *(Field(name, 670, 2) for name in ("XB", "YB")),
-        *(Field(name, 680) for name in ("E", "MUP", "EM")),
-        Field("KI", 690),
-        Field("LOSS", 690, 2),
-        *(Field(name, 730, 3) for name in ("VAX", "VAY")),
-        *(Field(name, 730, 2) for name in ("XAF", "YAF")),
-        *(Field(name, 740, 3) for name in ("VBX", "VBY")),
-        *(Field(name, 740, 2) for name in ("XBF", "YBF")),
-        *(Field(name, 760, 4) for name in ("WAF", "WBF")),
+    name: Field(name, line, places)
+    for line, places, names in (
+        (620, None, "MA MB IA IB"),
+        (630, None, "DA DB"),
+        (650, None, "PA PB TA TB GA"),
+        (660, None, "UX UY WA"),
+        (660, 2, "XA YA"),
+        (670, None, "VX VY WB"),
+        (670, 2, "XB YB"),
+        (680, None, "E MUP EM"),
+        (690, None, "KI"),
+        (690, 2, "LOSS"),
+        (730, 3, "VAX VAY"),
+        (730, 2, "XAF YAF"),
+        (740, 3, "VBX VBY"),
+        (740, 2, "XBF YBF"),
+        (760, 4, "WAF WBF"),
     )
+    for name in names.split()
 }
 """The printed numbers in the order they are printed."""
 
@@ -61,7 +63,7 @@ _LABELS = {
     **{name: f"{name[:-1]}=" for name in ("XAF", "YAF", "XBF", "YBF", *FINAL_SPINS)},
 }
 """Labels that are not the field's name."""
-_END_OF_NUMBER = frozenset(" )\n\x00\x07")
+_VALUE = r"[^ )\n\0\a?][^ )\n\0\a]*"
 
 
 def label(name: str) -> str:
@@ -75,18 +77,9 @@ def outcome_fields(printed: str) -> dict[str, str]:
     found: dict[str, str] = {}
     place = printed.find("MA= ")
     for name in FIELDS if place >= 0 else ():
-        if name not in ANGLES[1:]:
-            text = label(name)
-            start = printed.find(text, place)
-            if start < 0:
-                break
-            place = start + len(text)
-        while place < len(printed) and printed[place] in " \n":
-            place += 1
-        stop = place
-        while stop < len(printed) and printed[stop] not in _END_OF_NUMBER:
-            stop += 1
-        if stop == place or printed[place] == "?":
+        before = "" if name in ANGLES[1:] else f".*?{re.escape(label(name))}"
+        value = re.compile(f"(?>{before}[ \n]*)({_VALUE})", re.DOTALL).match(printed, place)
+        if value is None:
             break
-        found[name], place = printed[place:stop], stop
+        found[name], place = value[1], value.end()
     return found

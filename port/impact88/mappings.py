@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from .doubles import double
+from .doubles import digits, double
 from .errors import UserError, quoted
 from .scene import RANGES, Scene, check_mapping, entries_of, is_share
 
@@ -139,4 +139,4 @@ def _shortest(name: str, value: Any) -> str:
     number = in_doubles(name, value)
     if np.ndim(number) or not np.isfinite(number):
         raise UserError(f"{name} is {quoted(value)}; expected one finite number")
-    return repr(float(number)).removesuffix(".0").upper()
+    return digits(float(number))

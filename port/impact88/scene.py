@@ -12,7 +12,7 @@ import re
 from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 
 from . import notebook
-from .doubles import double, is_number
+from .doubles import BARE, double, is_number
 from .errors import BEYOND_DOUBLES, UserError, quoted
 from .files import called, packaged_text, read_text
 from .names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing, quantity
@@ -246,8 +246,7 @@ def check_mapping(values: object) -> None:
         raise UserError(f"{quoted(values)}: expected a mapping of names to values{hint}")
 
 
-_BARE = frozenset("0123456789+-.eE ")
-_NO_AMOUNTS = ("title", "case", "correlations")
+_NO_AMOUNTS = ("title", "case", "correlations", "M")
 SOURCE = "_source"
 """The end of an entry that says where a value comes from: UX_source = "event data recorder"."""
 RANGES = ("..", "+-", "±", "+/-", "uniform", "triangular", "normal")
@@ -323,13 +322,11 @@ def in_base_units(
 ) -> tuple[dict[str, str], str | None]:
     """The texts in base units (`impact88.amounts`), and the system's name; as they are where no
     value, nor the entry ``units``, nor ``units`` names any. Raises UserError."""
-    if units is None and all(_BARE.issuperset(texts[n]) for n in texts if n not in _NO_AMOUNTS):
+    if units is None and all(BARE.issuperset(texts[n]) for n in texts if n not in _NO_AMOUNTS):
         return dict(texts), None
     from .amounts import in_base
-    from .units import system_named
 
-    values, found = in_base(texts, source, system_named(units, "--units") if units else None)
-    return values, found.name if found else None
+    return in_base(texts, source, units)
 
 
 def check_value(name: str, text: str, source: str | None) -> str:

@@ -251,6 +251,13 @@ def system_using(units: Iterable[tuple[str, str]], source: str) -> System:
     return max((s for s in SYSTEMS.values() if s.base == base), key=matching)
 
 
+def check_unit(unit: str, rule: str, what: str, source: str) -> None:
+    """Raises UserError, naming ``what`` has it, for a unit that does not measure ``rule``."""
+    if size_of(unit, rule) is None:
+        measures = "a ratio" if rule == NUMBER else rule.replace("·", " ")
+        raise UserError(f"{what}: {unit} is not a unit of {measures}", source)
+
+
 def written(values: Mapping[str, float], system: System) -> dict[str, float]:
     """Values in base units as they are shown."""
     if system is RULES:

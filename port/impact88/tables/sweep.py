@@ -1,12 +1,12 @@
 """A scene swept: a table whose rows are one scene with some values running through ranges."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import islice, product
 from math import isfinite, prod
 from typing import NamedTuple
 
-from ..doubles import double, is_number
+from ..doubles import digits, double, is_number
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
 from ..scene import in_base_units
@@ -54,17 +54,13 @@ def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str,
 
 
 def _blocks(scene: Mapping[str, str], ranges: Mapping[str, Range]) -> Iterator[Rows]:
-    grid = product(*(_texts(r.values()) for r in ranges.values()))
+    grid = product(*(map(digits, r.values()) for r in ranges.values()))
     first = 1
     while block := list(islice(grid, BLOCK_ROWS)):
         columns: dict[str, Column] = {n: [t] * len(block) for n, t in scene.items()}
         columns |= dict(zip(ranges, zip(*block, strict=True), strict=True))
         yield Rows(first, len(block), columns, {})
         first += len(block)
-
-
-def _texts(values: Sequence[float]) -> list[str]:
-    return [repr(value).removesuffix(".0").upper() for value in values]
 
 
 @contextmanager

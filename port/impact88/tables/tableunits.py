@@ -9,11 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..amounts import in_base
-from ..amounts import units_in as _units_in
+from ..amounts import converted, units_in
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, quantity
-from ..units import NUMBER, RULES, SYSTEMS, System, size_of, system_named, system_using
+from ..units import (
+    NUMBER,
+    RULES,
+    SYSTEMS,
+    System,
+    check_unit,
+    size_of,
+    system_named,
+    system_using,
+)
 from .rows import Heading, Rows, heading
 
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
@@ -44,12 +52,7 @@ class TableUnits:
             rule = quantity(name).unit
             if unit == rule or (rule == NUMBER and unit in _RATIOS):
                 continue
-            if size_of(unit, rule) is None:
-                raise UserError(
-                    f"column {quoted(heading(name))}: {unit} is not a unit of "
-                    + {NUMBER: "a ratio"}.get(rule, rule.replace("·", " ")),
-                    where,
-                )
+            check_unit(unit, rule, f"column {quoted(heading(name))}", where)
             self.units[name] = unit
         used = [(unit, quantity(name).unit) for name, unit in self.units.items()]
         self.system = system_named(given, "--units") if given else system_using(used, where)
@@ -102,11 +105,11 @@ class TableUnits:
         """One cell in base units, exactly. Raises UserError for what is not an amount."""
         unit = self._unit(name)
         usual = {quantity(name).unit: unit} if unit else {}
-        if self.system is RULES and (found := system_using(_units_in(name, text), "")) is not RULES:
+        if self.system is RULES and (found := system_using(units_in(name, text), "")) is not RULES:
             raise UserError(
                 f"{quoted(text)}: expected its unit in the heading, or --units {found.name}"
             )
-        return in_base({name: text}, "", System("", self.system.base, usual, {}))[0][name]
+        return converted(name, text, System("", self.system.base, usual, {}))
 
     def headings(self, results: Sequence[str]) -> list[str]:
         """Names with the headings they have here: ``DVA [mph]``."""
@@ -129,5 +132,5 @@ def _units_in_cells(rows: Rows) -> list[tuple[str, str]]:
             # "lb" and "45 deg", but not 1E5 or inf
             worth = (c for c in column if isinstance(c, str) and c.strip("0123456789+-.eE \t"))
             for text in worth:
-                found.update(_units_in(name, text))
+                found.update(units_in(name, text))
     return list(found)
